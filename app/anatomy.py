@@ -36,7 +36,7 @@ class Dissection:
 
 
 class Solids:
-    """Muscles and skull of a face."""
+    """Muscles and skull of a face; of other scenes there is the skin alone."""
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
@@ -47,6 +47,8 @@ class Solids:
     def follow(self, dissection: Dissection) -> None:
         """Take what is asked for as it is now, and the head's parts that do not hide it."""
         scene, wanted = self._scene, dissection.solids
+        if not dissection.is_on(scene):
+            return
         if not self._skull:
             self._skull = build_skull(scene.head, scene.simulation.pivots())
         if "muscles" in wanted and self._muscles is None:
@@ -82,9 +84,15 @@ class Solids:
     ) -> None:
         """Draw what `follow` took, lit as if there were no skin, and the skin over it.
 
+        Where nothing is asked for, the skin and the scene's parts.
         where: viewport and clip; skin: what else `Renderer.draw_mesh` is told.
         """
         bones = self._scene.bone_transforms()
+        if not dissection.is_on(self._scene):
+            renderer.draw_mesh(stream, camera, style, **skin, **where)
+            # After the mesh: the skin throws its shadow on eyes and teeth.
+            renderer.draw_parts(self._scene.parts, bones, camera, style, **where)
+            return
         if style.shadows:
             solid = [part for part in self.parts if not getattr(part, "hair", 0.0)]
             renderer.cast_shadows(solid, bones, camera, style, **where)

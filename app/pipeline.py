@@ -124,8 +124,7 @@ class Pipeline:
         dissection: Dissection = Dissection(),  # noqa: B008 - frozen
     ) -> None:
         """The lower half: refine the mesh by each refiner, and draw it into its viewport."""
-        if dissection.is_on(self.scene):
-            self.solids.follow(dissection)
+        self.solids.follow(dissection)
         amounts = None
         if self.wrinkling is not None and style.shows_wrinkles:
             amounts = self.wrinkling.amounts(self.scene.positions)
@@ -151,17 +150,8 @@ class Pipeline:
             "texture": self.texture if drawn.has_uv else None,
             "wrinkles": self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
         }
-        where: dict[str, Any] = {"viewport": viewport}
-        stream = drawn.stream
-        if dissection.is_on(self.scene):
-            self.solids.draw(
-                self.renderer, stream, camera, style, dissection, where=where, skin=skin
-            )
-            return
-        self.renderer.draw_mesh(stream, camera, style, **skin, **where)
-        # After the mesh: the skin throws its shadow on eyes and teeth.
-        bones = self.scene.bone_transforms()
-        self.renderer.draw_parts(self.scene.parts, bones, camera, style, viewport=viewport)
+        where, stream = {"viewport": viewport}, drawn.stream
+        self.solids.draw(self.renderer, stream, camera, style, dissection, where=where, skin=skin)
 
 
 def texture_of(

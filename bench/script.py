@@ -89,8 +89,8 @@ def _file_rows(script: Script, path: Path) -> Iterator[Row]:
 
 def _window_rows(path: Path, size: tuple[int, int]) -> Iterator[Row]:
     """Frames with a take and with a few keys, then what a user does with keys."""
+    from risorius.app.script.keyframes import places_of
     from risorius.app.viewer import Viewer
-    from risorius.app.viewer.keyframes import places_of
     from risorius.app.viewer.settings import Display
     from risorius.app.viewer.tracks import TRACKS
 

@@ -40,10 +40,6 @@ class Row:
         first = (whole,) if whole and (values[whole] or not apart) else ()
         return cls(label, (*first, *apart), sides, whole, is_linked)
 
-    def words(self, action: str) -> str:
-        """What it reads: a code, a plain name, or both."""
-        return "  ".join(filter(None, title_of(self.label, action)))
-
 
 def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
     """What was set by hand, in words; what is not in `before` was 0."""
@@ -103,4 +99,4 @@ def search_rows(
 def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
     action = actions.get(row.names[-1], "")
     names = " ".join((row.label, *row.names, *row.sides))
-    return f"{names} {readable(names)} {row.words(action)} {group} {action}"
+    return " ".join((names, readable(names), *title_of(row.label, action), group, action))

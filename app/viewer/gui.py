@@ -26,7 +26,7 @@ import glfw  # isort: skip - after imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
 ICONS = FONT.parents[1] / "Font_Awesome_6_Free-Solid-900.otf"
-BACK = "\uf2ea"  # of the icons: an arrow that turns to the left
+BACK, TICK = "\uf2ea", "\uf00c"  # of the icons; the first is an arrow that turns to the left
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
 BUTTON = -1  # in place of a key: one of the mouse was pressed

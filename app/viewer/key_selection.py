@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from ..errors import counted
-from ..script import Pose, Script
-from . import keyframes
-from .keyframes import POSES
+from ..script import Pose, Script, keyframes
+from ..script.keyframes import POSES
+from ..script.places import NOWHERE, Places
 from .messages import Message
 from .panel_state import PanelState
-from .places import NOWHERE, Places
 from .session import Session
 
 COPY_OFFSET = 10  # frames by which a copy comes later, if it is not wanted elsewhere

@@ -5,6 +5,7 @@ Menus, the keyboard and the overview of keys are all made from these tables.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -21,7 +22,7 @@ from .panel_state import PanelState
 from .placement import Placement
 from .script_commands import ScriptCommands
 from .session import Session
-from .settings import Settings
+from .settings import Settings, switch
 from .time_axis import TimeAxis
 from .view import View
 
@@ -100,7 +101,7 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
     return (
         command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
         command("Record", "Ctrl+R", scripts.toggle_recording, lambda: session.is_recording),
-        command("Loop", "L", partial(flip, session, "is_looping"), lambda: session.is_looping),
+        switch_of(lambda: session, "Time", "Loop", "L", "is_looping"),
         command("To the start", "Home", partial(session.seek, 0.0)),
         command("To the key before", "Left", partial(session.seek_key, -1)),
         command("To the next key", "Right", partial(session.seek_key, 1)),
@@ -108,9 +109,23 @@ def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu
     )
 
 
-def flip(part: object, field: str) -> None:
-    """Switch a field on or off."""
-    setattr(part, field, not getattr(part, field))
+def switch_of(
+    part: Callable[[], object],
+    menu: str,
+    label: str,
+    key: str,
+    field: str,
+    on: object = True,
+    off: object = False,
+) -> Command:
+    """A command that gives a field of some part one value or the other."""
+    return Command(
+        menu,
+        label,
+        key,
+        lambda: switch(part(), field, on, off),
+        lambda: bool(getattr(part(), field) == on),
+    )
 
 
 def keys_menu(session: Session, selection: KeySelection) -> Menu:
@@ -123,7 +138,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
         edit("Set key", "K", selection.set_key),
         edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
         command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
-        command("Auto-key", "", partial(flip, session, "is_keying"), lambda: session.is_keying),
+        switch_of(lambda: session, "Keys", "Auto-key", "", "is_keying"),
         name("Name of the pose ...", "Ctrl+K", selection.rename),
         change("Copy", "Ctrl+C", selection.copy),
         command("Paste", "Ctrl+V", selection.paste, can_run=lambda: bool(selection.copied)),
@@ -146,16 +161,9 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
 
 def view_menu(settings: Settings, view: View, placement: Placement, panels: PanelState) -> Menu:
     """How the scene is drawn, and what is around it."""
-    command, flip = partial(Command, "View"), settings.toggle
-
-    def switch(label: str, key: str, field: str, on: object = True, off: object = False) -> Command:
-        """A field of the settings of display that has this value or the other."""
-        return command(
-            label,
-            key,
-            lambda: settings.display.switch(field, on, off),
-            lambda: bool(getattr(settings.display, field) == on),
-        )
+    command = partial(Command, "View")
+    shown = partial(switch_of, lambda: settings.display, "View")
+    setting = partial(switch_of, lambda: settings, "View")
 
     def toggle_look() -> Message:
         """The paper's own rule, or the look that is first; either as it is."""
@@ -175,27 +183,25 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
     )
     full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
     return (
-        switch("Refine", "R", "is_refined"),
+        shown("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_LOOK),
-        switch("Compare: wipe", "D", "compare", "wipe", "off"),
-        switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
-        switch("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
-        switch("Wireframe", "W", "wireframe"),
-        switch("Colour by splits", "C", "colours", "splits", "none"),
+        shown("Compare: wipe", "D", "compare", "wipe", "off"),
+        shown("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
+        shown("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
+        shown("Wireframe", "W", "wireframe"),
+        shown("Colour by splits", "C", "colours", "splits", "none"),
         command("Next shading", "S", lambda: settings.display.next_shading()),
-        switch("Texture", "T", "skin", "textured", "plain"),
+        shown("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
-        command("Idle life", "A", partial(flip, "is_alive"), lambda: settings.is_alive),
-        command("Curves", "G", partial(flip, "shows_curves"), lambda: settings.shows_curves),
-        command(
-            "Frame numbers", "", partial(flip, "counts_frames"), lambda: settings.counts_frames
-        ),
+        setting("Idle life", "A", "is_alive"),
+        setting("Curves", "G", "shows_curves"),
+        setting("Frame numbers", "", "counts_frames"),
         command("Frame the face", "F", view.fit_scene),
         *views,
-        replace(switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
+        replace(shown("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
         command("Hide panels", "H", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
-        command("Dark theme", "F2", settings.toggle_theme, lambda: settings.theme == "dark"),
+        setting("Dark theme", "F2", "theme", "dark", "light"),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
         command("Usual size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),
@@ -229,9 +235,7 @@ def live_menu(live: LiveCommands) -> Menu:
 
 def help_menu(panels: PanelState, begin_steps: Task) -> Menu:
     """The overview of keys, and how to begin."""
-    is_open = partial(getattr, panels, "is_help_open")
-    toggle = partial(flip, panels, "is_help_open")
     return (
         Command("Help", "First steps", "", begin_steps),
-        Command("Help", "Keys and mouse", "F1", toggle, is_open),
+        switch_of(lambda: panels, "Help", "Keys and mouse", "F1", "is_help_open"),
     )

@@ -29,10 +29,10 @@ MOST_STRAIN = 0.3  # an edge in its full colour
 
 
 class Lines(NamedTuple):
-    """Polylines (n, 3) with a colour each, and how they are drawn."""
+    """Polylines (n, 3) with a colour each, and how `draw_lines` is to draw them."""
 
     polylines: Sequence[FloatArray]
-    colours: FloatArray
+    colour: FloatArray
     width: float = 1.6
     hidden_opacity: float = 0.45
     opacity: float = 1.0

@@ -42,6 +42,7 @@ from .panels.live import LivePanel
 from .panels.mechanism import MechanismPanel
 from .panels.menu_bar import MenuBar
 from .panels.muscle_note import MuscleNote
+from .panels.poses import PoseGrid
 from .panels.timeline import Timeline
 from .panels.waveform import Waveform
 from .physics import Physics
@@ -159,7 +160,9 @@ class Parts:
             gui, session, settings, messages, self.selection, axis, bar, waveform
         )
         self.timeline = Timeline(gui, session, messages, commands, dope_sheet)
-        self.face_panel = FacePanel(gui, session, settings, view)
+        path = self._settings_path
+        self.poses = PoseGrid(gui, session, messages, self.surface, path and path.parent / "poses")
+        self.face_panel = FacePanel(gui, session, settings, view, self.poses)
         mechanism = MechanismPanel(
             gui, settings, self.stage, view, self.times, messages, self.file_drop
         )
@@ -189,6 +192,7 @@ class Parts:
         self.leave_marking()
         self.soundtrack.close()
         self.recovery.close()
+        self.poses.close()
         self._resources.close()
 
     def remember(self) -> None:

@@ -15,28 +15,23 @@ from ..errors import UserError, counted
 from ..mirror import copied, mirrored, twin_of
 from ..motion import SETTLING
 from ..scenes import Scene
-from ..script import Pose, Script, is_pose, pose_script, rounded, save_script
+from ..script import Pose, Script, is_pose, keyframes, pose_script, rounded, save_script
+from ..script.recorder import Recorder
 from ..vocabulary import readable
-from . import keyframes
 from .control_rows import change_of
 from .controls import Controls
 from .document import Document
 from .history import History
 from .lead import Lead
 from .messages import Message
-from .recorder import Recorder
 from .script_file import ScriptFile
 from .unsaved import Work
 
-SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 NEW_SECONDS = 4.0  # that a script begun from nothing lasts
 
 
 class Session:
     """The controls of a scene and the script that may move them."""
-
-    is_playing: bool
-    is_looping: bool
 
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
@@ -78,6 +73,13 @@ class Session:
         if not self.is_recording:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = self._is_touched = True
+
+    def blend(self, first: Mapping[str, float], last: Mapping[str, float], share: float) -> None:
+        """Be this share of the way from a pose to another, both with a value for each control."""
+        for name in first:
+            value = first[name] + share * (last[name] - first[name])
+            if value != self.values[name]:
+                self.set(name, value)
 
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""

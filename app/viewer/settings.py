@@ -100,10 +100,6 @@ class Display:
         """Of the picture's width, what is at the left of the line in a comparison."""
         return self.divider if self.compare == "wipe" else 0.5
 
-    def switch(self, name: str, value: object = True, other: object = False) -> None:
-        """Give a field this value, or the other if it has it already."""
-        setattr(self, name, other if getattr(self, name) == value else value)
-
     def toggle_overlay(self, name: str) -> None:
         """Show an overlay or hide it."""
         others = [each for each in self.overlays if each != name]
@@ -157,18 +153,15 @@ class Settings:
     knows_first_steps: Annotated[bool, rules.flag] = False
     export: ExportChoices = field(default_factory=ExportChoices)
 
-    def toggle_theme(self) -> None:
-        """Light or dark."""
-        self.theme = "light" if self.theme == "dark" else "dark"
-
-    def toggle(self, name: str) -> None:
-        """Switch a field on or off."""
-        setattr(self, name, not getattr(self, name))
-
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""
         least, most = rules.ZOOMS
         self.zoom = min(max(self.zoom * factor, least), most)
+
+
+def switch(part: object, name: str, value: object = True, other: object = False) -> None:
+    """Give a field of a part this value, or the other if it has it already."""
+    setattr(part, name, other if getattr(part, name) == value else value)
 
 
 def display_of(
@@ -176,20 +169,18 @@ def display_of(
     scene: str,
     dissection: Dissection = Dissection(),  # noqa: B008 - frozen
     *,
-    shading: str,
-    wireframe: bool,
     splits: bool,
-    skin: str,
-    wrinkles: float,
-    light: str,
+    **style: Any,
 ) -> Display:
-    """How the scene of this name is shown as the command line asks for."""
+    """How the scene of this name is shown as the command line asks for; style: further fields."""
     display = Display(
-        shading=shading, wireframe=wireframe, skin=skin, wrinkles=wrinkles, light=light
+        look=refinement.look,
+        colours="splits" if splits else "none",
+        overlays=list(dissection.solids),
+        skin_opacity=dissection.opacity,
+        dissect=dissection.side,
+        **style,
     )
-    display.overlays, display.dissect = list(dissection.solids), dissection.side
-    display.skin_opacity = dissection.opacity
-    display.look, display.colours = refinement.look, "splits" if splits else "none"
     if refinement.refiner == STATIC:
         display.is_refined = False
     else:

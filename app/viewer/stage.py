@@ -140,22 +140,14 @@ class Stage:
         with times.timed("draw"):
             self.surface.begin()
             overlays = self._overlays(view, () if is_photo else view.pointed)
-            if display.dissection.is_on(self.scene):
-                self._solids.follow(display.dissection)
+            self._solids.follow(display.dissection)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
                 values = COLOURS[display.colours].values(self.scene, shot.drawn)
                 self._draw_shot(shot, view, style, values)
                 for lines in overlays:
                     self.renderer.draw_lines(
-                        lines.polylines,
-                        lines.colours,
-                        camera,
-                        viewport=shot.viewport,
-                        clip=shot.clip,
-                        width=lines.width,
-                        opacity=lines.opacity,
-                        hidden_opacity=lines.hidden_opacity,
+                        camera=camera, viewport=shot.viewport, clip=shot.clip, **lines._asdict()
                     )
             self.surface.target.flush()
             self.surface.gl.finish()
@@ -177,17 +169,8 @@ class Stage:
         texture = self._texture if has_uv else None
         wrinkles = self._wrinkling.map if self._wrinkling and has_uv else None
         skin: dict[str, Any] = {"values": values, "texture": texture, "wrinkles": wrinkles}
-        if dissection.is_on(self.scene):
-            self._solids.draw(
-                self.renderer, stream, camera, style, dissection, where=where, skin=skin
-            )
-            return
-        self.renderer.draw_mesh(stream, camera, style, **skin, **where)
-        # After the mesh: the skin throws its shadow on eyes and teeth.
-        self.renderer.draw_parts(
-            self.scene.parts, self.scene.bone_transforms(), camera, style, **where
-        )
-        if not self.surface.samples:
+        self._solids.draw(self.renderer, stream, camera, style, dissection, where=where, skin=skin)
+        if not (self.surface.samples or dissection.is_on(self.scene)):
             self.renderer.draw_outline(stream, camera, style, texture=texture, **where)
 
     def _overlays(self, view: View, pointed: tuple[str, ...]) -> list[Lines]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple, TypeVar
 
 from ..script import Floats
-from .keyframes import FRAME
+from ..script.keyframes import FRAME
 
 MARGIN = 1.06  # of the script: room behind its end, to drag keys there
 LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in

@@ -10,9 +10,9 @@ from functools import partial
 import numpy as np
 
 from ..script import EASING_NAMES, Channel, Pose, Script
+from ..script.keyframes import POSES, places_of
+from ..script.places import Places
 from ..vocabulary import readable
-from .keyframes import POSES, places_of
-from .places import Places
 
 TRACKS = "Tracks"
 MOST_LINES = 7  # of a key's values that are told

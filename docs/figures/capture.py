@@ -27,8 +27,8 @@ from risorius.app.playback import Playback
 from risorius.app.recordings.names import ARKIT
 from risorius.app.recordings.reading import read_take
 from risorius.app.scenes import FaceScene
+from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import places_of
 from risorius.bench import figures
 
 Part = tuple[tuple[str, ...], float, tuple[float, float, float, float]]  # see PLAYED

@@ -21,8 +21,8 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.files import Image
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
+from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import places_of
 from risorius.app.viewer.settings import Display
 from risorius.app.viewer.skin_drag import SkinDrag
 from risorius.assets.fitting.guess import FIRST

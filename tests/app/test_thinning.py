@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.script import TOLERANCE, Script, thinned
-from risorius.app.viewer.recorder import Recorder
+from risorius.app.script.recorder import Recorder
 
 SAMPLE = st.tuples(st.integers(1, 10**7), st.floats(-1.0, 1.0))  # [us] after the one before
 

@@ -90,8 +90,8 @@ def test_a_film_shows_what_the_window_shows(viewer: Viewer, tmp_path: Path) -> N
 def test_a_part_turns_on_nothing(viewer: Viewer, tmp_path: Path) -> None:
     """A part of the script, without background, while the camera goes round once."""
     xdotool(viewer, "key", "ctrl+e")
-    click(viewer, "export: What")
-    click(viewer, "export: A part of it")
+    click(viewer, "What")
+    click(viewer, "What: A part of it")
     assert until(viewer, lambda: "export: From, to" in viewer.gui.places)
     click(viewer, "export: Transparent background")
     click(viewer, "export: Turntable: the camera goes round once")
@@ -114,8 +114,8 @@ def test_a_part_turns_on_nothing(viewer: Viewer, tmp_path: Path) -> None:
 def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -> None:
     """What `risorius export` writes, under the name that was typed."""
     xdotool(viewer, "key", "ctrl+e")
-    click(viewer, "export: Write")
-    click(viewer, "export: Motion: numpy arrays (.npz)")
+    click(viewer, "Write")
+    click(viewer, "Write: Motion: numpy arrays (.npz)")
     click(viewer, "export: Name")
     xdotool(viewer, "key", "ctrl+a")
     xdotool(viewer, "key", "BackSpace", "Return")

@@ -10,10 +10,10 @@ import pytest
 from imgui_bundle import imgui
 
 from risorius.app.script import Channel, Script, load_script
+from risorius.app.script.keyframes import FRAME, POSES, on_frame
+from risorius.app.script.places import NOWHERE, KeyPlace
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import FRAME, POSES, on_frame
 from risorius.app.viewer.panel_cache import REFRESH
-from risorius.app.viewer.places import NOWHERE, KeyPlace
 from risorius.app.viewer.settings import load_settings, save_settings
 
 from .driving import (

@@ -13,10 +13,16 @@ from hypothesis import strategies as st
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script import Script, load_script, parse_script, save_script, script_text
-from risorius.app.viewer import keyframes
-from risorius.app.viewer.keyframes import FRAME, POSES
-from risorius.app.viewer.places import KeyPlace, Places
+from risorius.app.script import (
+    Script,
+    keyframes,
+    load_script,
+    parse_script,
+    save_script,
+    script_text,
+)
+from risorius.app.script.keyframes import FRAME, POSES
+from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.time_axis import LEAST_SPAN, TimeAxis
 from risorius.app.viewer.tracks import all_tracks, described

@@ -11,9 +11,9 @@ import pytest
 from imgui_bundle import imgui
 
 from risorius.app.script import load_script
+from risorius.app.script.keyframes import POSES
+from risorius.app.script.places import KeyPlace
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import POSES
-from risorius.app.viewer.places import KeyPlace
 from risorius.app.viewer.settings import load_settings, save_settings
 
 from .driving import (

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from risorius.app.performances import script_for
+from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import places_of
 
 from .driving import (
     NEEDS_A_SCREEN,

@@ -18,21 +18,22 @@ from risorius.app.script import (
     Channel,
     Script,
     is_pose,
+    keyframes,
     load_script,
     parse_script,
     pose_script,
     save_script,
     script_text,
 )
-from risorius.app.viewer import keyframes, picking
+from risorius.app.script.places import Places
+from risorius.app.script.recorder import Recorder
+from risorius.app.viewer import picking
 from risorius.app.viewer.control_rows import rows_of, search_rows
 from risorius.app.viewer.document import Document
 from risorius.app.viewer.history import MOST_GROWTH, History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import LINES, overlays_of
 from risorius.app.viewer.physics import EARLIEST, MOST_STEPS, STEP, Clock
-from risorius.app.viewer.places import Places
-from risorius.app.viewer.recorder import Recorder
 from risorius.app.viewer.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger

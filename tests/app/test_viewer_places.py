@@ -8,11 +8,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.script import Channel, Key, Pose, Script
+from risorius.app.script import Channel, Key, Pose, Script, keyframes
 from risorius.app.script.easing import EASINGS
-from risorius.app.viewer import keyframes
-from risorius.app.viewer.keyframes import POSES, places_of
-from risorius.app.viewer.places import KeyPlace, Places
+from risorius.app.script.keyframes import POSES, places_of
+from risorius.app.script.places import KeyPlace, Places
 
 TIMES = st.integers(0, 40).map(lambda step: step / 8.0)  # few, so that they often meet
 TRACKS = st.sampled_from([POSES, "joy", "blink"])

@@ -17,10 +17,10 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import Channel, load_script
-from risorius.app.viewer import Viewer, keyframes
+from risorius.app.script import Channel, keyframes, load_script
+from risorius.app.script.places import Places
+from risorius.app.viewer import Viewer
 from risorius.app.viewer.physics import STEP
-from risorius.app.viewer.places import Places
 from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.app.script import Channel, Key, Pose, Script, load_script, parse_script
+from risorius.app.script.keyframes import POSES, places_of
+from risorius.app.script.places import KeyPlace, Places
+from risorius.app.script.recorder import Recorder
 from risorius.app.viewer.control_rows import change_of, readable
 from risorius.app.viewer.key_selection import KeySelection
-from risorius.app.viewer.keyframes import POSES, places_of
 from risorius.app.viewer.panel_state import PanelState
 from risorius.app.viewer.physics import STEP
-from risorius.app.viewer.places import KeyPlace, Places
-from risorius.app.viewer.recorder import Recorder
 from risorius.app.viewer.session import Session
 
 HELLO = Path("docs/hello.toml")

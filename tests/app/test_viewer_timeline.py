@@ -10,11 +10,11 @@ import pytest
 from imgui_bundle import imgui
 
 from risorius.app.script import Channel, Script, load_script, save_script
+from risorius.app.script.keyframes import POSES, on_frame, places_of
+from risorius.app.script.places import NOWHERE, KeyPlace, Places
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.keyframes import POSES, on_frame, places_of
 from risorius.app.viewer.panel_cache import REFRESH
 from risorius.app.viewer.panels.dope_sheet import ROW
-from risorius.app.viewer.places import NOWHERE, KeyPlace, Places
 
 from .driving import (
     NEEDS_A_SCREEN,

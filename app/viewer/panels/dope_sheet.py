@@ -16,12 +16,11 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...errors import counted
-from ...script import Script
-from .. import keyframes
+from ...script import Script, keyframes
+from ...script.places import NOWHERE, Places
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, em, ink_of
 from ..key_selection import KeySelection
 from ..messages import Message, Messages, Task
-from ..places import NOWHERE, Places
 from ..session import Session
 from ..settings import Settings
 from ..time_axis import TimeAxis

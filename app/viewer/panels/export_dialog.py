@@ -18,7 +18,7 @@ from ..messages import Message
 from ..setting_rules import SIDES_EXPORTED
 from ..settings import ExportChoices
 from ..view import View
-from .widgets import button, muted, shortened
+from .widgets import button, choose, muted, shortened
 
 TITLE = "Export"
 LABELS, WIDTH, BUTTON = 7.5, 31.0, 6.5  # [em] of words at the left, the dialog, a button
@@ -70,16 +70,10 @@ class ExportDialog:
 
     def _pick(self, label: str, now: Value, choices: Mapping[Value, str]) -> Value:
         """A list to choose from; what is chosen."""
-        name, flags = self._row(label), imgui.ComboFlags_.height_largest
-        if imgui.begin_combo(name, choices[now], flags):
-            for value, text in choices.items():
-                if imgui.selectable(text, value == now)[0]:
-                    now = value
-                self._gui.remember(f"export: {text}")
-            imgui.end_combo()
-        else:
-            self._gui.remember(f"export: {label}")
-        return now
+        self._row(label)
+        values = {text: value for value, text in choices.items()}
+        chosen = choose(self._gui, label, choices[now], values)
+        return now if chosen is None else values[chosen]
 
     def _draw_motion(self, choices: ExportChoices) -> None:
         """What is exported, from when to when, how large and how often."""

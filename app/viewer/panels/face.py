@@ -13,6 +13,7 @@ from ..session import Session
 from ..settings import Settings
 from ..view import View
 from .pads import Pads
+from .poses import PoseGrid
 from .rows import ControlRows
 from .widgets import button, button_width, heading, hint, muted, stay_in_line
 
@@ -24,10 +25,12 @@ IN_USE = "In use"  # a filter of all groups
 class FacePanel:
     """Buttons, search, filters and groups of rows."""
 
-    def __init__(self, gui: Gui, session: Session, settings: Settings, view: View) -> None:
+    def __init__(
+        self, gui: Gui, session: Session, settings: Settings, view: View, poses: PoseGrid
+    ) -> None:
         self._gui, self._session, self._settings = gui, session, settings
         self.rows = ControlRows(gui, session, settings, view)
-        self._pads = Pads(gui, session)
+        self._pads, self.poses = Pads(gui, session), poses
         self.search = ""
         self.filter = ""  # the groups that are shown alone, by what their button reads
         self._in_use: set[str] = set()  # labels of rows
@@ -48,10 +51,13 @@ class FacePanel:
         imgui.begin_child("controls", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
         if not has_room:  # they scroll
             self._draw_filters()
-        groups = self._session.controls.groups
+        session, groups = self._session, self._session.controls.groups
         shown = filters().get(self.filter, tuple(groups))
         if not self.search and self.filter != IN_USE and {"Jaw", "Gaze"} & {*shown}:
             self._pads.draw()
+        if not (self.search or self.filter) and session.scene.expressions:
+            if heading(self._gui, self._settings, "Poses"):
+                self.poses.draw()
         counts = [self._draw_group(title, groups[title]) for title in groups if title in shown]
         if not any(counts):
             is_rest = self.filter == IN_USE and not self.search

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from itertools import pairwise
 
 from imgui_bundle import imgui
 
-from ..gui import NOTE_FLAGS, Gui, colour, em
+from ..gui import NOTE_FLAGS, TICK, Gui, em, ink_of
 from ..view import View
 from .widgets import muted
 
@@ -70,22 +69,16 @@ class FirstSteps:
 
     def _draw_mark(self, number: int) -> None:
         """A ring with the step's number; once that is done, a disc with a tick."""
-        corner, ink, radius = (
-            imgui.get_cursor_screen_pos(),
-            imgui.get_window_draw_list(),
-            em(RADIUS),
-        )
+        theme, ink, radius = self._gui.theme, imgui.get_window_draw_list(), em(RADIUS)
+        corner = imgui.get_cursor_screen_pos()
         x, y = corner.x + radius, corner.y + em(1.05)
-        accent = imgui.get_color_u32(colour(self._gui.theme.accent))
+        word, shade = f"{number + 1}", theme.accent
         if self.done[number]:
-            ink.add_circle_filled((x, y), radius, accent)
-            paper = imgui.get_color_u32(colour(self._gui.theme.panel))
-            tick = [(x + em(a), y + em(b)) for a, b in ((-0.27, 0.02), (-0.07, 0.22), (0.28, -0.2))]
-            for start, end in pairwise(tick):
-                ink.add_line(start, end, paper, em(0.13))
+            word, shade = TICK, theme.panel
+            ink.add_circle_filled((x, y), radius, ink_of(theme.accent))
         else:
-            ink.add_circle((x, y), radius, accent, 0, em(0.09))
-            size = imgui.calc_text_size(f"{number + 1}")
-            ink.add_text((x - 0.5 * size.x, y - 0.5 * size.y), accent, f"{number + 1}")
+            ink.add_circle((x, y), radius, ink_of(theme.accent), 0, em(0.09))
+        size = imgui.calc_text_size(word)
+        ink.add_text((x - 0.5 * size.x, y - 0.5 * size.y), ink_of(shade), word)
         imgui.dummy((2.0 * radius + em(0.3), 0.0))
         imgui.same_line()

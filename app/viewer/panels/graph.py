@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from imgui_bundle import imgui
 
+from ...script.keyframes import SAME
+from ...script.places import NOWHERE, KeyPlace, Places, among
 from ..gui import Gui, em, ink_of
 from ..key_selection import KeySelection
-from ..keyframes import SAME
-from ..places import NOWHERE, KeyPlace, Places, among
 from ..time_axis import TimeAxis
 from ..tracks import Track
 from .key_marks import Point, draw_line

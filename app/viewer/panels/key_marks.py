@@ -8,9 +8,9 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...script import Floats
+from ...script.keyframes import FRAME
+from ...script.places import Places
 from ..gui import Theme, em, ink_of
-from ..keyframes import FRAME
-from ..places import Places
 from ..time_axis import TimeAxis
 from ..tracks import Track
 from .widgets import shortened

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 
 from imgui_bundle import imgui
 
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
-from ...mirror import parted
 from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
 from ..command import Command
+from ..control_rows import rows_of
 from ..gui import Gui, colour, em
 from ..live_commands import LiveCommands
 from ..messages import Messages
 from ..settings import Settings
-from .sliders import Sliders
-from .widgets import begin_row, button, button_width, choose, heading, hint, muted, stay_in_line
+from .widgets import LabelledRows, button, button_width, heading, hint, muted, stay_in_line
 
 LABEL_SHARE = 0.38  # of a row
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
@@ -52,7 +51,7 @@ class LivePanel:
         """record: the command that begins and ends a recording."""
         self._gui, self._settings, self._live, self._messages = gui, settings, live, messages
         self._record = record
-        self._sliders = Sliders(gui)
+        self._rows = LabelledRows(gui, LABEL_SHARE, HINTS)
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
@@ -76,16 +75,16 @@ class LivePanel:
         imgui.begin_disabled(live.is_on)
         title = wanted.protocol.title
         by_title = {each.title: kind for kind, each in PROTOCOLS.items()}
-        chosen = self._choose("Protocol", title, tuple(by_title))
+        chosen = self._rows.choose("Protocol", title, tuple(by_title))
         if chosen is not None:
             wanted = replace(wanted, kind=by_title[chosen], port=None)
         here = COMPUTERS.get(wanted.address, wanted.address)
         by_name = {name: address for address, name in COMPUTERS.items()}
         by_name.setdefault(here, wanted.address)
-        chosen = self._choose("Listen to", here, tuple(by_name))
+        chosen = self._rows.choose("Listen to", here, tuple(by_name))
         if chosen is not None:
             wanted = replace(wanted, address=by_name[chosen])
-        begin_row("Port", HINTS["Port"], LABEL_SHARE)
+        self._rows.begin("Port")
         is_changed, port = imgui.input_int("##port", wanted.chosen_port, 0)
         self._gui.remember("Port")
         if is_changed:
@@ -141,12 +140,13 @@ class LivePanel:
             live.toggle_mirror()
 
     def _draw_gains(self, face: LiveFace) -> None:
-        calibration = face.calibration
-        gain = self._slide("Gain", calibration.default_gain, 1.0)
+        calibration, slide, limits = face.calibration, self._rows.slide, (0.0, MOST_GAIN)
+        gain = slide("Gain", "live Gain", calibration.default_gain, limits, 1.0)
         if gain is not None:
             face.calibration = replace(calibration, default_gain=gain)
         for label, names, usual in (("Blink", BLINK, BLINK_GAIN), ("Head", HEAD, 1.0)):
-            gain = self._slide(label, calibration.gains.get(names[0], 1.0), usual)
+            now = calibration.gains.get(names[0], 1.0)
+            gain = slide(label, f"live {label}", now, limits, usual)
             if gain is not None:
                 gains = {**calibration.gains, **dict.fromkeys(names, gain)}
                 face.calibration = replace(calibration, gains=gains)
@@ -158,13 +158,14 @@ class LivePanel:
         shown = shown_of(face)
         if not shown:
             muted(self._gui, "nothing yet")
-        for label, names in rows_of(shown):
+        for row in rows_of(tuple(shown), shown, linked=False):
+            names = row.names
             shares = [_share(name, shown[name]) for name in names]
             is_seen = max(shares) >= LEAST_SEEN
             ink = self._gui.theme.accent if is_seen else self._gui.theme.muted
-            imgui.text_colored(colour(ink), label)
+            imgui.text_colored(colour(ink), row.label)
             hint("right | left" if len(names) > 1 else "")
-            left = LABEL_SHARE * imgui.get_window_width()
+            left = self._rows.second
             imgui.same_line(left)
             width = imgui.get_content_region_avail().x / len(names)
             for index, name in enumerate(names):  # before the bars, which would lower them
@@ -174,33 +175,11 @@ class LivePanel:
                 imgui.same_line(left + index * width)
                 imgui.progress_bar(min(share, 1.0), (width - em(2.8), em(1.0)), "")
 
-    # Rows
-
-    def _slide(self, label: str, value: float, neutral: float) -> float | None:
-        begin_row(label, HINTS[label], LABEL_SHARE)
-        slid = self._sliders.draw(
-            f"live {label}", value, (0.0, MOST_GAIN), width=-1.0, neutral=neutral
-        )
-        return slid.value if slid.is_changed else None
-
-    def _choose(self, label: str, present: str, choices: tuple[str, ...]) -> str | None:
-        """A row with a list; what was chosen in it now."""
-        begin_row(label, HINTS[label], LABEL_SHARE)
-        return choose(self._gui, label, present, choices)
-
 
 def shown_of(face: LiveFace) -> dict[str, float]:
     """The channels that have come and where they are, calibrated; 0 while none comes."""
     calibrated = face.calibration.apply(face.channels)
     return calibrated if face.state is State.RECEIVING else dict.fromkeys(calibrated, 0.0)
-
-
-def rows_of(channels: Iterable[str]) -> list[tuple[str, tuple[str, ...]]]:
-    """Label and channels of each row: both sides of a channel together, the right one first."""
-    rows: dict[str, list[str]] = {}
-    for name in channels:
-        rows.setdefault(parted(name)[0], []).append(name)
-    return [(stem, tuple(sorted(names, reverse=True))) for stem, names in rows.items()]
 
 
 def _share(channel: str, value: float) -> float:

@@ -21,15 +21,14 @@ from ...vocabulary import readable
 from ..colours import COLOURS
 from ..file_drop import FileDrop
 from ..frame_times import PHASES, FrameTimes
-from ..gui import BACK, Gui, colour, em
+from ..gui import Gui, em
 from ..messages import Messages
 from ..overlays import overlays_of
 from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
-from ..settings import Display, Settings
+from ..settings import Display, Settings, switch
 from ..stage import Stage
 from ..view import View
-from .sliders import Sliders
-from .widgets import button, choose, heading, hint, muted
+from .widgets import LabelledRows, button, heading, muted
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -93,7 +92,7 @@ class MechanismPanel:
         self._gui, self._settings = gui, settings
         self._messages, self._file_drop = messages, file_drop
         self._stage, self._view, self._times = stage, view, times
-        self._sliders = Sliders(gui)
+        self._rows = LabelledRows(gui, LABEL_SHARE, HINTS)
 
     @property
     def _display(self) -> Display:
@@ -102,7 +101,7 @@ class MechanismPanel:
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         imgui.begin_child("mechanism", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
-        self._resets = self._find_resets()
+        self._rows.resets = self._find_resets()
         imgui.begin_disabled(self._display == Display())
         if button(self._gui, "Reset all", meaning="all of this as at first, but for the person"):
             self._settings.display = Display()
@@ -178,14 +177,14 @@ class MechanismPanel:
         if isinstance(default, bool):
             self._check(label, bool(value), partial(put, not value))
         elif isinstance(default, int):
-            self._begin_row(label)
+            self._rows.begin(label)
             is_changed, chosen = imgui.input_int(f"##{label}", int(value))
             self._gui.remember(label)
             if is_changed:
                 put(chosen)
         elif isinstance(default, float):
             limits = 0.0, max(HIGHEST, 2.0 * default)
-            slid = self._slide(label, name, float(value), limits, default, digits=3)
+            slid = self._rows.slide(label, name, float(value), limits, default, digits=3)
             if slid is not None:
                 put(slid)
                 _keep_in_order(stored, name, slid, told)
@@ -205,10 +204,10 @@ class MechanismPanel:
         self._pick("Colours", tuple(COLOURS))
         self._pick("Skin", tuple(SKINS))
         if self._stage.scene.wrinkles is not None:
-            depth = self._slide("Wrinkles", "wrinkles", display.wrinkles, (0.0, 1.0), 1.0)
+            depth = self._rows.slide("Wrinkles", "wrinkles", display.wrinkles, (0.0, 1.0), 1.0)
             display.wrinkles = display.wrinkles if depth is None else depth
         self._switch("Wireframe")
-        imgui.same_line(_label_width())
+        imgui.same_line(self._rows.second)
         self._switch("Occlusion")
 
     def _draw_light_and_person(self) -> None:
@@ -229,12 +228,12 @@ class MechanismPanel:
         display = self._display
         for index, name in enumerate(overlays_of(self._stage.scene)):
             if index % 2:
-                imgui.same_line(_label_width())
+                imgui.same_line(self._rows.second)
             is_on = name in display.overlays
             self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
         if display.dissection.solids:
             now = display.skin_opacity
-            slid = self._slide("Skin opacity", "skin_opacity", now, (0.0, 1.0), OPACITY)
+            slid = self._rows.slide("Skin opacity", "skin_opacity", now, (0.0, 1.0), OPACITY)
             display.skin_opacity = now if slid is None else slid
             self._pick("Dissect", tuple(SIDES))
 
@@ -258,56 +257,17 @@ class MechanismPanel:
             )
         self._gui.remember("plot")
 
-    def _begin_row(self, label: str) -> None:
-        """A label in the first column; what comes next is in the second."""
-        imgui.align_text_to_frame_padding()
-        imgui.text(readable(label))
-        hint(HINTS.get(label, ""))
-        self._draw_reset(label, _label_width() - em(1.5))
-        imgui.same_line(_label_width())
-        imgui.set_next_item_width(-1.0)
-
-    def _draw_reset(self, label: str, place: float = 0.0) -> None:
-        """The mark of a row that is not as at first; a click sets it back."""
-        if label not in self._resets:
-            return
-        imgui.same_line(place)
-        imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
-        imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
-        is_clicked = imgui.small_button(f"{BACK}##{label}")
-        imgui.pop_style_color(2)
-        self._gui.remember(f"reset {label}")
-        hint("not as at first; sets it back")
-        if is_clicked:
-            self._resets[label]()
-
     def _switch(self, label: str) -> None:
         """A checkbox for a field of the display."""
         name = FIELDS[label]
-        self._check(label, getattr(self._display, name), partial(self._display.switch, name))
+        self._check(label, getattr(self._display, name), partial(switch, self._display, name))
 
     def _check(self, label: str, is_on: bool, switch: Callable[[], None]) -> None:
         is_clicked, _ = imgui.checkbox(readable(label), is_on)
         self._gui.remember(label)
-        hint(HINTS.get(label, ""))
-        self._draw_reset(label)
+        self._rows.end(label)
         if is_clicked:
             switch()
-
-    def _slide(
-        self,
-        label: str,
-        name: str,
-        value: float,
-        limits: tuple[float, float],
-        neutral: float,
-        *,
-        digits: int = 2,
-    ) -> float | None:
-        """A row with a slider; what it was moved to, None if it was not."""
-        self._begin_row(label)
-        slid = self._sliders.draw(name, value, limits, width=-1.0, neutral=neutral, digits=digits)
-        return slid.value if slid.is_changed else None
 
     def _pick(self, label: str, choices: Sequence[str], words: Mapping[str, str] = {}) -> None:
         """A row with a list for a field of the display; `words` say more than the values."""
@@ -320,15 +280,9 @@ class MechanismPanel:
         self, label: str, present: str, choices: Sequence[str], put: Callable[[str], None]
     ) -> None:
         """A row with a list to choose from."""
-        self._begin_row(label)
-        chosen = choose(self._gui, label, present, choices)
+        chosen = self._rows.choose(label, present, choices)
         if chosen is not None:
             put(chosen)
-
-
-def _label_width() -> float:
-    """Where the second column begins, from the left edge of the panel."""
-    return float(LABEL_SHARE * imgui.get_window_width())
 
 
 def _choices(option: str) -> tuple[str, ...]:

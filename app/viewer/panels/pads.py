@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from ...vocabulary import Pad, pads
-from ..gui import LEFT, RIGHT, Gui, colour, em
+from ..gui import LEFT, RIGHT, Gui, em, ink_of
 from ..session import Session
 from .widgets import hint
 
@@ -59,7 +59,7 @@ class Pads:
         across, along = current[pad.across], current[pad.along]
         ink = theme.accent if across or along else theme.muted
         inks = ((theme.raised if is_lit else theme.field, 1.0), (theme.muted, 0.35), (ink, 1.0))
-        back, faint, full = (imgui.get_color_u32(colour(*shade)) for shade in inks)
+        back, faint, full = (ink_of(*shade) for shade in inks)
 
         def place(across: float, along: float) -> tuple[float, float]:
             down = (along - pad.top) / (pad.bottom - pad.top)

@@ -7,12 +7,12 @@ from imgui_bundle import imgui
 from ...mirror import parted
 from ...vocabulary import readable, title_of
 from ..control_rows import Row, rows_of
-from ..gui import Gui, colour, em
+from ..gui import Gui, colour, em, ink_of
 from ..session import Session
 from ..settings import Settings
 from ..view import View
 from .sliders import Sliders
-from .widgets import hint
+from .widgets import button, hint
 
 LABEL_SHARE, MOST_LABEL = 0.5, 15.0  # of a row, and [em]
 NARROW = 15.0  # [em] of room below which bars stand under their names
@@ -91,7 +91,7 @@ class ControlRows:
         shade = theme.accent if is_lit else theme.text
         for text, along in ((code, 0.0), (name, indent)):
             where = imgui.ImVec2(place.x + padding.x + along, place.y + padding.y)
-            ink = imgui.get_color_u32(colour(theme.muted if text == code and name else shade))
+            ink = ink_of(theme.muted if text == code and name else shade)
             imgui.get_window_draw_list().add_text(
                 imgui.get_font(), imgui.get_font_size(), where, ink, text, wrap_width=wrapped
             )
@@ -104,12 +104,12 @@ class ControlRows:
         """From one bar for both sides to one for each, while the face stays as it is, and back."""
         session, current = self._session, self._session.current
         is_apart = not row.is_linked
-        ink = colour(self._gui.theme.accent if is_apart else self._gui.theme.muted)
-        imgui.push_style_color(imgui.Col_.text, ink)
-        imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
-        is_clicked = imgui.button(f"{SIDES}##{row.label}")
-        imgui.pop_style_color(2)
-        self._gui.remember(f"sides {row.label}")
+        theme, label = self._gui.theme, f"{SIDES}##{row.label}"
+        imgui.push_style_color(imgui.Col_.text, colour(theme.accent if is_apart else theme.muted))
+        is_clicked = button(
+            self._gui, label, name=f"sides {row.label}", highlight=colour(theme.panel, 0.0)
+        )
+        imgui.pop_style_color()
         hint("one bar for both sides" if is_apart else "a bar for each side: right, left")
         if is_clicked:
             share = current[row.whole] if row.whole else 0.0

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from imgui_bundle import imgui
 
-from ..gui import Gui, colour, em
+from ..gui import Gui, em, ink_of
 
 # Knob and number of imgui's own sliders; bars have others.
 HIDDEN = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text)
@@ -71,13 +71,13 @@ class Sliders:
         least, most = limits
         ends = sorted((value, min(max(0.0, least), most)))
         first, last = (low.x + (high.x - low.x) * (end - least) / (most - least) for end in ends)
-        fill = imgui.get_color_u32(colour(theme.accent, 0.6 if first < last else 0.0))
+        fill = ink_of(theme.accent, 0.6 if first < last else 0.0)
         paper.add_rect_filled(
             (first, low.y), (last, high.y), fill, imgui.get_style().frame_rounding
         )
         number = f"{value:.{digits}f}" if value else "0"
         end = high.x - padding - imgui.calc_text_size(number).x
-        ink = imgui.get_color_u32(colour(theme.text if value else theme.muted))
+        ink = ink_of(theme.text if value else theme.muted)
         paper.push_clip_rect(low, high, True)
         if low.x + 2.0 * padding + imgui.calc_text_size(mark).x > end:
             mark = ""

@@ -10,10 +10,12 @@ from ...errors import counted
 from ..command import Command
 from ..gui import LEFT, MIDDLE, RIGHT, Gui, colour, em
 from ..messages import Messages
-from ..session import SPEEDS, Session
+from ..session import Session
+from ..settings import switch
 from .dope_sheet import DopeSheet
 from .widgets import button, choose, hint, shortened, stay_in_line
 
+SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
 MOST_HEIGHT, MOST_DRAGGED = 0.4, 0.7  # of the window
 LEAST = 7.0  # [em] of its height
@@ -127,7 +129,7 @@ class Timeline:
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
         self._gui.remember("time shown")
         if imgui.is_item_clicked():
-            self.dope_sheet.settings.toggle("counts_frames")
+            switch(self.dope_sheet.settings, "counts_frames")
         hint("the time shown, and the script's length, whose end is in the ruler; a click: frames")
         imgui.same_line(0.0, em(1.2))
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))

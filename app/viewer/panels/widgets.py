@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from imgui_bundle import imgui
 
 from ...vocabulary import readable
-from ..gui import Gui, colour, em
+from ..gui import BACK, Gui, colour, em
 from ..settings import Settings
+from .sliders import Sliders
 
 # Headings that are open as long as nobody has folded them.
 FIRST_OPEN = frozenset(
@@ -61,7 +62,8 @@ def button(
 def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
     """Draw a list to choose from, as wide as was asked for; what was chosen in it now."""
     chosen = None
-    is_open = imgui.begin_combo(f"##{label}", readable(present))
+    flags = imgui.ComboFlags_.height_largest
+    is_open = imgui.begin_combo(f"##{label}", readable(present), flags)
     gui.remember(label)
     if is_open:
         for choice in choices:
@@ -72,13 +74,62 @@ def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | 
     return chosen
 
 
-def begin_row(label: str, meaning: str, share: float) -> None:
-    """A label that takes a share of the panel; what comes next takes the rest of the row."""
-    imgui.align_text_to_frame_padding()
-    imgui.text(readable(label))
-    hint(meaning)
-    imgui.same_line(share * imgui.get_window_width())
-    imgui.set_next_item_width(-1.0)
+class LabelledRows:
+    """Rows of a panel: labels with hints in a column, and beside each a list, a slider or else."""
+
+    def __init__(self, gui: Gui, share: float, hints: Mapping[str, str]) -> None:
+        """share: of the panel, that labels take. hints: by label."""
+        self._gui, self._share, self._hints = gui, share, hints
+        self._sliders = Sliders(gui)
+        self.resets: Mapping[str, Callable[[], object]] = {}  # of rows not as at first, by label
+
+    @property
+    def second(self) -> float:
+        """Where the second column begins, from the left edge of the panel [window units]."""
+        return float(self._share * imgui.get_window_width())
+
+    def begin(self, label: str) -> None:
+        """Draw a label; what comes next takes the rest of the row."""
+        imgui.align_text_to_frame_padding()
+        imgui.text(readable(label))
+        self.end(label, self.second - em(1.5))
+        imgui.same_line(self.second)
+        imgui.set_next_item_width(-1.0)
+
+    def end(self, label: str, place: float = 0.0) -> None:
+        """The hint of what was drawn last, and the mark that sets it back, if there is one."""
+        hint(self._hints.get(label, ""))
+        if label not in self.resets:
+            return
+        imgui.same_line(place)
+        imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
+        imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
+        is_clicked = imgui.small_button(f"{BACK}##{label}")
+        imgui.pop_style_color(2)
+        self._gui.remember(f"reset {label}")
+        hint("not as at first; sets it back")
+        if is_clicked:
+            self.resets[label]()
+
+    def choose(self, label: str, present: str, choices: Iterable[str]) -> str | None:
+        """Draw a row with a list; what was chosen in it now."""
+        self.begin(label)
+        return choose(self._gui, label, present, choices)
+
+    def slide(
+        self,
+        label: str,
+        name: str,
+        value: float,
+        limits: tuple[float, float],
+        neutral: float,
+        *,
+        digits: int = 2,
+    ) -> float | None:
+        """Draw a row with a slider; what it was moved to, None if it was not."""
+        self.begin(label)
+        slid = self._sliders.draw(name, value, limits, width=-1.0, neutral=neutral, digits=digits)
+        return slid.value if slid.is_changed else None
 
 
 def button_width(label: str) -> float:

@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..script import EASING_NAMES, Channel, Key, Limits, Script, rounded, thinned
 from .keyframes import FRAME, differing
+from .model import EASING_NAMES, Channel, Key, Limits, Script, rounded
+from .thinning import thinned
 
 RELEASE = 0.1  # [s] at the recording's end in which a control goes back to where the script has it
 SAMPLES = 64  # of an eased way between two keys that is cut: straight lines are off by 0.0002
