@@ -90,7 +90,7 @@ def edit_menu(session: Session) -> Menu:
         command("Mirror", "M", session.mirror),
         command("Left to right", "Shift+M", partial(session.mirror, "left")),
         command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
-        command("Randomise", "X", session.randomise),
+        command("Random", "X", session.randomise),
     )
 
 

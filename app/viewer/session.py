@@ -99,7 +99,7 @@ class Session:
 
     def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
-        self._set_pose(self.controls.random(generator or np.random.default_rng()), "Randomise")
+        self._set_pose(self.controls.random(generator or np.random.default_rng()), "Random")
 
     def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
         if self.is_recording:
@@ -312,7 +312,7 @@ class Session:
             self._held, self.time, self.pose_is_unsaved = held, self._recorder.start, False
             if not self.is_playing:
                 self.toggle_playing()
-            return f"recording from {self.time:.2f} s: what you move replaces the script there"
+            return f"Recording from {self.time:.2f} s: what you move replaces the script there"
         recorder, self._recorder, self._held, self.is_playing = self._recorder, None, {}, False
         recording = recorder.script()
         if recording is None:
