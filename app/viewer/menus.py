@@ -33,10 +33,7 @@ VIEW_KEYS = {
 
 
 def file_menu(
-    scripts: ScriptCommands,
-    file_drop: FileDrop,
-    exporter: Exporter,
-    close: Task,
+    scripts: ScriptCommands, file_drop: FileDrop, exporter: Exporter, close: Task
 ) -> Menu:
     """Files that come and go, and the end."""
     command = partial(Command, "File")
@@ -229,9 +226,8 @@ def live_menu(live: LiveCommands) -> Menu:
 
 def help_menu(panels: PanelState, begin_steps: Task) -> Menu:
     """The overview of keys, and how to begin."""
-    is_open = partial(getattr, panels, "is_help_open")
     toggle = partial(flip, panels, "is_help_open")
     return (
         Command("Help", "First steps", "", begin_steps),
-        Command("Help", "Keys and mouse", "F1", toggle, is_open),
+        Command("Help", "Keys and mouse", "F1", toggle, lambda: panels.is_help_open),
     )
