@@ -136,7 +136,9 @@ class Session:
         if self.display is None:
             self.history.amend(state)
         else:
-            self.history.note(state, "Change the view")
+            before, after = vars(self.display), vars(display)
+            names = [name.removeprefix("is_") for name in after if after[name] != before[name]]
+            self.history.note(state, f"View: {', '.join(names).replace('_', ' ')}")
         self.display = display
 
     def note(self, label: str = "") -> None:
