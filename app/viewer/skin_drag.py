@@ -83,7 +83,7 @@ class SkinDrag:
         if not pull.changes:
             return "No muscle draws the skin this way: it swings back"
         told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
-        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short"
+        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short of the mouse"
 
     def _obey(self, pull: sim.Pull) -> None:
         """Set what was solved, and put back what was set before and is needed no more."""
