@@ -38,8 +38,10 @@ def readable(name: str) -> str:
 
 
 def called(name: str, *twin: str) -> str:
-    """A control in words, or with its twin both sides of it."""
-    return f"{readable(parted(name)[0])}, both sides" if twin else readable(name)
+    """A control by its plain name and its side, or with its twin both sides of it."""
+    plain = title_of(name)[1] or readable(parted(name)[0])
+    side = "both sides" if twin else parted(name)[1].strip("_")
+    return f"{plain}, {side}" if side else plain
 
 
 @cache

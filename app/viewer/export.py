@@ -84,7 +84,7 @@ class Job:
 
     target: Path
     task: telling.Task
-    began: float  # [s]
+    began: tuple[float, float] = (0.0, 0.0)  # [s] when the first of it was done, and how much
     told: float = 0.0  # how much of it was done when the user was told
 
 
@@ -188,7 +188,7 @@ class Exporter:
             write = partial(export, head=head, frames_per_second=rate, span=span)
             work = partial(write, script, target, chosen, request)
         task = telling.Task(work, round(span[1] * choices.rate) + 1, wake_up)
-        self.job, self.is_asking = Job(target, task, time.monotonic()), False
+        self.job, self.is_asking = Job(target, task), False
 
     @property
     def has_news(self) -> bool:
@@ -196,6 +196,8 @@ class Exporter:
         job = self.job
         if job is None or (job.told == job.task.share and job.task.outcome is None):
             return False
+        if not job.told:  # to start the process is no measure of how fast it is
+            job.began = time.monotonic(), job.task.share
         job.told = job.task.share
         return True
 

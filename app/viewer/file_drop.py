@@ -19,7 +19,7 @@ from .files import Files
 from .messages import Message
 from .script_commands import SOUNDS, ScriptCommands
 
-FITTING, READING = "fitting the muscles to this head", "reading this mesh"  # as is announced
+FITTING, READING = "Fitting the muscles to this head", "Reading this mesh"  # as is announced
 MESHES = tuple(f".{name}" for name in FORMATS)
 LANDMARKS = ".json"
 
@@ -115,7 +115,7 @@ class FileDrop:
         """Announce a person by number or name, in place of the head; None: the built-in head."""
         self._announced = lambda: self._show_scene(build_scene("face", head_for(None, None, who)))
         self.has_other_head = who is not None
-        return f"making {'the built-in head' if who is None else f'person {who}'} ..."
+        return f"Making {'the built-in head' if who is None else f'person {who}'} ..."
 
     def _open(self, dropped: DroppedFiles) -> Message:
         """Show the head first, then what shall be played on it."""

@@ -39,7 +39,7 @@ class KeySelection:
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)
         self.places = Places({POSES: there.times[POSES]}) if POSES in there.times else there
-        return f"key set at {time:.2f} s"
+        return f"Key set at {time:.2f} s"
 
     def delete(self) -> Message:
         """Take the selected keys away."""

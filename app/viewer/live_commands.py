@@ -92,7 +92,7 @@ class LiveCommands:
         """The face as it is in the next half second is neutral."""
         if self.face is not None:
             self.face.calibrate()
-        return "hold a neutral face, eyes on the camera ..."
+        return "Hold a neutral face, eyes on the camera ..."
 
     @property
     def is_mirrored(self) -> bool:
@@ -119,7 +119,7 @@ class LiveCommands:
         self.has_changed, self._told = told != self._told, told
         self._session.live.take(face.controls(), face.presence)
         if was_calibrating and not face.is_calibrating:
-            return "this face is neutral now"
+            return "This face is neutral now"
         return None
 
     @property

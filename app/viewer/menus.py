@@ -34,10 +34,7 @@ VIEW_KEYS = {
 
 
 def file_menu(
-    scripts: ScriptCommands,
-    file_drop: FileDrop,
-    exporter: Exporter,
-    close: Task,
+    scripts: ScriptCommands, file_drop: FileDrop, exporter: Exporter, close: Task
 ) -> Menu:
     """Files that come and go, and the end."""
     command = partial(Command, "File")
@@ -91,7 +88,7 @@ def edit_menu(session: Session) -> Menu:
         command("Mirror", "M", session.mirror),
         command("Left to right", "Shift+M", partial(session.mirror, "left")),
         command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
-        command("Randomise", "X", session.randomise),
+        command("Random", "X", session.randomise),
     )
 
 

@@ -16,4 +16,4 @@ class PanelState:
     def toggle_hidden(self) -> str | None:
         """Hide all but the picture, or show it again."""
         self.are_hidden = not self.are_hidden
-        return "menus are at the upper edge" if self.are_hidden else None
+        return "Menus are at the upper edge" if self.are_hidden else None

@@ -54,7 +54,7 @@ class ScriptCommands:
         def begin() -> Message:
             """Do so."""
             self._session.begin_script()
-            return "a new script; K makes the face as it is a key"
+            return "A new script; K makes the face as it is a key"
 
         return self._question.before("Begin", begin)
 

@@ -101,7 +101,7 @@ class Session:
 
     def randomise(self, generator: np.random.Generator | None = None) -> None:
         """A few muscles of each group by chance, both sides alike; layers stay at zero."""
-        self._set_pose(self.controls.random(generator or np.random.default_rng()), "Randomise")
+        self._set_pose(self.controls.random(generator or np.random.default_rng()), "Random")
 
     def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
         if self.is_recording:
@@ -137,7 +137,9 @@ class Session:
         if self.display is None:
             self.history.amend(state)
         else:
-            self.history.note(state, "Change the view")
+            before, after = vars(self.display), vars(display)
+            names = [name.removeprefix("is_") for name in after if after[name] != before[name]]
+            self.history.note(state, f"View: {', '.join(names).replace('_', ' ')}")
         self.display = display
 
     def note(self, label: str = "") -> None:
@@ -313,7 +315,7 @@ class Session:
             self._held, self.time, self.pose_is_unsaved = held, self._recorder.start, False
             if not self.is_playing:
                 self.toggle_playing()
-            return f"recording from {self.time:.2f} s: what you move replaces the script there"
+            return f"Recording from {self.time:.2f} s: what you move replaces the script there"
         recorder, self._recorder, held, self._held = self._recorder, None, self._held, {}
         recording, self.is_playing = recorder.script(), False
         if recording is None:

@@ -83,7 +83,7 @@ class SkinDrag:
         if not pull.changes:
             return "No muscle draws the skin this way: it swings back"
         told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
-        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short"
+        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short of the mouse"
 
     def drop(self) -> None:
         """Hold on to the skin no longer."""

@@ -196,7 +196,7 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     assert place
     viewer.live.calibrate()
     hold(viewer, face, 1.2, **frown)
-    assert viewer.messages.text == "this face is neutral now"
+    assert viewer.messages.text == "This face is neutral now"
     assert viewer.session.current["browDownLeft"] == pytest.approx(0.0, abs=1e-6)
     click(viewer, "mirror live")
     hold(viewer, face, 0.5, **{**frown, "mouthSmileLeft": 0.6})

@@ -112,8 +112,8 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:
     assert solved[f"{MAJOR}_left"] > 0.3
     assert len([name for name, value in solved.items() if value]) <= 4
     assert not any(value for name, value in solved.items() if name.endswith("_right"))
-    assert viewer.messages.text.startswith("Zygomaticus major left 0.")
-    assert viewer.messages.text.endswith("mm short")
+    assert viewer.messages.text.startswith("Smile muscle, left 0.")
+    assert viewer.messages.text.endswith("mm short of the mouse")
     assert until(viewer, lambda: viewer.physics.is_at_rest)
     assert moved(viewer) > 4.0
     assert viewer.session.values == solved
@@ -130,7 +130,7 @@ def test_linked_sides_are_pulled_together(viewer: Viewer) -> None:
     xdotool(viewer, "mouseup", 1)
     values = viewer.session.values
     assert values[f"{MAJOR}_right"] == values[f"{MAJOR}_left"] > 0.3
-    assert viewer.messages.text.startswith("Zygomaticus major, both sides 0.")
+    assert viewer.messages.text.startswith("Smile muscle, both sides 0.")
 
 
 def test_a_click_shows_the_slider_beside_the_mouse(viewer: Viewer) -> None:

@@ -102,7 +102,7 @@ def test_recording_punches_in(viewer: Viewer) -> None:
     show_controls(viewer, "jaw open")
     clear_search(viewer)
     xdotool(viewer, "key", "ctrl+r")
-    assert viewer.session.is_recording and "recording from 2.0" in viewer.messages.text
+    assert viewer.session.is_recording and "Recording from 2.0" in viewer.messages.text
     viewer.session.set("jaw_open", 0.7)
     assert until(viewer, lambda: viewer.session.time > start + 0.4)
     xdotool(viewer, "key", "ctrl+r")

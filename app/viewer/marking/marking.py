@@ -115,7 +115,7 @@ class Marking:
         self._stand_up(self.marks.by_hand)
         self.marks = self.marks.with_guessed(found)
         self.history.note(self.marks)
-        return "all points are guessed; drag those that are not where they belong"
+        return "All points are guessed; drag those that are not where they belong"
 
     def go(self, step: int) -> None:
         """To the next landmark in the order of marking, or with -1 to the one before."""
@@ -128,7 +128,7 @@ class Marking:
         group = GROUP_OF[self.current].numbers
         numbers = [n for n in group if MIRRORED[n] != n and (n in right) == is_right]
         if MIRRORED[self.current] == self.current:
-            return "choose a point of the side that is right: this one is in the middle"
+            return "Choose a point of the side that is right: this one is in the middle"
         points, normals = self.seen(numbers)
         all_seen, _ = self.seen(range(len(MIRRORED)))
         across = (all_seen[MIRRORED] - all_seen)[right].sum(axis=0)

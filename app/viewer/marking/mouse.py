@@ -58,7 +58,7 @@ class MarkingMouse(CameraMouse):
         elif self._doing == "orbit" and imgui.is_mouse_released(LEFT) and not self._has_moved(io):
             point = self._skin(io)
             if point is None:
-                self._messages.say("there is no skin here; click on the mesh")
+                self._messages.say("There is no skin here; click on the mesh")
             else:
                 self._marking.put(self._marking.current, point)
                 self._messages.attempt(self._marking.note)

@@ -118,7 +118,7 @@ class FileChooser:
                 if imgui.is_mouse_double_clicked(0) and not request.is_saving:
                     chosen = self._folder / name
         if not self._folders and not self._found:
-            muted(self._gui, f"no folders and no {' '.join(request.suffixes)} here")
+            muted(self._gui, f"No folders and no {' '.join(request.suffixes)} here")
         imgui.end_child()
         return chosen
 

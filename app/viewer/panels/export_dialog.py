@@ -170,8 +170,9 @@ class ExportDialog:
         if job is None:
             return
         left, top, width, height = self._view.area
-        share, passed = job.task.share, time.monotonic() - job.began
-        words = f"{passed / share - passed:.0f} s left" if 0.0 < share < 1.0 else "one moment ..."
+        share, (began, first) = job.task.share, job.began
+        rest = (1.0 - share) * (time.monotonic() - began) / max(share - first, 1e-9)
+        words = f"{rest:.0f} s left" if first < share < 1.0 else "One moment ..."
         imgui.set_next_window_pos((left + width - em(0.8), top + height - em(0.8)), 0, (1.0, 1.0))
         imgui.begin("##export", None, NOTE_FLAGS)
         imgui.text_unformatted(shortened(job.target.name, em(18)))

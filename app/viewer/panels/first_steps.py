@@ -34,14 +34,15 @@ class FirstSteps:
         self.done, self._seconds_left = [False] * len(STEPS), FAREWELL
 
     def draw(self) -> None:
-        """Draw them beside the face; where there is no room, below it."""
+        """Draw them beside the face, away from the colour bar; where there is no room, below it."""
         if not self.done:
             return
         left, top, width, height = self._view.area
         self.done = [was or now for was, now in zip(self.done, self._doing(), strict=True)]
-        is_below = 0.5 * width - FACE * height < em(WIDTH + 2.0 * MARGIN)
-        y = top + height - em(MARGIN) if is_below else top + em(MARGIN)
-        imgui.set_next_window_pos((left + width - em(MARGIN), y), 0, (1.0, float(is_below)))
+        below = float(0.5 * width - FACE * height < em(WIDTH + 2.0 * MARGIN))
+        x, y = (start + below * size for start, size in ((left, width), (top, height)))
+        margin = em(MARGIN) * (1.0 - 2.0 * below)
+        imgui.set_next_window_pos((x + margin, y + margin), 0, (below, below))
         imgui.set_next_window_size((em(WIDTH), 0.0))
         imgui.set_next_window_bg_alpha(0.88)
         imgui.push_style_var(imgui.StyleVar_.window_rounding, em(0.5))

@@ -57,3 +57,5 @@ class MenuBar:
             self._gui.remember(name)
             if is_clicked:
                 self._messages.attempt(command.run)
+        if imgui.is_key_pressed(imgui.Key.escape):  # the mouse may be on what opens a submenu again
+            imgui.close_current_popup()

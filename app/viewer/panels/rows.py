@@ -46,7 +46,7 @@ class ControlRows:
         is_narrow = room < em(NARROW)
         label_room = room if is_narrow else min(LABEL_SHARE * room, em(MOST_LABEL))
         is_lit = is_marked or any(current[name] for name in names)
-        is_pointed = self._draw_label(row, label_room, number, is_lit=is_lit)
+        pointed = names if self._draw_label(row, label_room, number, is_lit=is_lit) else ()
         if is_narrow:  # nearer to its own name than to the next
             imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - spacing.y)
         else:
@@ -58,13 +58,13 @@ class ControlRows:
             limits, side = session.controls.limits[name], parted(name)[1].strip("_")[:1].upper()
             mark = (side or ("both" if len(names) > 2 else "L")) if len(names) > 1 else ""
             slid = self._sliders.draw(name, current[name], limits, width=width, mark=mark)
-            is_pointed = is_pointed or slid.is_hovered
+            pointed = (name,) if slid.is_hovered else pointed
             if slid.is_changed:
                 session.set(name, slid.value, linked=row.is_linked and name in row.sides)
             if slid.is_done:
                 session.note()
-        if is_pointed:
-            meant = (*names, *(row.sides if row.is_linked else ()))
+        if pointed:
+            meant = (*pointed, *(row.sides if row.is_linked else ()))
             self._view.pointed = tuple(sorted(set().union(*map(session.scene.moved_by, meant))))
 
     def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:

@@ -66,7 +66,7 @@ class Timeline:
         is_dragged, _, wanted = imgui.internal.splitter_behavior(
             edge, name, imgui.internal.Axis.y, top, height, 0.0, em(LEAST), EDGE
         )
-        if is_dragged:
+        if is_dragged and wanted != height:
             self.dope_sheet.settings.timeline_height = wanted / em()
 
     def draw(self) -> None:
