@@ -40,24 +40,23 @@ class Solids:
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self._skull: tuple[Any, ...] = ()
+        self._skull: dict[str, Any] = {}
         self._muscles: Muscles | None = None
         self.parts: list[Any] = []  # what is drawn under the skin
 
     def follow(self, dissection: Dissection) -> None:
         """Take what is asked for as it is now, and the head's parts that do not hide it."""
         scene, wanted = self._scene, dissection.solids
-        if not self._skull:
-            self._skull = build_skull(scene.head, scene.simulation.pivots())
+        names = ["cranium", "mandible"] * ("skull" in wanted) + ["nose"] * ("muscles" in wanted)
+        missing = [name for name in names if name not in self._skull]
+        self._skull |= build_skull(scene.head, scene.simulation.pivots(), missing)
         if "muscles" in wanted and self._muscles is None:
             self._muscles = Muscles.of(scene)
         elif "muscles" in wanted and self._muscles is not None:
             self._muscles.follow(scene)
         stay = [part for part in scene.parts if not part.name.startswith(SOFT)]
-        cranium, mandible, nose = self._skull
-        shown = [cranium, mandible] if "skull" in wanted else []
-        shown += [nose, self._muscles] if "muscles" in wanted else []
-        self.parts = stay + shown
+        shown = [self._skull[name] for name in names]
+        self.parts = stay + shown + [self._muscles] * ("muscles" in wanted)
 
     def _cut(self, dissection: Dissection) -> tuple[float, float, float, float] | None:
         """The plane in front of which the skin is whole; None: there is none."""

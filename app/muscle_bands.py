@@ -16,8 +16,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from risorius import sim
-
 from . import muscle_forms as shape
 
 Floats = npt.NDArray[np.float64]
@@ -101,7 +99,8 @@ class Muscles:
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
         simulation = scene.simulation
         if any(scene.values.values()) or not np.array_equal(scene.positions, scene.rest_positions):
-            simulation = sim.create(scene.head)  # lengths and ends are those at rest
+            simulation = simulation.twin()  # lengths and ends are those at rest
+            simulation.reset()
         rest = SimpleNamespace(
             positions=scene.rest_positions,
             faces=scene.faces,
