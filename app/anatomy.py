@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from risorius import render
 from risorius.assets.skull import build_skull
 
@@ -40,8 +42,9 @@ class Solids:
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self._skull: tuple[Any, ...] = ()
+        self._skull: dict[str, Any] = {}
         self._muscles: Muscles | None = None
+        self._followed = np.empty(0)  # what they were shaped by
         self.parts: list[Any] = []  # what is drawn under the skin
 
     def follow(self, dissection: Dissection) -> None:
@@ -49,17 +52,26 @@ class Solids:
         scene, wanted = self._scene, dissection.solids
         if not dissection.is_on(scene):
             return
-        if not self._skull:
-            self._skull = build_skull(scene.head, scene.simulation.pivots())
-        if "muscles" in wanted and self._muscles is None:
-            self._muscles = Muscles.of(scene)
-        elif "muscles" in wanted and self._muscles is not None:
-            self._muscles.follow(scene)
+        names = ["cranium", "mandible"] * ("skull" in wanted) + ["nose"] * ("muscles" in wanted)
+        missing = [name for name in names if name not in self._skull]
+        self._skull |= build_skull(scene.head, scene.simulation.pivots(), missing)
+        if "muscles" in wanted:
+            self._follow_muscles()
         stay = [part for part in scene.parts if not part.name.startswith(SOFT)]
-        cranium, mandible, nose = self._skull
-        shown = [cranium, mandible] if "skull" in wanted else []
-        shown += [nose, self._muscles] if "muscles" in wanted else []
-        self.parts = stay + shown
+        shown = [self._skull[name] for name in names]
+        self.parts = stay + shown + [self._muscles] * ("muscles" in wanted)
+
+    def _follow_muscles(self) -> None:
+        """Shape the muscles, unless nothing has moved: a camera that turns is no reason."""
+        scene = self._scene
+        bones, sums = scene.bone_transforms(), scene.simulation.sums
+        now = np.concatenate([scene.positions, *bones.values()], axis=None)
+        now = np.append(now, list(sums.values()))
+        if self._muscles is None:
+            self._muscles = Muscles.of(scene)
+        elif not np.array_equal(now, self._followed):
+            self._muscles.follow(scene)
+        self._followed = now
 
     def _cut(self, dissection: Dissection) -> tuple[float, float, float, float] | None:
         """The plane in front of which the skin is whole; None: there is none."""

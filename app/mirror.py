@@ -5,6 +5,7 @@ The same for controls and for the channels of recordings.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 
 SIDES = (("_left", "_right"), ("Left", "Right"))  # how names end: ours, ARKit's
@@ -15,6 +16,7 @@ TURNED = (  # to one side where their value is above 0, to the other below
 # Sides of a motion, not of the face: both at once stand still.
 OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
 SIDEWAYS = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")  # copied, eyes would cross
+KNOWN = 4096  # names that are taken apart once: panels ask for all of theirs in each frame
 _TWINS = {  # action units that are each other's image without saying so: eyes turn left, right ...
     "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
     "wink": "wink_right", "wink_right": "wink", "contempt": "contempt_right",
@@ -22,6 +24,7 @@ _TWINS = {  # action units that are each other's image without saying so: eyes t
 }  # fmt: skip
 
 
+@functools.lru_cache(maxsize=KNOWN)
 def parted(name: str) -> tuple[str, str]:
     """A name without its side, and the side as it is spelled; "" for the middle."""
     for side in (side for pair in SIDES for side in pair):
@@ -30,6 +33,7 @@ def parted(name: str) -> tuple[str, str]:
     return name, ""
 
 
+@functools.lru_cache(maxsize=KNOWN)
 def twin_of(name: str) -> str:
     """The name on the other side; itself for one of the middle."""
     if name in _TWINS:

@@ -16,8 +16,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from risorius import sim
-
 from . import muscle_forms as shape
 
 Floats = npt.NDArray[np.float64]
@@ -28,6 +26,14 @@ SPARE = 1.0  # [mm] of skin over a muscle, at least
 # sRGB
 RELAXED, CONTRACTED = np.array([0.68, 0.29, 0.245]), np.array([0.50, 0.035, 0.045])
 TENDON = np.array([0.93, 0.87, 0.77])
+
+
+class _Near(NamedTuple):
+    """Vertices near some places, NEIGHBOURS of each; components come first, to be quick."""
+
+    x: Floats  # (3, NEIGHBOURS, ...)
+    normals: Floats  # likewise
+    bone: Floats  # (NEIGHBOURS, ...)
 
 
 class _Skin:
@@ -46,24 +52,24 @@ class _Skin:
         self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
         self._tree = cKDTree(x)
 
-    def near(self, points: Floats) -> npt.NDArray[np.int64]:
-        """Numbers of the vertices near points (..., 3), shape (..., NEIGHBOURS)."""
-        return np.asarray(self._tree.query(points, k=NEIGHBOURS)[1])
+    def near(self, points: Floats) -> _Near:
+        """The vertices near points (..., 3)."""
+        number = np.moveaxis(self._tree.query(points, k=NEIGHBOURS)[1], -1, 0)
+        return _Near(self.x.T[:, number], self.normals.T[:, number], self.bone[number])
 
-    def at(self, points: Floats, near: npt.NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
+    def at(self, points: Floats, near: _Near) -> tuple[Floats, Floats, Floats]:
         """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
-        off, normals = points[..., None, :] - self.x[near], self.normals[near]
-        square = np.einsum("...kc,...kc->...k", off, off)
+        off = np.moveaxis(points, -1, 0)[:, None] - near.x
+        outward = np.moveaxis((points - self.middle) * (1.0, 0.25, 1.0), -1, 0)[:, None]
+        square = (off * off).sum(axis=0)
         # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
-        faced = np.einsum("...kc,...c->...k", normals, (points - self.middle) * (1.0, 0.25, 1.0))
-        weight = (
-            np.exp(-square / (0.35 * square.max(axis=-1, keepdims=True))) * (faced > 0.0) + 1e-9
-        )
-        weight /= weight.sum(axis=-1, keepdims=True)
-        normal = np.einsum("...k,...kc->...c", weight, normals)
-        normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
-        outside = (weight * np.einsum("...kc,...kc->...k", off, normals)).sum(axis=-1)
-        return outside, normal, (weight * self.bone[near]).sum(axis=-1)
+        faced = (near.normals * outward).sum(axis=0)
+        weight = np.exp(-square / (0.35 * square.max(axis=0))) * (faced > 0.0) + 1e-9
+        weight /= weight.sum(axis=0)
+        normal = (weight * near.normals).sum(axis=1)
+        normal /= np.maximum(np.sqrt((normal * normal).sum(axis=0)), 1e-9)
+        outside = (weight * (off * near.normals).sum(axis=0)).sum(axis=0)
+        return outside, np.moveaxis(normal, 0, -1), (weight * near.bone).sum(axis=0)
 
 
 class _Bound(NamedTuple):
@@ -101,7 +107,8 @@ class Muscles:
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
         simulation = scene.simulation
         if any(scene.values.values()) or not np.array_equal(scene.positions, scene.rest_positions):
-            simulation = sim.create(scene.head)  # lengths and ends are those at rest
+            simulation = simulation.twin()  # lengths and ends are those at rest
+            simulation.reset()
         rest = SimpleNamespace(
             positions=scene.rest_positions,
             faces=scene.faces,
@@ -295,10 +302,11 @@ class Muscles:
         return sweep, lengths, 0.0 * rows
 
     def _swept(
-        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, skin: _Skin, near: Any
+        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, skin: _Skin, near: _Near
     ) -> tuple[Floats, Floats]:
         """Cross sections along lines (b, rows, 3), and how light is around each, (AROUND,)."""
         rails = np.stack([lines - half, lines, lines + half])
+        near = _Near(*(each[..., None, :, :] for each in near))  # the same for all three
         for _ in range(2):
             outside, normal, bone = skin.at(rails, near)
             deep = np.minimum(depth, np.maximum(bone - thick, 0.0))
@@ -307,11 +315,8 @@ class Muscles:
         angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
         a = np.cos(angle)
         blend = np.stack([0.5 * a * (a - 1.0), 1.0 - a * a, 0.5 * a * (a + 1.0)])
-        grid = np.einsum("rbnc,rk->bnkc", rails, blend)
-        grid += (
-            np.einsum("rbnc,rk->bnkc", normal, blend)
-            * (thick[:, :, None] * np.sin(angle))[..., None]
-        )
+        raised = np.tensordot(normal, blend, (0, 0)) * thick[:, :, None, None] * np.sin(angle)
+        grid = (np.tensordot(rails, blend, (0, 0)) + raised).swapaxes(2, 3)
         return grid, 0.42 + 0.58 * np.clip(0.5 + 0.75 * np.sin(angle), 0.0, 1.0)
 
     def _lay_out(self, groups: Any) -> None:

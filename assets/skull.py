@@ -10,7 +10,7 @@ Gibson 1998, "Constrained elastic surface nets" (the mesh of a field's zero). Me
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,9 +22,11 @@ from scipy.spatial import cKDTree
 from .model import Part
 
 Floats = npt.NDArray[np.float64]
+Field = npt.NDArray[np.float32]  # half as wide: what is done to grids is as quick as memory
 CELL, COARSE = 1.9, 3  # [mm] of a head of EYES, and how many of them the outer form is known at
 EYES = 90.0  # [mm] from one outer corner to the other, for which all measures hold
 NEIGHBOURS = 14  # points that say where the bone is
+NAMES = "cranium", "mandible", "nose"
 BONE, HOLLOW = np.array([0.90, 0.85, 0.735]), np.array([0.34, 0.235, 0.165])
 CARTILAGE, SHADED = np.array([0.80, 0.82, 0.80]), np.array([0.50, 0.42, 0.40])
 # Side views (z, y) [mm], from the middle of the condyles: outlines of what is cut from the form.
@@ -54,25 +56,33 @@ class _Field(NamedTuple):
     """Where a head's bone is looked for: a grid [mm of EYES off the condyles' middle]."""
 
     low: Floats
-    places: Floats  # (3, nx, ny, nz)
-    outside: Floats  # distance from the skin moved inward, negative within
-    nose: Floats  # distance from the cartilage of the nose, likewise
+    places: Field  # (3, nx, ny, nz)
+    outside: Field  # distance from the skin moved inward, negative within
 
 
-def build_skull(head: Any, pivots: Mapping[str, Floats]) -> tuple[Part, ...]:
+def build_skull(
+    head: Any, pivots: Mapping[str, Floats], names: Collection[str] = NAMES
+) -> dict[str, Part]:
     """Cranium, mandible, and the nose's cartilage at rest, as parts that move with their bones.
 
     head: with vertices, faces, landmarks, bone_depth and parts. pivots: what "mandible" and the
-        eyes turn about, by the names of bones, each (3,).
+        eyes turn about, by the names of bones, each (3,). names: which are wanted, of NAMES; the
+        nose alone takes a tenth of the time.
     """
     marks = head.vertices[head.landmarks]
     scale = float(np.linalg.norm(marks[45] - marks[36])) / EYES
     origin = np.array([marks[27:31, 0].mean(), *pivots["mandible"][1:]])
-    marks = (marks - origin) / scale
-    eyes = [(at - origin) / scale for name, at in pivots.items() if name.startswith("eye")]
-    field = _outer_form(head, origin, scale, marks, eyes)
-    parts = []
-    for name, carve in (("cranium", _cranium), ("mandible", _mandible), ("nose", _nose)):
+    placed = {name: ((at - origin) / scale).astype(np.float32) for name, at in pivots.items()}
+    marks = ((marks - origin) / scale).astype(np.float32)
+    eyes = [at for name, at in placed.items() if name.startswith("eye")]
+    fields: dict[bool, _Field] = {}
+    parts: dict[str, Part] = {}
+    for name in names:
+        is_nose = name == "nose"
+        if is_nose not in fields:
+            fields[is_nose] = _outer_form(head, origin, scale, marks, eyes, is_nose=is_nose)
+        field = fields[is_nose]
+        carve = {"cranium": _cranium, "mandible": _mandible, "nose": _nose}[name]
         shape = carve(field, marks, eyes)
         for part in head.parts:  # bone holds the teeth as gums do
             if part.name.startswith("gums") and part.bone == name:
@@ -86,26 +96,24 @@ def build_skull(head: Any, pivots: Mapping[str, Floats]) -> tuple[Part, ...]:
             open_ += np.clip(
                 _sampled([shape], points + reach * normals)[:, 0] / (reach * CELL), 0, 1
             )
-        bright, dark = (CARTILAGE, SHADED) if name == "nose" else (BONE, HOLLOW)
+        bright, dark = (CARTILAGE, SHADED) if is_nose else (BONE, HOLLOW)
         light = np.clip(open_ / 3.0, 0.0, 1.0)[:, None] ** 1.3
-        parts.append(
-            Part(
-                f"skull_{name}",
-                (origin + scale * (field.low + CELL * points)).astype(np.float32),
-                normals.astype(np.float32),
-                faces,
-                (dark + light * (bright - dark)).astype(np.float32),
-                "cranium" if name == "nose" else name,
-                0.28,
-            )
+        parts[name] = Part(
+            f"skull_{name}",
+            (origin + scale * (field.low + CELL * points)).astype(np.float32),
+            normals.astype(np.float32),
+            faces,
+            (dark + light * (bright - dark)).astype(np.float32),
+            "cranium" if is_nose else name,
+            0.28,
         )
-    return tuple(parts)
+    return parts
 
 
 def _outer_form(
-    head: Any, origin: Floats, scale: float, marks: Floats, eyes: list[Floats]
+    head: Any, origin: Floats, scale: float, marks: Field, eyes: list[Field], *, is_nose: bool
 ) -> _Field:
-    """The skin moved inward, without ears, lids, lips and nose, as a field."""
+    """The skin moved inward, without ears, lids, lips and nose, as a field; or the nose alone."""
     x, faces = (head.vertices - origin) / scale, head.faces
     cross = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
     normals = np.zeros_like(x)
@@ -127,48 +135,45 @@ def _outer_form(
         & (x[:, 1] < marks[28, 1] - 2.0)
         & (x[:, 2] > 60.0)
     )
-    away = x - (0.0, marks[30, 1], eyes[0][2])
-    is_nose = (across < 30.0) & (np.abs(x[:, 1] - marks[29, 1]) < 45.0) & (x[:, 2] > 50.0)
-    is_nose &= (normals * away).sum(axis=1) > 0.3 * np.linalg.norm(away, axis=1)
-    low = np.array([-13.0 * CELL * COARSE, marks[8, 1] - 14.0, x[is_bone, 2].min() - 4.0])
-    high = np.array([12.9 * CELL * COARSE, x[:, 1].max() + 4.0, marks[30, 2] + 2.0])
-    counts = np.ceil((high - low) / (CELL * COARSE)).astype(int) + 1
+    step = CELL * COARSE
+    low = np.array([-13.0 * step, marks[8, 1] - 14.0, x[is_bone, 2].min() - 4.0])
+    high = np.array([12.9 * step, x[:, 1].max() + 4.0, marks[30, 2] + 2.0])
+    is_used, depth, least = is_bone, head.bone_depth[:, None] / scale, 7.0
+    if is_nose:
+        away = x - (0.0, marks[30, 1], eyes[0][2])
+        is_used = (across < 30.0) & (np.abs(x[:, 1] - marks[29, 1]) < 45.0) & (x[:, 2] > 50.0)
+        is_used &= (normals * away).sum(axis=1) > 0.3 * np.linalg.norm(away, axis=1)
+        depth, least = 3.0, 3.5
+        first = np.array([-32.0, marks[33, 1] - 14.0, 48.0])
+        low += step * np.floor((first - low) / step)  # a part of the same grid
+        high[:2] = 32.0, marks[28, 1] + 14.0
+    counts = np.ceil((high - low) / step).astype(int) + 1
     fine = [np.arange(COARSE * (n - 1) + 1) / COARSE for n in counts]
-    grid = np.meshgrid(*fine, indexing="ij")
     coarse = np.meshgrid(*(np.arange(n) for n in counts), indexing="ij")
-    at = (low + CELL * COARSE * np.stack(coarse, axis=-1)).reshape(-1, 3)
-
-    def form(is_used: npt.NDArray[np.bool_], depth: Any, least: float) -> Floats:
-        """The form through points below the skin."""
-        points = (x - depth * normals)[is_used]
-        distance, near = cKDTree(points).query(at, k=NEIGHBOURS, workers=-1)
-        weight = np.exp(-((distance / np.maximum(0.6 * distance[:, -1:], least)) ** 2)) + 1e-12
-        off = ((at[:, None] - points[near]) * normals[is_used][near]).sum(axis=2)
-        known = ((weight * off).sum(axis=1) / weight.sum(axis=1)).reshape(counts)
-        finer = [
-            CubicSpline(np.arange(n), np.eye(n))(at) for n, at in zip(counts, fine, strict=True)
-        ]
-        found: Floats = np.einsum("ai,bj,ck,ijk->abc", *finer, known, optimize=True)
-        return found
-
-    places = low[:, None, None, None] + CELL * COARSE * np.stack(grid)
-    return _Field(
-        low,
-        places,
-        form(is_bone, head.bone_depth[:, None] / scale, 7.0),
-        form(is_nose, 3.0, 3.5),
-    )
+    at = (low + step * np.stack(coarse, axis=-1)).reshape(-1, 3)
+    # The form through points below the skin.
+    points = (x - depth * normals)[is_used]
+    distance, near = cKDTree(points).query(at, k=NEIGHBOURS, workers=-1)
+    weight = np.exp(-((distance / np.maximum(0.6 * distance[:, -1:], least)) ** 2)) + 1e-12
+    off = ((at[:, None] - points[near]) * normals[is_used][near]).sum(axis=2)
+    known = ((weight * off).sum(axis=1) / weight.sum(axis=1)).reshape(counts)
+    finer = [CubicSpline(np.arange(n), np.eye(n))(at) for n, at in zip(counts, fine, strict=True)]
+    form = np.einsum("ai,bj,ck,ijk->abc", *finer, known, optimize=True)
+    axes = [
+        (lowest + step * each).astype(np.float32) for lowest, each in zip(low, fine, strict=True)
+    ]
+    return _Field(low, np.stack(np.meshgrid(*axes, indexing="ij")), form.astype(np.float32))
 
 
-def _nose(field: _Field, marks: Floats, eyes: list[Floats]) -> Floats:
+def _nose(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     """Cartilage from the nasal bones to the wings of the nose."""
     x, y, z = field.places
     wide = 6.0 + 11.0 * np.clip((marks[28, 1] - y) / (marks[28, 1] - marks[33, 1]), 0.0, 1.0)
     box = np.maximum.reduce([np.abs(x) - wide, y - marks[28, 1], marks[33, 1] + 1.0 - y, 62.0 - z])
-    return _within(field.nose, box, 5.0)
+    return _within(field.outside, box, 5.0)
 
 
-def _cranium(field: _Field, marks: Floats, eyes: list[Floats]) -> Floats:
+def _cranium(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     x, y, z = field.places
     across = np.abs(x)
     # Ears leave a gap in the form, which is wide there; behind it the mastoid.
@@ -204,7 +209,7 @@ def _cranium(field: _Field, marks: Floats, eyes: list[Floats]) -> Floats:
     return _without(solid, opening, 2.5)
 
 
-def _mandible(field: _Field, marks: Floats, eyes: list[Floats]) -> Floats:
+def _mandible(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     x, y, z = field.places
     across = np.abs(x)
     form = field.outside
@@ -216,19 +221,19 @@ def _mandible(field: _Field, marks: Floats, eyes: list[Floats]) -> Floats:
     return _within(_within(outer, -thick - outer, 3.0), body, 5.0)
 
 
-def _around(field: _Field, points: Floats) -> Floats:
+def _around(field: _Field, points: Floats) -> Field:
     """Distance from a skin of 0.8 mm over points (n, 3); far from them, more than a few mm."""
     low = np.maximum((points.min(axis=0) - 5.0 - field.low) / CELL, 0).astype(int)
     high = ((points.max(axis=0) + 5.0 - field.low) / CELL).astype(int) + 1
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
-    result = np.full(field.outside.shape, 20.0)
+    result = np.full_like(field.outside, 20.0)
     places = np.moveaxis(field.places[(slice(None), *box)], 0, -1)
     result[box] = cKDTree(points).query(places, distance_upper_bound=20.0, workers=-1)[0] - 0.8
-    near: Floats = np.minimum(result, 20.0)
+    near: Field = np.minimum(result, np.float32(20.0))
     return near
 
 
-def _polygon(u: Floats, v: Floats, corners: Any) -> Floats:
+def _polygon(u: Field, v: Field, corners: Any) -> Field:
     """Signed distance from a polygon, negative within; as wide as u and v."""
     at, corners = np.stack([u[0], v[0]]), np.array(corners, float)
     nearest = np.full(at.shape[1:], np.inf)
@@ -240,22 +245,23 @@ def _polygon(u: Floats, v: Floats, corners: Any) -> Floats:
         crosses = (a[1] > at[1]) != (b[1] > at[1])
         slope = (at[1] - a[1]) * edge[0] / (edge[1] or 1e-9) + a[0]
         inside ^= crosses & (at[0] < slope)
-    return np.broadcast_to(np.where(inside, -nearest, nearest), u.shape)
+    signed = np.where(inside, -nearest, nearest).astype(u.dtype)
+    return np.broadcast_to(signed, u.shape)
 
 
-def _with(a: Floats, b: Floats, round_: float) -> Floats:
+def _with(a: Field, b: Field, round_: float) -> Field:
     """Both solids, with a fillet."""
     blend = np.maximum(round_ - np.abs(a - b), 0.0) / round_
-    both: Floats = np.minimum(a, b) - 0.25 * round_ * blend**2
+    both: Field = np.minimum(a, b) - 0.25 * round_ * blend**2
     return both
 
 
-def _within(a: Floats, b: Floats, round_: float) -> Floats:
+def _within(a: Field, b: Field, round_: float) -> Field:
     """What is in both solids, with rounded edges."""
     return -_with(-a, -b, round_)
 
 
-def _without(a: Floats, b: Floats, round_: float) -> Floats:
+def _without(a: Field, b: Field, round_: float) -> Field:
     """The first solid less the second, with rounded edges."""
     return _within(a, -b, round_)
 
@@ -268,7 +274,7 @@ def _sampled(fields: Any, points: Floats) -> Floats:
     )
 
 
-def _mesh(shape: Floats) -> tuple[Floats, npt.NDArray[np.int32]]:
+def _mesh(shape: Field) -> tuple[Floats, npt.NDArray[np.int32]]:
     """Points [cells] and outward triangles of a field's zero: one point in each cell it crosses."""
     shape = np.pad(shape, 1, constant_values=1.0)
     inside = shape < 0.0

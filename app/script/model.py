@@ -23,6 +23,7 @@ _CURVES = tuple(EASINGS.values())
 
 Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
+MOST_OUTLINES = 16  # of a channel that are kept
 DECIMALS = 6  # of numbers that come from sliders and clocks
 
 
@@ -170,6 +171,19 @@ class Channel:
         fewer than the columns, else with what is lowest and highest in each. Each of shape (N,),
         no more than about four points to a column.
         """
+        asked = start, end, count
+        if asked not in self._outlines:
+            if len(self._outlines) >= MOST_OUTLINES:
+                self._outlines.clear()
+            self._outlines[asked] = self._outline(*asked)
+        return self._outlines[asked]
+
+    @functools.cached_property
+    def _outlines(self) -> dict[tuple[float, float, int], tuple[Floats, Floats]]:
+        """What was asked for last: a timeline asks for the same in each frame."""
+        return {}
+
+    def _outline(self, start: float, end: float, count: int) -> tuple[Floats, Floats]:
         keys = self.times[np.searchsorted(self.times, start) :]
         keys = keys[: np.searchsorted(keys, end, "right")]
         if len(keys) <= count:  # "hold" jumps at a key: it needs a point just before as well

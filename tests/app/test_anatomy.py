@@ -181,3 +181,20 @@ def test_the_command_draws_anatomy(tmp_path: Path) -> None:
     assert wrong.exit_code == 2 and "muscles, skull" in wrong.output
     lonely = run("--skin-opacity", "0.5", "-o", str(plain))
     assert lonely.exit_code == 2 and "--anatomy" in lonely.output
+
+
+def test_muscles_need_no_skull_and_rest_with_the_face() -> None:
+    """Bones are formed only when they are asked for; where nothing moved, nothing is shaped."""
+    scene = FaceScene()
+    solids = Solids(scene)
+    solids.follow(Dissection(("muscles",)))
+    muscles = solids.parts[-1]
+    assert [part.name for part in solids.parts if "skull" in part.name] == ["skull_nose"]
+    shape = muscles.vertices
+    solids.follow(Dissection(("muscles",)))
+    assert muscles.vertices is shape
+    scene.pose({"joy": 1.0})
+    for _ in range(5):
+        scene.step(1.0 / 60.0)
+    solids.follow(Dissection(("muscles",)))
+    assert np.abs(muscles.vertices - shape).max() > 0.1

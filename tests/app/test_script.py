@@ -333,3 +333,11 @@ def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="longer than can be read again, 32 MB"):
         save_script(path, script)
     assert path.read_text() == "before"
+
+
+def test_an_outline_is_worked_out_once() -> None:
+    """Whoever draws the same curve in each frame is given the same points."""
+    channel = Channel(np.arange(1000.0), np.sin(np.arange(1000.0)), "linear")
+    first = channel.outline(0.0, 900.0, 100)
+    assert channel.outline(0.0, 900.0, 100) is first
+    assert channel.outline(0.0, 800.0, 100) is not first

@@ -22,5 +22,5 @@ def test_the_window_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(window, "WARM_UP", 0.02)
     table = window.report(0.1, (640, 400))
     rates = [float(line[30:39]) for line in table.splitlines() if line.startswith(("smile", "lev"))]
-    assert len(rates) == 4 + len(LEVELS) and min(rates) > 0.0
+    assert len(rates) == 6 + len(LEVELS) and min(rates) > 0.0
     assert "Nothing moves:" in table and "% of a core" in table
