@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -89,14 +90,13 @@ def _file_rows(script: Script, path: Path) -> Iterator[Row]:
 
 def _window_rows(path: Path, size: tuple[int, int]) -> Iterator[Row]:
     """Frames with a take and with a few keys, then what a user does with keys."""
-    from risorius.app.script.keyframes import places_of
     from risorius.app.viewer import Viewer
     from risorius.app.viewer.settings import Display
     from risorius.app.viewer.tracks import TRACKS
 
     few = script_for(None, "face")
     with Viewer(few, size, Display()) as viewer:
-        session, selection = viewer.session, viewer.selection
+        session = viewer.session
         viewer.settings.folds[TRACKS] = True
         take = load_script(path)
         moments = np.random.default_rng(SEED)
@@ -126,29 +126,37 @@ def _window_rows(path: Path, size: tuple[int, int]) -> Iterator[Row]:
             yield Row(what, float(np.median(taken[True])), float(np.median(taken[False])))
 
         viewer.settings.shows_curves = False
+        yield from _edit_rows(viewer, take, moments)
 
-        def select() -> None:
-            """A fifth of the take, as in a box."""
-            third, half = 0.3 * take.duration, 0.5 * take.duration
-            selection.places = places_of(session.script).between(third, half)
 
-        def set_key() -> None:
-            """A slider is moved, and the face becomes a key."""
-            session.set(next(iter(take.tracks)), moments.uniform(0.0, 1.0))
-            selection.set_key()
+def _edit_rows(viewer: Any, take: Script, moments: np.random.Generator) -> Iterator[Row]:
+    """What a user does with keys of a take."""
+    from risorius.app.script.keyframes import places_of
 
-        edits: dict[str, Callable[[], object]] = {
-            "go to the next key": lambda: session.seek_key(1),
-            "set a key": set_key,
-            "select a fifth of all keys": select,
-            "move these": lambda: selection.nudge(1),
-            "delete these": selection.delete,
-            "undo": session.undo,
-        }
-        taken_by = {what: list[float]() for what in edits}
-        for _ in range(ROUNDS):
-            session.open(take)
-            for what, edit in edits.items():
-                taken_by[what].append(milliseconds(edit, 1))
-        for what, each in taken_by.items():
-            yield Row(what, float(np.median(each)), promised=EDIT)
+    session, selection = viewer.session, viewer.selection
+
+    def select() -> None:
+        """A fifth of the take, as in a box."""
+        third, half = 0.3 * take.duration, 0.5 * take.duration
+        selection.places = places_of(session.script).between(third, half)
+
+    def set_key() -> None:
+        """A slider is moved, and the face becomes a key."""
+        session.set(next(iter(take.tracks)), moments.uniform(0.0, 1.0))
+        selection.set_key()
+
+    edits: dict[str, Callable[[], object]] = {
+        "go to the next key": lambda: session.seek_key(1),
+        "set a key": set_key,
+        "select a fifth of all keys": select,
+        "move these": lambda: selection.nudge(1),
+        "delete these": selection.delete,
+        "undo": session.undo,
+    }
+    taken_by = {what: list[float]() for what in edits}
+    for _ in range(ROUNDS):
+        session.open(take)
+        for what, edit in edits.items():
+            taken_by[what].append(milliseconds(edit, 1))
+    for what, each in taken_by.items():
+        yield Row(what, float(np.median(each)), promised=EDIT)

@@ -23,6 +23,12 @@ class Document:
         """Whether it is drawn in another way than the other, and else the same."""
         return self != other and replace(self, display=other.display) == other
 
+    def view_change(self, display: object) -> str:
+        """What another way to draw the scene changes, in words."""
+        before, after = vars(self.display), vars(display)
+        names = [name.removeprefix("is_") for name in after if after[name] != before[name]]
+        return f"View: {', '.join(names).replace('_', ' ')}"
+
     def new_keys(self, before: Document) -> int:
         """How many keys of tracks it has that the state before does not share with it."""
         known = {id(track) for track in before.script.tracks.values()}

@@ -137,9 +137,7 @@ class Session:
         if self.display is None:
             self.history.amend(state)
         else:
-            before, after = vars(self.display), vars(display)
-            names = [name.removeprefix("is_") for name in after if after[name] != before[name]]
-            self.history.note(state, f"View: {', '.join(names).replace('_', ' ')}")
+            self.history.note(state, self.history.present.view_change(display))
         self.display = display
 
     def note(self, label: str = "") -> None:
@@ -242,8 +240,6 @@ class Session:
         self.is_playing = False
         return line
 
-    # Keys
-
     def edit(self, script: Script, label: str = "Edit", *, is_done: bool = True) -> None:
         """Take the script as it was changed; a face that follows it follows the change.
 
@@ -283,8 +279,7 @@ class Session:
         """
         if self.is_playing:
             self.time += self.speed * seconds
-            goes_on = self.is_recording and not self.is_looping  # and makes the script longer
-            if self.time >= self.script.duration and not goes_on:
+            if self.time >= self.script.duration and (self.is_looping or not self.is_recording):
                 self.time = 0.0 if self.is_looping else self.script.duration
                 self.is_playing = self.is_looping
             self._follow_script()

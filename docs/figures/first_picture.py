@@ -13,7 +13,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.files import save_png
 from risorius.app.scenes import FaceScene
 
-SIZE = (720, 720)  # [pixels] as large as the face is in a window that nobody enlarged
+SIZE = (540, 540)  # [pixels]; a window enlarges it, for a second
 TARGET = Path(__file__).parents[2] / "assets" / "data" / "first_picture.png"
 
 

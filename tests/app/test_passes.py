@@ -22,7 +22,7 @@ from risorius.assets.fitting.head import fit
 from risorius.assets.identities import person_called
 from tests.heads import stranger
 
-SIZE = (400, 400)
+SIZE = (500, 500)
 EYES = (Segment.LEFT_EYE, Segment.RIGHT_EYE)
 EXPRESSIONS: dict[str, dict[str, float]] = {
     "rest": {},

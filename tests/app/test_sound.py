@@ -393,7 +393,7 @@ def ramp_with(device: HandDevice, monkeypatch: pytest.MonkeyPatch) -> tuple[Sess
 def test_the_sound_goes_where_the_user_goes(
     device: HandDevice, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """While it plays, in a loop, by scrubbing, at another speed; it is silent for a film."""
+    """While it plays, in a loop, by scrubbing, at another speed."""
     session, soundtrack = ramp_with(device, monkeypatch)
     assert soundtrack.elapsed(0.02) == 0.02 and not soundtrack.is_heard
     session.toggle_playing()
@@ -405,7 +405,6 @@ def test_the_sound_goes_where_the_user_goes(
     soundtrack.elapsed(0.02)
     slow = device.ask(COUNT)
     assert slow[-1, 0] == pytest.approx(1000 * 0.5 * player.PERIOD, abs=1)
-    assert soundtrack.elapsed(0.02, is_silent=True) == 0.02 and not soundtrack.is_heard
     session.is_playing = False
     soundtrack.elapsed(0.02)
     session.seek(7.0)

@@ -279,7 +279,7 @@ def test_rows_stand_in_groups(hello: Script) -> None:
     assert [row.label for row in rows] == [
         "Tracks",
         "Expressions",
-        "joy",
+        "Joy",
         "Units",
         "AU4",
         "AU12 left",

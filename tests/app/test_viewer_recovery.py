@@ -217,7 +217,7 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     assert next_one.found.summary == "the script smile.toml and a recording"
     next_one.accept_found(after)
     assert next_one.found is None and after.unsaved == "the script"
-    assert after.script.at(0.2)["jaw_open"] == pytest.approx(0.5, abs=1e-4)
+    assert after.script.at(0.2)["jaw_open"] == pytest.approx(0.5, abs=0.002)
     assert after.script.poses == edited.poses and after.file.path == tmp_path / "smile.toml"
     after.undo()  # the recording
     assert after.script == edited and after.script.preface == "# mine"
