@@ -215,7 +215,7 @@ def test_enter_opens_the_list_that_tab_came_to(viewer: Viewer) -> None:
     xdotool(viewer, "key", "F10")
     xdotool(viewer, "key", "Tab")
     xdotool(viewer, "key", "Return")
-    assert until(viewer, lambda: "export: Film (.mov)" in viewer.gui.places, 5.0)
+    assert until(viewer, lambda: "Write: Film (.mov)" in viewer.gui.places, 5.0)
     assert viewer.exporter.job is None
     xdotool(viewer, "key", "Escape")
     assert viewer.exporter.is_asking
