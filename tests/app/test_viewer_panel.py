@@ -8,7 +8,7 @@ import pytest
 
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.controls import Controls
-from risorius.app.vocabulary import filters, pads
+from risorius.app.vocabulary import filters, pads, title_of
 from risorius.assets.loading import read_words
 
 from .driving import (
@@ -88,7 +88,7 @@ def test_no_two_rows_read_alike(viewer: Viewer, width: float) -> None:
     controls, actions = viewer.session.controls, viewer.session.scene.actions
     viewer.settings.panel_width = width
     texts = [
-        row.words(actions.get(row.names[-1], ""))
+        "  ".join(filter(None, title_of(row.label, actions.get(row.names[-1], ""))))
         for names in controls.groups.values()
         for row in viewer.face_panel.rows.of(names)
     ]
