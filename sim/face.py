@@ -186,7 +186,9 @@ class Simulation:
         return twin
 
     def copy_from(self, other: Simulation) -> None:
-        """Take on controls, positions and velocities of a twin."""
+        """Take on controls, positions and velocities of a twin; ValueError for any other."""
+        if not isinstance(other, Simulation) or other._anatomy is not self._anatomy:
+            raise ValueError(f"other: was {checked.quoted(other)}, must be a twin of this face")
         self._controls.copy_from(other._controls)
         self._state.x[:], self._state.v[:] = other._state.x, other._state.v
         self._positions[:] = other._positions

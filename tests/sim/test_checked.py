@@ -37,6 +37,8 @@ SHARES = (*NONSENSE, [0.5], [0.5, 1.1], [-0.1, 0.5], [NAN, 0.5], [HUGE, 0.5], 0.
 NAMES = (None, 3, "", "nonsense", b"jaw_open", NAN, HUGE, ("jaw_open",), "x" * 10**6, "\n")
 TABLES = (*NONSENSE[:-1], 3, NAN, ["jaw_open"], np.zeros(3))
 
+TRIANGLE = {"vertices": np.eye(3) * 10.0, "faces": np.array([[0, 1, 2]])}
+
 # Method, the argument that is wrong, what it is called in the text, and what it is in turn.
 WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("set", "name", "control", (*NAMES, [], {})),
@@ -46,6 +48,10 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
     ("pose", "values", "values", TABLES),
     ("pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("jump", "values", "values", TABLES),
+    ("jump", "values", "control", tuple({name: 1.0} for name in NAMES)),
+    ("jump", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("copy_from", "other", "other", (*NONSENSE, 3, sim.create(SimpleNamespace(**TRIANGLE)))),
     ("kick", "velocities", "velocities", ARRAYS),
     ("drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
     ("drag", "targets", "targets", ARRAYS),
@@ -57,6 +63,8 @@ RIGHT: dict[str, dict[str, Any]] = {
     "set_all": {"values": {"jaw_open": 0.5}},
     "pose": {"values": {"jaw_open": 0.5}},
     "drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
+    "jump": {"values": {"jaw_open": 0.5}},
+    "copy_from": {"other": None},  # its twins are those of the simulation that is asked
     "kick": {"velocities": np.zeros((COUNT, 3))},
     "step": {"dt": 1 / 60},
 }
