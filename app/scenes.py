@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import Person, person_called, recoloured
+from risorius.assets.identities import Person, recoloured
 
 from .errors import UserError
 from .growing import Growing
@@ -356,21 +356,8 @@ def _new_scene(name: str, head: FittedHead | None) -> Scene:
         raise UserError(f"this head cannot be simulated: {error}") from None
 
 
-def head_for(
-    head: Path | None, landmarks: Path | None, person: int | str | None = None
-) -> FittedHead | None:
-    """The user's own head, fitted, or a person's by number or name; None for the built-in one."""
-    if person is not None:
-        if head is not None or landmarks is not None:
-            raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
-        return person_called(person)
-    if head is None and landmarks is None:
-        return None
-    if head is None or landmarks is None:
-        raise UserError(
-            "--head HEAD.obj and --landmarks LANDMARKS.json go together; "
-            "`risorius view --head HEAD.obj` helps to mark the landmarks"
-        )
+def own_head(head: Path, landmarks: Path) -> FittedHead:
+    """The user's own head, fitted."""
     fitted = kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))
     for note in fitted.notes:
         LOG.warning("risorius: %s: %s", head, note)

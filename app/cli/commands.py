@@ -6,9 +6,7 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -150,9 +148,9 @@ def view(
         playback = replace(playback, mapping=None, gains=(), mirror=False)  # the live face has them
     is_bare = drawing.head is not None and drawing.landmarks is None and drawing.person is None
     mesh = drawing.head if is_bare else None
-    played = partial(_played, script, scene, sound, playback, quiet=quiet)
-    is_sheet = scene not in (None, "face")
-    open_window(played, size, drawing, listening=listening, mesh=mesh, is_sheet=is_sheet)
+    is_plain = (script, scene, sound, playback) == (None, None, None, Playback())
+    performance = None if is_plain else _played(script, scene, sound, playback, quiet=quiet)
+    open_window(performance, size, drawing, listening=listening, mesh=mesh)
 
 
 @click.command()
@@ -202,8 +200,8 @@ def replay(
     drawing: Drawing,
 ) -> None:
     """Play SCRIPT, or a recording of a face, in the window."""
-    played = partial(_played, script, None, sound, playback, quiet=quiet)
-    open_window(played, size, drawing, playing=True, once=once)
+    performance = _played(script, None, sound, playback, quiet=quiet)
+    open_window(performance, size, drawing, playing=True, once=once)
 
 
 @click.command()
@@ -252,7 +250,7 @@ def _played(
 
 
 def open_window(
-    played: Callable[[], Script],
+    performance: Script | None,
     size: tuple[int, int] | None,
     drawing: Drawing,
     *,
@@ -260,38 +258,44 @@ def open_window(
     once: bool = False,
     listening: Listening | None = None,
     mesh: Path | None = None,
-    is_sheet: bool = False,
 ) -> None:
     """Open the viewer on a script's scene; or on a mesh whose landmarks are to be marked.
 
-    played: reads the script, in a thread, while the window shows a picture already.
+    performance: None for the face's own, which is read while the window shows a picture already.
     """
     from ..viewer.opening import Opening, settings_path
 
     def load() -> tuple[Script, FittedHead | None]:
-        """All that takes long, and can be wrong."""
-        script = played()
-        if listening is not None:
-            from ..viewer.live_commands import check_scene
-
-            check_scene(script.scene)
+        """All that takes long."""
+        script = (
+            _played(None, None, None, Playback(), quiet=True)
+            if performance is None
+            else performance
+        )
         head = drawing.fitted_head() if mesh is None else None
         import risorius.app.viewer.window  # noqa: F401
 
         return script, head
 
+    if listening is not None and performance is not None:
+        from ..viewer.live_commands import check_scene
+
+        check_scene(performance.scene)
+    told_of = (drawing.refinement(), dissection_of(drawing)) if drawing.is_told else None
+    if mesh is None:
+        drawing.check_head()
     path = settings_path()
-    is_own = is_sheet or drawing.head is not None or drawing.person is not None
+    is_face = performance is None or performance.scene == "face"
+    is_own = not is_face or drawing.head is not None or drawing.person is not None
     with Opening(size, path, is_own=is_own) as opening:
         script, head = opening.during(load)
         from ..viewer import Viewer
         from ..viewer.settings import display_of
 
         display = None  # as it was last
-        if drawing.is_told:
-            display = display_of(
-                drawing.refinement(), script.scene, dissection_of(drawing), **drawing.style_options
-            )
+        if told_of is not None:
+            refinement, dissection = told_of
+            display = display_of(refinement, script.scene, dissection, **drawing.style_options)
         viewer = Viewer(script, size, display, head=head, settings_path=path, opening=opening)
         with viewer:
             if listening is not None:

@@ -66,11 +66,28 @@ class Subject:
     refiner: str | None
     look: str
 
+    def check_head(self) -> None:
+        """Raise UserError for what does not go together."""
+        if self.person is not None and (self.head is not None or self.landmarks is not None):
+            raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
+        if (self.head is None) != (self.landmarks is None):
+            raise UserError(
+                "--head HEAD.obj and --landmarks LANDMARKS.json go together; "
+                "`risorius view --head HEAD.obj` helps to mark the landmarks"
+            )
+
     def fitted_head(self) -> FittedHead | None:
         """The user's own head, fitted; None for the built-in one."""
-        from ..scenes import head_for
+        self.check_head()
+        from risorius.assets.identities import person_called
 
-        return head_for(self.head, self.landmarks, self.person)
+        from ..scenes import own_head
+
+        if self.person is not None:
+            return person_called(self.person)
+        if self.head is None or self.landmarks is None:
+            return None
+        return own_head(self.head, self.landmarks)
 
     def refinement(self) -> Refinement:
         """How the mesh is refined; UserError where there is no such refiner."""

@@ -10,11 +10,12 @@ from pathlib import Path
 
 from risorius import assets
 from risorius.assets.fitting.landmark_file import UnfinishedError
+from risorius.assets.identities import person_called
 from risorius.assets.meshes import FORMATS
 
 from ..errors import UserError
 from ..recordings import is_recording
-from ..scenes import Scene, build_scene, head_for
+from ..scenes import Scene, build_scene, own_head
 from .files import Files
 from .messages import Message
 from .script_commands import SOUNDS, ScriptCommands
@@ -67,7 +68,7 @@ class DroppedFiles:
                 f"{name}: is half of a head; drop it together with its mesh, an .obj say"
             )
         try:
-            return build_scene("face", head_for(mesh, landmarks))
+            return build_scene("face", own_head(mesh, landmarks))
         except UnfinishedError:
             raise
         except assets.AssetError as error:
@@ -113,7 +114,9 @@ class FileDrop:
 
     def show_person(self, who: int | str | None) -> Message:
         """Announce a person by number or name, in place of the head; None: the built-in head."""
-        self._announced = lambda: self._show_scene(build_scene("face", head_for(None, None, who)))
+        self._announced = lambda: self._show_scene(
+            build_scene("face", None if who is None else person_called(who))
+        )
         self.has_other_head = who is not None
         return f"Making {'the built-in head' if who is None else f'person {who}'} ..."
 

@@ -24,6 +24,7 @@ Order = npt.NDArray[np.intp]
 DISORDERED = -0.1  # a bit below 0: who has points in order must not be refused
 TOLD_APART = 3.0  # [mm] that an order moves points on average, or it cannot be told from positions
 SMOOTHER = 0.5  # a warp that bends so much less is that of the landmarks that were meant
+MOST_SPREAD = 10.0  # that landmarks reach farther than those before them, unless one is astray
 INNER_LIPS = ((61, 62, 63), (65, 66, 67))  # upper, lower
 OUTER_LIPS = ((50, 51, 52), (56, 57, 58))
 
@@ -108,7 +109,11 @@ def check_counting(vertices: FloatArray, landmarks: IndexArray, template: FloatA
     """Raise AssetError where the vertices before those of the landmarks make more of a face."""
     if landmarks.min() < 1:
         return
-    given, before = (Warp(template, vertices[each]).bending for each in (landmarks, landmarks - 1))
+    points = [vertices[each] for each in (landmarks, landmarks - 1)]
+    largest, smallest = (f(np.ptp(each) for each in points) for f in (max, min))
+    if not 0.0 < largest < MOST_SPREAD * smallest:  # a landmark is far off, and that is the fault
+        return
+    given, before = (Warp(template, each / largest).bending for each in points)
     if before < SMOOTHER * given:
         raise AssetError(
             "the landmarks' vertex numbers are counted from 1; count from 0, or subtract 1 from "

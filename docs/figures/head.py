@@ -19,7 +19,8 @@ from risorius import assets, refine, render, sim
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
-from risorius.app.scenes import FaceScene, head_for
+from risorius.app.scenes import FaceScene
+from risorius.assets.identities import person_called
 from risorius.bench import figures
 from risorius.bench.canvas import Canvas, Drawing
 from risorius.bench.subjects import settled_positions
@@ -143,7 +144,7 @@ def persons() -> Image:
     cells = []
     front = ((seed, "", "studio", "0,0,0.9") for seed in AT_EASE)
     for seed, pose, light, view in (*front, *IN_LIGHT):
-        scene = FaceScene(head_for(None, None, seed))
+        scene = FaceScene(person_called(seed))
         scene.pose({pose: 1.0} if pose else {})
         scene.step(SETTLED)
         style = render.Style(light=render.LIGHTS[light])

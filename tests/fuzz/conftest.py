@@ -19,7 +19,7 @@ LONG_WORK = (
     "risorius.bench.figure_claims.figure_8_outcome",
     "risorius.bench.figure_claims.figure_9_outcome",
     "risorius.bench.figure_claims.figure_10_outcome",
-    "risorius.app.viewer.Viewer",
+    "risorius.app.viewer.opening.Opening",
     "risorius.bench.frame_rate.measure",
     "risorius.bench.gaps.measure",
     "risorius.bench.meshes.measure",
