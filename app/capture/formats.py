@@ -60,6 +60,16 @@ def format_of(target: Path) -> FilmFormat | None:
     return FORMATS.get(target.suffix.lower())
 
 
+def check_name(output: Path) -> None:
+    """Raise UserError for a name that is neither a film's, nor a picture's, nor a folder's."""
+    suffix = output.suffix.lower()
+    if suffix not in (*FORMATS, ".png", "") and not output.is_dir():
+        raise UserError(
+            f"{output}: what is '{suffix}'? Allowed are {', '.join(FORMATS)} (a film), "
+            ".png (one picture) and a name without suffix (a folder of frames)"
+        )
+
+
 def check_format(target: Path, frames_per_second: float, *, is_transparent: bool) -> None:
     """Raise UserError where a film of this name cannot hold such pictures, or so many a second."""
     found = format_of(target)

@@ -16,7 +16,7 @@ from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
 from .ffmpeg import Soundtrack
-from .formats import FORMATS, HEARD, format_of
+from .formats import HEARD, check_name, format_of
 
 
 def capture(
@@ -115,6 +115,8 @@ def _check(
         raise UserError(f"{script.source}: no pose has a name, so there is nothing for a sheet")
     if sheet is not None:
         check_png(sheet)
+    if output is not None:
+        check_name(output)
     if output is not None and _is_image(output):
         check_png(output)
     elif output is not None and script.sound is not None and output.suffix.lower() in HEARD:
@@ -147,7 +149,6 @@ def _sink_for(
     output: Path, options: CaptureOptions, overwrite: bool, soundtrack: Soundtrack | None
 ) -> contextlib.AbstractContextManager[outputs.FrameSink]:
     """A film or a folder of frames, by what the output is called."""
-    suffix = output.suffix.lower()
     if format_of(output):
         return outputs.film(
             output,
@@ -156,9 +157,4 @@ def _sink_for(
             soundtrack,
             is_transparent=options.is_transparent,
         )
-    if suffix == "" or output.is_dir():
-        return outputs.folder(output, overwrite=overwrite)
-    raise UserError(
-        f"{output}: what is '{suffix}'? Allowed are {', '.join(FORMATS)} (a film), "
-        ".png (one picture) and a name without suffix (a folder of frames)"
-    )
+    return outputs.folder(output, overwrite=overwrite)

@@ -167,6 +167,10 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         if not path.exists():
             raise UserError(f"{path}: there is no such file")
     check_apart(outputs, inputs)
+    if name == "capture" and given["output"] is not None:
+        from ..capture.formats import check_name
+
+        check_name(given["output"])
     beside = _beside(name, given)
     if "overwrite" in given and not given["overwrite"]:
         for path in beside if name == "export" and not outputs[0].exists() else ():

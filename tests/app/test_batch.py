@@ -137,6 +137,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         "capture joy.toml -o joy.toml\n"
         "capture joy.toml -o e.mp4 --colour\n"
         "capture joy.toml -o f.mp4 --sheet joy.toml\n"
+        "capture joy.toml -o g.avi\n"
     )
     before = contents(".")
     ended = batch()
@@ -156,6 +157,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         (13, "is read and would be written"),
         (15, "is read and would be written"),
         (14, "--colour"),
+        (16, "what is '.avi'"),
     )
     assert ended.exit_code == 2 and ended.stdout == ""
     for number, part in words:
