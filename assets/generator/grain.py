@@ -27,7 +27,7 @@ FRECKLE_RADII = (0.3, 0.8)  # [mm]
 CENTRE, WHORL = np.array([0.0, 30.0, -5.0]), np.array([5.0, 118.0, -48.0])  # of the hair
 # Widths of strands and of tufts [mm], how much each shows in front, and behind: texels are coarse
 # there, and what is finer than they are would be seen as dabs.
-STRANDS = ((0.45, 0.55, 0.0), (0.85, 0.50, 0.1), (1.8, 0.25, 0.45))
+STRANDS = ((0.45, 0.75, 0.0), (0.85, 0.50, 0.15), (1.8, 0.20, 0.45))
 LONGER = 0.075  # how much slower strands change along themselves
 FRAYED = 0.07  # how far they stand out of the line of hair, in shares of its width
 
@@ -109,14 +109,15 @@ def crop(texels: Texels, points: Points) -> Values:
     along = np.arccos(np.clip(away @ axis, -1.0, 1.0))
     turn = np.arctan2(away @ np.cross(axis, side), away @ side) + 0.25 * along
     place = np.stack([62.0 * np.cos(turn), 62.0 * np.sin(turn), LONGER * 90.0 * along], axis=1)
-    in_front = smooth_step(-45.0, 15.0, points[:, 2])
+    in_front = smooth_step(10.0, 50.0, points[:, 2])
     strand = np.zeros(len(points))
     for number, (width, front, behind) in enumerate(STRANDS):
         share = behind + (front - behind) * in_front
         strand += share * noise(place, width, seed=91 + number)
+    strand *= smooth_step(0.0, 0.6, along)  # at the whorl they would be rays
     dense = scalp(texels)
     # Toward the line there are fewer hairs, not shorter ones: more and more skin between them.
     grown = smooth_step(0.02, 0.55, dense + FRAYED * strand * smooth_step(0.0, 0.05, dense))
     sparse = smooth_step(0.95, 0.25, dense)
-    between = 0.88 - 0.30 * sparse + (0.13 + 0.42 * sparse) * strand
+    between = 0.91 - 0.31 * sparse + (0.17 + 0.38 * sparse) * strand
     return np.asarray(grown * np.clip(between, 0.0, 1.0), dtype=np.float64)
