@@ -51,7 +51,7 @@ def pores(points: Points) -> Values:
 
 
 def _holes(points: Points) -> list[Values]:
-    """How deep in a pore points lie, 0 to 1, and points `LIFT` from them: round, thrown at chance."""
+    """How deep in a round pore lie points, and points `LIFT` from them, 0 to 1, shape (n,) each."""
     random = np.random.default_rng(SEED + int(points[0, 0] < 0.0))
     centres = points[random.choice(len(points), PORE_COUNT, replace=False)]
     radii = PORE_RADII[0] + np.ptp(PORE_RADII) * random.uniform(0.0, 1.0, PORE_COUNT) ** 2
@@ -78,7 +78,7 @@ def blotches(points: Points) -> tuple[Values, Values]:
     for number, (size, brown, red) in enumerate(PATCHES):
         points = points @ TURN
         melanin += seen * brown * noise(points, size, seed=61 + number)
-        blood += seen * red * noise(points, size, seed=71 + number)
+        blood += seen * red * noise(points, size, seed=171 + number)
         seen = in_front  # of all but the largest
     return melanin, blood * (1.0 + 0.8 * flushed) + 0.07 * flushed * veined
 

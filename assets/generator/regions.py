@@ -55,7 +55,7 @@ TANNED = (
     ((60, 16, 55), (16, 20, 24), 0.03),  # temple
     ((0, -150, 50), (60, 25, 60), 0.05),
     ((25, -76, 92), (7, 6, 8), 0.05),  # below the corner of the mouth
-    # Light breaks off at the chin's lower edge: darker before it, lighter behind, it does so softly.
+    # Light breaks off at the chin's edge: less so if that is darker, and what follows lighter.
     ((0, -106.8, 97), (9, 2.2, 5), 0.18),
     ((0, -112.5, 91), (18, 4, 7), -0.22),
 )
