@@ -53,14 +53,15 @@ def pores(points: Points) -> Values:
 def _holes(points: Points) -> list[Values]:
     """How deep in a round pore lie points, and points `LIFT` from them, 0 to 1, shape (n,) each."""
     random = np.random.default_rng(SEED + int(points[0, 0] < 0.0))
-    centres = points[random.choice(len(points), PORE_COUNT, replace=False)]
-    radii = PORE_RADII[0] + np.ptp(PORE_RADII) * random.uniform(0.0, 1.0, PORE_COUNT) ** 2
-    depths = random.uniform(0.35, 1.0, PORE_COUNT)
+    count = min(PORE_COUNT, len(points))  # a small picture has fewer texels
+    centres = points[random.choice(len(points), count, replace=False)]
+    radii = PORE_RADII[0] + np.ptp(PORE_RADII) * random.uniform(0.0, 1.0, count) ** 2
+    depths = random.uniform(0.35, 1.0, count)
     tree = cKDTree(centres)
     found = []
     for way in (0.0 * LIFT, LIFT):
         away, nearest = tree.query(points + way, distance_upper_bound=2.0 * PORE_RADII[1])
-        is_near = nearest < PORE_COUNT
+        is_near = nearest < count
         nearest = np.where(is_near, nearest, 0)
         found.append(depths[nearest] * np.exp(-((away / radii[nearest]) ** 2)) * is_near)
     return found
