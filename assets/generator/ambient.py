@@ -14,7 +14,7 @@ INCISORS = 92.5  # z [mm] of the front of the upper ones
 LEAST = 0.34  # chosen: the throat is dark, not black
 REDDENING = (0.92, 1.25, 1.3)  # powers for red, green, blue; chosen
 FALL = 1.1  # chosen: how fast the molars get dark
-BESIDE, BESIDE_SHARE = 30.0, 0.12  # [mm], chosen: the cheeks cover the sides
+BESIDE, BESIDE_SHARE = 27.0, 0.5  # [mm], chosen: cheeks and corners of the mouth cover the sides
 
 
 def mouth_light(points: Points) -> Values:

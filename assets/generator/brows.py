@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from .fields import Points, Values, project, smooth_step
 from .form import distance, from_front
 
-HAIRS = 520  # of one brow; chosen: skin shows through, but no gap catches the eye
+HAIRS = 640  # of one brow; chosen: skin shows through, but no gap catches the eye
 SEED = 5
 # The spine in front view through the brow landmarks, lowered: they lie near its upper edge [mm].
 SPINE = (
@@ -51,7 +51,7 @@ def _spine() -> CubicSpline:
 def hairs(side: int = 1) -> list[Hair]:
     """The hairs of a brow, on the left; side -1: those that are mirrored to the right."""
     random = np.random.default_rng(SEED + side)
-    along = random.beta(1.35, 1.5, HAIRS)  # fewer at both ends: the brow begins and ends softly
+    along = random.beta(1.15, 1.5, HAIRS)  # fewer at both ends: the brow begins and ends softly
     across = np.clip(random.normal(-0.08, 0.62, HAIRS), -1.2, 1.15)  # -1 lower edge, 1 upper
     thickness = np.where(across < 0, np.interp(along, ALONG, BELOW), np.interp(along, ALONG, ABOVE))
     inner_end = smooth_step(0.22, 0.0, along)
@@ -64,7 +64,7 @@ def hairs(side: int = 1) -> list[Hair]:
     length *= 1.0 - 0.35 * np.clip(across, 0.0, 1.0)
 
     lines = _grown(_spine()(along) + offset, angle, turn, length)
-    widths = random.uniform(*WIDTH, HAIRS) * (1.0 - 0.3 * np.abs(across)) * (1.0 - 0.3 * inner_end)
+    widths = random.uniform(*WIDTH, HAIRS) * (1.0 - 0.3 * np.abs(across)) * (1.0 - 0.15 * inner_end)
     lightness = random.uniform(0.0, 1.0, HAIRS)
     return [Hair(*parts) for parts in zip(lines, widths, lightness, strict=True)]
 

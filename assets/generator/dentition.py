@@ -24,11 +24,13 @@ GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (
     (0.72, 0.34, 0.33),
     (0.45, 0.16, 0.15),
 )
-TIP, FLAT, BROAD = "tip", "flat", "broad"
-BETWEEN = 0.28  # of the light, lost where neighbours touch
+CANINE_COLOUR = (0.99, 0.97, 0.935)  # its dentine is thicker: times that of the others
+TIP, FLAT, ROUND, BROAD = "tip", "flat", "round", "broad"
+BETWEEN = 0.42  # of the light, lost where neighbours touch; more toward the gum than at the edge
+BETWEEN_REDDENING = (0.75, 1.1, 1.25)  # powers: what is left comes from gum
 # How far the edge rises toward the gum at its corners [mm], near to the midline and far from it.
-CORNERS = {FLAT: (0.25, 0.75), TIP: (1.2, 1.8), BROAD: (0.5, 0.7)}
-CORNER_POWERS = {FLAT: 3.0, TIP: 1.2, BROAD: 2.0}
+CORNERS = {FLAT: (0.3, 0.9), ROUND: (0.55, 1.35), TIP: (1.3, 2.1), BROAD: (0.9, 1.1)}
+CORNER_POWERS = {FLAT: 3.2, ROUND: 2.6, TIP: 1.25, BROAD: 1.7}
 COVERED, PAPILLA = 0.9, 1.5  # [mm] of the crown that gum hides, and of it more between teeth
 
 # Section of the gums: distance outward from the labial line [mm] (or inward from the lingual one),
@@ -61,7 +63,7 @@ class Tooth:
 
 
 UPPER = (
-    Tooth(8.5, 10.6, 6.6, 1.5, 0.0, 0.03), Tooth(6.6, 9.3, 6.0, 1.4, 0.7, 0.08),
+    Tooth(8.5, 10.6, 6.6, 1.5, 0.0, 0.03), Tooth(6.5, 9.0, 6.0, 1.4, 0.9, 0.08, ROUND),
     Tooth(7.6, 10.4, 7.6, 2.0, 0.0, 0.10, TIP), Tooth(7.0, 8.6, 8.6, 6.0, 0.4, 0.05, BROAD),
     Tooth(6.8, 7.9, 8.6, 6.4, 0.7, 0.02, BROAD), Tooth(10.0, 6.6, 10.0, 8.2, 0.9, 0.0, BROAD),
     Tooth(9.4, 6.2, 10.0, 8.2, 1.1, 0.0, BROAD),
@@ -134,9 +136,10 @@ def _crown(tooth: Tooth) -> tuple[Points, npt.NDArray[np.float64]]:
         if tooth.shape == BROAD:
             y += 0.5 * (1.0 - np.abs(np.sin(2.0 * angle))) * (level == 1.0)  # four cusps
         rows.append(np.column_stack([x + tooth.lean * y, y + tooth.rise, z]))
-        side = smooth_step(0.70, 1.0, np.abs(cosine))
+        side = BETWEEN * (1.0 - 0.45 * level) * smooth_step(0.70, 1.0, np.abs(cosine))
         tint = mix(NECK_COLOUR, EDGE_COLOUR, np.full(AROUND, level**0.6))
-        shades.append(tint * (1.0 - BETWEEN * side)[:, None])
+        tint = tint * (CANINE_COLOUR if tooth.shape == TIP else 1.0)
+        shades.append(tint * (1.0 - side)[:, None] ** np.array(BETWEEN_REDDENING))
     end = rows[-1].mean(axis=0)
     if tooth.shape == BROAD:
         end[1] += 1.1

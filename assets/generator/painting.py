@@ -17,7 +17,7 @@ from .form import FOLD
 from .grain import SEED, blotches, crop, freckles, pores
 from .noise import noise
 from .pigments import COMPLEXIONS, MELANIN, Complexion, reflectance, to_linear, to_screen
-from .regions import beard, blood, red, scalp, tan
+from .regions import alar_groove, beard, blood, red, scalp, tan
 from .texels import Texels, left_texels
 
 Cover = tuple[Points, Values]  # a colour in linear light and how much of it lies on each texel
@@ -99,6 +99,8 @@ def pigments(texels: Texels, complexion: Complexion) -> tuple[Values, Values, Va
     melanin = melanin - 0.05 * roll * texels.is_upper_lip
 
     melanin = melanin + 0.20 * _corner_of_mouth(points) + 0.05 * _fold_beside_mouth(points)
+    groove = alar_groove(points)
+    melanin, redness = melanin + 0.36 * groove, redness + 0.24 * groove
     fold_of_lid = bump(texels.eye_row, 4.0, 0.35) * texels.is_upper_lid
     melanin = melanin + 0.10 * fold_of_lid
     redness = redness * (1.0 - 0.45 * scalp(texels))

@@ -4,6 +4,8 @@ Everything is a function of the place on the left half; the right half is its mi
 """
 
 import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.spatial import cKDTree
 
 from . import lips
 from .fields import Points, Values, bump, smooth_step
@@ -43,7 +45,7 @@ PALER = (
     ((46, -78, 60), (22, 20, 30), -0.09),  # jaw
     ((0, -150, 50), (60, 25, 60), -0.05),  # neck
 )
-# Browner places
+# Browner places, and less so
 TANNED = (
     ((31, -9.5, 84), (14, 4.5, 8), 0.11),  # below the eye
     ((20, -4, 82), (6, 5, 6), 0.10),  # its inner corner
@@ -53,7 +55,17 @@ TANNED = (
     ((60, 16, 55), (16, 20, 24), 0.03),  # temple
     ((0, -150, 50), (60, 25, 60), 0.05),
     ((25, -76, 92), (7, 6, 8), 0.05),  # below the corner of the mouth
+    # Light breaks off at the chin's edge: less so if that is darker, and what follows lighter.
+    ((0, -106.8, 97), (9, 2.2, 5), 0.18),
+    ((0, -112.5, 91), (18, 4, 7), -0.22),
 )
+
+# From the foot of the wing around and over it: place [mm] and how deep the groove is there.
+ALAR_GROOVE = (
+    (12.4, -44.7, 100.3, 0.5), (15.3, -42.0, 99.1, 0.9), (15.8, -39.0, 97.7, 1.0),
+    (15.2, -35.6, 97.1, 1.0), (13.6, -32.3, 98.5, 0.9), (11.6, -30.2, 102.4, 0.6),
+    (9.4, -29.0, 107.4, 0.15),
+)  # fmt: skip
 
 
 def _spots(points: Points, table: tuple[Spot, ...]) -> Values:
@@ -109,6 +121,14 @@ def tan(texels: Texels) -> Values:
     points = texels.points
     hollow = 0.20 * bump(texels.ear_row, 3.0, 0.6) + 0.80 * smooth_step(4.05, 5.0, texels.ear_row)
     return np.asarray(_spots(points, TANNED) + hollow, dtype=np.float64)
+
+
+def alar_groove(points: Points) -> Values:
+    """How deep in the groove around the wing of the nose points lie, 0 to 1, shape (n,)."""
+    ends = np.arange(len(ALAR_GROOVE))
+    table = CubicSpline(ends, np.array(ALAR_GROOVE))(np.linspace(0.0, ends[-1], 160))
+    away, nearest = cKDTree(table[:, :3]).query(np.abs(points) * [1, 0, 0] + points * [0, 1, 1])
+    return np.asarray(table[nearest, 3] * np.exp(-((away / 1.8) ** 2)), dtype=np.float64)
 
 
 def behind_hairline(texels: Texels) -> Values:

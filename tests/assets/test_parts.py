@@ -71,6 +71,14 @@ def test_everything_in_the_mouth_is_inside_the_head(head: Head) -> None:
             assert form.distance(found.vertices.astype(np.float64)).max() < -1.0, found.name
 
 
+def test_teeth_darken_toward_the_corners_of_the_mouth(head: Head) -> None:
+    """Molars and premolars stand in the shade of the cheeks, though their neighbours are white."""
+    teeth = part(head, "teeth_upper")
+    lightness, aside = teeth.colours.mean(axis=1), np.abs(teeth.vertices[:, 0])
+    incisors, premolars = lightness[aside < 12.0].mean(), lightness[(aside > 20) & (aside < 25)]
+    assert 0.45 < premolars.mean() / incisors < 0.6
+
+
 def test_teeth_stand_behind_the_lips(head: Head) -> None:
     """The vestibule ends in front of the teeth."""
     vestibule = head.vertices[head.rings["mouth_0_left"]]
@@ -153,6 +161,20 @@ def test_lashes_are_rooted_in_the_lids_edges(head: Head) -> None:
         assert from_eye.min() > eye.radius
         root = np.linalg.norm(lashes.vertices[lashes.roots] - eye.centre, axis=1)[is_near]
         assert (from_eye > root - 0.3).all()
+
+
+def test_lower_lashes_are_short_and_lean_outward(head: Head) -> None:
+    """Long ones that stand straight below the eye look like a doll's."""
+    lashes, eye = part(head, "lashes"), head.eyes[1]
+    tips = np.flatnonzero(np.diff(lashes.roots, append=-1))
+    tips = tips[lashes.vertices[tips, 0] > 0.0]
+    tip, root = lashes.vertices[tips], lashes.vertices[lashes.roots[tips]]
+    length = np.linalg.norm(tip - root, axis=1)
+    is_lower = root[:, 1] < eye.centre[1]
+    assert 0.2 < length[is_lower].mean() / length[~is_lower].mean() < 0.4
+    is_outer = root[:, 0] > eye.centre[0]
+    assert ((tip - root)[is_lower & is_outer, 0] > 0.0).mean() > 0.9
+    assert length[~is_lower & is_outer].mean() > 1.1 * length[~is_lower & ~is_outer].mean()
 
 
 def test_wet_edges_lie_between_lid_and_eyeball(head: Head) -> None:

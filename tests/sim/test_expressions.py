@@ -63,6 +63,10 @@ def test_joy(simulation: sim.Simulation, head: Head) -> None:
     assert left[1] > 5.0
     assert right[1] > 5.0
     assert left[0] > 3.0 > -3.0 > right[0]
+    # The upper lip bares the lower part of the teeth, along whose edge the lower one lies.
+    edge = min(part.vertices[:, 1].min() for part in head.parts if part.name == "teeth_upper")
+    lips = (head.vertices + moved)[head.landmarks[[62, 66]], 1]
+    assert 5.0 < lips[0] - edge < 9.0 and abs(lips[1] - edge) < 1.2
 
 
 def test_sadness(simulation: sim.Simulation, head: Head) -> None:
