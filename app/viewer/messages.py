@@ -23,7 +23,9 @@ class Messages:
     seconds_left: float = 0.0
 
     def say(self, text: str, *, error: bool = False) -> None:
-        """Show a line in place of the one before."""
+        """Show a line in place of the one before, as a sentence unless it begins with a file."""
+        name, colon, _ = text.partition(":")
+        text = text if colon and "." in name else text[:1].upper() + text[1:]
         self.text, self.is_error, self.seconds_left = text, error, SECONDS
 
     def attempt(self, task: Task, otherwise: Task = lambda: None) -> None:

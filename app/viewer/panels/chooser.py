@@ -52,9 +52,10 @@ class FileChooser:
         self._complaint = ""
         self._warned: Path | None = None  # what is there already, as was said
         self._wants_focus = True  # of the line: on opening, and after each answer that was none
-        self._name = request.proposed.name if request.is_saving else ""
-        self._folder = request.proposed.parent if request.is_saving else request.proposed
+        is_folder = not request.is_saving and request.proposed.is_dir()
+        self._folder = request.proposed if is_folder else request.proposed.parent
         self._enter(request, self._folder)
+        self._name = "" if is_folder else request.proposed.name
 
     def _draw_box(self, request: Request) -> tuple[bool, Path | None]:
         """Draw what must be answered; whether it was, and the file, None where none is wanted."""
