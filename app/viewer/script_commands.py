@@ -45,7 +45,7 @@ class ScriptCommands:
         def begin() -> Message:
             """Do so."""
             self._session.begin_script()
-            return "A new script; K makes the face as it is a key"
+            return "A new script; K keys the face as it is"
 
         return self._question.before("Begin", begin)
 

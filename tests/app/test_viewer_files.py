@@ -271,7 +271,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
 
 
 def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
-    """The mesh is asked for, then its landmarks, with its own offered; each kind is listed alone."""
+    """The mesh is asked for, then its landmarks, its own first; each kind is listed alone."""
     before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
     landmarks = landmarks.rename(tmp_path / "stranger.landmarks.json")

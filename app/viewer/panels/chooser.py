@@ -8,6 +8,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...vocabulary import sentence
 from ..files import SUFFIX, Files, Request
 from ..gui import Gui, colour, em
 from ..messages import Message
@@ -77,7 +78,7 @@ class FileChooser:
         is_cancelled = is_cancelled or imgui.is_key_pressed(imgui.Key.escape)
         if self._complaint:
             imgui.same_line()
-            imgui.text_colored(colour(self._gui.theme.error), self._complaint)
+            imgui.text_colored(colour(self._gui.theme.error), sentence(self._complaint))
         is_done = is_cancelled or chosen is not None
         if is_done:
             imgui.close_current_popup()
@@ -131,7 +132,7 @@ class FileChooser:
         imgui.set_next_item_width(-1.0)
         flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
         is_entered, self._name = imgui.input_text_with_hint(
-            "##path", "a name, or a path", self._name, flags
+            "##path", "A name, or a path", self._name, flags
         )
         self._gui.remember("path")
         label = "Open"

@@ -104,7 +104,7 @@ class MechanismPanel:
         imgui.begin_child("mechanism", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
         self._rows.resets = self._find_resets()
         imgui.begin_disabled(self._display == Display())
-        if button(self._gui, "Reset all", meaning="all of this as at first, but for the person"):
+        if button(self._gui, "Reset all", meaning="all of this as at first, except the person"):
             self._settings.display = Display()
         imgui.end_disabled()
         rate = self._times.frames_per_second
