@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from imgui_bundle import imgui
 
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.messages import Messages
@@ -55,6 +56,16 @@ class TestWindow:
         assert not taken
         assert until(viewer, lambda: len(taken) > 2)
         assert not viewer.messages.text
+
+    def test_the_keyboard_passes_the_message_by(self, viewer: Viewer) -> None:
+        """Ctrl+Tab goes to what has a widget to frame, while a line is shown, too."""
+        viewer.messages.say("x", error=True)
+        xdotool(viewer, "key", "Tab")
+        context = imgui.get_current_context()
+        for _ in range(3):
+            xdotool(viewer, "key", "ctrl+Tab")
+            assert context.nav_id_is_alive and context.nav_cursor_visible
+        xdotool(viewer, "key", "Escape")
 
     def test_sizes_have_names(self, viewer: Viewer, tmp_path: Path) -> None:
         """Of the list in the dialog of an export, the window's own among them."""
