@@ -29,11 +29,7 @@ class ScriptCommands:
     """
 
     def __init__(
-        self,
-        session: Session,
-        files: Files,
-        question: Question,
-        note_recent: Callable[..., object],
+        self, session: Session, files: Files, question: Question, note_recent: Callable[..., object]
     ) -> None:
         """note_recent: is told what files were opened together, or saved."""
         self._session, self._files, self._question = session, files, question

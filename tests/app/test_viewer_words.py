@@ -51,9 +51,9 @@ class TestWindow:
             take(title, values)
 
         monkeypatch.setattr(viewer.poses, "_take_picture", noted)
-        viewer.settings.folds["Poses"] = True
+        viewer.settings.folds["Pose pictures"] = True
         assert until(viewer, lambda: "pose Joy" in viewer.gui.places)
-        assert not taken
+        assert not taken and "row pose joy" not in viewer.gui.places  # of the timeline
         assert until(viewer, lambda: len(taken) > 2)
         assert not viewer.messages.text
 

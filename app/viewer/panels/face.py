@@ -56,7 +56,7 @@ class FacePanel:
         if not self.search and self.filter != IN_USE and {"Jaw", "Gaze"} & {*shown}:
             self._pads.draw()
         if not (self.search or self.filter) and session.scene.expressions:
-            if heading(self._gui, self._settings, "Poses"):
+            if heading(self._gui, self._settings, "Pose pictures", "Poses"):
                 self.poses.draw()
         counts = [self._draw_group(title, groups[title]) for title in groups if title in shown]
         if not any(counts):
