@@ -26,7 +26,7 @@ from .keeping import kept, state_of
 from .mirror import parted
 from .mouth import Tongue, shaded_mouth
 
-BUILT_IN = "built-in"  # what the head is called that comes along
+BUILT_IN, OWN = "built-in", "own"  # what heads are called: that which comes along, and a user's
 CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
 LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
 LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
@@ -107,11 +107,15 @@ class FaceScene(Scene):
 
     name = "face"
 
-    def __init__(self, head: assets.Head | FittedHead | None = None) -> None:
-        """Simulate `head`, the built-in one unless told."""
+    def __init__(
+        self,
+        head: assets.Head | FittedHead | None = None,
+        simulation: sim.Simulation | None = None,
+    ) -> None:
+        """Simulate `head`, the built-in one unless told; simulation: of it, if there is one."""
         head = assets.load("head") if head is None else head
         self.head = head
-        self.simulation = simulation = sim.create(head)
+        self.simulation = simulation = simulation or sim.create(head)
         self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
         self.groups, self.limits = simulation.groups, simulation.limits
         self.actions = simulation.actions
@@ -128,12 +132,18 @@ class FaceScene(Scene):
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
         is_known = isinstance(head, assets.Head)
-        self.called = BUILT_IN if is_known else getattr(head, "called", "") or "own"
+        self.called = BUILT_IN if is_known else getattr(head, "called", "") or OWN
         self.in_tone = recoloured if is_known else getattr(head, "in_tone", None)
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
         self._moved_by: dict[str, frozenset[str]] = {}
+
+    def twin(self) -> FaceScene:
+        """The same head once more, at rest, which moves by itself; that takes no time."""
+        simulation = self.simulation.twin()
+        simulation.reset()
+        return FaceScene(self.head, simulation)
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:

@@ -37,6 +37,13 @@ def readable(name: str) -> str:
     return (name[:1].upper() + name[1:] if is_word else name).replace("_", " ")
 
 
+def sentence(text: str) -> str:
+    """A text with a capital, unless it begins with a code or a file, as "a.b: opened"."""
+    name, colon, _ = text.partition(":")
+    is_plain = text.partition(" ")[0].islower() and not (colon and "." in name)
+    return text[:1].upper() + text[1:] if is_plain else text
+
+
 def called(name: str, *twin: str) -> str:
     """A control by its plain name and its side, or with its twin both sides of it."""
     plain = title_of(name)[1] or readable(parted(name)[0])

@@ -121,7 +121,7 @@ class Exporter:
         """Write the picture without panels, in full detail."""
         target = free_name(Path.cwd(), time.strftime("risorius-%Y%m%d-%H%M%S"), ".png")
         save_png(target, self._stage.draw_image(self._view))
-        return f"{target.name}: written to {target.parent}"
+        return f"Written to {target}"
 
     def ask(self) -> None:
         """Open the dialog, with what was used last."""
@@ -207,13 +207,16 @@ class Exporter:
         outcome = None if job is None else job.task.outcome
         if job is None or outcome is None:
             return None
-        self.cancel()
+        self.job, is_cancelled = None, job.task.is_stopped
+        job.task.stop(waits=False)
+        if is_cancelled:
+            return f"Cancelled: {job.target.name}"
         if outcome.error is not None:
             raise UserError(outcome.error)
-        return f"{job.target.name}: written to {job.target.parent}"
+        return f"Written to {job.target}"
 
-    def cancel(self) -> None:
-        """End it; what is half written goes."""
+    def close(self) -> None:
+        """End it at once; what is half written goes."""
         job, self.job = self.job, None
         if job is not None:
-            job.task.stop()
+            job.task.stop(waits=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from risorius import assets
 from risorius.assets.fitting.landmark_file import UnfinishedError
-from risorius.assets.identities import person_called
+from risorius.assets.identities import person_called, person_in_words
 from risorius.assets.meshes import FORMATS
 
 from ..errors import UserError
@@ -101,6 +101,9 @@ class FileDrop:
 
     def open(self, paths: Sequence[str]) -> Message:
         """Open files, or announce that a head will be fitted."""
+        gone = next((path for path in paths if not Path(path).exists()), None)
+        if gone is not None:
+            raise UserError(f"{gone}: is not there any more")
         dropped = DroppedFiles.of([Path(path) for path in paths])
         if not dropped.has_head:
             return self._open(dropped)
@@ -118,13 +121,14 @@ class FileDrop:
             build_scene("face", None if who is None else person_called(who))
         )
         self.has_other_head = who is not None
-        return f"Making {'the built-in head' if who is None else f'person {who}'} ..."
+        return f"Making {'the built-in head' if who is None else person_in_words(who)} ..."
 
     def _open(self, dropped: DroppedFiles) -> Message:
         """Show the head first, then what shall be played on it."""
         line, remark = None, dropped.remark()
         if dropped.mesh is not None and dropped.landmarks is None:
             line = self._mark(dropped.mesh, None)
+            self._scripts.note_recent(dropped.mesh)
         elif dropped.has_head:
             try:
                 scene = dropped.scene()
@@ -133,7 +137,8 @@ class FileDrop:
                 return self._mark(dropped.mesh, dropped.landmarks)
             self._show_scene(scene)
             self.has_other_head = True
-            assert dropped.mesh is not None
+            assert dropped.mesh is not None and dropped.landmarks is not None
+            self._scripts.note_recent(dropped.mesh, dropped.landmarks)
             line = f"{dropped.mesh.name}: opened{remark}"
             remark = f" with {dropped.mesh.name}{remark}"
         if dropped.script is not None:
@@ -146,11 +151,13 @@ class FileDrop:
         """Ask for a mesh, then for its landmarks, and show them as if they had been dropped."""
 
         def go_on(mesh: Path) -> None:
-            """Ask for the landmarks."""
+            """Ask for the landmarks, and offer those that bear the mesh's name."""
+            own = (mesh.with_suffix(end) for end in (LANDMARKS, f".landmarks{LANDMARKS}"))
             self._files.ask(
                 f"The landmarks of {mesh.name}",
                 lambda landmarks: self.open([str(mesh), str(landmarks)]),
                 saving=False,
+                proposed=next((path.name for path in own if path.is_file()), ""),
                 kind="Landmarks",
                 suffixes=(LANDMARKS,),
             )

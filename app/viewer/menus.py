@@ -5,9 +5,10 @@ Menus, the keyboard and the overview of keys are all made from these tables.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from ..looks import FIRST_LOOK, PAPERS_LOOK
 from ..script.easing import EASINGS
@@ -34,16 +35,28 @@ VIEW_KEYS = {
 
 
 def file_menu(
-    scripts: ScriptCommands, file_drop: FileDrop, exporter: Exporter, close: Task
+    scripts: ScriptCommands,
+    file_drop: FileDrop,
+    exporter: Exporter,
+    settings: Settings,
+    close: Task,
 ) -> Menu:
     """Files that come and go, and the end."""
     command = partial(Command, "File")
+
+    def recent() -> Iterator[Command]:
+        """What was opened or saved lately, and can be opened again."""
+        for paths in (each.split("\n") for each in settings.recent):
+            first = Path(paths[0])
+            label = f"{first.name}   {first.parent}".replace("##", "# #")
+            yield command(label, "", partial(file_drop.open, paths))
+
     other = partial(command, can_run=lambda: file_drop.has_other_head)
     export = partial(command, can_run=lambda: exporter.job is None)
     return (
         command("New script", "Ctrl+N", scripts.new),
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
-        command("Recent", "", lambda: None, submenu=scripts.recent),
+        command("Recent", "", lambda: None, submenu=recent),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
         command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
         other("Built-in head", "", partial(file_drop.show_person, None)),

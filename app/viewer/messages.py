@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..errors import UserError
+from ..vocabulary import sentence
 
 SECONDS = 6.0  # for which a message stays
 LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
@@ -24,7 +25,7 @@ class Messages:
 
     def say(self, text: str, *, error: bool = False) -> None:
         """Show a line in place of the one before."""
-        self.text, self.is_error, self.seconds_left = text, error, SECONDS
+        self.text, self.is_error, self.seconds_left = sentence(text), error, SECONDS
 
     def attempt(self, task: Task, otherwise: Task = lambda: None) -> None:
         """Do something, and show what it has to say or what the user may have to mend.

@@ -128,14 +128,16 @@ class Parts:
         self.messages, self.files, self.question = Messages(), Files(), Question(session)
         self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
         self.selection = KeySelection(session, self.panel_state)
-        self.scripts = ScriptCommands(session, self.files, self.question, settings.recent)
+        self.scripts = ScriptCommands(session, self.files, self.question, settings.note_recent)
         self.exporter = Exporter(session, settings, self.stage, self.view)
         self.live = LiveCommands(session, self.panel_state, wake_up)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
         self.file_drop.has_other_head = session.scene.called not in ("", BUILT_IN)
         self.commands: tuple[Command, ...] = (
-            *menus.file_menu(self.scripts, self.file_drop, self.exporter, self.ask_to_close),
+            *menus.file_menu(
+                self.scripts, self.file_drop, self.exporter, settings, self.ask_to_close
+            ),
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
             *menus.keys_menu(session, self.selection),
@@ -188,7 +190,7 @@ class Parts:
         with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
             self.remember()
         self.live.stop()
-        self.exporter.cancel()
+        self.exporter.close()
         self.leave_marking()
         self.soundtrack.close()
         self.recovery.close()
@@ -248,7 +250,7 @@ class Parts:
 
     def ask_to_close(self) -> str | None:
         """Close the window, unless work would be lost: then ask first."""
-        if self.exporter.job is not None:
+        if self.exporter.job is not None and not self.exporter.job.task.is_stopped:
             name = self.exporter.job.target.name
             self.messages.say(f"{name} is being written: wait, or cancel it first", error=True)
             return None

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from ..errors import UserError
 from ..performances import read_performance
 from ..script import Script, is_pose
 from ..sound import with_sound
-from .command import Command
 from .files import SUFFIX, Files
 from .messages import Message, Task
 from .question import Question
@@ -22,7 +20,6 @@ SOUNDS = (
     *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
     *(".mov", ".mp4", ".mkv", ".webm"),  # films that are heard: a phone's, beside its take
 )
-MOST_RECENT = 10  # files that are remembered
 
 
 class ScriptCommands:
@@ -32,21 +29,11 @@ class ScriptCommands:
     """
 
     def __init__(
-        self, session: Session, files: Files, question: Question, recent: list[str]
+        self, session: Session, files: Files, question: Question, note_recent: Callable[..., object]
     ) -> None:
-        """recent: the files that were opened or saved lately, the latest first."""
+        """note_recent: is told what files were opened together, or saved."""
         self._session, self._files, self._question = session, files, question
-        self._recent = recent
-
-    def recent(self) -> Iterator[Command]:
-        """A command for each recent file, which opens it."""
-        for path in map(Path, self._recent):
-            label = f"{path.name}   {path.parent}".replace("##", "# #")
-            yield Command("File", label, "", partial(self.open, path))
-
-    def _note_recent(self, path: Path) -> None:
-        latest = dict.fromkeys([str(path.absolute()), *self._recent])
-        self._recent[:] = [*latest][:MOST_RECENT]
+        self.note_recent = note_recent
 
     def new(self) -> Message:
         """Begin with an empty script, unless work would be lost: then ask first."""
@@ -54,7 +41,7 @@ class ScriptCommands:
         def begin() -> Message:
             """Do so."""
             self._session.begin_script()
-            return "A new script; K makes the face as it is a key"
+            return "A new script; K keys the face as it is"
 
         return self._question.before("Begin", begin)
 
@@ -81,7 +68,7 @@ class ScriptCommands:
         def show() -> Message:
             """Do so."""
             session.open(script)
-            self._note_recent(path)
+            self.note_recent(path)
             return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
 
         if is_pose(script) and not self._session.has_unsaved_pose:
@@ -121,7 +108,7 @@ class ScriptCommands:
 
     def _write(self, path: Path, then: Task) -> Message:
         self._session.save_script(path)
-        self._note_recent(path)
+        self.note_recent(path)
         apart = self._session.has_unsaved_pose
         rest = "; the pose is not part of it: K makes it a key" if apart else ""
         return then() or f"{path}: script written{rest}"
@@ -132,7 +119,7 @@ class ScriptCommands:
         def write(path: Path) -> Message:
             """Do so."""
             self._session.save_pose(path)
-            self._note_recent(path)
+            self.note_recent(path)
             return then() or f"{path}: pose written"
 
         self._files.ask("Save pose", write, saving=True, proposed="pose.toml")
@@ -144,6 +131,7 @@ class ScriptCommands:
     def set_sound(self, path: Path) -> Message:
         """Put a sound file beside the script; UserError where nothing is heard in it."""
         self._session.edit(with_sound(self._session.script, path), f"Sound {path.name}")
+        self.note_recent(path)
         return f"{path.name}: opened; Space plays it with the script"
 
     @property

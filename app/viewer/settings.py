@@ -30,6 +30,7 @@ from .export_kinds import KINDS, SOURCES
 from .gui import THEMES
 from .overlays import OVERLAYS, overlays_of
 
+MOST_RECENT = 10  # files that are remembered
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
 
 
@@ -152,6 +153,11 @@ class Settings:
     display: Display = field(default_factory=Display)
     knows_first_steps: Annotated[bool, rules.flag] = False
     export: ExportChoices = field(default_factory=ExportChoices)
+
+    def note_recent(self, *paths: Path) -> None:
+        """Remember files that were opened together, or saved."""
+        opened = "\n".join(str(path.absolute()) for path in paths)
+        self.recent = [*dict.fromkeys((opened, *self.recent))][:MOST_RECENT]
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""

@@ -53,7 +53,7 @@ class Viewer(Parts):
         if playing:
             self.session.toggle_playing()
         self._last = time.perf_counter()
-        stopping = cleaned_up_if_stopped(self.exporter.cancel)  # when the work is safe
+        stopping = cleaned_up_if_stopped(self.exporter.close)  # when the work is safe
         with stopping, self.recovery.guarding(self.session), cleaned_up_if_stopped(self.remember):
             while True:
                 if self.placement.is_minimised:  # time stands still, and nothing is drawn

@@ -28,12 +28,13 @@ class Task:
         self._end = thread.submit(self._crew.do, told, 0, work, retries=0, log=self._log)
         self._end.add_done_callback(lambda _: wake())
         thread.shutdown(wait=False)
+        self._stopping: threading.Thread | None = None
 
     @property
     def share(self) -> float:
-        """How much of it is done, 0..1."""
-        words = self._log.read_text(errors="replace").split()
-        frames = next((int(word) for word in reversed(words) if word.isdecimal()), 0)
+        """How much of it is done, 0..1; 0 where it is stopped."""
+        words = "" if self.is_stopped else self._log.read_text(errors="replace")
+        frames = next((int(word) for word in reversed(words.split()) if word.isdecimal()), 0)
         return min(frames / self._frame_count, 1.0)
 
     @property
@@ -41,8 +42,20 @@ class Task:
         """What became of it; None while it goes on."""
         return self._end.result() if self._end.done() else None
 
-    def stop(self) -> None:
-        """End it, wherever it is; it removes what it has half written."""
+    @property
+    def is_stopped(self) -> bool:
+        """Whether it was told to end."""
+        return self._stopping is not None
+
+    def stop(self, *, waits: bool) -> None:
+        """End it, wherever it is; it removes what it has half written, which takes a while."""
+        if self._stopping is None:
+            self._stopping = threading.Thread(target=self._stop)
+            self._stopping.start()
+        if waits:
+            self._stopping.join()
+
+    def _stop(self) -> None:
         self._crew.stop()
         self._log.unlink(missing_ok=True)
 

@@ -18,7 +18,7 @@ from .complexion import (
     recoloured,
     typology_angle,
 )
-from .named import NAMED, person_called
+from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
 from .traits import Identity, Sex, sample_identity
 
@@ -37,6 +37,7 @@ __all__ = [
     "make_person",
     "own_angle",
     "person_called",
+    "person_in_words",
     "recoloured",
     "sample_identity",
     "typology_angle",

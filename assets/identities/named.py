@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from types import MappingProxyType
 
 from .complexion import in_own_colours
@@ -46,6 +47,14 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
         ),
     }
 )  # fmt: skip
+
+
+@cache
+def person_in_words(who: int | str) -> str:
+    """Name, sex and age of the person of a number or a name: "Person 7, woman, about 60"."""
+    known = sample_identity(who) if isinstance(who, int) else NAMED[who]
+    name = f"Person {who}" if isinstance(who, int) else who.capitalize()
+    return f"{name}, {known.sex.value}, about {5 * round(known.age / 5.0)}"
 
 
 def person_called(who: int | str) -> Person:

@@ -158,7 +158,7 @@ def test_ten_thousand_random_packets_leave_it_as_it_was(
 
 def test_words_tell_who_sends_and_what_to_do(wire: Wire) -> None:
     """In every state; a phone's owner reads what to type into the app."""
-    assert state_in_words(None) == "nobody is listened to"
+    assert state_in_words(None) == "not listening"
     assert f"waiting on port {wire.face.port}" in state_in_words(wire.face)
     assert "risorius send" in advice_in_words(wire.face, "192.168.1.7")
     wire.face.listening = replace(wire.face.listening, address=ANYWHERE)

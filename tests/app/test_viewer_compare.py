@@ -245,7 +245,7 @@ def test_a_person_takes_the_place_and_goes_again(viewer: Viewer) -> None:
     pose, script = dict(viewer.session.values), viewer.session.script
     built_in = viewer.session.scene.rest_positions
     only_open(viewer, "Light and person")
-    in_panel(viewer, ("Person", "kofi"))
+    in_panel(viewer, ("Person", "Kofi, man, about 40"))
     assert until(viewer, lambda: viewer.session.scene.called == "kofi", 60.0)
     assert viewer.stage.scene is viewer.session.scene and not viewer.messages.text
     assert np.abs(viewer.session.scene.rest_positions - built_in).max() > 3.0

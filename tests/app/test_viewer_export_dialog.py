@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,6 +21,7 @@ from risorius.app.motion import scene_of
 from risorius.app.script import parse_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices, Settings, load_settings, save_settings
+from risorius.app.workers.child import GRACE
 from risorius.render import LIGHT, LIGHTS, Style
 
 from .driving import NEEDS_A_SCREEN, click, draw_frames, until, write, xdotool
@@ -36,7 +39,7 @@ def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
     viewer.session.open(parse_script(SCRIPT, source="smile.toml"))
     viewer.settings.export = ExportChoices("frames", size=SMALL, rate=12.0, folder=str(tmp_path))
     yield
-    viewer.exporter.cancel()
+    viewer.exporter.close()
     viewer.exporter.is_asking = False
     draw_frames(viewer)
 
@@ -144,8 +147,16 @@ def test_the_window_lives_and_cancel_leaves_nothing(viewer: Viewer, tmp_path: Pa
     assert viewer.session.is_alone("joy")
     xdotool(viewer, "key", "ctrl+q")
     assert "mp4 is being written" in viewer.messages.text and not viewer.surface.should_close
+    process = job.task._crew._all[0].process
+    process.send_signal(signal.SIGSTOP)  # it takes its time to end
+    begin = time.monotonic()
     click(viewer, "export: stop")
-    assert viewer.exporter.job is None and not viewer.surface.should_close
+    xdotool(viewer, "key", "2")
+    assert viewer.session.is_alone("sadness") and viewer.exporter.job is job
+    assert time.monotonic() - begin < GRACE
+    process.send_signal(signal.SIGCONT)
+    assert until(viewer, lambda: viewer.exporter.job is None)
+    assert "Cancelled" in viewer.messages.text and not viewer.messages.is_error
     assert list(tmp_path.iterdir()) == []
 
 

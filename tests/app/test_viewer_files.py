@@ -271,18 +271,20 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
 
 
 def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
-    """The mesh is asked for, then its landmarks; only files of each kind are listed."""
+    """The mesh is asked for, then its landmarks, its own first; each kind is listed alone."""
     before = viewer.session.scene
-    stranger().write(tmp_path)
+    mesh, landmarks = stranger().write(tmp_path)
+    landmarks = landmarks.rename(tmp_path / "stranger.landmarks.json")
+    (tmp_path / "another.json").write_text("{}")
     click(viewer, "menu File")
     click(viewer, "menu File: Open head ...")
     assert until(viewer, lambda: "file stranger.obj" in viewer.gui.places, 3.0)
-    assert "file stranger.json" not in viewer.gui.places
+    assert f"file {landmarks.name}" not in viewer.gui.places
     click(viewer, "file stranger.obj", times=2)
-    assert until(viewer, lambda: "file stranger.json" in viewer.gui.places, 3.0)
-    click(viewer, "file stranger.json")
-    click(viewer, "path confirmed")
+    assert until(viewer, lambda: "file another.json" in viewer.gui.places, 3.0)
+    xdotool(viewer, "key", "Return")  # those that bear the mesh's name are in the line
     assert until(viewer, lambda: viewer.session.scene is not before, 30.0)
+    assert viewer.settings.recent[0].split("\n") == [str(mesh), str(landmarks)]
     viewer.show_scene(before)
 
 

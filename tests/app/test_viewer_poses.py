@@ -33,7 +33,7 @@ def values_of(viewer: Viewer) -> dict[str, float]:
 
 def test_a_picture_is_taken_blended_and_mirrored(viewer: Viewer) -> None:
     """By a click, a drag to the right, and with Shift; Ctrl+Z takes each back in one step."""
-    viewer.settings.folds["Poses"] = True
+    viewer.settings.folds["Pose pictures"] = True
     assert until(viewer, lambda: "pose Joy" in viewer.gui.places, 60.0)
     click(viewer, "pose Joy")
     assert values_of(viewer) == {"joy": 1.0}
@@ -62,7 +62,7 @@ def test_a_pose_is_kept_with_a_picture(viewer: Viewer, tmp_path: Path) -> None:
     args = viewer.gui, viewer.session, viewer.messages, viewer.surface, folder
     grid.close()
     replace_state(grid, PoseGrid(*args))
-    viewer.settings.folds["Poses"], viewer.settings.folds["Expressions"] = True, False
+    viewer.settings.folds["Pose pictures"], viewer.settings.folds["Expressions"] = True, False
     viewer.session.set("jaw_open", 0.6)
     viewer.settings.zoom = 0.6
     draw_frames(viewer)

@@ -142,7 +142,7 @@ class MarkingPanel:
         pen.add_circle(spots[current], em(0.75), ink_of(WHITE), 0, em(0.2))
         _dot(pen, spots[current], em(0.38), GROUP_OF[current].colour)
         pen.pop_clip_rect()
-        _word(pen, (left + em(0.6), top + em(0.4)), "guide: where it belongs")
+        _word(pen, (left + em(0.6), top + em(0.4)), "Guide: where it belongs")
 
 
 def _join(pen: imgui.ImDrawList, at: Mapping[int, Spot]) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...vocabulary import sentence
 from ..files import SUFFIX, Files, Request
 from ..gui import Gui, colour, em
 from ..messages import Message
@@ -52,9 +53,10 @@ class FileChooser:
         self._complaint = ""
         self._warned: Path | None = None  # what is there already, as was said
         self._wants_focus = True  # of the line: on opening, and after each answer that was none
-        self._name = request.proposed.name if request.is_saving else ""
-        self._folder = request.proposed.parent if request.is_saving else request.proposed
+        is_folder = not request.is_saving and request.proposed.is_dir()
+        self._folder = request.proposed if is_folder else request.proposed.parent
         self._enter(request, self._folder)
+        self._name = "" if is_folder else request.proposed.name
 
     def _draw_box(self, request: Request) -> tuple[bool, Path | None]:
         """Draw what must be answered; whether it was, and the file, None where none is wanted."""
@@ -76,7 +78,7 @@ class FileChooser:
         is_cancelled = is_cancelled or imgui.is_key_pressed(imgui.Key.escape)
         if self._complaint:
             imgui.same_line()
-            imgui.text_colored(colour(self._gui.theme.error), self._complaint)
+            imgui.text_colored(colour(self._gui.theme.error), sentence(self._complaint))
         is_done = is_cancelled or chosen is not None
         if is_done:
             imgui.close_current_popup()
@@ -130,7 +132,7 @@ class FileChooser:
         imgui.set_next_item_width(-1.0)
         flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
         is_entered, self._name = imgui.input_text_with_hint(
-            "##path", "a name, or a path", self._name, flags
+            "##path", "A name, or a path", self._name, flags
         )
         self._gui.remember("path")
         label = "Open"

@@ -22,7 +22,10 @@ from .widgets import button, choose, muted, shortened
 
 TITLE = "Export"
 LABELS, WIDTH, BUTTON = 7.5, 31.0, 6.5  # [em] of words at the left, the dialog, a button
-PICTURES = ((1280, 720), (1920, 1080), (3840, 2160), (1080, 1080), (1080, 1920))
+PICTURES = {
+    **{(640, 480): "VGA", (1280, 720): "HD", (1920, 1080): "Full HD", (3840, 2160): "4K"},
+    **{(1080, 1080): "Square", (1080, 1920): "Upright"},
+}
 RATES = (12, 15, 24, 25, 30, 48, 50, 60, 120)
 SWITCHES = {  # fields of the choices
     "is_transparent": "Transparent background",
@@ -86,8 +89,9 @@ class ExportDialog:
             choices.source = self._pick("What", choices.source, SOURCES)
             self._draw_time(choices)
         if kind.is_drawn:
-            sizes = (self._view.viewport[2:], choices.size, *PICTURES)
-            choices.size = self._pick("Size", choices.size, {s: f"{s[0]} x {s[1]}" for s in sizes})
+            sizes = {choices.size: "Typed", self._view.viewport[2:]: "As in the window", **PICTURES}
+            words = {size: f"{name}: {size[0]} x {size[1]}" for size, name in sizes.items()}
+            choices.size = self._pick("Size", choices.size, words)
             _, sides = imgui.input_int2(self._row("", em(11.0)), [*choices.size])
             self._gui.remember("export: sides")
             width, height = (min(max(side, SIDES_EXPORTED[0]), SIDES_EXPORTED[1]) for side in sides)
@@ -178,6 +182,8 @@ class ExportDialog:
         imgui.text_unformatted(shortened(job.target.name, em(18)))
         imgui.progress_bar(share, (em(12.0), 0.0), f"{share:.0%}, {words}" if share else words)
         imgui.same_line()
+        imgui.begin_disabled(job.task.is_stopped)
         if button(self._gui, "Cancel", name="export: stop", width=em(BUTTON)):
-            self._exporter.cancel()
+            job.task.stop(waits=False)
+        imgui.end_disabled()
         imgui.end()

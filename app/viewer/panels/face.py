@@ -56,12 +56,12 @@ class FacePanel:
         if not self.search and self.filter != IN_USE and {"Jaw", "Gaze"} & {*shown}:
             self._pads.draw()
         if not (self.search or self.filter) and session.scene.expressions:
-            if heading(self._gui, self._settings, "Poses"):
+            if heading(self._gui, self._settings, "Pose pictures", "Poses"):
                 self.poses.draw()
         counts = [self._draw_group(title, groups[title]) for title in groups if title in shown]
         if not any(counts):
             is_rest = self.filter == IN_USE and not self.search
-            muted(self._gui, "Nothing is in use." if is_rest else "Nothing is called so.")
+            muted(self._gui, "Nothing is in use." if is_rest else "Nothing has such a name.")
         imgui.end_child()
         self._flash = max(self._flash - 1, 0)
 
@@ -83,7 +83,7 @@ class FacePanel:
         hint("left and right move together")
         imgui.set_next_item_width(-1.0)
         _, self.search = imgui.input_text_with_hint(
-            "##search", "search: smile, AU12, lid ...", self.search
+            "##search", "Search: smile, AU12, lid ...", self.search
         )
         gui.remember("search")
 

@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
 from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
+from ...vocabulary import sentence
 from ..command import Command
 from ..control_rows import rows_of
 from ..gui import Gui, colour, em
@@ -100,7 +101,7 @@ class LivePanel:
     def _draw_state(self, face: LiveFace | None) -> None:
         """A line on who sends and one on packets."""
         imgui.push_text_wrap_pos(0.0)
-        text = state_in_words(face)
+        text = sentence(state_in_words(face))
         if face is not None and face.state is State.RECEIVING:
             imgui.text_colored(colour(self._gui.theme.accent), text)
         else:
@@ -108,7 +109,7 @@ class LivePanel:
         self._gui.remember("live state")
         if face is not None:
             advice = advice_in_words(face, self._live.own_address)
-            muted(self._gui, advice or packets_in_words(face))
+            muted(self._gui, sentence(advice or packets_in_words(face)))
         imgui.pop_text_wrap_pos()
         imgui.spacing()
 
@@ -157,7 +158,7 @@ class LivePanel:
         """A row for each channel, or for the two of both sides: a bar and a number."""
         shown = shown_of(face)
         if not shown:
-            muted(self._gui, "nothing yet")
+            muted(self._gui, "Nothing yet")
         for row in rows_of(tuple(shown), shown, linked=False):
             names = row.names
             shares = [_share(name, shown[name]) for name in names]
@@ -194,7 +195,7 @@ def _in_words(channel: str, value: float) -> str:
 def state_in_words(face: LiveFace | None) -> str:
     """What can be said of who sends."""
     if face is None:
-        return "nobody is listened to"
+        return "not listening"
     who = f" {face.subject}" if face.subject else ""
     if face.state is State.RECEIVING:
         return f"receiving{who}, {face.rate:.0f} frames a second"

@@ -11,12 +11,12 @@ import numpy as np
 from imgui_bundle import imgui
 
 from risorius import refine, render
-from risorius.assets.identities import NAMED
+from risorius.assets.identities import NAMED, person_in_words
 
 from ...anatomy import OPACITY, SIDES
 from ...looks import FIRST_LOOK, LOOKS, STATIC, named, words_of_looks
 from ...refining import DETAIL, can_detail
-from ...scenes import BUILT_IN
+from ...scenes import BUILT_IN, OWN
 from ...vocabulary import readable
 from ..colours import COLOURS
 from ..file_drop import FileDrop
@@ -72,6 +72,7 @@ FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
 FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
 THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
 PAPERS_CRITERION = "normal"
+UNNAMED = 20  # persons that the list has beside those with names
 LABEL_SHARE = 0.45  # of a row
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
 
@@ -103,7 +104,7 @@ class MechanismPanel:
         imgui.begin_child("mechanism", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
         self._rows.resets = self._find_resets()
         imgui.begin_disabled(self._display == Display())
-        if button(self._gui, "Reset all", meaning="all of this as at first, but for the person"):
+        if button(self._gui, "Reset all", meaning="all of this as at first, except the person"):
             self._settings.display = Display()
         imgui.end_disabled()
         rate = self._times.frames_per_second
@@ -133,7 +134,7 @@ class MechanismPanel:
         if display.look_as_changed(scene) != FIRST_LOOK:
             resets["Look"] = partial(display.choose_look, FIRST_LOOK)
         if scene.called not in ("", BUILT_IN):
-            resets["Person"] = partial(self._show_person, BUILT_IN)
+            resets["Person"] = partial(self._show, None)
         return resets
 
     def _draw_refinement(self) -> None:
@@ -217,11 +218,13 @@ class MechanismPanel:
         if scene.in_tone is not None:
             self._pick("Skin tone", tuple(TONES))
         if scene.called:
-            names = (BUILT_IN, *NAMED, *map(str, range(20)))
-            self._choose("Person", scene.called, names, self._show_person)
+            people = {person_in_words(who): who for who in (*NAMED, *range(UNNAMED))}
+            who = int(scene.called) if scene.called.isdecimal() else scene.called
+            present = scene.called if who in (BUILT_IN, OWN) else person_in_words(who)
+            show = lambda name: self._show(people.get(name))  # noqa: E731
+            self._choose("Person", present, (BUILT_IN, *people), show)
 
-    def _show_person(self, called: str) -> None:
-        who = None if called == BUILT_IN else int(called) if called.isdecimal() else called
+    def _show(self, who: int | str | None) -> None:
         self._messages.attempt(partial(self._file_drop.show_person, who))
 
     def _draw_overlays(self) -> None:

@@ -16,7 +16,7 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     left, top, width, height = view.area
     imgui.set_next_window_pos((left + em(0.8), top + height - em(0.8)), 0, (0.0, 1.0))
     imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), 50.0), em(20)))
-    imgui.begin("##message", None, NOTE_FLAGS)
+    imgui.begin("##message", None, NOTE_FLAGS | imgui.WindowFlags_.no_nav_focus)
     imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))
     if messages.is_error:
         imgui.text_colored(colour(gui.theme.error), messages.text)

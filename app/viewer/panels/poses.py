@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -23,7 +25,7 @@ MEANING = "a click takes it, a drag to the right blends it in; with Shift mirror
 
 
 class PoseGrid:
-    """Draws the pictures, one more in each frame."""
+    """Draws the pictures, one after the other; their places are there at once."""
 
     def __init__(
         self,
@@ -40,6 +42,7 @@ class PoseGrid:
         self._pictures: dict[str, tuple[Values, Any]] = {}  # by title: of which pose, texture
         self._ends: tuple[Values, Values] = ({}, {})  # of the blend that goes on
         self._share = 0.0
+        self._due = math.inf  # when there is time for the next picture [s]: not in the first frame
 
     def draw(self) -> None:
         """All of them, the user's own first, as many in a row as there is room for."""
@@ -50,14 +53,18 @@ class PoseGrid:
         room = imgui.get_content_region_avail().x + spacing
         columns = max(int(room / (em(WIDTH) + spacing)), 1)
         known = {**self._poses.own, **self._poses.built_in}
-        missing = (title for title in known if self._pictures.get(title, ({},))[0] != known[title])
-        for title in islice(missing, 1):
-            self._messages.attempt(partial(self._take_picture, title, known[title]))
-            wake_up()  # for the next
         for index, (title, values) in enumerate(known.items()):
             if index % columns:
                 imgui.same_line()
             self._draw_pose(title, values, max(room / columns - spacing, 1.0))
+        missing = (title for title in known if self._pictures.get(title, ({},))[0] != known[title])
+        for title in islice(missing, 1):
+            now, due = time.perf_counter(), self._due
+            if due <= now and not imgui.is_any_mouse_down():
+                self._messages.attempt(partial(self._take_picture, title, known[title]))
+                due = 2.0 * time.perf_counter() - now  # half of the time is for all else
+            self._due = now if due == math.inf else due
+            wake_up()  # for the next
         if button(self._gui, "Keep this pose", meaning="the face as it is becomes one of these"):
             self._messages.attempt(partial(self._poses.save, self._session.current))
 

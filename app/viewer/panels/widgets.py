@@ -7,7 +7,7 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from ...vocabulary import readable
+from ...vocabulary import readable, sentence
 from ..gui import BACK, Gui, colour, em
 from ..settings import Settings
 from .sliders import Sliders
@@ -107,7 +107,7 @@ class LabelledRows:
         is_clicked = imgui.small_button(f"{BACK}##{label}")
         imgui.pop_style_color(2)
         self._gui.remember(f"reset {label}")
-        hint("not as at first; sets it back")
+        hint("changed; a click sets it back")
         if is_clicked:
             self.resets[label]()
 
@@ -142,7 +142,7 @@ def hint(text: str) -> None:
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
         imgui.begin_tooltip()
         imgui.push_text_wrap_pos(em(24))
-        imgui.text_unformatted(text)
+        imgui.text_unformatted(sentence(text))
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
 
