@@ -23,6 +23,7 @@ from .key_marks import Point, draw_line
 PADDING = 0.8  # [em] between the highest value and the edge
 LABEL_ROOM = 1.6  # [em] between two labels of values
 STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (1.0, 2.0, 5.0))
+LEAST_RANGE, MOST_RANGE = 0.02, 100.0  # of values, as far as one may zoom
 REACH = 0.55  # [em] from a key or a curve that still mean it
 MOST_POINTS = 4000  # of all curves, in columns
 KEY = 0.27  # [em] from a key's middle to its corners
@@ -63,6 +64,19 @@ class Graph:
     def y(self, value: Any) -> Any:
         """Where a value is, or each of an array of values [window units]."""
         return self._bottom + self.slope * (value - self._low)
+
+    def zoom(self, factor: float, y: float) -> None:
+        """Show `factor` times as many values; what is at `y` stays there."""
+        fixed = self._low + (y - self._bottom) / self.slope
+        low, high = (fixed + factor * (end - fixed) for end in (self._low, self._high))
+        if LEAST_RANGE < high - low < MOST_RANGE:
+            self._axis.values = low, high
+
+    def scroll(self, down: float) -> None:
+        """Move the curves [window units], once they are zoomed."""
+        if self._axis.values is not None:
+            low, high = self._axis.values
+            self._axis.values = low - down / self.slope, high - down / self.slope
 
     # What is where
 
@@ -109,7 +123,8 @@ class Graph:
         axis, theme, lines = self._axis, self._gui.theme, imgui.get_window_draw_list()
         if not is_held:
             ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
-            self._low, self._high, self._bottom = min(ends), max(ends), edges[1] - em(PADDING)
+            self._low, self._high = axis.values or (min(ends), max(ends))
+            self._bottom = edges[1] - em(PADDING)
             height = max(self._bottom - edges[0] - em(PADDING), 1.0)
             self.slope = -height / (self._high - self._low)
         left, right = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
