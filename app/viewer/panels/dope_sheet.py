@@ -256,11 +256,10 @@ class DopeSheet:
             self._grabbed = under
             self._begin("box", io, selection.places if io.key_shift else NOWHERE)
         else:
-            if io.key_shift and under <= selection.places:
-                selection.places -= under
-            elif io.key_shift:
-                selection.places |= under
-            elif not under <= selection.places:
+            places = selection.places
+            if io.key_shift:
+                selection.places = places - under if under <= places else places | under
+            elif not under <= places:
                 selection.places = under
             self._begin("keys", io)
             self._grabbed = under
@@ -304,7 +303,7 @@ class DopeSheet:
             "end": lambda: session.edit(
                 keyframes.lasting(drag.script, axis.time(x)), is_done=False
             ),
-            "pan": lambda: self._pan(io.mouse_delta),
+            "pan": lambda: self.graph.scroll(*io.mouse_delta),
         }
         if drag.has_moved or drag.doing in ("scrub", "pan"):
             self._messages.attempt(act[drag.doing])
@@ -315,10 +314,6 @@ class DopeSheet:
         elif not imgui.is_mouse_down(MIDDLE if drag.doing == "pan" else LEFT):
             self._drag = None
             self._messages.attempt(lambda: self._release(io, drag))
-
-    def _pan(self, delta: Any) -> None:
-        self.axis.scroll(-self.axis.seconds(delta.x))
-        self.graph.scroll(delta.y)
 
     def _snapped(self, time: float, io: Any) -> float:
         """The time of the nearest frame; with Ctrl just that time [s]."""

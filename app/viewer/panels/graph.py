@@ -23,7 +23,6 @@ from .key_marks import Point, draw_line
 PADDING = 0.8  # [em] between the highest value and the edge
 LABEL_ROOM = 1.6  # [em] between two labels of values
 STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (1.0, 2.0, 5.0))
-LEAST_RANGE, MOST_RANGE = 0.02, 100.0  # of values, as far as one may zoom
 REACH = 0.55  # [em] from a key or a curve that still mean it
 MOST_POINTS = 4000  # of all curves, in columns
 KEY = 0.27  # [em] from a key's middle to its corners
@@ -69,11 +68,12 @@ class Graph:
         """Show `factor` times as many values; what is at `y` stays there."""
         fixed = self._low + (y - self._bottom) / self.slope
         low, high = (fixed + factor * (end - fixed) for end in (self._low, self._high))
-        if LEAST_RANGE < high - low < MOST_RANGE:
+        if 0.02 < high - low < 100.0:
             self._axis.values = low, high
 
-    def scroll(self, down: float) -> None:
-        """Move the curves [window units], once they are zoomed."""
+    def scroll(self, right: float, down: float) -> None:
+        """Move the curves [window units]; up and down once they are zoomed."""
+        self._axis.scroll(-self._axis.seconds(right))
         if self._axis.values is not None:
             low, high = self._axis.values
             self._axis.values = low - down / self.slope, high - down / self.slope

@@ -75,8 +75,7 @@ class Help:
         imgui.set_next_window_size_constraints((0.0, 0.0), display)
         flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
         flags |= imgui.WindowFlags_.horizontal_scrollbar
-        title = gui.with_keys("Keys and mouse ([Keys and mouse])###help")
-        _, stays = imgui.begin(title, True, flags)
+        _, stays = imgui.begin("Keys and mouse", True, flags)
         is_left = imgui.is_key_pressed(imgui.Key.escape) and not (gui.has_popup or self._asked)
         self._state.is_help_open = bool(stays) and not is_left
         self._take_key(commands)

@@ -45,20 +45,17 @@ def draw_ruler(
     if end <= axis.x(axis.end):
         tip = end + em(FLAG), bottom - 0.5 * em(FLAG)
         lines.add_triangle_filled((end, bottom - em(FLAG)), tip, (end, bottom), ink)
-    draw_playhead(theme, axis, time, edges)
-    if axis.start <= time <= axis.end:
+    if axis.start <= time <= axis.end:  # below the numbers
         x, half = axis.x(time), em(0.4)
-        tip = x, top + 1.3 * half
-        lines.add_triangle_filled((x - half, top), (x + half, top), tip, ink_of(theme.accent))
+        left, right = (x - half, bottom - 1.3 * half), (x + half, bottom - 1.3 * half)
+        lines.add_triangle_filled(left, right, (x, bottom), ink_of(theme.accent))
 
 
 def number_at(axis: TimeAxis, x: float) -> float | None:
     """The time [s] whose number in the ruler is there [window units], if there is one."""
-    for time, has_label in axis.ticks(em(LABEL_ROOM)):
-        room = 0.5 * imgui.calc_text_size(number_of(axis, time)).x
-        if has_label and abs(axis.x(time) - x) <= room:
-            return time
-    return None
+    told = (time for time, has_label in axis.ticks(em(LABEL_ROOM)) if has_label)
+    widths = {time: imgui.calc_text_size(number_of(axis, time)).x for time in told}
+    return next((t for t, width in widths.items() if abs(axis.x(t) - x) <= 0.5 * width), None)
 
 
 def number_of(axis: TimeAxis, time: float) -> str:

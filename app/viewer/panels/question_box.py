@@ -45,11 +45,7 @@ def draw_question(
             ),
             ("Save pose ...", session.has_unsaved_pose, partial(scripts.save_pose, again)),
         )
-    choices = (
-        *choices,
-        (f"{verb} without saving", True, task),
-        ("Back", True, lambda: None),
-    )
+    choices = *choices, (f"{verb} without saving", True, task), ("Back", True, lambda: None)
     answer: Task | None = None
     for label, is_possible, run in choices:
         if not is_possible:

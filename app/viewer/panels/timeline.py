@@ -128,7 +128,8 @@ class Timeline:
         if differing:
             status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
         if session.is_recording:
-            status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
+            paused = "" if session.is_playing else ", paused"
+            status, ink = f"recording {session.recorded_seconds:.1f} s{paused}", theme.error
         told = self.dope_sheet.axis.told
         time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
         stay_in_line(imgui.calc_text_size(time).x)
