@@ -34,7 +34,7 @@ class Command:
     can_run: Callable[[], bool] = lambda: True
     other_key: str = ""
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
-    usual_keys: tuple[str, ...] = ()  # where another one is set
+    chosen_key: str = ""  # in place of both
     reads: Callable[[], str] | None = None  # its label now, where that changes
     by_key: Task | None = None  # what its key does, where that is not the same
 
@@ -50,19 +50,15 @@ class Command:
     @property
     def keys(self) -> tuple[str, ...]:
         """All keys that do it."""
-        return tuple(key for key in (self.key, self.other_key) if key)
+        keys = (self.chosen_key,) if self.chosen_key else (self.key, self.other_key)
+        return tuple(filter(None, keys))
 
 
 def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> dict[str, str]:
-    """Give commands that have keys another one alone, by their labels; all others their usual ones.
-
-    Returns the keys as people know them, by label.
-    """
+    """Give commands with keys another one alone, by their labels; by these, all keys as told."""
     with_keys = [command for command in commands if command.key]
     for command in with_keys:
-        command.usual_keys = command.usual_keys or command.keys
-        keys = (changed[command.label],) if command.label in changed else command.usual_keys
-        command.key, command.other_key = (*keys, "")[:2]
+        command.chosen_key = changed.get(command.label, "")
     return {command.label: command.displayed_keys for command in with_keys}
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -136,8 +135,8 @@ class Session:
         if self.display is None:
             self.history.amend(state)
         else:
-            onto = partial(Document.redrawn, before=present.display, after=display)
-            self.history.note(state, present.view_change(display), onto)
+            label = present.view_change(display)
+            self.history.note(state, label, lambda each: each.redrawn(present.display, display))
         self.display = display
 
     def note(self, label: str = "") -> None:

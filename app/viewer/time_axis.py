@@ -24,13 +24,10 @@ class Tick(NamedTuple):
 
 
 class TimeAxis:
-    """From `start` on, `span` seconds; the whole script as long as nobody zooms in.
-
-    values: the lowest and the highest that curves display; None for all that they have.
-    """
+    """From `start` on, `span` seconds; the whole script as long as nobody zooms in."""
 
     counts_frames = False  # instead of seconds
-    values: tuple[float, float] | None = None
+    values: tuple[float, float] | None = None  # the lowest and the highest of curves; None: all
 
     def __init__(self) -> None:
         self.start = 0.0

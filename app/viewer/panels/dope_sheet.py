@@ -191,8 +191,7 @@ class DopeSheet:
     def _draw_over(self, io: Any, edges: tuple[float, float]) -> None:
         key_marks.draw_playhead(self._gui.theme, self.axis, self._session.time, edges)
         if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
-            corner = io.mouse_pos.x, io.mouse_pos.y
-            key_marks.draw_box(self._gui.theme, self._drag.began, corner)
+            key_marks.draw_box(self._gui.theme, self._drag.began, io.mouse_pos)
 
     def _draw_graph(self, io: Any, left: float) -> None:
         imgui.same_line(0.0, 0.0)
@@ -245,8 +244,7 @@ class DopeSheet:
     def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
         """Hold on to something; selected: from now on, where that is not what is selected."""
         places = self.selection.places if selected is None else selected
-        began = io.mouse_pos.x, io.mouse_pos.y
-        self._drag = Drag(doing, began, self._session.script, places)
+        self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, places)
 
     def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
         selection = self.selection

@@ -41,12 +41,7 @@ class LivePanel:
     """Draws the panel, and carries out what is done in it."""
 
     def __init__(
-        self,
-        gui: Gui,
-        settings: Settings,
-        live: LiveCommands,
-        messages: Messages,
-        record: Command,
+        self, gui: Gui, settings: Settings, live: LiveCommands, messages: Messages, record: Command
     ) -> None:
         """record: the command that begins and ends a recording."""
         self._gui, self._settings, self._live, self._messages = gui, settings, live, messages

@@ -53,8 +53,7 @@ HINTS = {
     "flat shading",
     "levels": "how often all triangles are split",
     "Shading": "[Next shading] goes through them",
-    "Colours": "of the simulated mesh's triangles, whatever they are refined to "
-    "([Colour by splits]: splits)",
+    "Colours": "of the simulated mesh's triangles, however refined ([Colour by splits]: splits)",
     "Skin": "[Texture] switches the texture",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",

@@ -107,8 +107,7 @@ class Timeline:
         if button(self._gui, text, name=name, width=width, highlight=highlight):
             self._messages.attempt(command.run)
         imgui.end_disabled()
-        if text == label:  # what stops tells it
-            hint(self._gui.with_keys(meaning), is_above=True)
+        hint(self._gui.with_keys(meaning * (text == label)), is_above=True)
 
     def _draw_speed(self) -> None:
         stay_in_line(em(SPEED_WIDTH))
@@ -128,8 +127,8 @@ class Timeline:
         if differing:
             status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
         if session.is_recording:
-            paused = "" if session.is_playing else ", paused"
-            status, ink = f"recording {session.recorded_seconds:.1f} s{paused}", theme.error
+            status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
+            status += "" if session.is_playing else ", paused"
         told = self.dope_sheet.axis.told
         time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
         stay_in_line(imgui.calc_text_size(time).x)
