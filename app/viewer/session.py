@@ -310,11 +310,12 @@ class Session:
                 self.toggle_playing()
             return f"Recording from {self.time:.2f} s: what you move replaces the script there"
         recorder, self._recorder = self._recorder, None
-        recording, self.is_playing, missed = recorder.script(), False, recorder.missed
+        recording, self.is_playing = recorder.script(), False
         if recording is not None:
             self.script = recording
             self._go_to(rounded(self.time))  # which is the end, where the recording is the last
-        self.values |= missed  # a pose by hand
+        self.values, self.is_following = self.values | recorder.missed, False
+        missed = self.differing  # a pose by hand
         self.is_following, self.pose_is_unsaved = not missed, bool(missed)
         what = counted(len(recorder.samples), "control")
         self.note(f"Record {what}" if recording else "")
