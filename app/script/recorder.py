@@ -21,11 +21,17 @@ SAMPLES = 64  # of an eased way between two keys that is cut: straight lines are
 
 
 class Recorder:
-    """Takes the value of every control at every step, from a time of a script on."""
+    """Takes the value of every control at every step, from a time of a script on.
 
-    def __init__(self, played: Script, start: float, limits: Limits) -> None:
-        """played: what the controls do where nobody moves them. start: [s]."""
+    held: what hands hold against the script, which is for others to know.
+    """
+
+    def __init__(
+        self, played: Script, start: float, limits: Limits, held: Mapping[str, float] | None = None
+    ) -> None:
+        """played: what the controls do where nobody moves them. start: [s]. held: from before."""
         self._played, self._limits = played, limits
+        self.held, self._kept = dict(held or {}), dict[str, float]()  # and what is recorded of it
         self.start = self.time = rounded(start)
         # Of each control that has moved: times [s] and what its track has, from the last key on.
         self.samples: dict[str, tuple[array[float], array[float]]] = {}
@@ -50,6 +56,12 @@ class Recorder:
                     track.append(track[-1])
                 times.append(time)
                 track.append(value)
+        self._kept = dict(self.held)
+
+    @property
+    def missed(self) -> dict[str, float]:
+        """What is held and was moved since the last time that was recorded."""
+        return {name: each for name, each in self.held.items() if self._kept.get(name) != each}
 
     def script(self) -> Script | None:
         """The script with what was recorded so far, or None where nothing was.

@@ -18,6 +18,7 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
          and not imgui.get_key_name(key).endswith(_RESERVED)}  # fmt: skip
 # Ctrl keys that a line of text takes for itself while one writes.
 _WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
+_CHANGING = ("Edit", "Keys", "Expression")  # menus of what ends a drag of the mouse first
 _WALKING = ("Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "PageUp", "PageDown")
 
 
@@ -33,7 +34,7 @@ class Command:
     can_run: Callable[[], bool] = lambda: True
     other_key: str = ""
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
-    usual_key: str = ""  # where another one is set
+    chosen_key: str = ""  # in place of both
     reads: Callable[[], str] | None = None  # its label now, where that changes
     by_key: Task | None = None  # what its key does, where that is not the same
 
@@ -49,14 +50,16 @@ class Command:
     @property
     def keys(self) -> tuple[str, ...]:
         """All keys that do it."""
-        return tuple(key for key in (self.key, self.other_key) if key)
+        keys = (self.chosen_key,) if self.chosen_key else (self.key, self.other_key)
+        return tuple(filter(None, keys))
 
 
-def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> None:
-    """Give commands that have keys other ones, by their labels; all others their usual ones."""
-    for command in filter(lambda each: each.key, commands):
-        command.usual_key = command.usual_key or command.key
-        command.key = changed.get(command.label, command.usual_key)
+def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> dict[str, str]:
+    """Give commands with keys another one alone, by their labels; by these, all keys as told."""
+    with_keys = [command for command in commands if command.key]
+    for command in with_keys:
+        command.chosen_key = changed.get(command.label, "")
+    return {command.label: command.displayed_keys for command in with_keys}
 
 
 def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:
@@ -68,7 +71,11 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
         for key in command.keys:
             is_for_text = is_writing and ("Ctrl" not in key or key in _WRITING)
             is_taken = is_for_text or (gui.owns_keys and key in _WALKING)
-            if not is_taken and imgui.is_key_chord_pressed(chord(key)) and command.can_run():
+            if is_taken or not imgui.is_key_chord_pressed(chord(key)):
+                continue
+            if command.menu in _CHANGING and imgui.is_any_mouse_down():
+                gui.let_go_before(_KEYS[key.rpartition("+")[2]])
+            elif command.can_run():
                 messages.attempt(command.by_key or command.run)
 
 

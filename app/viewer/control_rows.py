@@ -51,11 +51,7 @@ def change_of(before: Mapping[str, float], after: Mapping[str, float]) -> str:
 
 
 def rows_of(
-    names: Sequence[str],
-    values: Mapping[str, float],
-    *,
-    linked: bool,
-    apart: Collection[str] = (),
+    names: Sequence[str], values: Mapping[str, float], *, linked: bool, apart: Collection[str] = ()
 ) -> list[Row]:
     """The rows of a group.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, field, replace
 
 from ..script import Script
@@ -28,6 +29,13 @@ class Document:
         before, after = vars(self.display), vars(display)
         names = [name.removeprefix("is_") for name in after if after[name] != before[name]]
         return f"View: {', '.join(names).replace('_', ' ')}"
+
+    def redrawn(self, before: object, after: object) -> Document:
+        """The same, drawn as it was changed from one way to draw the scene to another."""
+        own, old, new = map(vars, (self.display, before, after))
+        display = copy(self.display)
+        vars(display).update({name: new[name] for name in own if own[name] == old[name]})
+        return replace(self, display=display)
 
     def new_keys(self, before: Document) -> int:
         """How many keys of tracks it has that the state before does not share with it."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import re
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -97,6 +98,7 @@ class Gui:
         self._shown = self._looked - 1.0 / 60.0  # when that was for the last frame [s]
         self._blind = 0.0  # [s] for which nobody looked before: an event may be as old as that
         self.places: dict[str, tuple[float, float, float, float]] = {}
+        self.keys: dict[str, str] = {}  # of commands, by their labels
         self.theme = THEMES["light"]
         self._dressed: object = None
         io = imgui.get_io()
@@ -218,6 +220,18 @@ class Gui:
             imgui.render()
             if is_visible:
                 imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+
+    def let_go_before(self, key: imgui.Key) -> None:
+        """End what the mouse drags as if it had let go, and then take the key as pressed anew."""
+        io = imgui.get_io()
+        for button in (LEFT, RIGHT, MIDDLE):
+            io.add_mouse_button_event(button, False)
+        for is_down in (False, True):
+            io.add_key_event(key, is_down)
+
+    def with_keys(self, text: str) -> str:
+        """A text with the keys that commands have now, in place of their labels in brackets."""
+        return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1], found[0]), text)
 
     def remember(self, name: str) -> None:
         """Keep where the item drawn last is."""

@@ -36,18 +36,25 @@ class History(Generic[State]):
         """The state noted last, or come back to."""
         return self._states[self.place]
 
-    def note(self, state: State, label: str = "") -> None:
+    def note(
+        self, state: State, label: str = "", onto: Callable[[State], State] | None = None
+    ) -> None:
         """Something was done; what was undone before is forgotten. Equal states count once.
 
-        label: what was done, as "Mirror".
+        label: what was done, as "Mirror". onto: given where nothing is forgotten; what each state
+        is that can be done again after this.
         """
         if state == self.present:
             return
-        self._states = [*self._states[: self.place + 1], state]
-        self.labels = [*self.labels[: self.place + 1], label]
+        end = self.place + 1
+        later = [*map(onto, self._states[end:])] if onto else []
+        labels = self.labels[end:][: len(later)]
+        self._states[end:], self.labels[end:] = [state], [label]
         while len(self._states) > MOST or (len(self._states) > 2 and self._are_too_large):
             del self._states[0], self.labels[0]
         self.place = len(self._states) - 1
+        self._states += later
+        self.labels += labels
 
     def amend(self, state: State) -> None:
         """The present is this now, which nobody would call a step."""

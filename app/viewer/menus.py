@@ -144,6 +144,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     edit = partial(command, can_run=lambda: selection.can_edit)
     change = partial(command, can_run=lambda: selection.can_change)
     name = partial(command, can_run=lambda: selection.can_rename)
+    ease, is_eased = selection.ease, selection.is_eased
     return (
         edit("Set key", "K", selection.set_key),
         edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
@@ -157,15 +158,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
-        *(
-            change(
-                f"Approach: {easing}",
-                "",
-                partial(selection.ease, easing),
-                partial(selection.is_eased, easing),
-            )
-            for easing in EASINGS
-        ),
+        *(change(f"Approach: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
     )
 
 
@@ -220,14 +213,9 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
 
 def expression_menu(session: Session) -> Menu:
     """Keys 1 to 9 show the first expressions of the scene."""
-    command = partial(Command, "Expression")
+    command, show, is_on = partial(Command, "Expression"), session.toggle_alone, session.is_alone
     return tuple(
-        command(
-            readable(name),
-            str(number),
-            partial(session.toggle_alone, name),
-            partial(session.is_alone, name),
-        )
+        command(readable(name), str(number), partial(show, name), partial(is_on, name))
         for number, name in enumerate(session.scene.expressions[:9], start=1)
     )
 

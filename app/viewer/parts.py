@@ -146,7 +146,7 @@ class Parts:
             *menus.live_menu(self.live),
             *menus.help_menu(self.panel_state, lambda: self.first_steps.begin()),
         )
-        set_keys(self.commands, settings.keys)
+        self.gui.keys = set_keys(self.commands, settings.keys)
         self.life = IdleLife(session, settings, self.view)
         self.physics = Physics(session, self.times)
         self.painter = Painter(self.stage, self.view, self.messages)

@@ -39,16 +39,13 @@ class Session:
         self.values = self.controls.pose(script.at(0.0))
         self.script = script
         self.file = ScriptFile.of(script)
-        self.time = 0.0
-        self.is_playing = False
-        self.is_looping = False
-        self.speed = 1.0
+        self.time, self.speed = 0.0, 1.0
+        self.is_playing = self.is_looping = False
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.is_following = any(self.values.values())  # the script; a neutral face need not yet
         self.is_keying = False  # what is changed by hand becomes a key at once
         self._is_touched = False  # by hand, since something was noted
         self._recorder: Recorder | None = None
-        self._held: dict[str, float] = {}  # by hand while a recording plays the script
         self.live = Lead()  # a live face, which leaves no trace in what can be undone
         self.display: object = None  # how the scene is drawn, see `show`
         self.history = History(self._document(), lambda before, after: after.new_keys(before))
@@ -68,8 +65,8 @@ class Session:
         for each in {name, twin_of(name)} if linked else {name}:
             low, high = self.controls.limits[each]
             self.values[each] = min(max(rounded(value), low), high)
-            if self.is_recording:  # the script goes on, and this is held
-                self._held[each] = self.values[each]
+            if self._recorder is not None:  # the script goes on, and this is held
+                self._recorder.held[each] = self.values[each]
         if not self.is_recording:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = self._is_touched = True
@@ -104,8 +101,8 @@ class Session:
         self._set_pose(self.controls.random(generator or np.random.default_rng()), "Random")
 
     def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
-        if self.is_recording:
-            self._held |= {name: each for name, each in pose.items() if each != self.values[name]}
+        if self._recorder is not None:
+            self._recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved, self._is_touched = is_unsaved, True
@@ -133,11 +130,13 @@ class Session:
 
     def show(self, display: object) -> None:
         """Draw the scene in another way: what nobody changes any more, and equals its like."""
-        state = replace(self.history.present, display=display)  # the script may move the rest
+        present = self.history.present  # the script may move the rest
+        state = replace(present, display=display)
         if self.display is None:
             self.history.amend(state)
         else:
-            self.history.note(state, self.history.present.view_change(display))
+            label = present.view_change(display)
+            self.history.note(state, label, lambda each: each.redrawn(present.display, display))
         self.display = display
 
     def note(self, label: str = "") -> None:
@@ -193,9 +192,8 @@ class Session:
         """Play or pause; at the end of the script, play it again."""
         self.is_playing = not self.is_playing
         line = self.let_go() if self.is_playing else None
-        if self.is_playing and self.time >= self.script.duration and not self.is_recording:
-            self.time = 0.0
-        if self.is_playing and self.time == 0.0:
+        is_over = self.time >= self.script.duration and not self.is_recording
+        if self.is_playing and (is_over or self.time == 0.0):
             self.start_over()
         return line
 
@@ -231,7 +229,7 @@ class Session:
             self.history.amend(self._document())
             return None
         what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
-        self.note(f"Let go of {what}")
+        self.history.note(self._document(), f"Let go of {what}", lambda later: later)
         return f"{what} not keyed, so let go; Ctrl+Z brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
@@ -265,8 +263,7 @@ class Session:
         return time
 
     def _key(self, values: Mapping[str, float], *, is_whole: bool = False) -> float:
-        time = keyframes.key_time(self.script, self.time)
-        limits = self.controls.limits
+        time, limits = keyframes.key_time(self.script, self.time), self.controls.limits
         self.script = keyframes.keyed(self.script, time, values, limits, is_whole=is_whole)
         self.is_playing = False
         self._go_to(time)
@@ -291,7 +288,8 @@ class Session:
 
     def _follow_script(self) -> None:
         self.is_following = True
-        self.values = self.controls.pose({**self.script.at(self.time), **self._held})
+        held = self._recorder.held if self._recorder is not None else {}
+        self.values = self.controls.pose({**self.script.at(self.time), **held})
 
     @property
     def is_recording(self) -> bool:
@@ -306,22 +304,25 @@ class Session:
         if self._recorder is None:
             held = {name: self.values[name] for name in self.differing}
             start = self.time % self.script.duration if self.is_looping else self.time
-            self._recorder = Recorder(self.script, start, self.controls.limits)
-            self._held, self.time, self.pose_is_unsaved = held, self._recorder.start, False
+            self._recorder = Recorder(self.script, start, self.controls.limits, held)
+            self.time, self.pose_is_unsaved = self._recorder.start, False
             if not self.is_playing:
                 self.toggle_playing()
             return f"Recording from {self.time:.2f} s: what you move replaces the script there"
-        recorder, self._recorder, held, self._held = self._recorder, None, self._held, {}
+        recorder, self._recorder = self._recorder, None
         recording, self.is_playing = recorder.script(), False
-        if recording is None:
-            self.is_following, self.pose_is_unsaved = not held, bool(held)  # a pose by hand again
-            self.note()
-            raise UserError("nothing was recorded: no control moved")
-        self.script = recording
-        self._go_to(rounded(self.time))  # which is the end, where the recording is the last
+        if recording is not None:
+            self.script = recording
+            self._go_to(rounded(self.time))  # which is the end, where the recording is the last
+        self.values, self.is_following = self.values | recorder.missed, False
+        missed = self.differing  # a pose by hand
+        self.is_following, self.pose_is_unsaved = not missed, bool(missed)
         what = counted(len(recorder.samples), "control")
-        self.note(f"Record {what}")
-        return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s"
+        self.note(f"Record {what}" if recording else "")
+        if recording is None:
+            raise UserError("nothing was recorded: no control moved")
+        apart = f"; {counted(len(missed), 'control')} moved after that, not keyed" if missed else ""
+        return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s{apart}"
 
     @property
     def recording_so_far(self) -> Script | None:
@@ -351,7 +352,7 @@ class Session:
 
     def _replace_script(self, script: Script, file: ScriptFile, label: str) -> None:
         """Another script in place of this one."""
-        self._recorder, self._held, self._is_touched = None, {}, False
+        self._recorder, self._is_touched = None, False
         self.script, self.file, self.is_playing = script, file, False
         self._go_to(0.0)
         self.note(label)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from risorius import sim
 
+from ..errors import counted
 from ..mirror import OPPOSITE, parted, twin_of
 from ..vocabulary import called
 from .messages import Message
@@ -79,7 +80,10 @@ class SkinDrag:
             return None
         pull.solve()
         self._obey(pull)
-        self._session.note()
+        names = [name for names in pull.changes for name in names]
+        muscles = sum(not name.startswith("jaw_") for name in names)
+        parts = counted(muscles, "muscle") if muscles else "", "jaw" * (muscles < len(names))
+        self._session.note(f"Pull ({', '.join(filter(None, parts))})")
         if not pull.changes:
             return "No muscle draws the skin this way: it swings back"
         told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())

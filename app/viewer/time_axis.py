@@ -27,6 +27,7 @@ class TimeAxis:
     """From `start` on, `span` seconds; the whole script as long as nobody zooms in."""
 
     counts_frames = False  # instead of seconds
+    values: tuple[float, float] | None = None  # the lowest and the highest of curves; None: all
 
     def __init__(self) -> None:
         self.start = 0.0
@@ -35,8 +36,8 @@ class TimeAxis:
         self._left, self._width = 0.0, 1.0
 
     def show_whole(self) -> None:
-        """All of the script, however long it is."""
-        self.is_whole = True
+        """All of the script, however long it is, and all values."""
+        self.is_whole, self.values = True, None
 
     def place(self, left: float, width: float) -> None:
         """Where it is drawn [window units]."""

@@ -14,7 +14,7 @@ from ..script.keyframes import POSES, places_of
 from ..script.places import Places
 from ..vocabulary import readable
 
-TRACKS = "Tracks"
+TRACKS, ALL = "Tracks", "Whole poses"  # names of rows
 MOST_LINES = 7  # of a key's values that are told
 
 
@@ -47,11 +47,11 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
         poses = Places({POSES: times.pop(POSES, np.empty(0))})
-        whole = Track("Poses", "Poses", poses, names=names, held=_held(script.poses), is_whole=True)
+        whole = Track(ALL, "Poses", poses, names=names, held=_held(script.poses), is_whole=True)
         rows.append(replace(whole, is_sum=bool(script.posed_names)))
         for name in script.posed_names:
             channel = script.posed_channel(name)
-            row = Track(f"pose {name}", readable(name), poses, channel, name, POSES, ("Poses",))
+            row = Track(f"pose {name}", readable(name), poses, channel, name, POSES, (ALL,))
             rows.append(row)
     if script.tracks:
         rows.append(Track(TRACKS, TRACKS, Places(times), is_sum=True))

@@ -112,8 +112,6 @@ class Viewer(Parts):
 
     def _move_face(self, elapsed: float) -> bool:
         """Let time pass for the face, and draw it; whether the picture has changed."""
-        is_held = self.mouse.is_dragging or imgui.is_any_item_active()
-        self.view.follow_history(is_held=is_held)
         self.messages.attempt(self.soundtrack.refresh)
         seconds = self.soundtrack.elapsed(elapsed)
         is_skin_dragged = self.mouse.is_dragging_skin
@@ -234,6 +232,8 @@ class Viewer(Parts):
             ):
                 messages.attempt(draw)
             self.help.draw(commands)
+            if room is None:  # before a key undoes anything
+                view.follow_history(is_held=self.mouse.is_dragging or imgui.is_any_item_active())
             if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
                 run_pressed(commands, messages, gui)
                 (self if room is None else room).mouse.follow()

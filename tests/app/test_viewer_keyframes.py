@@ -262,7 +262,7 @@ def test_rows_of_the_timeline(hello: Script) -> None:
     assert [place.time for place in poses.places] == [0.0, 1.0, 3.0, 4.0]
     assert poses.names == ((1.0, "joy"),) and tracks.is_sum
     assert (jaw.control, joy.control) == ("jaw_open", "joy")
-    assert joy.channel.values.tolist() == [0.0, 1.0, 0.6, 0.0] and joy.parents == ("Poses",)
+    assert joy.channel.values.tolist() == [0.0, 1.0, 0.6, 0.0] and joy.parents == ("Whole poses",)
     assert blink.channel == hello.tracks["blink"] and blink.parents == ("Tracks",)
     assert poses.places.near(1.2, 0.3) == {JOY} and not poses.places.near(2.0, 0.3)
     assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out\nJoy 1.00\nJaw open 0.10"

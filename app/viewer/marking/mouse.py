@@ -23,11 +23,7 @@ class MarkingMouse(CameraMouse):
     """Follows the mouse from press to release."""
 
     def __init__(
-        self,
-        view: MarkingView,
-        surface: render.WindowSurface,
-        marking: Marking,
-        messages: Messages,
+        self, view: MarkingView, surface: render.WindowSurface, marking: Marking, messages: Messages
     ) -> None:
         super().__init__(view, surface)
         self._marking, self._messages = marking, messages

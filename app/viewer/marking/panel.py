@@ -96,7 +96,7 @@ class MarkingPanel:
             command = self._commands[label]
             imgui.begin_disabled(not command.can_run())
             ink = colour(self._gui.theme.accent, 0.6) if label == "Use this head" else None
-            if button(self._gui, label, width=width, meaning=command.key, highlight=ink):
+            if button(self._gui, label, width=width, meaning=command.displayed_keys, highlight=ink):
                 self._messages.attempt(command.run)
             imgui.end_disabled()
             if label != labels[-1]:

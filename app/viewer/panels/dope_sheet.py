@@ -28,6 +28,7 @@ from ..tracks import Track, all_tracks, described
 from . import key_marks
 from .graph import Graph
 from .menu_bar import MenuBar
+from .question_box import PoseNameLine
 from .waveform import Waveform
 from .widgets import shortened
 
@@ -74,11 +75,13 @@ class DopeSheet:
         self.selection, self.axis, self._waveform = selection, axis, waveform
         self.graph = Graph(gui, selection, axis)
         self._drag: Drag | None = None
+        self._number: float | None = None  # the time [s] whose number was pressed on in the ruler
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
         self._all: tuple[Track, ...] = ()
         self.rows: tuple[Track, ...] = ()  # of these the ones that are not folded away
         self._known: Script | None = None  # of which the tracks are
         self._are_dense: dict[str, bool] = {}  # by name: keys cannot be told apart
+        self._bottom = 0.0  # of all of it [window units]
         self._tops = [0.0]  # of each row, and of what would come below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
         self._name_line = PoseNameLine(gui, session, messages, selection)
@@ -108,11 +111,12 @@ class DopeSheet:
         self.rows = tuple(track for track in self._all if all(map(self._is_open, track.parents)))
         self.graph.take(self.rows)
 
-    def draw(self) -> None:
-        """Draw everything, inside the timeline's window."""
+    def draw(self, height: float) -> None:
+        """Draw everything, inside the timeline's window, so high [window units]."""
         self._refresh()
         session, axis, io = self._session, self.axis, imgui.get_io()
         place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        self._bottom = place.y + height
         self._gutter = min(em(GUTTER), GUTTER_SHARE * room.x)
         inset, values = em(0.7), em(VALUES) if self.settings.shows_curves else 0.0
         left = self._gutter + inset + values
@@ -149,7 +153,7 @@ class DopeSheet:
     def _draw_rows(self, io: Any) -> None:
         """The rows, or of curves their names alone."""
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
-        least = max(imgui.get_content_region_avail().y, em(ROW))
+        least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(ROW))
         has_keys = not self.settings.shows_curves
         imgui.begin_child("keys", (0.0 if has_keys else self._gutter, least), 0, flags)
         place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
@@ -187,17 +191,17 @@ class DopeSheet:
     def _draw_over(self, io: Any, edges: tuple[float, float]) -> None:
         key_marks.draw_playhead(self._gui.theme, self.axis, self._session.time, edges)
         if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
-            corner = io.mouse_pos.x, io.mouse_pos.y
-            key_marks.draw_box(self._gui.theme, self._drag.began, corner)
+            key_marks.draw_box(self._gui.theme, self._drag.began, io.mouse_pos)
 
     def _draw_graph(self, io: Any, left: float) -> None:
         imgui.same_line(0.0, 0.0)
-        top, room = imgui.get_cursor_screen_pos().y, imgui.get_content_region_avail()
-        edges = top, top + max(room.y, em(ROW))
-        imgui.invisible_button("##graph", (max(room.x, 1.0), edges[1] - top))
+        top, width = imgui.get_cursor_screen_pos().y, imgui.get_content_region_avail().x
+        edges = top, top + max(self._bottom - top, em(ROW))
+        imgui.invisible_button("##graph", (max(width, 1.0), edges[1] - top))
         if imgui.is_item_hovered() and self._drag is None:
             self._hover(io, left)
-        self.graph.draw(edges, self._session.script.duration, is_held=self._drag is not None)
+        is_held = self._drag is not None and self._drag.doing == "keys"
+        self.graph.draw(edges, self._session.script.duration, is_held=is_held)
         self._draw_over(io, edges)
 
     # The mouse
@@ -240,8 +244,7 @@ class DopeSheet:
     def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
         """Hold on to something; selected: from now on, where that is not what is selected."""
         places = self.selection.places if selected is None else selected
-        began = io.mouse_pos.x, io.mouse_pos.y
-        self._drag = Drag(doing, began, self._session.script, places)
+        self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, places)
 
     def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
         selection = self.selection
@@ -251,11 +254,10 @@ class DopeSheet:
             self._grabbed = under
             self._begin("box", io, selection.places if io.key_shift else NOWHERE)
         else:
-            if io.key_shift and under <= selection.places:
-                selection.places -= under
-            elif io.key_shift:
-                selection.places |= under
-            elif not under <= selection.places:
+            places = selection.places
+            if io.key_shift:
+                selection.places = places - under if under <= places else places | under
+            elif not under <= places:
                 selection.places = under
             self._begin("keys", io)
             self._grabbed = under
@@ -269,14 +271,18 @@ class DopeSheet:
                 imgui.set_tooltip("drag the script's end")
         if self._drag is None and imgui.is_mouse_clicked(LEFT):
             self._begin("end" if is_at_end else "scrub", io)
+            is_above = io.mouse_pos.y < imgui.get_item_rect_min().y + em()
+            self._number = key_marks.number_at(self.axis, io.mouse_pos.x) if is_above else None
 
     def _turn_wheel(self, io: Any) -> None:
-        """Zoom about the mouse; with Shift, or a sideways wheel, scroll; the middle button pans."""
+        """Zoom about the mouse; Shift, or a sideways wheel: scroll; Ctrl: values; middle: pan."""
         if self._drag is None and imgui.is_mouse_clicked(MIDDLE):
             self._begin("pan", io)
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
         if sideways:
             self.axis.scroll(-SCROLL_PER_NOTCH * self.axis.span * sideways)
+        elif io.mouse_wheel and io.key_ctrl and self.settings.shows_curves:
+            self.graph.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.y)
         elif io.mouse_wheel:
             self.axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
 
@@ -285,14 +291,17 @@ class DopeSheet:
         (x, y), axis, session = io.mouse_pos, self.axis, self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
         drag.has_moved = drag.has_moved or distance > CLICK
+        number = None if drag.has_moved else self._number
         act: dict[str, Task] = {
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
-            "scrub": lambda: session.seek(self._snapped(axis.time(x), io)),
+            "scrub": lambda: session.seek(
+                self._snapped(axis.time(x), io) if number is None else number
+            ),
             "end": lambda: session.edit(
                 keyframes.lasting(drag.script, axis.time(x)), is_done=False
             ),
-            "pan": lambda: axis.scroll(-axis.seconds(io.mouse_delta.x)),
+            "pan": lambda: self.graph.scroll(*io.mouse_delta),
         }
         if drag.has_moved or drag.doing in ("scrub", "pan"):
             self._messages.attempt(act[drag.doing])
@@ -362,38 +371,3 @@ class DopeSheet:
             keys = counted(len(drag.selected), "key")
             session.note(f"Move {keys if drag.doing == 'keys' else 'the end'}")
         return line
-
-
-class PoseNameLine:
-    """A line for a pose's name, which comes up when one is asked for."""
-
-    def __init__(
-        self, gui: Gui, session: Session, messages: Messages, selection: KeySelection
-    ) -> None:
-        self._gui, self._session, self._messages = gui, session, messages
-        self.selection = selection
-        self._time, self._name = 0.0, ""  # [s] of the pose, and what is written so far
-
-    def draw(self) -> None:
-        """Draw it, if it is open or wanted."""
-        pose, self.selection.pose_to_name = self.selection.pose_to_name, None
-        if pose is not None:
-            self._time, self._name = pose.time, pose.name or ""
-            imgui.open_popup("pose name")
-        if not imgui.begin_popup("pose name"):
-            return
-        imgui.text(f"Name of the pose at {self._time:.2f} s")
-        if pose is not None:
-            imgui.set_keyboard_focus_here()
-        imgui.set_next_item_width(em(14.0))
-        flags = imgui.InputTextFlags_.enter_returns_true | imgui.InputTextFlags_.auto_select_all
-        is_entered, self._name = imgui.input_text_with_hint(
-            "##name", "none: no picture on a sheet", self._name, flags
-        )
-        self._gui.remember("pose name")
-        if is_entered:
-            script = keyframes.renamed(self._session.script, self._time, self._name)
-            self._messages.attempt(lambda: self._session.edit(script, "Name a pose"))
-        if is_entered or imgui.is_key_pressed(imgui.Key.escape):
-            imgui.close_current_popup()
-        imgui.end_popup()

@@ -68,9 +68,9 @@ class FacePanel:
     def _draw_buttons(self) -> None:
         gui, session, settings = self._gui, self._session, self._settings
         buttons: tuple[tuple[str, str, Callable[[], None]], ...] = (
-            ("Neutral", "relax all (N)", session.neutral),
-            ("Mirror", "exchange left and right (M); Edit has copies of one side", session.mirror),
-            ("Random", "a face by chance (X)", session.randomise),
+            ("Neutral", "relax all ([Neutral])", session.neutral),
+            ("Mirror", "exchange left and right ([Mirror]), see Edit, too", session.mirror),
+            ("Random", "a face by chance ([Random])", session.randomise),
         )
         for label, meaning, run in buttons:
             if label != "Neutral":

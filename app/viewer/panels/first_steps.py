@@ -12,8 +12,8 @@ from .widgets import muted
 
 STEPS = (
     ("Pull the cheek", "with the left mouse button"),
-    ("Press D and drag the line", "right of it, the mesh is refined"),
-    ("Press Space", "and the face plays its script"),
+    ("Press [Compare: wipe] and drag the line", "right of it, the mesh is refined"),
+    ("Press [Play]", "and the face plays its script"),
 )
 WIDTH, MARGIN, RADIUS = 15.0, 0.8, 0.62  # [em]
 FACE = 0.27  # half of its width, of the picture's height
@@ -56,12 +56,12 @@ class FirstSteps:
             imgui.dummy((0.0, em(0.15)))
             self._draw_mark(number)
             imgui.begin_group()
-            imgui.text_unformatted(what)
+            imgui.text_unformatted(self._gui.with_keys(what))
             muted(self._gui, how)
             imgui.end_group()
         if all(self.done):
             imgui.dummy((0.0, em(0.15)))
-            muted(self._gui, "F1 shows every key.")
+            muted(self._gui, self._gui.with_keys("[Keys and mouse] shows every key."))
             self._seconds_left -= imgui.get_io().delta_time
         imgui.end()
         imgui.pop_style_var(2)

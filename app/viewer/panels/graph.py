@@ -64,6 +64,20 @@ class Graph:
         """Where a value is, or each of an array of values [window units]."""
         return self._bottom + self.slope * (value - self._low)
 
+    def zoom(self, factor: float, y: float) -> None:
+        """Show `factor` times as many values; what is at `y` stays there."""
+        fixed = self._low + (y - self._bottom) / self.slope
+        low, high = (fixed + factor * (end - fixed) for end in (self._low, self._high))
+        if 0.02 < high - low < 100.0:
+            self._axis.values = low, high
+
+    def scroll(self, right: float, down: float) -> None:
+        """Move the curves [window units]; up and down once they are zoomed."""
+        self._axis.scroll(-self._axis.seconds(right))
+        if self._axis.values is not None:
+            low, high = self._axis.values
+            self._axis.values = low - down / self.slope, high - down / self.slope
+
     # What is where
 
     def at(self, x: float, y: float) -> Hit | None:
@@ -109,7 +123,8 @@ class Graph:
         axis, theme, lines = self._axis, self._gui.theme, imgui.get_window_draw_list()
         if not is_held:
             ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
-            self._low, self._high, self._bottom = min(ends), max(ends), edges[1] - em(PADDING)
+            self._low, self._high = axis.values or (min(ends), max(ends))
+            self._bottom = edges[1] - em(PADDING)
             height = max(self._bottom - edges[0] - em(PADDING), 1.0)
             self.slope = -height / (self._high - self._low)
         left, right = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)

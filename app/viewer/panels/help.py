@@ -38,6 +38,7 @@ TIMELINE = (
     ("double click a pose", "name it"),
     ("right click", "all of this"),
     ("wheel, Shift wheel", "zoom, scroll"),
+    ("Ctrl wheel on curves", "zoom their values"),
     ("drag the end", "longer, shorter"),
 )
 # Menus by column, and what the mouse does.
@@ -74,7 +75,7 @@ class Help:
         imgui.set_next_window_size_constraints((0.0, 0.0), display)
         flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
         flags |= imgui.WindowFlags_.horizontal_scrollbar
-        _, stays = imgui.begin("Keys and mouse (F1)", True, flags)
+        _, stays = imgui.begin("Keys and mouse", True, flags)
         is_left = imgui.is_key_pressed(imgui.Key.escape) and not (gui.has_popup or self._asked)
         self._state.is_help_open = bool(stays) and not is_left
         self._take_key(commands)
@@ -109,7 +110,7 @@ class Help:
             imgui.same_line()
             if button(self._gui, "Usual keys"):
                 self._changed.clear()
-        set_keys(commands, self._changed)
+        self._gui.keys |= set_keys(commands, self._changed)
 
     def _draw_lines(self, name: str, lines: Sequence[Command | tuple[str, str]]) -> None:
         """What to press in one column, what it does in another."""

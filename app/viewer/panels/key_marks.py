@@ -39,21 +39,29 @@ def draw_ruler(
         height = em(0.45) if tick.has_label else em(0.22)
         lines.add_line((x, bottom - height), (x, bottom), ink)
         if tick.has_label:
-            label = f"{tick.time / FRAME:.0f}" if axis.counts_frames else label_of(tick.time)
-            lines.add_text((x + em(0.2), top), ink, label)
+            label = number_of(axis, tick.time)
+            lines.add_text((x - 0.5 * imgui.calc_text_size(label).x, top), ink, label)
     end = axis.x(duration)
     if end <= axis.x(axis.end):
         tip = end + em(FLAG), bottom - 0.5 * em(FLAG)
         lines.add_triangle_filled((end, bottom - em(FLAG)), tip, (end, bottom), ink)
-    draw_playhead(theme, axis, time, edges)
-    if axis.start <= time <= axis.end:
+    if axis.start <= time <= axis.end:  # below the numbers
         x, half = axis.x(time), em(0.4)
-        tip = x, top + 1.3 * half
-        lines.add_triangle_filled((x - half, top), (x + half, top), tip, ink_of(theme.accent))
+        left, right = (x - half, bottom - 1.3 * half), (x + half, bottom - 1.3 * half)
+        lines.add_triangle_filled(left, right, (x, bottom), ink_of(theme.accent))
 
 
-def label_of(time: float) -> str:
-    """Seconds as short as they can be told, minutes where there are some."""
+def number_at(axis: TimeAxis, x: float) -> float | None:
+    """The time [s] whose number in the ruler is there [window units], if there is one."""
+    told = (time for time, has_label in axis.ticks(em(LABEL_ROOM)) if has_label)
+    widths = {time: imgui.calc_text_size(number_of(axis, time)).x for time in told}
+    return next((t for t, width in widths.items() if abs(axis.x(t) - x) <= 0.5 * width), None)
+
+
+def number_of(axis: TimeAxis, time: float) -> str:
+    """Seconds as short as they can be told, minutes where there are some; or frames."""
+    if axis.counts_frames:
+        return f"{time / FRAME:.0f}"
     if time < 60.0:
         return f"{time:.3g} s" if time == 0.0 else f"{time:.3g}"
     minutes, seconds = divmod(round(time, 2), 60.0)

@@ -42,12 +42,7 @@ class LivePanel:
     """Draws the panel, and carries out what is done in it."""
 
     def __init__(
-        self,
-        gui: Gui,
-        settings: Settings,
-        live: LiveCommands,
-        messages: Messages,
-        record: Command,
+        self, gui: Gui, settings: Settings, live: LiveCommands, messages: Messages, record: Command
     ) -> None:
         """record: the command that begins and ends a recording."""
         self._gui, self._settings, self._live, self._messages = gui, settings, live, messages
@@ -120,10 +115,10 @@ class LivePanel:
         is_recording = record.is_on is not None and record.is_on()
         calibrate = "Hold still ..." if face.is_calibrating else "Calibrate"
         buttons: tuple[tuple[str, str, str, bool, Callable[[], str | None]], ...] = (
-            ("calibrate", calibrate, "the face of the next half second is neutral (Shift+N)",
+            ("calibrate", calibrate, "the face of the next half second is neutral ([Calibrate])",
              live.can_calibrate and not face.is_calibrating, live.calibrate),
             ("record live", "Stop recording" if is_recording else "Record",
-             "take every movement into a script, until it is stopped (Ctrl+R)", True, record.run),
+             "what moves goes into the script, until it is stopped ([Record])", True, record.run),
         )  # fmt: skip
         for number, (name, label, meaning, is_possible, run) in enumerate(buttons):
             if number:

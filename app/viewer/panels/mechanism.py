@@ -32,12 +32,12 @@ from .widgets import LabelledRows, button, heading, muted
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
-    "Refine": "draw the refined mesh, or the simulated one as it is (R)",
-    "Look": "smooth: what looks best; paper: the paper's own rule (P). A look sets the refiner and "
-    "all that it is told",
+    "Refine": "draw the refined mesh, or the simulated one as it is ([Refine])",
+    "Look": "smooth: what looks best; paper: the paper's own rule ([Paper's look]). A look sets "
+    "the refiner and all that it is told",
     "Refiner": "any that is registered",
-    "Compare": "two meshes under one camera: wipe (D), side by side (Shift+D), or A and B in turn, "
-    "in all of the picture (B)",
+    "Compare": "two meshes under one camera: wipe ([Compare: wipe]), side by side ([Compare: side "
+    "by side]), or A and B in turn, in all of the picture ([Compare: A or B alone])",
     "A": "what is at the left, B at the right: the simulated mesh (static), a look, a refiner ...",
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
@@ -52,15 +52,15 @@ HINTS = {
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
     "levels": "how often all triangles are split",
-    "Shading": "S goes through them",
-    "Colours": "of the simulated mesh's triangles, whatever they are refined to (C: splits)",
-    "Skin": "T switches the texture",
+    "Shading": "[Next shading] goes through them",
+    "Colours": "of the simulated mesh's triangles, however refined ([Colour by splits]: splits)",
+    "Skin": "[Texture] switches the texture",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
-    "Wireframe": "the edges of all triangles that are drawn (W)",
+    "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
     "Occlusion": "less light from all around in folds of the textured skin",
     "Skin tone": "by its typology angle; own: as this person has it",
     "Person": "another head, on which script and pose go on (--person takes any number)",
-    "Muscles": "under translucent skin; they bulge and redden as they contract (U)",
+    "Muscles": "under translucent skin; they bulge and redden as they contract ([Muscles])",
     "Springs": "the skin's: stretched red, compressed blue",
     "Skull": "under translucent skin, as far as the head tells it; the mandible moves with the jaw",
     "Skin opacity": "over muscles and skull; 0: no skin",

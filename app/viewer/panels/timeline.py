@@ -1,4 +1,4 @@
-"""The timeline below the picture: play, record, loop, speed, key; below them the keys in time."""
+"""The timeline below the picture: the keys in time; below them play, record, loop, speed, key."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ LEAST = 7.0  # [em] of its height
 EDGE = 6.0  # [window units] that can be dragged
 # By the label of the command: what the button reads while that is on, and a hint.
 BUTTONS = {
-    "Play": ("Pause", "play the script, or pause it (Space)"),
-    "Record": ("Stop", "take every movement of every control, until it is stopped (Ctrl+R)"),
-    "Loop": ("Loop", "begin again at the end (L)"),
-    "Curves": ("Curves", "keys in rows, or their values as curves (G)"),
-    "Set key": ("Set key", "the face as it is becomes a key at the time shown (K)"),
+    "Play": ("Pause", "play the script ([Play])"),
+    "Record": ("Stop", "record what you move, from here on ([Record])"),
+    "Loop": ("Loop", "begin again at the end ([Loop])"),
+    "Curves": ("Curves", "keys in rows, or their values as curves ([Curves])"),
+    "Set key": ("Set key", "the face as it is becomes a key at the time shown ([Set key])"),
     "Let go": ("Let go", "what was changed by hand goes back to where the script has it"),
     "Auto-key": ("Auto-key", "what is changed by hand becomes a key at once"),
 }
@@ -70,9 +70,14 @@ class Timeline:
             self.dope_sheet.settings.timeline_height = wanted / em()
 
     def draw(self) -> None:
-        """Draw everything, inside its window."""
+        """Draw everything, inside its window: buttons at its lower edge, which stays put."""
         self._draw_edge()
-        top = imgui.get_cursor_pos_y()
+        left, top = imgui.get_cursor_pos()
+        height = self._rows * imgui.get_frame_height_with_spacing()
+        height = max(imgui.get_content_region_avail().y - height, self.dope_sheet.height(0.0))
+        self.dope_sheet.draw(height)
+        top += height + imgui.get_style().item_spacing.y
+        imgui.set_cursor_pos((left, top))
         for label in ("Play", "Record", "Loop"):
             self._draw_button(label)
         self._draw_speed()
@@ -83,7 +88,6 @@ class Timeline:
         self._draw_button("Curves")
         self._draw_status(len(differing))
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
-        self.dope_sheet.draw()
         if any(map(imgui.is_mouse_clicked, (LEFT, MIDDLE, RIGHT))):
             flags = imgui.HoveredFlags_.child_windows
             flags |= imgui.HoveredFlags_.allow_when_blocked_by_active_item
@@ -100,9 +104,10 @@ class Timeline:
             highlight = colour(self._gui.theme.accent, 0.6) if is_on or is_wanted else None
         text = label_on if is_on else label
         imgui.begin_disabled(not command.can_run())
-        if button(self._gui, text, name=name, width=width, meaning=meaning, highlight=highlight):
+        if button(self._gui, text, name=name, width=width, highlight=highlight):
             self._messages.attempt(command.run)
         imgui.end_disabled()
+        hint(self._gui.with_keys(meaning * (text == label)), is_above=True)
 
     def _draw_speed(self) -> None:
         stay_in_line(em(SPEED_WIDTH))
@@ -123,6 +128,7 @@ class Timeline:
             status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
         if session.is_recording:
             status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
+            status += "" if session.is_playing else ", paused"
         told = self.dope_sheet.axis.told
         time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
         stay_in_line(imgui.calc_text_size(time).x)

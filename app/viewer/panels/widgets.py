@@ -47,7 +47,8 @@ def button(
     """Draw a button; whether it was clicked.
 
     name: under which its place is remembered, where that is not its label. width: [window units],
-    0 for as much as the label takes. meaning: a hint. highlight: its colour while it is on.
+    0 for as much as the label takes. meaning: a hint, see `Gui.with_keys`.
+    highlight: its colour while it is on.
     """
     if highlight is not None:
         imgui.push_style_color(imgui.Col_.button, highlight)
@@ -55,7 +56,7 @@ def button(
     if highlight is not None:
         imgui.pop_style_color()
     gui.remember(name or label)
-    hint(meaning)
+    hint(gui.with_keys(meaning))
     return bool(is_clicked)
 
 
@@ -98,7 +99,7 @@ class LabelledRows:
 
     def end(self, label: str, place: float = 0.0) -> None:
         """The hint of what was drawn last, and the mark that sets it back, if there is one."""
-        hint(self._hints.get(label, ""))
+        hint(self._gui.with_keys(self._hints.get(label, "")))
         if label not in self.resets:
             return
         imgui.same_line(place)
@@ -137,9 +138,12 @@ def button_width(label: str) -> float:
     return float(imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x)
 
 
-def hint(text: str) -> None:
-    """Tell more about the item drawn last, while the mouse is on it."""
+def hint(text: str, *, is_above: bool = False) -> None:
+    """Tell more about the item drawn last while the mouse is on it; beside the mouse, or above."""
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
+        if is_above:
+            left, top = imgui.get_item_rect_min()
+            imgui.set_next_window_pos((left, top - em(0.3)), 0, (0.0, 1.0))
         imgui.begin_tooltip()
         imgui.push_text_wrap_pos(em(24))
         imgui.text_unformatted(sentence(text))

@@ -1,0 +1,167 @@
+"""What undo keeps, and what a recording keeps of moves while it waits, without a window."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.scenes import FaceScene
+from risorius.app.script import load_script
+from risorius.app.viewer.command import Command, set_keys
+from risorius.app.viewer.physics import STEP
+from risorius.app.viewer.session import Session
+from risorius.app.viewer.settings import Display, Settings
+from risorius.app.viewer.skin_drag import SkinDrag
+
+HELLO = Path("docs/hello.toml")
+CORNER = 48  # a landmark: of the mouth
+AHEAD = np.array([0.0, 0.0, -1.0])
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """One face for all tests of this file."""
+    return FaceScene()
+
+
+@pytest.fixture
+def session(scene: FaceScene) -> Session:
+    """A session that shows a script of poses and a blink."""
+    scene.reset()
+    session = Session(scene, load_script(HELLO))
+    session.show(Display())
+    return session
+
+
+def run(session: Session, steps: int) -> None:
+    """Let so many steps of time pass."""
+    for _ in range(steps):
+        session.advance(STEP)
+
+
+def look(session: Session, **fields: object) -> None:
+    """Draw the scene in another way."""
+    display = deepcopy(session.display)
+    vars(display).update(fields)
+    session.show(display)
+
+
+def key(session: Session, time: float, **values: float) -> None:
+    """Move sliders at a time, let them go, and make a key of it."""
+    session.seek(time)
+    for name, value in values.items():
+        session.set(name, value)
+    session.note()
+    session.set_key()
+
+
+def test_looking_differently_keeps_what_can_be_done_again(session: Session) -> None:
+    """Edits that were undone come back after a change of the view, and leave the view alone."""
+    before = session.script
+    key(session, 1.5, jaw_open=0.7)
+    look(session, wireframe=True)
+    key(session, 2.5, jaw_open=0.2)
+    edited = session.script
+    for _ in range(5):
+        session.undo()
+    assert session.script == before and session.display == Display()
+    look(session, light="side")
+    look(session, colours="splits")
+    assert session.history.labels[1:3] == ["View: light", "View: colours"]
+    while session.history.can_redo:
+        session.redo()
+    assert session.script == edited
+    assert session.display == Display(light="side", colours="splits", wireframe=True)
+    while session.history.can_undo:
+        session.undo()
+    assert session.script == before and session.display == Display()
+
+
+def test_scrubbing_keeps_what_can_be_done_again(session: Session) -> None:
+    """A pose that is let go on the way to another time costs no redo of the script."""
+    key(session, 1.5, jaw_open=0.7)
+    edited = session.script
+    session.undo()
+    assert session.values["jaw_open"] == 0.7 and session.seek(3.0)
+    session.redo()
+    assert session.script == edited
+    session.undo()
+    session.undo()
+    assert session.values["jaw_open"] == 0.7 and session.time == 1.5
+    session.neutral()
+    assert not session.history.can_redo
+
+
+def paused(session: Session) -> None:
+    """Begin to record at 1 s, move the jaw, and pause at 2 s."""
+    session.seek(1.0)
+    session.toggle_recording()
+    run(session, 30)
+    session.set("jaw_open", 0.5)
+    run(session, 30)
+    session.toggle_playing()
+    run(session, 30)
+
+
+def test_moves_in_a_pause_are_recorded_when_it_goes_on(session: Session) -> None:
+    """They begin where it was paused."""
+    paused(session)
+    session.set("AU4", 0.8)
+    run(session, 30)
+    session.toggle_playing()
+    run(session, 30)
+    session.toggle_recording()
+    assert session.is_following and session.script.at(1.95).get("AU4", 0.0) == 0.0
+    assert session.script.at(2.05)["AU4"] == session.script.at(2.35)["AU4"] == 0.8
+
+
+def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
+    """They are no part of the recording, which is told, and still there to be keyed."""
+    paused(session)
+    session.set("AU4", 0.8)
+    session.set("jaw_open", 0.1)
+    line = session.toggle_recording()
+    assert line is not None and "1 control recorded" in line and "2 controls" in line
+    assert "not keyed" in line
+    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
+    assert session.differing == {"AU4", "jaw_open"} and session.has_unsaved_pose
+    assert session.script.at(1.8)["jaw_open"] == pytest.approx(0.5, abs=0.002)
+    assert "AU4" not in session.script.tracks
+    assert "Ctrl+Z" in (session.seek(0.0) or "")
+    session.undo()
+    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
+
+
+def test_a_recording_that_was_only_paused_leaves_nothing_behind(session: Session) -> None:
+    """What was held as it was recorded goes back to the script, in silence."""
+    paused(session)
+    line = session.toggle_recording()
+    assert line is not None and "not keyed" not in line
+    assert session.is_following and not session.differing
+
+
+def test_a_pull_is_called_so(session: Session) -> None:
+    """Undo names what it takes back: how many muscles held the skin, or which one."""
+    point = session.scene.positions[session.scene.head.landmarks[CORNER]].copy()  # type: ignore[attr-defined]
+    finger = SkinDrag(session, Settings(), point, AHEAD, poses=True)
+    for share in (0.5, 1.0):
+        finger.to(point + share * np.array([-9.0, 8.0, 0.0]))
+        run(session, 1)
+    told = str(finger.let_go())
+    moved = [name for name, value in session.values.items() if value]
+    muscles = sum(not name.startswith("jaw_") for name in moved)
+    jaw = ", jaw" if muscles < len(moved) else ""
+    assert muscles > 1 and told
+    assert session.history.labels[-1] == f"Pull ({muscles} muscles{jaw})"
+
+
+def test_a_changed_command_has_the_chosen_key_alone() -> None:
+    """A second key goes with the first; both come back."""
+    redo = Command("Edit", "Redo", "Ctrl+Y", lambda: None, other_key="Ctrl+Shift+Z")
+    set_keys([redo], {"Redo": "F7"})
+    assert redo.keys == ("F7",) and redo.displayed_keys == "F7"
+    set_keys([redo], {})
+    assert redo.keys == ("Ctrl+Y", "Ctrl+Shift+Z")
