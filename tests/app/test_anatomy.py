@@ -105,7 +105,7 @@ def test_more_skin_hides_more(studio: Capture) -> None:
 def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
     """At rest, in a smile, in a turned head that yawns."""
     made = solids_of(studio, **pose)
-    assert len(made) == 4
+    assert len(made) == 5
     for part in made:
         check_surface(part)
 
