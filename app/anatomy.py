@@ -56,7 +56,9 @@ class Solids:
         scene, wanted = self._scene, dissection.solids
         if not dissection.is_on(scene):
             return
-        names = ["cranium", "mandible", "spine"] * ("skull" in wanted) + ["nose"] * ("muscles" in wanted)
+        names = ["cranium", "mandible", "spine"] * ("skull" in wanted) + ["nose"] * (
+            "muscles" in wanted
+        )
         missing = [name for name in names if name not in self._skull]
         self._skull |= build_skull(scene.head, scene.simulation.pivots(), missing)
         if "muscles" in wanted:
@@ -133,7 +135,10 @@ class Solids:
             solid = [part for part in self.parts if not getattr(part, "hair", 0.0)]
             renderer.cast_shadows(solid, bones, camera, style, **where)
         cut, count = self._cut(dissection), self._solid_count
+        hairs = [part for part in self.parts if getattr(part, "hair", 0.0)]
+        others = [part for part in self.parts[count:] if not getattr(part, "hair", 0.0)]
         renderer.draw_parts(self.parts[:count], bones, camera, style, cut=cut, **where)
-        renderer.draw_parts(self.parts[count:], bones, camera, style, **where)
+        renderer.draw_parts(others, bones, camera, style, **where)
         over = replace(style, opacity=dissection.opacity)
         renderer.draw_mesh(stream, camera, over, cut=cut, **skin, **where)
+        renderer.draw_parts(hairs, bones, camera, style, **where)  # they blend with what is there

@@ -176,7 +176,7 @@ def _outer_form(
 
 def _neck_form(lowest: float) -> _Field:
     """A grid for the spine, down to the end of the neck."""
-    low, high = np.array([-44.0, lowest, -66.0]), np.array([44.0, -18.0, 12.0])
+    low, high = np.array([-23.0 * CELL, lowest, -66.0]), np.array([23.5 * CELL, -18.0, 12.0])
     axes = [np.arange(a, b, CELL, np.float32) for a, b in zip(low, high, strict=True)]
     places = np.stack(np.meshgrid(*axes, indexing="ij"))
     return _Field(low, places, places[1] - np.float32(lowest) - 1.0)
@@ -197,9 +197,13 @@ def _spine(field: _Field, marks: Field, eyes: list[Field]) -> Field:
         off = np.sqrt(((across - aside) / a) ** 2 + ((v - up) / b) ** 2 + ((z - front) / c) ** 2)
         return np.asarray((off - 1.0) * b, np.float32)
 
-    waist = 1.1 * np.cos(2.0 * np.pi * v / VERTEBRA) - 1.6 * np.exp(-(((np.abs(v) - 8.5) / 1.6) ** 2))
+    waist = 1.1 * np.cos(2.0 * np.pi * v / VERTEBRA) - 1.6 * np.exp(
+        -(((np.abs(v) - 8.5) / 1.6) ** 2)
+    )
     body = (np.hypot(x / 12.5, z / 9.5) - 1.0) * 10.0 + waist
-    wing = lump(np.where(is_atlas, 24.0, 17.0), 0.0, -5.0, (np.where(is_atlas, 14.0, 9.5), 5.5, 7.0))
+    wing = lump(
+        np.where(is_atlas, 24.0, 17.0), 0.0, -5.0, (np.where(is_atlas, 14.0, 9.5), 5.5, 7.0)
+    )
     arch = lump(0.0, -1.0, -14.0, (17.0, 5.5, 9.0))
     thorn = lump(0.0, -4.0, -29.0, (3.6, 4.6, np.where(is_atlas, 6.0, 14.0)))
     form = _with(_with(body, wing, 4.0), _with(arch, thorn, 4.0), 4.0)

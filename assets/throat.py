@@ -33,7 +33,9 @@ def build_throat(head: Any, pivots: Mapping[str, Floats]) -> list[Part]:
     origin, scale = origin_and_scale(head, pivots)
     across, down = np.meshgrid(np.linspace(-1.0, 1.0, 17), np.linspace(0.0, 1.0, 13))
     forward = SIDES + MIDDLE * (1.0 - across**2) + FLOOR * down**4
-    places = np.stack([ASIDE * across * (1.0 - 0.7 * down**2), HIGH + (LOW - HIGH) * down, forward], axis=-1)
+    places = np.stack(
+        [ASIDE * across * (1.0 - 0.7 * down**2), HIGH + (LOW - HIGH) * down, forward], axis=-1
+    )
     colours = DARK + (0.35 * down + 0.65 * across**2)[..., None] * (THROAT - DARK)
     parts = [_sheet("throat", origin + scale * places, colours, "cranium")]
     for loop in boundary_loops(head.faces):
