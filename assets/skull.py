@@ -177,7 +177,7 @@ def _outer_form(
 def _neck_form(lowest: float) -> _Field:
     """A grid for the spine, down to the end of the neck."""
     low, high = np.array([-23.0 * CELL, lowest, -66.0]), np.array([23.5 * CELL, -18.0, 12.0])
-    axes = [np.arange(a, b, CELL, np.float32) for a, b in zip(low, high, strict=True)]
+    axes = [np.arange(a, b, CELL, dtype=np.float32) for a, b in zip(low, high, strict=True)]
     places = np.stack(np.meshgrid(*axes, indexing="ij"))
     return _Field(low, places, places[1] - np.float32(lowest) - 1.0)
 
@@ -207,7 +207,8 @@ def _spine(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     arch = lump(0.0, -1.0, -14.0, (17.0, 5.5, 9.0))
     thorn = lump(0.0, -4.0, -29.0, (3.6, 4.6, np.where(is_atlas, 6.0, 14.0)))
     form = _with(_with(body, wing, 4.0), _with(arch, thorn, 4.0), 4.0)
-    return np.maximum(form, np.maximum(y - TOP - 6.0, -field.outside)).astype(np.float32)
+    ends = np.maximum(y - TOP - 6.0, -field.outside)
+    return np.asarray(np.maximum(form, ends), np.float32)
 
 
 def _nose(field: _Field, marks: Field, eyes: list[Field]) -> Field:
