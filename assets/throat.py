@@ -51,10 +51,10 @@ def build_throat(head: Any, pivots: Mapping[str, Floats]) -> list[Part]:
 def _sheet(name: str, rows: Floats, colours: Floats, bone: str, *, closed: bool = False) -> Part:
     """Rows of points, (n, m, 3), seen from where they turn counter-clockwise."""
     points = rows.reshape(-1, 3)
-    numbers = np.arange(len(points)).reshape(rows.shape[:2]).tolist()
+    numbers = [row.tolist() for row in np.arange(len(points)).reshape(rows.shape[:2])]
     faces = halved(points, quads_between(numbers, closed=closed))
-    normals = vertex_normals(points, faces)
-    inks = colours.reshape(-1, 3)
-    arrays = (each.astype(np.float32) for each in (points, normals, inks))
-    points, normals, inks = arrays
-    return Part(name, points, normals, faces, inks, bone, 0.3)
+    places, normals, inks = (
+        each.astype(np.float32)
+        for each in (points, vertex_normals(points, faces), colours.reshape(-1, 3))
+    )
+    return Part(name, places, normals, faces, inks, bone, 0.3)
