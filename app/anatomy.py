@@ -14,6 +14,7 @@ import numpy as np
 
 from risorius import render
 from risorius.assets.skull import build_skull
+from risorius.assets.throat import build_throat
 
 from .muscle_bands import Muscles
 from .scenes import Scene
@@ -21,7 +22,7 @@ from .scenes import Scene
 SOLIDS = ("muscles", "skull")
 SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's, whose skin is translucent
 OPACITY = 0.25  # of the skin unless told
-SOFT = ("oral_cavity", "gums")  # parts that hide muscles and skull, by how their names begin
+SOFT = ("oral_cavity", "gums")  # parts that line the mouth, by how their names begin
 
 
 @dataclass(frozen=True)
@@ -43,23 +44,43 @@ class Solids:
     def __init__(self, scene: Any) -> None:
         self._scene = scene
         self._skull: dict[str, Any] = {}
+        self._throat: list[Any] = []
         self._muscles: Muscles | None = None
         self._followed = np.empty(0)  # what they were shaped by
+        self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
         self.parts: list[Any] = []  # what is drawn under the skin
+        self._solid_count = 0  # how many of them, the first, no skin leaves bare
 
     def follow(self, dissection: Dissection) -> None:
         """Take what is asked for as it is now, and the head's parts that do not hide it."""
         scene, wanted = self._scene, dissection.solids
         if not dissection.is_on(scene):
             return
-        names = ["cranium", "mandible"] * ("skull" in wanted) + ["nose"] * ("muscles" in wanted)
+        names = ["cranium", "mandible", "spine"] * ("skull" in wanted) + ["nose"] * (
+            "muscles" in wanted
+        )
         missing = [name for name in names if name not in self._skull]
         self._skull |= build_skull(scene.head, scene.simulation.pivots(), missing)
         if "muscles" in wanted:
             self._follow_muscles()
+        self._throat = self._throat or build_throat(scene.head, scene.simulation.pivots())
+        solid = self._throat + [self._skull[name] for name in names]
+        solid += [self._muscles] * ("muscles" in wanted)
         stay = [part for part in scene.parts if not part.name.startswith(SOFT)]
-        shown = [self._skull[name] for name in names]
-        self.parts = stay + shown + [self._muscles] * ("muscles" in wanted)
+        self.parts = solid + stay + self._soft(dissection)
+        self._solid_count = len(solid)
+
+    def _soft(self, dissection: Dissection) -> list[Any]:
+        """What lines the mouth; where there are bones alone, only on the side that is whole."""
+        parts = [part for part in self._scene.parts if part.name.startswith(SOFT)]
+        side = SIDES[dissection.side]
+        if "muscles" in dissection.solids or not side:
+            return parts * ("muscles" in dissection.solids)
+        for part in parts:
+            if (side, part.name) not in self._halves:
+                aside = part.vertices[part.faces, 0].mean(axis=1) - self._middle[0]
+                self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
+        return [self._halves[side, part.name] for part in parts]
 
     def _follow_muscles(self) -> None:
         """Shape the muscles, unless nothing has moved: a camera that turns is no reason."""
@@ -73,13 +94,18 @@ class Solids:
             self._muscles.follow(scene)
         self._followed = now
 
+    @property
+    def _middle(self) -> Any:
+        """Where the midline is at rest, shape (3,)."""
+        return self._scene.rest_positions[self._scene.head.landmarks[27]]
+
     def _cut(self, dissection: Dissection) -> tuple[float, float, float, float] | None:
         """The plane in front of which the skin is whole; None: there is none."""
         side = SIDES[dissection.side]
         if not side:
             return None
         bone = self._scene.bone_transforms()["cranium"]
-        at = bone[:3, :3] @ self._scene.rest_positions[self._scene.head.landmarks[27]] + bone[:3, 3]
+        at = bone[:3, :3] @ self._middle + bone[:3, 3]
         normal = bone[:3, :3] @ (-side, 0.0, 0.0)
         return (*normal, -float(normal @ at))
 
@@ -108,6 +134,11 @@ class Solids:
         if style.shadows:
             solid = [part for part in self.parts if not getattr(part, "hair", 0.0)]
             renderer.cast_shadows(solid, bones, camera, style, **where)
-        renderer.draw_parts(self.parts, bones, camera, style, **where)
+        cut, count = self._cut(dissection), self._solid_count
+        hairs = [part for part in self.parts if getattr(part, "hair", 0.0)]
+        others = [part for part in self.parts[count:] if not getattr(part, "hair", 0.0)]
+        renderer.draw_parts(self.parts[:count], bones, camera, style, cut=cut, **where)
+        renderer.draw_parts(others, bones, camera, style, **where)
         over = replace(style, opacity=dissection.opacity)
-        renderer.draw_mesh(stream, camera, over, cut=self._cut(dissection), **skin, **where)
+        renderer.draw_mesh(stream, camera, over, cut=cut, **skin, **where)
+        renderer.draw_parts(hairs, bones, camera, style, **where)  # they blend with what is there

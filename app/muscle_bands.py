@@ -16,9 +16,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from risorius.jit import njit
+
 from . import muscle_forms as shape
 
 Floats = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.int64]
 ROWS, AROUND = 22, 16  # places along a band, and around its cross section
 EYES = 90.0  # [mm] from one outer corner of the eyes to the other, for which muscle_forms.py holds
 NEIGHBOURS = 8  # vertices that say where the skin is
@@ -28,14 +31,6 @@ RELAXED, CONTRACTED = np.array([0.68, 0.29, 0.245]), np.array([0.50, 0.035, 0.04
 TENDON = np.array([0.93, 0.87, 0.77])
 
 
-class _Near(NamedTuple):
-    """Vertices near some places, NEIGHBOURS of each; components come first, to be quick."""
-
-    x: Floats  # (3, NEIGHBOURS, ...)
-    normals: Floats  # likewise
-    bone: Floats  # (NEIGHBOURS, ...)
-
-
 class _Skin:
     """The skin as it is now, near places."""
 
@@ -43,7 +38,7 @@ class _Skin:
         self, x: Floats, faces: npt.NDArray[np.int32], bone: Floats, middle: Floats
     ) -> None:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
-        self.x, self.bone, self.middle = x, bone, middle
+        self.x, self._bone, self._middle = x, bone, middle
         a, b, c = (x[faces[:, k]] for k in range(3))
         cross = np.cross(b - a, c - a)
         normals = np.stack(
@@ -52,24 +47,57 @@ class _Skin:
         self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
         self._tree = cKDTree(x)
 
-    def near(self, points: Floats) -> _Near:
-        """The vertices near points (..., 3)."""
-        number = np.moveaxis(self._tree.query(points, k=NEIGHBOURS)[1], -1, 0)
-        return _Near(self.x.T[:, number], self.normals.T[:, number], self.bone[number])
+    def near(self, points: Floats) -> Numbers:
+        """The vertices near points (..., 3), NEIGHBOURS of each."""
+        numbers: Numbers = self._tree.query(points, k=NEIGHBOURS)[1]
+        return numbers
 
-    def at(self, points: Floats, near: _Near) -> tuple[Floats, Floats, Floats]:
-        """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
-        off = np.moveaxis(points, -1, 0)[:, None] - near.x
-        outward = np.moveaxis((points - self.middle) * (1.0, 0.25, 1.0), -1, 0)[:, None]
-        square = (off * off).sum(axis=0)
-        # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
-        faced = (near.normals * outward).sum(axis=0)
-        weight = np.exp(-square / (0.35 * square.max(axis=0))) * (faced > 0.0) + 1e-9
-        weight /= weight.sum(axis=0)
-        normal = (weight * near.normals).sum(axis=1)
-        normal /= np.maximum(np.sqrt((normal * normal).sum(axis=0)), 1e-9)
-        outside = (weight * (off * near.normals).sum(axis=0)).sum(axis=0)
-        return outside, np.moveaxis(normal, 0, -1), (weight * near.bone).sum(axis=0)
+    def at(self, points: Floats, near: Numbers) -> tuple[Floats, Floats, Floats]:
+        """How far outside points (..., 3) are, which way is out, and how deep the bone is there.
+
+        near: vertices near them, for all points or for all of the last of their rows.
+        """
+        rows, numbers = points.reshape(-1, 3), near.reshape(-1, NEIGHBOURS)
+        found = _on_skin(rows, numbers, self.x, self.normals, self._bone, self._middle)
+        found = found.reshape(*points.shape[:-1], 5)
+        return found[..., 0], found[..., 1:4], found[..., 4]
+
+
+@njit
+def _on_skin(
+    points: Floats, near: Numbers, x: Floats, normals: Floats, bone: Floats, middle: Floats
+) -> Floats:
+    """For each point how far outside it is, the skin's normal, and the depth of bone, (n, 5)."""
+    result = np.zeros((len(points), 5))
+    count = near.shape[1]
+    off, square = np.zeros((count, 3)), np.zeros(count)
+    for n in range(len(points)):
+        numbers, own = near[n % len(near)], result[n]
+        out_x, out_y, out_z = points[n] - middle
+        for k in range(count):
+            square[k] = 0.0
+            for c in range(3):
+                off[k, c] = points[n, c] - x[numbers[k], c]
+                square[k] += off[k, c] ** 2
+        reach, total = 0.35 * square.max(), 0.0
+        for k in range(count):
+            v = numbers[k]
+            nx, ny, nz = normals[v]
+            # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
+            is_faced = nx * out_x + 0.25 * ny * out_y + nz * out_z > 0.0
+            weight = 1e-9 + (np.exp(-square[k] / reach) if is_faced else 0.0)
+            own[0] += weight * (off[k, 0] * nx + off[k, 1] * ny + off[k, 2] * nz)
+            own[1] += weight * nx
+            own[2] += weight * ny
+            own[3] += weight * nz
+            own[4] += weight * bone[v]
+            total += weight
+        length = np.sqrt(own[1] ** 2 + own[2] ** 2 + own[3] ** 2)
+        own[0] /= total
+        own[4] /= total
+        for c in range(1, 4):
+            own[c] /= max(length, 1e-9 * total)
+    return result
 
 
 class _Bound(NamedTuple):
@@ -302,11 +330,10 @@ class Muscles:
         return sweep, lengths, 0.0 * rows
 
     def _swept(
-        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, skin: _Skin, near: _Near
+        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, skin: _Skin, near: Numbers
     ) -> tuple[Floats, Floats]:
         """Cross sections along lines (b, rows, 3), and how light is around each, (AROUND,)."""
         rails = np.stack([lines - half, lines, lines + half])
-        near = _Near(*(each[..., None, :, :] for each in near))  # the same for all three
         for _ in range(2):
             outside, normal, bone = skin.at(rails, near)
             deep = np.minimum(depth, np.maximum(bone - thick, 0.0))

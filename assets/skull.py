@@ -26,7 +26,8 @@ Field = npt.NDArray[np.float32]  # half as wide: what is done to grids is as qui
 CELL, COARSE = 1.9, 3  # [mm] of a head of EYES, and how many of them the outer form is known at
 EYES = 90.0  # [mm] from one outer corner to the other, for which all measures hold
 NEIGHBOURS = 14  # points that say where the bone is
-NAMES = "cranium", "mandible", "nose"
+NAMES = "cranium", "mandible", "spine", "nose"
+TOP, VERTEBRA = -32.0, 17.0  # [mm] the atlas below the condyles of the jaw; from one to the next
 BONE, HOLLOW = np.array([0.90, 0.85, 0.735]), np.array([0.34, 0.235, 0.165])
 CARTILAGE, SHADED = np.array([0.80, 0.82, 0.80]), np.array([0.50, 0.42, 0.40])
 # Side views (z, y) [mm], from the middle of the condyles: outlines of what is cut from the form.
@@ -69,21 +70,22 @@ def build_skull(
         eyes turn about, by the names of bones, each (3,). names: which are wanted, of NAMES; the
         nose alone takes a tenth of the time.
     """
-    marks = head.vertices[head.landmarks]
-    scale = float(np.linalg.norm(marks[45] - marks[36])) / EYES
-    origin = np.array([marks[27:31, 0].mean(), *pivots["mandible"][1:]])
+    origin, scale = origin_and_scale(head, pivots)
     placed = {name: ((at - origin) / scale).astype(np.float32) for name, at in pivots.items()}
-    marks = ((marks - origin) / scale).astype(np.float32)
+    marks = ((head.vertices[head.landmarks] - origin) / scale).astype(np.float32)
     eyes = [at for name, at in placed.items() if name.startswith("eye")]
+    carve = {"cranium": _cranium, "mandible": _mandible, "nose": _nose, "spine": _spine}
     fields: dict[bool, _Field] = {}
     parts: dict[str, Part] = {}
     for name in names:
         is_nose = name == "nose"
-        if is_nose not in fields:
-            fields[is_nose] = _outer_form(head, origin, scale, marks, eyes, is_nose=is_nose)
-        field = fields[is_nose]
-        carve = {"cranium": _cranium, "mandible": _mandible, "nose": _nose}[name]
-        shape = carve(field, marks, eyes)
+        if name == "spine":
+            field = _neck_form(float(head.vertices[:, 1].min() - origin[1]) / scale)
+        else:
+            if is_nose not in fields:
+                fields[is_nose] = _outer_form(head, origin, scale, marks, eyes, is_nose=is_nose)
+            field = fields[is_nose]
+        shape = carve[name](field, marks, eyes)
         for part in head.parts:  # bone holds the teeth as gums do
             if part.name.startswith("gums") and part.bone == name:
                 shape = _with(shape, _around(field, (part.vertices - origin) / scale), 3.0)
@@ -104,10 +106,17 @@ def build_skull(
             normals.astype(np.float32),
             faces,
             (dark + light * (bright - dark)).astype(np.float32),
-            "cranium" if is_nose else name,
+            {"nose": "cranium", "spine": "neck"}.get(name, name),
             0.28,
         )
     return parts
+
+
+def origin_and_scale(head: Any, pivots: Mapping[str, Floats]) -> tuple[Floats, float]:
+    """The middle of the jaw's condyles, (3,), and how large a head is, 1 where EYES holds."""
+    marks = head.vertices[head.landmarks]
+    scale = float(np.linalg.norm(marks[45] - marks[36])) / EYES
+    return np.array([marks[27:31, 0].mean(), *pivots["mandible"][1:]]), scale
 
 
 def _outer_form(
@@ -163,6 +172,43 @@ def _outer_form(
         (lowest + step * each).astype(np.float32) for lowest, each in zip(low, fine, strict=True)
     ]
     return _Field(low, np.stack(np.meshgrid(*axes, indexing="ij")), form.astype(np.float32))
+
+
+def _neck_form(lowest: float) -> _Field:
+    """A grid for the spine, down to the end of the neck."""
+    low, high = np.array([-23.0 * CELL, lowest, -66.0]), np.array([23.5 * CELL, -18.0, 12.0])
+    axes = [np.arange(a, b, CELL, dtype=np.float32) for a, b in zip(low, high, strict=True)]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"))
+    return _Field(low, places, places[1] - np.float32(lowest) - 1.0)
+
+
+def _spine(field: _Field, marks: Field, eyes: list[Field]) -> Field:
+    """Vertebrae from the skull's condyles to where the neck ends."""
+    x, y, z = field.places
+    across, down = np.abs(x), (TOP - y) / 120.0
+    z = z - (22.0 * down * (0.64 - down) - 14.0)  # off the line of the bodies
+    number = np.round((TOP - y) / VERTEBRA)
+    v = y - TOP + VERTEBRA * number
+    is_atlas = number < 0.5
+
+    def lump(aside: Any, up: float, front: float, radii: Any) -> Field:
+        """Distance from an ellipsoid in each vertebra, about."""
+        a, b, c = radii
+        off = np.sqrt(((across - aside) / a) ** 2 + ((v - up) / b) ** 2 + ((z - front) / c) ** 2)
+        return np.asarray((off - 1.0) * b, np.float32)
+
+    waist = 1.1 * np.cos(2.0 * np.pi * v / VERTEBRA) - 1.6 * np.exp(
+        -(((np.abs(v) - 8.5) / 1.6) ** 2)
+    )
+    body = (np.hypot(x / 12.5, z / 9.5) - 1.0) * 10.0 + waist
+    wing = lump(
+        np.where(is_atlas, 24.0, 17.0), 0.0, -5.0, (np.where(is_atlas, 14.0, 9.5), 5.5, 7.0)
+    )
+    arch = lump(0.0, -1.0, -14.0, (17.0, 5.5, 9.0))
+    thorn = lump(0.0, -4.0, -29.0, (3.6, 4.6, np.where(is_atlas, 6.0, 14.0)))
+    form = _with(_with(body, wing, 4.0), _with(arch, thorn, 4.0), 4.0)
+    ends = np.maximum(y - TOP - 6.0, -field.outside)
+    return np.asarray(np.maximum(form, ends), np.float32)
 
 
 def _nose(field: _Field, marks: Field, eyes: list[Field]) -> Field:

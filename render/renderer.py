@@ -30,7 +30,7 @@ from .stream import Share, Stream
 from .style import Colour, ColourBy, Shading, Style
 from .surface import Image, Surface
 from .texture import Texture, WrinkleMap
-from .translucency import Plane, blending, draw_nearest, set_translucency
+from .translucency import SUNK, Plane, blending, draw_nearest, set_cut, set_translucency
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
@@ -252,12 +252,14 @@ class Renderer:
         *,
         viewport: Viewport | None = None,
         clip: Viewport | None = None,
+        cut: Plane | None = None,
     ) -> None:
         """Draw coloured parts, each moved by the matrix of its bone (column vectors); hairs last.
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
         Raises ValueError for a bone without transform.
+        cut: in front of it whole skin will hide them, even where they come out of it.
         """
         view = self._camera_view(camera, viewport, clip)
         shadow = self._shadow if style.shadows else None
@@ -269,8 +271,10 @@ class Renderer:
             self._occluder.choose_parts(placed)
         programs = {}
         for has_fibres in {buffers.fibres is not None for buffers, _ in placed}:
-            defines = "PIXEL", "COLOURED", *["SHADOWS"] * bool(shadow), *["FIBRES"] * has_fibres
-            programs[has_fibres] = self._program("surface.glsl", *defines)
+            defines = ["SHADOWS"] * bool(shadow) + ["FIBRES"] * has_fibres + ["SUNK"] * bool(cut)
+            programs[has_fibres] = self._program("surface.glsl", "PIXEL", "COLOURED", *defines)
+            if cut is not None:
+                set_cut(programs[has_fibres], view, cut, SUNK)
             if shadow is not None:
                 shadow.set_uniforms(programs[has_fibres], view, _SHADOW_UNIT)
         for buffers, transform in placed:

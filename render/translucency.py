@@ -13,6 +13,7 @@ from .style import Style
 
 Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
 CUT_WIDTH = 0.008  # of the scene's radius: how thick skin looks where it is cut
+SUNK = 0.08  # of the scene's radius: as far as anything comes out of whole skin that should hide it
 # Colour as usual; the layer starts out transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,
@@ -39,8 +40,15 @@ def blending(gl: moderngl.Context) -> Iterator[None]:
 def draw_nearest(
     gl: moderngl.Context, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]
 ) -> None:
-    """Blend the nearest layer of a mesh alone: its depths first, then what lies at them."""
+    """Blend the nearest layer of a mesh alone: its depths first, then what lies at them.
+
+    Before them the inner side of what is whole.
+    """
     gl.enable(moderngl.CULL_FACE)
+    gl.cull_face = "front"
+    for program, share in shares:
+        stream.draw(program, share)
+    gl.cull_face = "back"
     gl.enable(moderngl.BLEND)
     gl.blend_func = moderngl.ZERO, moderngl.ONE  # leaves all colours
     for program, share in shares:
@@ -56,6 +64,10 @@ def set_translucency(
 ) -> None:
     """How far skin lets what is under it show, and behind which plane; None: everywhere."""
     program["opacity"] = style.opacity
-    there = (0.0, 0.0, 0.0, -1.0) if cut is None else np.linalg.inv(view.world_to_view) @ cut
-    program["cut"] = tuple(there)
-    program["cut_width"] = CUT_WIDTH * view.camera.scene_radius
+    set_cut(program, view, cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
+
+
+def set_cut(program: moderngl.Program, view: CameraView, cut: Plane, width: float) -> None:
+    """Where skin is cut, and how far from there that is seen [of the scene's radius]."""
+    program["cut"] = tuple(np.linalg.inv(view.world_to_view) @ cut)
+    program["cut_width"] = width * view.camera.scene_radius

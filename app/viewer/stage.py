@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from risorius import render
 
 from ..anatomy import Solids
-from ..capture.captions import Label, captioned, labels
+from ..capture.captions import SPLITS_BAR, Label, captioned, labels
 from ..files import Image
 from ..looks import STATIC, Refinement
 from ..pipeline import DrawnMesh, Viewport, texture_of
@@ -158,6 +158,8 @@ class Stage:
         letters = "AB" if len(shots) == 2 else view.display.compare.removeprefix("off")
         texts = [f"{a}   {shot.drawn.caption}" for a, shot in zip(letters, shots, strict=False)]
         places, bar = [shot.clip for shot in shots], COLOURS[view.display.colours].bar
+        if bar is SPLITS_BAR and all(shot.drawn is self.static for shot in shots):
+            bar = None  # nothing is split there
         return labels(texts, places, bar, style, least=view.letter)
 
     def _draw_shot(
@@ -165,18 +167,16 @@ class Stage:
     ) -> None:
         camera, dissection, stream = view.camera, view.display.dissection, shot.drawn.stream
         where: dict[str, Any] = {"viewport": shot.viewport, "clip": shot.clip}
-        has_uv = shot.drawn.has_uv
-        texture = self._texture if has_uv else None
-        wrinkles = self._wrinkling.map if self._wrinkling and has_uv else None
+        texture = self._texture if shot.drawn.has_uv else None
+        wrinkles = self._wrinkling.map if self._wrinkling and shot.drawn.has_uv else None
         skin: dict[str, Any] = {"values": values, "texture": texture, "wrinkles": wrinkles}
         self._solids.draw(self.renderer, stream, camera, style, dissection, where=where, skin=skin)
         if not (self.surface.samples or dissection.is_on(self.scene)):
             self.renderer.draw_outline(stream, camera, style, texture=texture, **where)
 
     def _overlays(self, view: View, pointed: tuple[str, ...]) -> list[Lines]:
-        edges = self.static.refiner.edges
-        names = [name for name in view.display.overlays if name in LINES]
-        lines = [LINES[name](self.scene, edges, view.camera) for name in names]
+        edges, names = self.static.refiner.edges, view.display.overlays
+        lines = [LINES[name](self.scene, edges, view.camera) for name in names if name in LINES]
         return [*lines, pointed_lines(self.scene, pointed)] if pointed else lines
 
     def draw_image(self, view: View, *, has_captions: bool = True) -> Image:

@@ -3,7 +3,8 @@
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
 // a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), FRINGE (fading fringes along
 // contours, see outline.py), HAIR (thin cones, never drawn thinner than a pixel: they fade instead),
-// FIBRES (striation of muscle), TRANSLUCENT (skin that shows what is under it).
+// FIBRES (striation of muscle), TRANSLUCENT (skin that shows what is under it), SUNK (what is under
+// it, hidden where skin is whole).
 
 #include "lighting.glsl"
 
@@ -85,6 +86,10 @@ uniform mat4 shadow_matrix;   // view space -> place in the shadow map
 uniform float shadow_offset;
 uniform float shadow_reach;
 #endif
+#if defined(SUNK)
+uniform vec4 cut;  // plane, view space; in front of it the skin is whole
+uniform float cut_width;
+#endif
 #if defined(HAIR)
 uniform float half_hair;   // of a hair's thickness
 uniform float least_half;  // of what it is drawn with at least, at distance 1
@@ -129,6 +134,12 @@ void main() {
     surface.light_place = (shadow_matrix * vec4(position.xyz + height * normal, 1.0)).xyz;
 #endif
     gl_Position = projection * position;
+#if defined(SUNK)
+    // In its place, but as deep as if it were farther off.
+    float beyond = clamp(dot(cut, position), 0.0, cut_width);
+    vec4 sunk = projection * vec4(position.xyz * (1.0 + beyond / length(position.xyz)), 1.0);
+    gl_Position.z = sunk.z / sunk.w * gl_Position.w;
+#endif
 #if defined(FRINGE)
     gl_Position.xy += in_fringe.xy * gl_Position.w;
     surface.coverage = in_fringe.z;
@@ -380,6 +391,7 @@ void main() {
 #elif defined(TRANSLUCENT)
     // Where it is seen from the side there is more of it: so the outline of the face reads.
     float from_cut = dot(cut, vec4(surface.position, 1.0));
+    if (!IS_FRONT && from_cut < 0.0) discard;
     float grazing = 1.0 - clamp(facing, 0.0, 1.0);
     float veil = grazing * grazing * min(3.0 * opacity, 1.0);
     float shown_share = from_cut > 0.0 ? 1.0 : mix(opacity, 1.0, veil);

@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from risorius import render
 from risorius.__main__ import command
 from risorius.app.anatomy import SOLIDS, Dissection, Solids
+from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.muscle_bands import AROUND, ROWS, Muscles
 from risorius.app.scenes import FaceScene
@@ -105,7 +106,7 @@ def test_more_skin_hides_more(studio: Capture) -> None:
 def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
     """At rest, in a smile, in a turned head that yawns."""
     made = solids_of(studio, **pose)
-    assert len(made) == 4
+    assert len(made) == 5
     for part in made:
         check_surface(part)
 
@@ -188,7 +189,7 @@ def test_muscles_need_no_skull_and_rest_with_the_face() -> None:
     scene = FaceScene()
     solids = Solids(scene)
     solids.follow(Dissection(("muscles",)))
-    muscles = solids.parts[-1]
+    muscles = next(part for part in solids.parts if part.name == "muscles")
     assert [part.name for part in solids.parts if "skull" in part.name] == ["skull_nose"]
     shape = muscles.vertices
     solids.follow(Dissection(("muscles",)))
@@ -198,3 +199,49 @@ def test_muscles_need_no_skull_and_rest_with_the_face() -> None:
         scene.step(1.0 / 60.0)
     solids.follow(Dissection(("muscles",)))
     assert np.abs(muscles.vertices - shape).max() > 0.1
+
+
+@pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])
+def test_the_whole_side_is_the_usual_picture(
+    studio: Capture, pose: dict[str, float], view: str
+) -> None:
+    """Seen from its own side, nothing comes through skin; the mouth is lined, lashes are there."""
+    posed(studio.scene, **pose)  # type: ignore[arg-type]
+    camera, studio.camera = studio.camera, camera_for(studio.scene, view)
+    usual = picture(studio, Dissection(), shadows=False)
+    opened = picture(studio, Dissection(SOLIDS, 0.3, "left"), shadows=False)
+    shown = np.abs(opened - usual).max(axis=2) > 24
+    midline = studio.scene.positions[studio.scene.head.landmarks[[27, 33, 8]]]  # type: ignore[attr-defined]
+    edge = int(pixels_of(studio.camera, midline)[:, 0].min()) - 16  # as far as the neck's is aside
+    studio.camera = camera
+    assert shown[:, :edge].mean() < 0.001 and shown.mean() > 0.05
+
+
+@pytest.mark.parametrize("solids", [("skull",), SOLIDS])
+def test_no_background_shines_through_a_head(studio: Capture, solids: tuple[str, ...]) -> None:
+    """Behind a mouth that is open, and in the collar, there is something."""
+    posed(studio.scene, jaw_open=1.0)  # type: ignore[arg-type]
+    marks = studio.scene.positions[studio.scene.head.landmarks]  # type: ignore[attr-defined]
+    collar = np.array([[x, -150.0, 0.0] for x in (-20.0, 0.0, 20.0)])
+    lips = marks[60:68]
+    mouth = 0.6 * lips + 0.4 * lips.mean(axis=0)
+    camera = studio.camera
+    for view, places in (("0,0,1.2", mouth), ("0,15", mouth), ("0,45", collar)):
+        studio.camera = camera_for(studio.scene, view)
+        x, y = np.rint(pixels_of(studio.camera, places)).astype(int).T
+        seen = []
+        for colour in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
+            style = {"background": render.Background(colour, colour), "shadows": False}
+            seen.append(picture(studio, Dissection(solids, 0.0), **style)[y, x])
+        assert np.abs(seen[0] - seen[1]).max() < 24, view
+    studio.camera = camera
+
+
+def pixels_of(camera: render.OrbitCamera, points: Any) -> Any:
+    """Where points of the world are in the picture: column and row."""
+    matrix = np.asarray(camera.view_matrix()) @ np.asarray(
+        camera.projection_matrix(SIZE[0] / SIZE[1])
+    )
+    clip = np.hstack([points, np.ones((len(points), 1))]) @ matrix
+    place = 0.5 * (clip[:, :2] / clip[:, 3:] + 1.0)
+    return np.stack([place[:, 0] * SIZE[0], (1.0 - place[:, 1]) * SIZE[1]], axis=1)

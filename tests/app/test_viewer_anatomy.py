@@ -38,3 +38,18 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
     xdotool(viewer, "key", "u")
     draw_frames(viewer)
     assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)
+
+
+@pytest.mark.usefixtures("calm")
+def test_a_colour_bar_goes_with_the_colours(viewer: Viewer) -> None:
+    """B shows one side of a comparison: the mesh that nothing splits has no bar, the other has."""
+    display = viewer.settings.display
+    display.colours, display.compare = "splits", "side by side"
+    draw_frames(viewer)
+    assert len(viewer.surface.labels) == 3  # two captions
+    counts = {}
+    for _ in range(2):
+        xdotool(viewer, "key", "b")
+        draw_frames(viewer)
+        counts[display.compare] = len(viewer.surface.labels)
+    assert counts == {"A alone": 1, "B alone": 2}
