@@ -19,10 +19,10 @@ import numpy as np
 from ...jit import njit
 from ..border.rows import place_unmoved
 from ..kahler.frame import ONCE, FrameBuffers
-from ..kahler.smoothing import mix, write_mean_normal
+from ..kahler.smoothing import write_mean_normal
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.vectors import HALF, ZERO
+from ..mesh.vectors import HALF, ZERO, mix, plus, row_of, times, write_row
 
 QUARTER = np.float32(0.25)
 THREE_QUARTERS = np.float32(0.75)
@@ -89,18 +89,18 @@ def place_on_curves(
         a, b = around.points[e, 0], around.points[e, 1]
         row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
         near_a, near_b = np.uint32(row - 1), np.uint32(row + 1)
-        is_twice = frame.splits[e] == 2
-        share, twice = frame.growth_once[e], frame.growth_twice[e]
-        for i in range(3):
-            at_a, at_b = points[a, i], points[b, i]
-            middle = HALF * (at_a + at_b) + share * bulges[e, MIDDLE, i]
-            vertices[row, i] = middle
-            if is_twice:
-                full_a = THREE_QUARTERS * at_a + QUARTER * at_b + bulges[e, NEAR_START, i]
-                full_b = THREE_QUARTERS * at_b + QUARTER * at_a + bulges[e, NEAR_END, i]
-                vertices[near_a, i] = mix(HALF * (at_a + middle), full_a, twice)
-                vertices[near_b, i] = mix(HALF * (at_b + middle), full_b, twice)
+        at_a, at_b, bulge = row_of(points, a), row_of(points, b), bulges[e]
+        out = times(frame.growth_once[e], row_of(bulge, MIDDLE))
+        middle = plus(times(HALF, plus(at_a, at_b)), out)
+        write_row(vertices, row, middle)
         write_mean_normal(vertices, a, b, row)
-        if is_twice:
+        if frame.splits[e] == 2:
+            full_a = plus(times(THREE_QUARTERS, at_a), times(QUARTER, at_b))
+            full_b = plus(times(THREE_QUARTERS, at_b), times(QUARTER, at_a))
+            full_a = plus(full_a, row_of(bulge, NEAR_START))
+            full_b = plus(full_b, row_of(bulge, NEAR_END))
+            growth = frame.growth_twice[e]
+            write_row(vertices, near_a, mix(times(HALF, plus(at_a, middle)), full_a, growth))
+            write_row(vertices, near_b, mix(times(HALF, plus(at_b, middle)), full_b, growth))
             write_mean_normal(vertices, a, row, near_a)
             write_mean_normal(vertices, b, row, near_b)

@@ -40,6 +40,7 @@ from ..mesh.vectors import (
     difference,
     dot,
     less,
+    mix,
     plus,
     row_of,
     times,
@@ -223,7 +224,7 @@ def turn_normals(mesh: Connectivity, frame: FrameBuffers, normals: Floats) -> No
         normal = row_of(normals, np.uint32(vertex_count + e))
         if growth < ONE:
             mean = unit(plus(row_of(normals, a), row_of(normals, b)))
-            normal = unit(plus(times(ONE - growth, mean), times(growth, normal)))
+            normal = unit(mix(mean, normal, growth))
         write_row(vertices, row, normal, 3)
         if frame.splits[e] == 2:
             write_mean_normal(vertices, a, row, np.uint32(row - 1))
@@ -251,8 +252,7 @@ def turn_centres(mesh: Connectivity, frame: FrameBuffers, rows: Floats) -> None:
         if growth > ZERO:
             growth = min(ONE, SOON * growth)
             mean = row_of(vertices, row, 3)
-            turned = plus(times(ONE - growth, mean), times(growth, unit(hexagon)))
-            write_row(vertices, row, unit(turned), 3)
+            write_row(vertices, row, unit(mix(mean, unit(hexagon), growth)), 3)
 
 
 @njit

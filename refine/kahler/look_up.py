@@ -17,7 +17,8 @@ import numpy as np
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
 from ..border.stream import StreamArrays
-from ..mesh.arrays import Floats, Indices, Short, Unsigned
+from ..mesh.arrays import Arrays, Floats, Indices, Short, Unsigned
+from ..mesh.vectors import WIDTH, row_of, write_row
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
 from .table import CENTRE, Patterns
 
@@ -42,13 +43,14 @@ def number_points(
     more_sides: Unsigned,
     rim_edges: Unsigned,
     wedge_count: int,
-    frame: FrameBuffers,
+    frame: Arrays,
 ) -> None:
     """List the split edges, give new points their rows, and triangles their configuration.
 
     `split_once` gets every split edge, `split_twice` those split twice. The entries of
     `first_points` for edges that are not split have no meaning. `counts` gets all but centres.
     """
+    frame = FrameBuffers(*frame)
     splits, configurations = frame.splits, frame.configurations
     edge_count, face_count = edge_sides.shape[0], configurations.shape[0] - 1
     once_count = twice_count = 0
@@ -114,40 +116,43 @@ def place_rim_attributes(rim_uv: Indices, frame: FrameBuffers, values: Floats) -
 def look_up_triangles(
     corners: Unsigned,
     triangle_rims: Unsigned,
-    frame: FrameBuffers,
-    patterns: Patterns,
+    frame: Arrays,
+    patterns: Arrays,
     table_rows: Short,
-    out: StreamArrays,
+    out: Arrays,
 ) -> None:
     """Write the subtriangles of every triangle by its row in the table (section 4.3).
 
     A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
     quarter points in reverse. Centres are numbered in the order of the triangles that have one.
     """
-    triangles, source = out.triangles, out.source
+    frame, patterns, out = FrameBuffers(*frame), Patterns(*patterns), StreamArrays(*out)
+    triangles, source, subtriangles = out.triangles, out.source, patterns.subtriangles
+    splits, first_points = frame.splits, frame.first_points
+    assert corners.shape[1] == triangle_rims.shape[1] == WIDTH
+    assert triangles.shape[1] == subtriangles.shape[2] == WIDTH
     points = np.zeros(CENTRE + 1, np.uint32)
     points[CENTRE] = frame.counts[ROWS]
     one, two = np.uint32(1), np.uint32(2)
-    count = 0
+    count = np.uint32(0)
     for t in range(corners.shape[0]):
-        row = table_rows[t]
+        row, corner = table_rows[t], row_of(corners, t)
         if row == 0:  # most triangles are not split
-            for i in range(3):
-                triangles[count, i] = corners[t, i]
+            write_row(triangles, count, corner)
             source[count] = t
-            count += 1
+            count += one
             continue
         # The 12 numbered points; those of edges that are not split are never looked up.
         for i in range(3):
             rim, against = triangle_rims[t, i] >> one, triangle_rims[t, i] & one
-            first = frame.first_points[rim]
+            first = first_points[rim]
             points[i] = corners[t, i]
-            points[3 + 3 * i] = first + (frame.splits[rim] >> 1)  # the only point, or the second
+            points[3 + 3 * i] = first + (splits[rim] >> 1)  # the only point, or the second
             points[4 + 3 * i] = first + two * against
             points[5 + 3 * i] = first + two - two * against
         for k in range(patterns.counts[row]):
-            for i in range(3):
-                triangles[count, i] = points[patterns.subtriangles[row, k, i]]
+            a, b, c = row_of(subtriangles[row], k)
+            write_row(triangles, count, (points[a], points[b], points[c]))
             source[count] = t
-            count += 1
-        points[CENTRE] += patterns.subtriangles[row, 0, 0] == CENTRE
+            count += one
+        points[CENTRE] += subtriangles[row, 0, 0] == CENTRE

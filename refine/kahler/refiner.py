@@ -101,7 +101,7 @@ class Kahler(BaseRefiner):
         """Give new points their rows and triangles their row of the table; count both."""
         mesh, frame = self.connectivity, self._frame
         wedge_count = len(mesh.wedge_vertices)
-        number_points(mesh.edge_sides, mesh.more_sides, mesh.rim_edges, wedge_count, frame)
+        number_points(mesh.edge_sides, mesh.more_sides, mesh.rim_edges, wedge_count, frame[:])
         if self.history is not None:
             self.history.follow(frame.configurations)
         return int(frame.counts[ROWS]), int(frame.counts[TRIANGLES])
@@ -118,9 +118,9 @@ class Kahler(BaseRefiner):
 
     def _look_up(self, out: StreamArrays) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
-        mesh = self.connectivity
+        mesh, frame, patterns = self.connectivity, self._frame[:], self._patterns[:]
         look_up_triangles(
-            mesh.corners, mesh.triangle_rims, self._frame, self._patterns, self._table_rows, out
+            mesh.corners, mesh.triangle_rims, frame, patterns, self._table_rows, out[:]
         )
 
     def _pass_view(self, view: View | None) -> None:

@@ -52,10 +52,22 @@ import numpy as np
 
 from ...jit import njit
 from ..border.registry import Registry
-from ..mesh.arrays import Doubles, Floats, Small
+from ..mesh.arrays import Arrays, Doubles, Floats, Small
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.rings import NEAR, Rings, vertex_rings
-from ..mesh.vectors import HALF, ONE, ZERO, plus, row_of, unit, write_row
+from ..mesh.vectors import (
+    HALF,
+    ONE,
+    WIDTH,
+    ZERO,
+    Vector,
+    mix,
+    plus,
+    row_of,
+    times,
+    unit,
+    write_row,
+)
 from .frame import ONCE, TWICE, FrameBuffers
 
 EDGE_END = np.float32(3 / 8)
@@ -146,13 +158,7 @@ class LoopScheme:
 
     def place(self, frame: FrameBuffers) -> None:
         """Write moved vertices, first level, second level."""
-        place_points(self._around, frame, self._rings, self._first_level)
-
-
-@njit
-def mix(start: np.float32, end: np.float32, share: np.float32) -> np.float32:
-    """A share of the way from one number to another; to the last bit one of them at 0 and at 1."""
-    return (ONE - share) * start + share * end
+        place_points(self._around[:], frame[:], self._rings[:], self._first_level[:])
 
 
 @njit
@@ -180,43 +186,51 @@ def place_vertices(
 
     `growth`: of each vertex, shape (V,).
     """
+    near, others = rings.near, rings.others
+    assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR
     for v in range(points.shape[0]):
-        write_row(vertices, v, row_of(normals, v), 3)
-        if growth[v] == ZERO:
-            for i in range(3):
-                vertices[v, i] = points[v, i]
-            continue
-        for i in range(3):
-            total = points[rings.near[v, 0], i]
+        point = row_of(points, v)
+        if growth[v] > ZERO:
+            total = row_of(points, near[v, 0])
             for k in range(1, NEAR):
-                total += points[rings.near[v, k], i]
+                total = plus(total, row_of(points, near[v, k]))
             for k in range(rings.starts[v], rings.starts[v + 1]):
-                total += points[rings.others[k], i]
-            moved = rings.own[v] * points[v, i] + rings.ring[v] * total
-            vertices[v, i] = mix(points[v, i], moved, growth[v])
+                total = plus(total, row_of(points, others[k]))
+            moved = plus(times(rings.own[v], point), times(rings.ring[v], total))
+            point = mix(point, moved, growth[v])
+        write_row(vertices, v, point)
+        write_row(vertices, v, row_of(normals, v), 3)
 
 
 @njit
 def place_middles(around: Surroundings, frame: FrameBuffers, middles: Floats) -> None:
     """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`."""
-    points, vertices = frame.points, frame.rows
+    points, normals, vertices = frame.points, frame.normals, frame.rows
     for k in range(frame.counts[ONCE]):
         e = frame.split_once[k]
         a, b = around.points[e, 0], around.points[e, 1]
         c, d = around.points[e, 2], around.points[e, 3]
         row = frame.first_points[e] + (frame.splits[e] >> 1)
-        growth = frame.growth_once[e]
-        for i in range(3):
-            ends = points[a, i] + points[b, i]
-            middle = BORDER_EDGE_END * ends
-            if around.is_interior[e]:
-                middle = EDGE_END * ends + EDGE_WING * (points[c, i] + points[d, i])
-            middles[e, i] = middle
-            if growth < ONE:
-                middle = mix(HALF * (vertices[a, i] + vertices[b, i]), middle, growth)
-            vertices[row, i] = middle
-        mean = unit(plus(row_of(frame.normals, a), row_of(frame.normals, b)))
-        write_row(vertices, row, mean, 3)
+        ends = plus(row_of(points, a), row_of(points, b))
+        middle = times(BORDER_EDGE_END, ends)
+        if around.is_interior[e]:
+            wings = plus(row_of(points, c), row_of(points, d))
+            middle = plus(times(EDGE_END, ends), times(EDGE_WING, wings))
+        write_row(middles, e, middle)
+        if frame.growth_once[e] < ONE:
+            straight = times(HALF, plus(row_of(vertices, a), row_of(vertices, b)))
+            middle = mix(straight, middle, frame.growth_once[e])
+        write_row(vertices, row, middle)
+        write_row(vertices, row, unit(plus(row_of(normals, a), row_of(normals, b))), 3)
+
+
+@njit
+def wing(
+    points: Floats, middles: Floats, ends: tuple[int, int], e: np.uint32, growth: np.float32
+) -> Vector:
+    """The first-level point of a neighbour edge, as far as it has grown out of its midpoint."""
+    straight = times(HALF, plus(row_of(points, ends[0]), row_of(points, ends[1])))
+    return mix(straight, row_of(middles, e), growth)
 
 
 @njit
@@ -235,42 +249,37 @@ def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -
         near_a = frame.first_points[e]
         centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
         a, b = around.points[e, 0], around.points[e, 1]
-        c, d = around.points[e, 2], around.points[e, 3]
-        # p, q, r, s: the edges ac, bc, ad, bd
-        p, q = around.wings[e, 0], around.wings[e, 1]
-        r, s = around.wings[e, 2], around.wings[e, 3]
-        grown_p, grown_q = growth_of_split(splits, once, p), growth_of_split(splits, once, q)
-        grown_r, grown_s = growth_of_split(splits, once, r), growth_of_split(splits, once, s)
+        m, moved_a, moved_b = row_of(middles, e), row_of(vertices, a), row_of(vertices, b)
+        ends_a, ends_b, moved = plus(moved_a, m), plus(moved_b, m), plus(moved_a, moved_b)
+        if around.is_interior[e]:
+            c, d = around.points[e, 2], around.points[e, 3]
+            ac, bc = around.wings[e, 0], around.wings[e, 1]
+            ad, bd = around.wings[e, 2], around.wings[e, 3]
+            p = wing(points, middles, (a, c), ac, growth_of_split(splits, once, ac))
+            q = wing(points, middles, (b, c), bc, growth_of_split(splits, once, bc))
+            r = wing(points, middles, (a, d), ad, growth_of_split(splits, once, ad))
+            s = wing(points, middles, (b, d), bd, growth_of_split(splits, once, bd))
+            wings_a, wings_b = plus(p, r), plus(q, s)
+            ring = plus(moved, plus(wings_a, wings_b))
+            beside_a = plus(times(EDGE_END, ends_a), times(EDGE_WING, wings_a))
+            beside_b = plus(times(EDGE_END, ends_b), times(EDGE_WING, wings_b))
+            middle = plus(times(MIDDLE_OWN, m), times(MIDDLE_RING, ring))
+        else:
+            beside_a, beside_b = times(BORDER_EDGE_END, ends_a), times(BORDER_EDGE_END, ends_b)
+            middle = plus(times(BORDER_MIDDLE_OWN, m), times(BORDER_MIDDLE_RING, moved))
         growth = frame.growth_twice[e]
-        for i in range(3):
-            m, moved_a, moved_b = middles[e, i], vertices[a, i], vertices[b, i]
-            ends_a, ends_b = moved_a + m, moved_b + m
-            if around.is_interior[e]:
-                at_a, at_b, at_c, at_d = points[a, i], points[b, i], points[c, i], points[d, i]
-                at_p = mix(HALF * (at_a + at_c), middles[p, i], grown_p)
-                at_q = mix(HALF * (at_b + at_c), middles[q, i], grown_q)
-                at_r = mix(HALF * (at_a + at_d), middles[r, i], grown_r)
-                at_s = mix(HALF * (at_b + at_d), middles[s, i], grown_s)
-                wings_a, wings_b = at_p + at_r, at_q + at_s
-                ring = (moved_a + moved_b) + (wings_a + wings_b)
-                beside_a = EDGE_END * ends_a + EDGE_WING * wings_a
-                beside_b = EDGE_END * ends_b + EDGE_WING * wings_b
-                middle = MIDDLE_OWN * m + MIDDLE_RING * ring
-            else:
-                beside_a, beside_b = BORDER_EDGE_END * ends_a, BORDER_EDGE_END * ends_b
-                middle = BORDER_MIDDLE_OWN * m + BORDER_MIDDLE_RING * (moved_a + moved_b)
-            vertices[near_a, i] = mix(HALF * ends_a, beside_a, growth)
-            vertices[near_b, i] = mix(HALF * ends_b, beside_b, growth)
-            vertices[centre, i] = mix(m, middle, growth)
+        write_row(vertices, near_a, mix(times(HALF, ends_a), beside_a, growth))
+        write_row(vertices, centre, mix(m, middle, growth))
+        write_row(vertices, near_b, mix(times(HALF, ends_b), beside_b, growth))
         write_mean_normal(vertices, a, centre, near_a)
         write_mean_normal(vertices, b, centre, near_b)
 
 
 @njit
-def place_points(
-    around: Surroundings, frame: FrameBuffers, rings: Rings, first: FirstLevel
-) -> None:
+def place_points(around: Arrays, frame: Arrays, rings: Arrays, first: Arrays) -> None:
     """Write moved vertices, the first level and the second."""
+    around, frame = Surroundings(*around), FrameBuffers(*frame)
+    rings, first = Rings(*rings), FirstLevel(*first)
     grow_vertices(around, frame, first.vertex_growth)
     place_vertices(frame.points, frame.normals, rings, first.vertex_growth, frame.rows)
     place_middles(around, frame, first.middles)

@@ -12,6 +12,7 @@ import numpy as np
 from ...jit import njit
 from .arrays import Doubles, Floats, Unsigned
 from .vectors import (
+    WIDTH,
     ZERO,
     Vector,
     add_to_row,
@@ -32,6 +33,7 @@ def cross_product(positions: Doubles, a: np.uint32, b: np.uint32, c: np.uint32) 
 @njit
 def normalise(vectors: Floats) -> None:
     """Bring vectors, shape (V, 3), to length one; those that are zero stay zero."""
+    assert vectors.shape[1] == WIDTH
     for v in range(vectors.shape[0]):
         write_row(vectors, v, unit(row_of(vectors, v)))
 
@@ -42,6 +44,7 @@ def vertex_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> None
 
     Zero where a vertex has no triangle with an area. `faces`: vertices of triangles, shape (F, 3).
     """
+    assert positions.shape[1] == faces.shape[1] == normals.shape[1] == WIDTH
     normals[:] = ZERO
     for t in range(faces.shape[0]):
         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]

@@ -100,9 +100,9 @@ def round_finite(positions: Doubles, points: Floats) -> int:
 
     That is NaN, or not below LARGEST: 0 unless what moves the mesh has blown up.
     """
+    numbers, rounded = positions.reshape(-1), points.reshape(-1)
     finite = 0  # counted, not left early: so the loop takes several at a time
-    for v in range(positions.shape[0]):
-        for i in range(3):
-            points[v, i] = positions[v, i]
-            finite += abs(positions[v, i]) < LARGEST
-    return int(3 * positions.shape[0] - finite)
+    for k in range(numbers.size):
+        rounded[k] = numbers[k]
+        finite += abs(numbers[k]) < LARGEST
+    return int(numbers.size - finite)

@@ -8,10 +8,12 @@ import numpy.typing as npt
 from ...jit import njit
 from .arrays import Doubles
 
-Rows = npt.NDArray[np.floating]
+Rows = npt.NDArray[np.number[Any]]
 Number = int | np.uint32
 Vector = tuple[Any, Any, Any]
 """Three numbers in one precision, single or double."""
+WIDTH = 3
+"""Columns of a row. A kernel that asserts it is faster: the compiler need not multiply by it."""
 
 ZERO, HALF, ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
 TINY = np.finfo(np.float32).tiny
@@ -47,6 +49,12 @@ def less(u: Vector, share: Any, v: Vector) -> Vector:
 def times(share: Any, v: Vector) -> Vector:
     """Product with a number."""
     return share * v[0], share * v[1], share * v[2]
+
+
+@njit
+def mix(start: Vector, end: Vector, share: Any) -> Vector:
+    """A share of the way from one vector to another; to the last bit one of them at 0 and at 1."""
+    return plus(times(ONE - share, start), times(share, end))
 
 
 @njit
