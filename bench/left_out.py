@@ -6,7 +6,8 @@ have them and all of a kind are equally strong, and which tells who makes a shap
 numbers of all muscles may change, places too, and the shares of the muscles in the shapes that are
 seen, each against a pull towards its start. What muscles have in common is a shared change
 (muscle_numbers.py): so a muscle that only the left-out shape would show has the place of its
-anatomy and the strength and width of the others. Nothing of the built-in rig's own numbers is used.
+anatomy and the strength and width of the others. Of the built-in rig stay tissue, jaw, lids,
+muscles that none of these shapes uses, and which muscles the row of a seen shape may have.
 
 Fitted are positions of rest (statics.py) on a coarse mesh, by Gauss and Newton; scored are
 simulated poses. Shapes of jaw and lids have no numbers of this kind, and are not asked.
