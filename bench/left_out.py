@@ -1,214 +1,251 @@
 """How well the rig foretells a shape that its fit did not see: `risorius bench left-out`.
 
-For each shape of a folder of scans (motion.py), the muscles that it uses lose all that was ever
-fitted: strengths, widths and bulges fall back to the median of the muscles of their kind that the
-shape does not use, and the shares of the shape to 1 for prime movers and 0.3 for helpers. Then
-NUMBERS of those muscles are fitted to the other shapes that use them, with a pull towards where
-they started, and the shape that was left out is posed and scored.
+Shape by shape of a folder of scans (motion.py), a rig is fitted to all the others, and the shape is
+posed with it and scored. Each fit starts from anatomy.toml, where muscles lie as books of anatomy
+have them and all of a kind are equally strong, and which tells who makes a shape (FACS). All
+numbers of all muscles may change, places too, and the shares of the muscles in the shapes that are
+seen, each against a pull towards its start. What muscles have in common is a shared change
+(muscle_numbers.py): so a muscle that only the left-out shape would show has the place of its
+anatomy and the strength and width of the others. Of the built-in rig stay tissue, jaw, lids,
+muscles that none of these shapes uses, and which muscles the row of a seen shape may have.
 
-What remains of it is anatomy, which the rig's file has in millimetres: where a muscle begins and
-ends, where the ring of a sphincter lies and to which point it draws, which lip it moves; and which
-muscles make the shape. Both were written with the scans at hand, the places within 7 mm of anatomy.
-A shape whose muscles no other one uses is posed with typical muscles. Jaw and lids have no numbers
-of this kind, and their shapes are not asked.
+Fitted are positions of rest (statics.py) on a coarse mesh, by Gauss and Newton; scored are
+simulated poses. Shapes of jaw and lids have no numbers of this kind, and are not asked.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import astuple, dataclass, fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
 from tqdm import tqdm
 
 from risorius import sim
-from risorius.sim.rig import Fibre, LinearMuscle, Muscle, Rig, RingMuscle
+from risorius.sim.rig import LidMuscle, Muscle
 
-from .motion import Shape, known_shape
+from .motion import SIDE, Shape, known_shape
+from .muscle_numbers import Numbers, anatomical, with_muscles
 from .report import table
-from .scans import Scans, read_scans
+from .scans import Scans, read_coarse_scans
+from .statics import Balance, Pull, Statics, whole
 
 Array = npt.NDArray[np.float64]
+Vector = Array  # changes of numbers, shared ones, and shares
 
-PLACES = ("origin", "insertion", "fibres", "centre", "shape", "radii", "arc_deg", "opening")
-NATURE = ("name", "action", "group", "pair", "halves", "crosses", "tone", "bone", "gate")
-KEPT = {*PLACES, *NATURE, "opens_lips", "lies_on"}  # all else of a muscle was fitted
-NUMBERS = {  # what is fitted, and how far it goes for the pull of a start to count as one
-    "contraction": 0.15, "width": 5.0, "bulge": 3.0, "push": 8.0, "flare": 4.0,
-}  # fmt: skip
-PULL = 0.1  # of the start against a whole scan
-PRIME = 0.5  # share from which a muscle is a prime mover
-HELPER = 0.3  # typical share of the others
+OWN_PULL, SHARED_PULL, SHARE_PULL = 0.1, 0.02, 0.03  # to the start against a whole scan
+SHARE_SCALE = 0.3  # how far a share may easily go
+STEPS = 6  # of Gauss and Newton at most
+FEW = 0.003  # share of the error that a step must win
+DAMPING = 0.02
+LONGEST = 2.0  # scales that a number goes in one step
+SLIGHT = 0.1  # scales, for derivatives
 SETTLE = 30  # frames of 1/60 s until a pose is still enough
-TRIES = 2  # steps of Gauss and Newton
 
 
 @dataclass(frozen=True)
 class Row:
-    """One shape: cosine with the rig as it is, with it left out, and how many shapes were left."""
+    """Cosines of one shape with four rigs."""
 
     shape: str
-    fitted: float
-    left_out: float
-    others: int
+    rig: float  # as it is
+    anatomy: float  # before any fit
+    left_out: float  # fitted to the other shapes
+    fitted: float  # fitted to all in the same way
 
 
 @dataclass(frozen=True)
-class _Number:
-    """One number of one muscle."""
+class _Task:
+    """A shape of the scans as a fit sees it."""
 
-    muscle: str
-    key: str
-    place: int | None  # in a list
-    scale: float
-
-    def of(self, muscle: Muscle) -> float:
-        value = getattr(muscle, self.key)
-        return float(value if self.place is None else value[self.place])
-
-    def put(self, muscle: Muscle, value: float) -> Muscle:
-        """The muscle with another value here, within what a rig file may say."""
-        rule = next(each for each in fields(muscle) if each.name == self.key).metadata
-        changed: Any = float(np.clip(value, rule["low"], rule["high"]))
-        if self.place is not None:
-            values = list(getattr(muscle, self.key))
-            values[self.place] = changed
-            changed = tuple(values)
-        found: Muscle = replace(muscle, **{self.key: changed})
-        return found
+    scanned: Array  # (V, 3) mm
+    known: Mapping[str, float]  # controls after anatomy
+    start: Mapping[str, float]  # the same, with those at 0 that the built-in row has, too
+    built_in: Mapping[str, float]
 
 
 def measure(directory: str | Path) -> list[Row]:
     """Leave out one shape after the other. Raises ValueError for a folder that is none."""
-    face = _Face(read_scans(directory))
-    return [face.without(name) for name in tqdm(face.shapes, desc="left out", leave=False)]
+    face = _Face(read_coarse_scans(directory))
+    everything = face.fit(face.tasks)
+    rows = []
+    for name, task in tqdm(face.tasks.items(), desc="left out", leave=False):
+        foretold = face.fit([other for other in face.tasks if other != name]).muscles
+        rows.append(
+            Row(
+                name,
+                face.cosine(face.built_in, task.built_in, task.scanned),
+                face.cosine(face.anatomy.muscles, task.known, task.scanned),
+                face.cosine(foretold, task.known, task.scanned),
+                face.cosine(everything.muscles, everything.rows[name], task.scanned),
+            )
+        )
+    return rows
 
 
-def typical(muscle: Muscle, others: Sequence[Muscle]) -> Muscle:
-    """A muscle of which only place and nature are known: in all else it is as the others are.
+@dataclass(frozen=True)
+class _Point:
+    """Where a fit is."""
 
-    others: of its kind, one at least; each number becomes their median.
-    """
-    typical_of: dict[str, Any] = {}
-    for rule in fields(muscle):
-        if rule.name not in KEPT and rule.metadata["rule"] in ("number", "vector"):
-            median = np.median([getattr(each, rule.name) for each in others], axis=0)
-            typical_of[rule.name] = tuple(median.tolist()) if median.ndim else float(median)
-    if isinstance(muscle, LinearMuscle):
-        typical_of["fibres"] = tuple(Fibre(each.origin, each.insertion) for each in muscle.fibres)
-    found: Muscle = replace(muscle, **typical_of)
-    return found
+    changes: Vector
+    muscles: Mapping[str, Muscle]
+    rows: Mapping[str, Mapping[str, float]]
+    balances: Mapping[str, Balance]
+    error: float
 
 
 class _Face:
-    """The scans, and the rig on that head; only the left half of shapes that have two."""
+    """Scans, and muscles on that head; only the left half of shapes that have two."""
 
     def __init__(self, scans: Scans) -> None:
         self._trial = sim.Trial(scans.head)
-        simulation = self._trial.simulation(self._trial.rig)
-        self._muscles = {muscle.name: muscle for muscle in self._trial.rig.muscles}
-        self.shapes: dict[str, Shape] = {}
-        self._fields: dict[str, Array] = {}
-        for name in scans.names:
-            shape = known_shape(name, simulation)
-            if shape and not name.lower().endswith(("_r", "right")) and self._used(shape):
-                self.shapes[name], self._fields[name] = shape, scans.field(name)
+        self._statics = Statics(self._trial.anatomy)
+        self.built_in = {muscle.name: muscle for muscle in self._trial.rig.muscles}
+        self.anatomy = anatomical(scans.head.rig)
         self._root = np.sqrt(self._trial.areas)[:, None]
+        simulation, self.tasks = self._trial.simulation(self._trial.rig), dict[str, _Task]()
+        for name in scans.names:
+            shape, row = known_shape(name, simulation), self._row(name)
+            if shape and row and not name.lower().endswith(("_r", "right")):
+                standard = self._trial.anatomy.space.vectors_to_standard(scans.field(name))
+                self.tasks[name] = self._task(shape, row, np.asarray(standard))
+        used = {whole(control) for task in self.tasks.values() for control in task.start}
+        self._numbers = Numbers(self.anatomy.muscles, sorted(used))
+        self._shares = [(name, c) for name, task in self.tasks.items() for c in task.start]
+        self._started = np.array([self.tasks[name].start[c] for name, c in self._shares])
+        own, shared = self._numbers.sharing.shape
+        pulls = (OWN_PULL, SHARED_PULL, SHARE_PULL)
+        self._pulls = np.repeat(pulls, (own, shared, len(self._shares)))
+        self._first: dict[str, tuple[Array, Array]] = {}
 
-    def _used(self, shape: Shape) -> dict[str, Muscle]:
-        """The linear muscles and sphincters of a shape; none if bones or lids take part."""
-        names = {_whole(control): control for control in shape.values}
-        found = {name: self._muscles[name] for name in names if name in self._muscles}
-        numbered = all(isinstance(m, LinearMuscle | RingMuscle) for m in found.values())
-        return found if numbered and len(found) == len(names) else {}
+    def _row(self, name: str) -> dict[str, float]:
+        """Who makes a shape after anatomy, on its side; nothing where it does not say."""
+        rows = {key.lower(): row for key, row in self.anatomy.rows.items()}
+        if name.lower() in rows:
+            return dict(rows[name.lower()])
+        row = rows.get(SIDE.sub("", name).lower(), {})
+        return {f"{muscle}_left": share for muscle, share in row.items()}
 
-    def _typical(self, muscle: Muscle, used: Mapping[str, Muscle]) -> Muscle:
-        """What the muscles that are not used tell of one that is."""
-        unused = [each for each in self._muscles.values() if each.name not in used]
-        return typical(muscle, [each for each in unused if type(each) is type(muscle)])
+    def _task(self, shape: Shape, known: Mapping[str, float], scanned: Array) -> _Task:
+        """A shape whose row may learn the muscles that the built-in row has, too."""
+        also = [c for c in shape.values if not isinstance(self.built_in[whole(c)], LidMuscle)]
+        return _Task(scanned, known, dict.fromkeys(also, 0.0) | dict(known), shape.values)
 
-    def without(self, name: str) -> Row:
-        """Score a shape with the rig as it is, and with a rig that was fitted to the others."""
-        shape, rig = self.shapes[name], self._trial.rig
-        used = self._used(shape)
-        others = [n for n, s in self.shapes.items() if n != name and used.keys() & self._used(s)]
-        bare = {each: self._typical(muscle, used) for each, muscle in used.items()}
-        numbers = [each for muscle in bare.values() for each in _numbers(muscle)]
-        start = np.array([each.of(bare[each.muscle]) for each in numbers])
-        scale = np.array([each.scale for each in numbers])
-
-        def rig_of(x: Array) -> Rig:
-            """The rig with these numbers, in units of their scales."""
-            changed = dict(bare)
-            for number, value in zip(numbers, start + scale * x, strict=True):
-                changed[number.muscle] = number.put(changed[number.muscle], float(value))
-            whole: Rig = replace(rig, muscles=tuple(changed.get(m.name, m) for m in rig.muscles))
-            return whole
-
-        def off(x: Array) -> Array:
-            """How far the other shapes are off, and the numbers from their start."""
-            simulation = self._trial.simulation(rig_of(x))
-            parts = []
-            for other in others:
-                scanned = self._root * self._fields[other]
-                posed = self._root * self._posed(simulation, self.shapes[other].values)
-                parts.append(((posed - scanned) / np.linalg.norm(scanned)).ravel())
-            return np.concatenate([*parts, PULL * x])
-
-        x = np.zeros(len(numbers))
-        if others:
-            x = least_squares(off, x, diff_step=0.1, x_scale=1.0, max_nfev=TRIES).x
-        shares = {c: 1.0 if v >= PRIME else HELPER for c, v in shape.values.items()}
-        as_is, foretold = self._trial.simulation(rig), self._trial.simulation(rig_of(x))
-        return Row(
-            name,
-            self._cosine(self._posed(as_is, shape.values), name),
-            self._cosine(self._posed(foretold, shares), name),
-            len(others),
-        )
-
-    def _posed(self, simulation: sim.Simulation, values: Mapping[str, float]) -> Array:
+    def cosine(
+        self, muscles: Mapping[str, Muscle], values: Mapping[str, float], scanned: Array
+    ) -> float:
+        """Pose a rig and compare."""
+        simulation = self._trial.simulation(with_muscles(self._trial.rig, muscles))
         simulation.set_all(values)
         for _ in range(SETTLE):
             simulation.step(1.0 / 60.0)
-        moved: Array = simulation.positions - simulation.rest_positions
-        simulation.reset()
-        return moved
-
-    def _cosine(self, moved: Array, name: str) -> float:
-        a, b = self._root * moved, self._root * self._fields[name]
+        moved = simulation.positions - simulation.rest_positions
+        a = self._root * self._trial.anatomy.space.vectors_to_standard(moved)
+        b = self._root * scanned
         return float((a * b).sum() / max(np.linalg.norm(a) * np.linalg.norm(b), 1e-12))
 
+    def fit(self, names: Iterable[str]) -> _Point:
+        """Fit a rig to some of the shapes, from anatomy on."""
+        seen = list(names)
+        point = self._at(np.zeros(len(self._pulls)), seen)
+        damping, little = DAMPING, 0
+        for step in range(STEPS):
+            found = self._derivatives(point, seen, first=step == 0)
+            matrix = np.diag(self._pulls**2) + sum(found[name][0] for name in seen)
+            slope = self._pulls**2 * point.changes + sum(found[name][1] for name in seen)
+            better = None
+            while better is None and damping < 100.0:
+                way = np.linalg.solve(matrix + damping * np.eye(len(slope)), -slope)
+                tried = self._at(point.changes + np.clip(way, -LONGEST, LONGEST), seen)
+                better = tried if tried.error < point.error else None
+                damping = damping / 4.0 if better else damping * 8.0
+            if better is None:
+                break
+            little = little + 1 if point.error - better.error < FEW * point.error else 0
+            point = better
+            if little == 2:
+                break
+        return point
 
-def _numbers(muscle: Muscle) -> list[_Number]:
-    """What is fitted of a muscle."""
-    found = []
-    for key, scale in NUMBERS.items():
-        value: Any = getattr(muscle, key, None)
-        if isinstance(value, tuple):
-            found += [_Number(muscle.name, key, place, scale) for place in range(len(value))]
-        elif value is not None:
-            found.append(_Number(muscle.name, key, None, scale))
-    return found
+    def _at(self, changes: Vector, seen: Sequence[str]) -> _Point:
+        """Pose all shapes that a fit sees."""
+        count, changes = self._numbers.count, changes.copy()
+        shares = np.clip(self._started + SHARE_SCALE * changes[count:], 0.0, 1.0)
+        changes[count:] = (shares - self._started) / SHARE_SCALE
+        muscles = self._numbers.muscles(changes[:count])
+        rows: dict[str, dict[str, float]] = {name: {} for name in self.tasks}
+        for (name, control), share in zip(self._shares, shares, strict=True):
+            rows[name][control] = float(share)
+        balances = {name: self._statics.balance(muscles, rows[name]) for name in seen}
+        error = float(((self._pulls * changes) ** 2).sum())
+        error += sum(float((self._off(name, balances[name]) ** 2).sum()) for name in seen)
+        return _Point(changes, muscles, rows, balances, error)
+
+    def _off(self, name: str, balance: Balance) -> Array:
+        """How far a pose is off, against its scan, shape (V, 3)."""
+        scanned = self.tasks[name].scanned
+        off: Array = self._root * (balance.moved - scanned)
+        return off / np.linalg.norm(self._root * scanned)
+
+    def _derivatives(
+        self, point: _Point, seen: Sequence[str], *, first: bool
+    ) -> dict[str, tuple[Array, Array]]:
+        """Gauss and Newton's matrix and slope of each shape; those at anatomy serve every fit."""
+        missing = [name for name in seen if not (first and name in self._first)]
+        found = {name: self._of_shape(point, name) for name in missing}
+        if first:
+            self._first |= found
+        return {name: self._first[name] if first else found[name] for name in seen}
+
+    def _of_shape(self, point: _Point, name: str) -> tuple[Array, Array]:
+        """The same of one shape."""
+        changes, columns = list[Pull](), list[int]()
+        for control, share in point.rows[name].items():
+            muscle = point.muscles[whole(control)]
+            now = self._statics.pull(muscle, control, share)
+            further = share + 0.05 if share < 0.9 else share - 0.05
+            then = self._statics.pull(muscle, control, further)
+            changes.append(_slope(now, then, (further - share) / SHARE_SCALE))
+            columns.append(self._numbers.count + self._shares.index((name, control)))
+            for j, number in enumerate(self._numbers.all if share > 0.0 else ()):
+                if number.muscle == muscle.name:
+                    other = number.put(muscle, number.of(muscle) + SLIGHT * number.scale)
+                    then = self._statics.pull(other, control, share)
+                    changes.append(_slope(now, then, SLIGHT))
+                    columns.append(j)
+        balance = point.balances[name]
+        size = np.linalg.norm(self._root * self.tasks[name].scanned)
+        moved = balance.derivatives(changes) * (self._root / size)[:, :, None]
+        return self._normal(moved.reshape(-1, len(columns)), columns, self._off(name, balance))
+
+    def _normal(self, moved: Array, columns: Sequence[int], off: Array) -> tuple[Array, Array]:
+        """Matrix and slope for all changes, from derivatives after some, shape (3V, n)."""
+        own, count = len(self._numbers.all), len(self._pulls)
+        spread = np.zeros((len(columns), count))
+        spread[np.arange(len(columns)), columns] = 1.0
+        spread[:, own : self._numbers.count] = spread[:, :own] @ self._numbers.sharing
+        matrix: Array = spread.T @ (moved.T @ moved) @ spread
+        slope: Array = spread.T @ (moved.T @ off.ravel())
+        return matrix, slope
 
 
-def _whole(control: str) -> str:
-    return control.removesuffix("_left").removesuffix("_right")
+def _slope(now: Pull, then: Pull, step: float) -> Pull:
+    """How a pull changes for each unit of a step."""
+    more = then.minus(now)
+    return Pull(more.force / step, more.hold / step)
 
 
 def report(rows: Sequence[Row]) -> str:
     """The text to print."""
-    means = [float(np.mean([getattr(row, c) for row in rows])) for c in ("fitted", "left_out")]
-    columns = "shape:<20|fitted:7.3f|left out:8.3f|others:6d"
+    columns = "shape:<20|rig:7.3f|anatomy:7.3f|left out:8.3f|fitted:7.3f"
+    keys = [each.name for each in fields(Row)][1:]
+    mean = Row("mean", *(float(np.mean([getattr(row, key) for row in rows])) for key in keys))
     lines = [
-        "Cosine of simulated to scanned displacement: with the rig as it is, and with a rig whose",
-        "muscles of this shape start like the others and are fitted to the shapes that share them.",
+        "Cosine of simulated to scanned displacement: with the built-in rig, with muscles as",
+        "anatomy alone has them, with those fitted from there to all other shapes, and to all.",
         "",
-        *table(columns, [(r.shape, r.fitted, r.left_out, r.others) for r in rows]),
-        *table("mean:<20|fitted:7.3f|left out:8.3f", [("mean", *means)])[1:],
+        *table(columns, [astuple(row) for row in [*rows, mean]]),
     ]
     return "\n".join(lines)

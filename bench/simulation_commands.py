@@ -43,7 +43,7 @@ def bench_motion(reference: Path) -> None:
 @click.command("left-out")
 @click.option("--reference", type=FOLDER, required=True, help="A folder as `motion` takes it.")
 def bench_left_out(reference: Path) -> None:
-    """Refit the muscles without each scanned shape in turn: is it foretold? Takes ten minutes."""
+    """Fit muscles from anatomy to all scanned shapes but one, in turn. Takes ten minutes."""
     from . import left_out
 
     with told("--reference: "):

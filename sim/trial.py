@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from .anatomy import build_anatomy, with_muscles
+from .anatomy import Anatomy, build_anatomy, with_muscles
 from .face import Simulation
 from .landmarks import Array
 from .muscles import PlacedMuscle, place_muscles
@@ -21,22 +21,23 @@ class Trial:
     """A head whose muscles can be exchanged; jaw, eyes and tissue stay those of its own rig."""
 
     def __init__(self, head: Any) -> None:
-        self._anatomy = build_anatomy(head)
+        self.anatomy: Anatomy = build_anatomy(head)
+        """The head at rest with its own rig."""
         self._placed: dict[Muscle, tuple[PlacedMuscle, ...]] = {}
 
     @property
     def rig(self) -> Rig:
         """The head's own rig."""
-        return self._anatomy.rig
+        return self.anatomy.rig
 
     @property
     def areas(self) -> Array:
         """Skin that belongs to each vertex [mm2], shape (V,)."""
-        return self._anatomy.surface.areas
+        return self.anatomy.surface.areas
 
     def simulation(self, rig: Rig) -> Simulation:
         """The face with the muscles of a rig, which must be those of its own by name and kind."""
-        anatomy, placed = self._anatomy, list[PlacedMuscle]()
+        anatomy, placed = self.anatomy, list[PlacedMuscle]()
         for muscle in rig.muscles:
             if muscle not in self._placed:
                 alone = replace(rig, muscles=(muscle,))
