@@ -31,7 +31,10 @@ class _Mipmaps:
         self._texture = gl.texture(self.size, 4, rows.tobytes(), **options)
         self._texture.repeat_x = self._texture.repeat_y = False
         self._texture.build_mipmaps()
-        self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+        # Between two of them only where that is free: nobody sees it, and software draws 7 % longer.
+        is_slow = is_software(gl.info["GL_RENDERER"])
+        smaller = moderngl.LINEAR_MIPMAP_NEAREST if is_slow else moderngl.LINEAR_MIPMAP_LINEAR
+        self._texture.filter = smaller, moderngl.LINEAR
 
     def bind(self, unit: int) -> int:
         """Bind it to a texture unit, and return that unit."""
