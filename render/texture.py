@@ -31,7 +31,7 @@ class _Mipmaps:
         self._texture = gl.texture(self.size, 4, rows.tobytes(), **options)
         self._texture.repeat_x = self._texture.repeat_y = False
         self._texture.build_mipmaps()
-        # Between two of them only where that is free: nobody sees it, and software draws 7 % longer.
+        # No blending between two of them on software: it takes 7 % of drawing, and nobody sees it.
         is_slow = is_software(gl.info["GL_RENDERER"])
         smaller = moderngl.LINEAR_MIPMAP_NEAREST if is_slow else moderngl.LINEAR_MIPMAP_LINEAR
         self._texture.filter = smaller, moderngl.LINEAR
