@@ -2,7 +2,8 @@
 
 The film is the face's script, as the mesh is and refined, side by side. It is made by one process
 and by as many as `capture` takes here, in turn: on a shared machine only cases of one run can be
-compared. Stages are those of one process that waits for OpenGL after each of them.
+compared. Stages are those of one process that waits for OpenGL after each of them, in frames that
+are drawn: where the face is still, a film shows its last picture again.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ def report(size: tuple[int, int], seconds: float) -> str:
                     wall, processor_time = _timed(script, options, film)
                 walls[count].append(wall)
                 used[count].append(processor_time)
-        name = _time_stages(script, options, film, milliseconds)
+        name, drawn_count = _time_stages(script, options, film, milliseconds)
     width, height = size
     rows = [
         (
@@ -65,13 +66,14 @@ def report(size: tuple[int, int], seconds: float) -> str:
     stages = [(stage, float(np.median(each))) for stage, each in milliseconds.items()]
     return "\n".join(
         [
-            f"A film of {frame_count} frames of two heads, {width}x{height}, 4 samples, on",
+            f"A film of {frame_count} frames of two heads, {width}x{height}, 4 samples,",
+            f"{drawn_count} of them drawn, the others still, on",
             f"{name}, {os.cpu_count()} cores of {processor()};",
             f"{ROUNDS} interleaved rounds, medians; processor time with that of the encoder.",
             "",
             *table("drawn by:<16|frames/s:9.1f|wall [s]:9.1f|processor [s]:14.1f", rows),
             "",
-            "Where the time of one process goes:",
+            "Where the time of one process goes, in a frame that is drawn:",
             *table("stage:<16|ms a frame:11.2f", [*stages, ("all", sum(ms for _, ms in stages))]),
         ]
     )
@@ -92,9 +94,10 @@ def _timed(script: Script, options: CaptureOptions, film: Path) -> tuple[float, 
 
 def _time_stages(
     script: Script, options: CaptureOptions, film: Path, found: dict[str, list[float]]
-) -> str:
-    """Note what the stages of each frame take [ms]; what draws."""
+) -> tuple[str, int]:
+    """Note what the stages of each frame take [ms]; what draws, and how many frames it drew."""
     spent: dict[str, float] = defaultdict(float)
+    drawn_count = 0
 
     def timed(stage: str, call: Callable[..., Any], *outer: str) -> Callable[..., Any]:
         """The same call; its time is its stage's, and no longer that of those it is part of."""
@@ -133,11 +136,14 @@ def _time_stages(
             changed.append((drawn, "upload", timed("upload", drawn.upload, "draw")))
         for thing, attribute, call in changed:
             setattr(thing, attribute, call)
-        draw, write = timed("captions", studio.draw_frame), timed("encode", add)
-        for index, _ in enumerate(studio.play(script, progress=False)):
-            write(draw().image)
-            if index >= WARM_UP:
+        draw, write = timed("captions", studio.next_frame), timed("encode", add)
+        frame = None
+        for _ in studio.play(script, progress=False):
+            before, frame = frame, draw()
+            write(frame.image)
+            drawn_count += frame is not before
+            if frame is not before and drawn_count > WARM_UP:
                 for stage in STAGES:
                     found[stage].append(spent[stage])
             spent.clear()
-        return str(surface.gl.info["GL_RENDERER"])
+        return str(surface.gl.info["GL_RENDERER"]), drawn_count

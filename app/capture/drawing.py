@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
@@ -23,6 +25,8 @@ from ..scenes import Scene
 from ..script import Script
 from .captions import SPLITS_BAR, captioned, labels
 from .transparency import straight
+
+UNSEEN = 0.02  # [pixels] of motion: within that, the last picture is shown once more
 
 
 class Painter(Protocol):
@@ -91,6 +95,8 @@ class Capture:
         self.pipeline.bind(refinements)
         self._passes = Passes(self.pipeline) if options.passes else None
         self.viewports = side_by_side(self.surface.size, len(refinements))
+        self._frame: Frame | None = None  # the last one
+        self._shown = np.zeros(0)  # what it was drawn of
         self._painter = None if options.painted is None else options.painted(scene, self.surface)
         view = options.camera
         self.camera = (
@@ -127,6 +133,37 @@ class Capture:
             self.pipeline.refine(self.camera, self.viewports)
         else:
             self._painter.refine(self.camera)
+
+    def is_still(self) -> bool:
+        """Whether nothing has moved so far that anybody could see it, since this last said no.
+
+        What is compared is the scene, not pictures: each process that plays it says the same. What
+        lies beside pictures has to be exact, so with passes nothing is still.
+        """
+        scene, camera = self.scene, self.camera
+        # Bones turn what is as far from them as the scene is wide; a control counts as 1 mm.
+        bones = [
+            np.vstack([each[:3, :3] * camera.scene_radius, each[:3, 3]])
+            for each in scene.bone_transforms().values()
+        ]
+        parts = [part.vertices for part in scene.parts]
+        values = [*scene.values.values()]
+        now = np.concatenate([scene.positions, *bones, *parts, values, camera.eye], axis=None)
+        width, height = self.viewports[0][2:]
+        pixels = camera.focal(width / height, height) / np.linalg.norm(camera.eye - camera.target)
+        is_same = len(now) == len(self._shown) and not self.options.passes
+        if is_same and pixels * np.abs(now - self._shown).max() <= UNSEEN:
+            return True
+        self._shown = now
+        return False
+
+    def next_frame(self) -> Frame:
+        """The frame of the scene as it is now: the last one again, if the scene is still."""
+        if self.is_still() and self._frame is not None:
+            self.refine()
+        else:
+            self._frame = self.draw_frame()
+        return self._frame
 
     def draw_frame(self) -> Frame:
         """Draw the scene as it is now, and say what is known of the picture."""

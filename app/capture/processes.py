@@ -31,6 +31,7 @@ SAMPLES_EACH = 3e8  # 80 frames of 1280 x 720: fewer are not worth a start of th
 MOST = 8  # more of them than one encoder can follow
 AHEAD = 32e6  # [bytes] of pictures that a process draws ahead of the film, or two pictures
 COMPILER = "risorius.jit"  # the log that tells of code that is compiled
+STILL = "still"  # handed over in place of a frame that is the one before it
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,16 @@ def drawing(
 
     def frames() -> Iterator[tuple[float, Callable[[], Frame]]]:
         """All frames, from one process after the other."""
-        rate = options.frames_per_second
+        rate, shown = options.frames_per_second, list[Frame]()
+
+        def take(drawer: Child) -> Frame:
+            """The next frame: of this process, or the last one again."""
+            if (frame := _next_of(drawer)) is not None:
+                shown[:] = [frame]
+            return shown[0]
+
         for index in counted_frames(until, rate, progress=progress):
-            yield index / rate, partial(_next_of, drawers[index % count])
+            yield index / rate, partial(take, drawers[index % count])
 
     environment = {**os.environ, "LP_NUM_THREADS": "0"}  # no threads beside it
     with cleaned_up_if_stopped(stop):
@@ -90,8 +98,11 @@ def drawing(
                 drawer.close()
 
 
-def _next_of(drawer: Child) -> Frame:
-    """The next frame of a process; raises what it raised, UserError where it died."""
+def _next_of(drawer: Child) -> Frame | None:
+    """The next frame of a process, None where it is the one before it.
+
+    Raises what it raised, UserError where it died.
+    """
     while True:
         try:
             found = drawer.receive()
@@ -100,8 +111,8 @@ def _next_of(drawer: Child) -> Frame:
                 f"a process that draws the film ended ({why}); try again, and where memory is "
                 "short, take a smaller --size"
             ) from None
-        if isinstance(found, Frame):
-            return found
+        if isinstance(found, Frame) or found == STILL:
+            return found if isinstance(found, Frame) else None
         if isinstance(found, Exception):
             raise found
         logging.getLogger(COMPILER).handle(found)
@@ -158,7 +169,11 @@ def _draw(share: Share, hand_over: Callable[[object], None]) -> None:
     with Capture(scene_of(share.script, options.head), options) as capture:
         playing = capture.play(share.script, until=share.until, progress=False)
         for index, _ in enumerate(playing):
-            if index >= first and index % share.every == share.first:
+            is_mine = index >= first and index % share.every == share.first
+            is_still = index >= first and capture.is_still()
+            if is_mine and not is_still:
                 hand_over(capture.draw_frame())
-            else:
-                capture.refine()
+                continue
+            capture.refine()
+            if is_mine:
+                hand_over(STILL)

@@ -84,7 +84,7 @@ def _played(
         return
     with Capture(scene_of(script, options.head), options) as recording:
         for now in recording.play(script, until=until, progress=progress):
-            yield now, recording.draw_frame
+            yield now, recording.next_frame
 
 
 def _is_image(output: Path | None) -> bool:

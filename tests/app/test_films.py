@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -235,6 +236,28 @@ def test_processes_draw_the_same_frames(tmp_path: Path, monkeypatch: pytest.Monk
     assert len(names) == 16 and most[0] == most[1]
     for name in names:
         assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "3" / name).read_bytes()
+
+
+def test_a_still_face_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its picture is shown again until it moves, by one process and by several; passes are not."""
+    text = "duration = 2.0\n[[pose]]\ntime = 1.6\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
+    script = parse_script(text, source="rest.toml")
+    options = CaptureOptions((96, 72), 10.0)
+    drawn, draw = [], Capture.draw_image
+    monkeypatch.setattr(Capture, "draw_image", lambda studio: drawn.append(1) or draw(studio))
+    for count in (1, 2):
+        several(count, monkeypatch)
+        capture(script, options, output=tmp_path / str(count), progress=False)
+    films = [sorted((tmp_path / name).iterdir()) for name in ("1", "2")]
+    alone, shared = ([np.asarray(PIL.Image.open(file)) for file in film] for film in films)
+    assert len(drawn) <= 8 and len(alone) == 21 and np.array_equal(alone, shared)
+    assert np.array_equal(alone[0], alone[15])
+    assert all(not np.array_equal(*pair) for pair in pairwise(alone[17:]))
+    drawn.clear()
+    several(1, monkeypatch)
+    exact = replace(options, passes=("depth",), span=(0.0, 0.3))
+    capture(script, exact, output=tmp_path / "exact", progress=False)
+    assert len(drawn) == 4
 
 
 def test_what_fails_in_a_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
