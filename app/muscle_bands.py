@@ -16,88 +16,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from risorius.jit import njit
-
 from . import muscle_forms as shape
+from .near_skin import Floats, Numbers, Skin
 
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.int64]
 ROWS, AROUND = 22, 16  # places along a band, and around its cross section
 EYES = 90.0  # [mm] from one outer corner of the eyes to the other, for which muscle_forms.py holds
-NEIGHBOURS = 8  # vertices that say where the skin is
 SPARE = 1.0  # [mm] of skin over a muscle, at least
 # sRGB
 RELAXED, CONTRACTED = np.array([0.68, 0.29, 0.245]), np.array([0.50, 0.035, 0.045])
 TENDON = np.array([0.93, 0.87, 0.77])
-
-
-class _Skin:
-    """The skin as it is now, near places."""
-
-    def __init__(
-        self, x: Floats, faces: npt.NDArray[np.int32], bone: Floats, middle: Floats
-    ) -> None:
-        """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
-        self.x, self._bone, self._middle = x, bone, middle
-        a, b, c = (x[faces[:, k]] for k in range(3))
-        cross = np.cross(b - a, c - a)
-        normals = np.stack(
-            [np.bincount(faces.T.ravel(), np.tile(each, 3), len(x)) for each in cross.T], 1
-        )
-        self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-        self._tree = cKDTree(x)
-
-    def near(self, points: Floats) -> Numbers:
-        """The vertices near points (..., 3), NEIGHBOURS of each."""
-        numbers: Numbers = self._tree.query(points, k=NEIGHBOURS)[1]
-        return numbers
-
-    def at(self, points: Floats, near: Numbers) -> tuple[Floats, Floats, Floats]:
-        """How far outside points (..., 3) are, which way is out, and how deep the bone is there.
-
-        near: vertices near them, for all points or for all of the last of their rows.
-        """
-        rows, numbers = points.reshape(-1, 3), near.reshape(-1, NEIGHBOURS)
-        found = _on_skin(rows, numbers, self.x, self.normals, self._bone, self._middle)
-        found = found.reshape(*points.shape[:-1], 5)
-        return found[..., 0], found[..., 1:4], found[..., 4]
-
-
-@njit
-def _on_skin(
-    points: Floats, near: Numbers, x: Floats, normals: Floats, bone: Floats, middle: Floats
-) -> Floats:
-    """For each point how far outside it is, the skin's normal, and the depth of bone, (n, 5)."""
-    result = np.zeros((len(points), 5))
-    count = near.shape[1]
-    off, square = np.zeros((count, 3)), np.zeros(count)
-    for n in range(len(points)):
-        numbers, own = near[n % len(near)], result[n]
-        out_x, out_y, out_z = points[n] - middle
-        for k in range(count):
-            square[k] = 0.0
-            for c in range(3):
-                off[k, c] = points[n, c] - x[numbers[k], c]
-                square[k] += off[k, c] ** 2
-        reach, total = 0.35 * square.max(), 0.0
-        for k in range(count):
-            v = numbers[k]
-            nx, ny, nz = normals[v]
-            # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
-            is_faced = nx * out_x + 0.25 * ny * out_y + nz * out_z > 0.0
-            weight = 1e-9 + (np.exp(-square[k] / reach) if is_faced else 0.0)
-            own[0] += weight * (off[k, 0] * nx + off[k, 1] * ny + off[k, 2] * nz)
-            own[1] += weight * nx
-            own[2] += weight * ny
-            own[3] += weight * nz
-            own[4] += weight * bone[v]
-            total += weight
-        length = np.sqrt(own[1] ** 2 + own[2] ** 2 + own[3] ** 2)
-        own[0] /= total
-        own[4] /= total
-        for c in range(1, 4):
-            own[c] /= max(length, 1e-9 * total)
-    return result
 
 
 class _Bound(NamedTuple):
@@ -211,7 +138,7 @@ class Muscles:
         across = np.where(aside > 0.0, reach[0], reach[1]) * aside * side
         height = np.where(up > 0.0, reach[2], reach[3]) * up
         points = centre + self.scale * np.stack([across, height, 0.0 * up], axis=1)
-        skin = _Skin(x, scene.faces, self._bone_depth, self._middle)
+        skin = Skin(x, scene.faces, self._bone_depth, self._middle)
         for _ in range(4):
             outside, normal, _ = skin.at(points, skin.near(points))
             points = points - outside[:, None] * normal
@@ -222,7 +149,7 @@ class Muscles:
         sums = scene.simulation.sums
         found, bones = scene.simulation.fibres(), scene.bone_transforms()
         middle = bones["cranium"][:3, :3] @ self._middle + bones["cranium"][:3, 3]
-        skin = _Skin(scene.positions, scene.faces, self._bone_depth, middle)
+        skin = Skin(scene.positions, scene.faces, self._bone_depth, middle)
         fibres = np.array([found[name][number] for name, number in self.names])
         short = np.linalg.norm(np.diff(fibres, axis=1), axis=2).sum(axis=1)
         lines = list(self._held(_resampled(fibres), skin))
@@ -256,7 +183,7 @@ class Muscles:
         self.colours = np.concatenate(colours).astype(np.float32)
         self.vertices = np.concatenate(vertices).astype(np.float32)
 
-    def _held(self, lines: Floats, skin: _Skin) -> Floats:
+    def _held(self, lines: Floats, skin: Skin) -> Floats:
         """Fibres whose ends stay where they are in the skin, both where no bone holds the first."""
         ends = lines[:, [0, -1]].reshape(-1, 3)
         if self._ends is None:
@@ -269,7 +196,7 @@ class Muscles:
         held: Floats = lines + off[:, 0] * (1.0 - share) + off[:, 1] * share
         return held
 
-    def _open(self, lines: Floats, short: Floats, skin: _Skin) -> Any:
+    def _open(self, lines: Floats, short: Floats, skin: Skin) -> Any:
         forms, scale = self._forms, self.scale
         u = np.linspace(0.0, 1.0, ROWS)
         widths = np.array([np.interp(u, (0.0, 0.5, 1.0), f.width) for f in forms]) * scale
@@ -306,7 +233,7 @@ class Muscles:
 
         return sweep, lengths, np.clip(tendon, 0.0, 1.0) * 0.92
 
-    def _closed(self, skin: _Skin) -> Any:
+    def _closed(self, skin: Skin) -> Any:
         middles, halves, thick, depth = [], [], [], []
         for _, bands, inner, outer in self._rings:
             first, last = inner.at(skin.x), outer.at(skin.x)
@@ -330,7 +257,7 @@ class Muscles:
         return sweep, lengths, 0.0 * rows
 
     def _swept(
-        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, skin: _Skin, near: Numbers
+        self, lines: Floats, half: Floats, thick: Floats, depth: Floats, skin: Skin, near: Numbers
     ) -> tuple[Floats, Floats]:
         """Cross sections along lines (b, rows, 3), and how light is around each, (AROUND,)."""
         rails = np.stack([lines - half, lines, lines + half])

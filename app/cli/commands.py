@@ -20,6 +20,7 @@ from .batch import batch
 from .dataset import dataset
 from .dissecting import dissection_of
 from .export import export
+from .live import Live, port_option, with_live
 from .options import (
     PATH,
     QUIET,
@@ -27,14 +28,11 @@ from .options import (
     SOUND,
     Drawing,
     Filming,
-    Live,
     mapping_table,
-    port_option,
     told,
     told_size,
     with_drawing,
     with_filming,
-    with_live,
     with_playback,
 )
 from .parameters import Size

@@ -67,6 +67,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     from risorius import refine
 
     from ..ambient import openness
+    from ..muscle_bands import Muscles
     from ..scenes import ClothScene, FaceScene, PlaneScene
     from ..script import thinned
 
@@ -84,6 +85,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
 
     yield "muscles and springs", simulate
     yield "keys of recordings", partial(thinned, [0.0, 1.0], [0.0, 1.0])
+    yield "muscles as solids", partial(Muscles.of, face)
     yield "light", partial(openness, face.head, face.simulation)
     for look in LOOKS:
         for scene in (face, plane):

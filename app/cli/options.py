@@ -12,7 +12,6 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
 from .dissecting import DISSECTING, DISSECTION_OPTIONS
@@ -203,62 +202,6 @@ REFINING = (
 )
 with_subject = packed("subject", Subject, *HEAD, *REFINING)
 with_drawing = packed("drawing", Drawing, *HEAD, *DISSECTING, *STYLE, *REFINING)
-
-
-@dataclass(frozen=True)
-class Live:
-    """What a window is told of a face that is sent to it."""
-
-    live: str | None
-    port: int | None
-    address: str
-    phone: str | None
-
-    def listening(self, playback: Playback) -> Listening | None:
-        """Where to listen, None for nowhere; UserError for what does not go together.
-
-        playback: its mapping, gains and mirror are those of the live face.
-        """
-        if self.live is None:
-            source = click.get_current_context().get_parameter_source
-            for name in ("port", "address", "phone"):
-                if source(name) is not ParameterSource.DEFAULT:
-                    raise UserError(f"--{name} goes with --live, which says what is listened to")
-            return None
-        if self.phone is not None and not PROTOCOLS[self.live].request:
-            raise UserError(f"--phone goes with --live ifacialmocap, not with {self.live}")
-        if self.phone is not None and self.address == LOOPBACK:
-            raise UserError(
-                f"--phone: no phone is reached from {LOOPBACK}; add --address {ANYWHERE}, "
-                "the whole network of this computer"
-            )
-        return Listening(
-            self.live,
-            self.address,
-            self.port,
-            self.phone or "",
-            playback.mapping,
-            playback.gains,
-            playback.mirror,
-        )
-
-
-port_option = click.option(
-    "--port", type=click.IntRange(1, 65535), help="Unless told, the protocol's own."
-)
-with_live = packed(
-    "live",
-    Live,
-    click.option("--live", type=click.Choice(list(PROTOCOLS)), help="Follow a face that is sent."),
-    port_option,
-    click.option(
-        "--address",
-        default=LOOPBACK,
-        show_default=True,
-        help="Of this computer, on which to listen; 0.0.0.0 for its whole network.",
-    ),
-    click.option("--phone", metavar="ADDRESS", help="Ask iFacialMocap there to send."),
-)
 
 
 @dataclass(frozen=True)
