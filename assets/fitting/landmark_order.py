@@ -110,7 +110,7 @@ def check_counting(vertices: FloatArray, landmarks: IndexArray, template: FloatA
     if landmarks.min() < 1:
         return
     points = [vertices[each] for each in (landmarks, landmarks - 1)]
-    largest, smallest = (f(np.ptp(each) for each in points) for f in (max, min))
+    largest, smallest = (f(np.ptp(each, axis=0).max() for each in points) for f in (max, min))
     if not 0.0 < largest < MOST_SPREAD * smallest:  # a landmark is far off, and that is the fault
         return
     given, before = (Warp(template, each / largest).bending for each in points)
