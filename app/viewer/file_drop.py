@@ -103,7 +103,7 @@ class FileDrop:
         """Open files, or announce that a head will be fitted."""
         gone = next((path for path in paths if not Path(path).exists()), None)
         if gone is not None:
-            raise UserError(f"{gone}: is not there any more")
+            raise UserError(f"{gone}: no such file")
         dropped = DroppedFiles.of([Path(path) for path in paths])
         if not dropped.has_head:
             return self._open(dropped)

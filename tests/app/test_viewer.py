@@ -348,7 +348,7 @@ def test_a_bad_file_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None
     draw_frames(viewer)
     assert "no_such_muscle" in viewer.messages.text and "message" in viewer.gui.places
     viewer.drop([str(tmp_path / "none.toml")])
-    assert "no such script" in viewer.messages.text
+    assert "no such file" in viewer.messages.text
     file = tmp_path / "picture.toml"
     file.write_bytes(bytes(range(256)))
     viewer.drop([str(file)])

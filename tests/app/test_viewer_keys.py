@@ -215,7 +215,7 @@ def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:
     assert viewer.session.script.source == str(paths[0]) and not viewer.messages.is_error
     paths[1].unlink()
     choose(paths[1])
-    assert viewer.messages.is_error and "not there any more" in viewer.messages.text
+    assert viewer.messages.is_error and "no such file" in viewer.messages.text
     assert "\n" not in viewer.messages.text and viewer.session.script.source == str(paths[0])
     xdotool(viewer, "key", "Escape")
     assert not viewer.messages.text

@@ -65,7 +65,7 @@ def test_a_pose_is_kept_with_a_picture(viewer: Viewer, tmp_path: Path) -> None:
     viewer.settings.folds["Pose pictures"], viewer.settings.folds["Expressions"] = True, False
     viewer.session.set("jaw_open", 0.6)
     viewer.settings.zoom = 0.6
-    draw_frames(viewer)
+    draw_frames(viewer, 12)  # until all is in its place
     try:
         click(viewer, "Keep this pose")
         assert until(viewer, lambda: "pose Pose 1" in viewer.gui.places)

@@ -287,7 +287,7 @@ def test_while_recording_keys_stay(viewer: Viewer) -> None:
     xdotool(viewer, "key", "ctrl+r")
     drag(viewer, at(viewer, JOY), (40, 0))
     xdotool(viewer, "mouseup", 1)
-    assert viewer.messages.is_error and "stop the recording" in viewer.messages.text
+    assert viewer.messages.is_error and "Stop the recording" in viewer.messages.text
     assert viewer.session.script is before and viewer.session.is_recording
     assert places_of(before) >= viewer.selection.places
 
