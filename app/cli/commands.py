@@ -265,11 +265,7 @@ def open_window(
 
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
-        script = (
-            _played(None, None, None, Playback(), quiet=True)
-            if performance is None
-            else performance
-        )
+        script = performance or _played(None, None, None, Playback(), quiet=True)
         head = drawing.fitted_head() if mesh is None else None
         import risorius.app.viewer.window  # noqa: F401
 
