@@ -128,6 +128,7 @@ class Pipeline:
         amounts = None
         if self.wrinkling is not None and style.shows_wrinkles:
             amounts = self.wrinkling.amounts(self.scene.positions)
+        self.renderer.draw_background(style, *viewports)
         for drawn, viewport in zip(self.meshes, viewports, strict=True):
             drawn.refine(self.scene.positions, camera, viewport)
             drawn.upload(amounts, style.wrinkles)
@@ -144,7 +145,6 @@ class Pipeline:
         values = None
         if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
             values = splits_of_source(drawn.refiner, drawn.mesh)
-        self.renderer.draw_background(style, viewport)
         skin: dict[str, Any] = {
             "values": values,
             "texture": self.texture if drawn.has_uv else None,

@@ -86,9 +86,10 @@ class Renderer:
         self.surface.make_current()
         return WrinkleMap(self._gl, texels, steepest)
 
-    def draw_background(self, style: Style, viewport: Viewport | None = None) -> None:
-        """Paint the style's background over the viewport, and over what was drawn there."""
-        self._backdrop.paint(self.surface.target, self._viewport(viewport), style.background)
+    def draw_background(self, style: Style, *viewports: Viewport) -> None:
+        """Paint the style's background over viewports, and over what was drawn there; none: all."""
+        areas = tuple(self._viewport(each) for each in viewports or (None,))
+        self._backdrop.paint(self.surface.target, areas, style.background)
 
     def draw_mesh(
         self,
@@ -232,9 +233,7 @@ class Renderer:
             program["wire_half_width"] = 0.5 * style.wire_width * self._line_scale
             program["wire_colour"] = *style.wire_colour, style.wire_opacity
         if texture is not None:
-            program["albedo_texture"] = texture.bind(_ALBEDO_UNIT)
-            program["redness"] = texture.redness
-            program["occlusion"] = float(style.occlusion)
+            texture.set_uniforms(program, _ALBEDO_UNIT, float(style.occlusion))
         if wrinkles is not None:
             wrinkles.set_uniforms(program, style.wrinkles)
         if style.colour_by is not ColourBy.NONE:

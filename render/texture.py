@@ -14,7 +14,10 @@ from .surface import Image, is_software
 
 _SRGB8_ALPHA8 = 0x8C43  # the constant of OpenGL; moderngl has no name for it
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
+LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
 WRINKLE_UNIT = 5  # texture unit; 4 belongs to a window's enlargement
+_AROUND_UNIT = 6
+_AROUND_LEVEL = 3  # of the smaller versions: a texel there is the mean of 8 x 8
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 
@@ -32,11 +35,6 @@ class _Mipmaps:
         self._texture.repeat_x = self._texture.repeat_y = False
         self._texture.build_mipmaps()
         self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
-
-    def bind(self, unit: int) -> int:
-        """Bind it to a texture unit, and return that unit."""
-        self._texture.use(unit)
-        return unit
 
     def release(self) -> None:
         """Give it back to OpenGL at once; it can no longer be drawn."""
@@ -64,6 +62,30 @@ class Texture(_Mipmaps):
         # Drivers without the extension report 0. Software has it, at several times the cost.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
+        self._around = self._means(gl)
+
+    def _means(self, gl: moderngl.Context) -> moderngl.Texture:
+        """The lightness of the skin around each place: software reads one number, not four."""
+        width, height = (max(each >> _AROUND_LEVEL, 1) for each in self.size)
+        level = min(_AROUND_LEVEL, max(self.size).bit_length() - 1)
+        texels = np.frombuffer(self._texture.read(level=level), np.uint8).reshape(-1, 4)
+        means = (linear(texels[:, :3] / 255.0) @ LIGHTNESS).astype(np.float16)
+        around = gl.texture((width, height), 1, means.tobytes(), dtype="f2", alignment=1)
+        around.repeat_x = around.repeat_y = False
+        return around
+
+    def set_uniforms(self, program: moderngl.Program, unit: int, occlusion: float) -> None:
+        """Let a program look it up, through a texture unit; occlusion: of its openness, 0 or 1."""
+        program["albedo_texture"], program["around_texture"] = unit, _AROUND_UNIT
+        self._texture.use(unit)
+        self._around.use(_AROUND_UNIT)
+        program["redness"], program["lightness_weights"] = self.redness, LIGHTNESS
+        program["occlusion"] = occlusion
+
+    def release(self) -> None:
+        """Give it back to OpenGL at once; it can no longer be drawn."""
+        super().release()
+        self._around.release()
 
 
 class WrinkleMap(_Mipmaps):
@@ -84,7 +106,8 @@ class WrinkleMap(_Mipmaps):
 
     def set_uniforms(self, program: moderngl.Program, strength: float) -> None:
         """Let a program that includes wrinkles.glsl look it up."""
-        program["wrinkle_map"] = self.bind(WRINKLE_UNIT)
+        self._texture.use(WRINKLE_UNIT)
+        program["wrinkle_map"] = WRINKLE_UNIT
         program["wrinkle_slope"] = self.steepest
         program["wrinkle_strength"] = strength
 

@@ -26,7 +26,7 @@ from ..script import Script
 from .captions import SPLITS_BAR, captioned, labels
 from .transparency import straight
 
-UNSEEN = 0.02  # [pixels] of motion: within that, the last picture is shown once more
+UNSEEN = 0.05  # [pixels] of motion: within that, the last picture is shown once more
 
 
 class Painter(Protocol):

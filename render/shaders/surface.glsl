@@ -218,6 +218,8 @@ uniform vec3 inner_albedo;
 #endif
 #if defined(TEXTURED)
 uniform sampler2D albedo_texture;
+uniform sampler2D around_texture;  // how light the skin is around
+uniform vec3 lightness_weights;
 uniform float redness;  // of most of the picture: red over green
 uniform float occlusion;  // how much the openness in the picture's alpha counts, 0 or 1
 #elif !defined(COLOURED)
@@ -353,9 +355,8 @@ void main() {
     lit.specular *= 1.0 + 1.6 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
     // Pores and hairs, darker than what is around them, break the highlight; and it lies in hollows
     // less than on what stands out. On dark skin a plain one would be all that is seen.
-    const vec3 LIGHTNESS = vec3(0.3, 0.6, 0.1);
-    float shown_here = dot(front, LIGHTNESS);
-    float around = dot(textureLod(albedo_texture, surface.uv, 3.0).rgb, LIGHTNESS);
+    float shown_here = dot(front, lightness_weights);
+    float around = texture(around_texture, surface.uv).r;
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
     lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * openness;
 #endif
