@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
-
 import click
 
 from risorius.app.cli.parameters import FiniteRange, Size
@@ -19,18 +16,6 @@ def bench_take(minutes: float) -> None:
     from . import takes
 
     click.echo(takes.report(minutes))
-
-
-@click.command("script")
-@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
-def bench_script(size: tuple[int, int]) -> None:
-    """Time a script that is a take of ten minutes; with a screen, in the window, too."""
-    from . import script
-
-    has_screen = sys.platform in ("win32", "darwin") or bool(
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    )
-    click.echo(script.report(size, has_screen=has_screen))
 
 
 @click.command("window")
@@ -69,4 +54,4 @@ def bench_capture(size: tuple[int, int], seconds: float) -> None:
     click.echo(capture.report(size, seconds))
 
 
-COMMANDS = (bench_capture, bench_take, bench_script, bench_window, bench_live)
+COMMANDS = (bench_capture, bench_take, bench_window, bench_live)
