@@ -92,21 +92,6 @@ def bench_gaps(json_file: Path | None) -> None:
     save([asdict(pose) for pose in poses])
 
 
-@click.command("pull")
-@click.option(
-    "--count", type=click.IntRange(1, 10_000), default=60, show_default=True, help="Pulls."
-)
-@json_option
-def bench_pull(count: int, json_file: Path | None) -> None:
-    """Pull the skin to where muscles took it, and see which are found."""
-    from . import pull
-
-    save = json_writer(json_file)
-    pulled = pull.measure(count)
-    click.echo(pull.report(pulled))
-    save([asdict(each) for each in pulled])
-
-
 @click.command("soak")
 @click.option(
     "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."
@@ -147,7 +132,6 @@ COMMANDS = (
     bench_left_out,
     bench_seen,
     bench_gaps,
-    bench_pull,
     bench_soak,
     bench_tearing,
     bench_reference,
