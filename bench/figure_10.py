@@ -27,7 +27,7 @@ from risorius.app.files import Image
 
 from .canvas import Canvas
 from .figures import without_noise
-from .outlines import MOUTH, Mouths, Variant, wrong_pixels
+from .mouths import MOUTH, Mouths, Variant, wrong_pixels
 
 VARIANTS = (
     Variant("static", "none"),

@@ -23,7 +23,7 @@ from risorius.assets.plane import CELL, COLUMNS, ROWS, make_grid
 
 from .canvas import Canvas, Drawing, image_table
 from .figure_coherence import FLAT, FRAME_SECONDS, GOURAUD
-from .outlines import Variant
+from .mouths import Variant
 
 PHASES = (0.0, 0.33, 0.66)  # moments of the wave
 VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches

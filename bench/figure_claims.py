@@ -13,7 +13,7 @@ from risorius import refine
 from . import figure_8, figure_9, figure_10, folds
 from .canvas import Canvas
 from .claims import Outcome
-from .outlines import wrong_pixels
+from .mouths import wrong_pixels
 
 SIZE_9, SIZE_10 = (380, 230), (330, 250)  # [pixels] in which differences are counted
 SEEN = 8.0  # levels of 255: a change that is seen

@@ -1,6 +1,6 @@
 """Commands of `risorius bench` that measure refinement.
 
-`refine`, `quality`, `outlines`, `meshes`.
+`refine`, `quality`, `meshes`.
 """
 
 from __future__ import annotations
@@ -136,18 +136,6 @@ def _subjects(
     return found
 
 
-@click.command("outlines")
-def bench_outlines() -> None:
-    """Count pixels around opened mouths that are not as those of a head 16 times as dense."""
-    from . import outlines
-
-    for title, chosen in (
-        ("poses that `border` was tuned on", outlines.CHOSEN_BY),
-        ("poses and views that were kept for the end", outlines.OTHERS),
-    ):
-        click.echo(outlines.report(title, outlines.measure(*chosen, progress=say_progress)) + "\n")
-
-
 @click.command("meshes")
 @click.argument("folder", type=FOLDER)
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=2003, show_default=True)
@@ -173,4 +161,4 @@ def bench_meshes(folder: Path, seed: int, seconds: float, most: int) -> None:
     sys.exit(1 if any(each.broken for each in results) else 0)
 
 
-COMMANDS = (bench_refine, bench_quality, bench_outlines, bench_meshes)
+COMMANDS = (bench_refine, bench_quality, bench_meshes)

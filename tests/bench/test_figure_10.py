@@ -7,7 +7,7 @@ import pytest
 
 from risorius.bench import figure_10
 from risorius.bench.figure_10 import Cell, Shot, difference
-from risorius.bench.outlines import MOUTH, Variant, wrong_pixels
+from risorius.bench.mouths import MOUTH, Variant, wrong_pixels
 
 pytestmark = pytest.mark.slow  # every test looks at the same pictures
 

@@ -24,7 +24,6 @@ LONG_WORK = (
     "risorius.bench.gaps.measure",
     "risorius.bench.meshes.measure",
     "risorius.bench.motion.measure",
-    "risorius.bench.outlines.measure",
     "risorius.bench.figure_coherence.coherence",
     "risorius.bench.quality.measure",
     "risorius.bench.refine.measure",
