@@ -41,7 +41,7 @@ SCHEMES: Mapping[str, tuple[str, ...]] = {
     "cubic": ("normal", "curvature", "screen", "bulge", "bulge, blended"),
     "detail": ("bulge", "bulge, blended"),
 }
-"""Every scheme with the rules that split its edges; the last is the one that charts show."""
+"""Every scheme with the rules that split its edges."""
 CRITERIA: Mapping[str, Callable[[], Any]] = {
     "normal": refine.NormalDrop,
     "curvature": lambda: refine.Curvature(relative=False),

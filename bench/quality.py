@@ -27,8 +27,6 @@ from .subjects import Points, PosePair, Subject, vertex_normals
 
 BUDGETS = (2.0,)
 """Triangles of a refined mesh over those of the coarse one, that the targets speak of."""
-CURVE_BUDGETS = (1.15, 1.3, 1.6, 2.0, 3.0, 5.0, 7.5)
-"""The same for curves."""
 
 
 @dataclass(frozen=True)

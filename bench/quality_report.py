@@ -1,12 +1,9 @@
-"""What `risorius bench quality` prints and draws: errors of refined meshes, and the targets."""
+"""What `risorius bench quality` prints: errors of refined meshes, and the targets."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from risorius.app.files import Image
-
-from .charts import Axis, Series, chart
 from .methods import AS_SET, BLENDED, EVERYWHERE, LOOK, SCHEMES, STATIC, UNIFORM, Key
 from .quality import Score, means
 from .report import table, verdict
@@ -42,7 +39,7 @@ MEASURED = (
     ("distance", "RMS distance [mm]", 3),
     ("picture", "RMS picture [grey levels]", 2),
 )
-"""What these tables and the charts show."""
+"""What these tables show."""
 
 
 LEGEND = """\
@@ -172,47 +169,3 @@ def _verdicts(name: str, scores: Sequence[Score], key: Key, asked: float | None)
     jump, where = max((score.jump, score.expression) for score in scores if score.key == key)
     text = f"{name}: jumps at most {FASTEST:g} x the input's motion; found {jump:.2f} ({where})"
     return [*lines, verdict(jump <= FASTEST + ROUNDING, text)]
-
-
-def error_curves(
-    subject: Subject, scores: Sequence[Score], what: str, size: tuple[int, int] = (720, 440)
-) -> Image:
-    """Mean error over triangles spent: schemes, by their last rule, beside whole meshes refined.
-
-    `what`: one of MEASURED.
-    """
-    average = means(scores)
-    static = average[STATIC_KEY]
-    start = 1.0, getattr(static, what)
-    series = []
-    for method in dict.fromkeys((*SCHEMES, *UNIFORM)):
-        shown = SCHEMES.get(method, ("",))[-1]
-        found = sorted(
-            (score.triangles / static.triangles, getattr(score, what))
-            for (name, rule, _), score in average.items()
-            if name == method and rule in (shown, "")
-        )
-        if found:
-            series.append(Series(method, [start, *found]))
-    high = 1.08 * max(y for one in series for _, y in one.points)
-    step = next(
-        step
-        for magnitude in (0.01, 0.1, 1.0, 10.0, 100.0)
-        for step in (magnitude, 2.0 * magnitude, 5.0 * magnitude)
-        if high / step <= 9
-    )
-    ticks = [k * step for k in range(int(high / step) + 1)]
-    title = next(title for name, title, _ in MEASURED if name == what)
-    return chart(
-        _title(subject),
-        Axis(
-            "triangles, times those of the coarse mesh",
-            1.0,
-            17.0,
-            (1, 1.5, 2, 3, 4, 6, 10, 16),
-            True,
-        ),
-        Axis(f"{title}, mean", 0.0, high, ticks),
-        series,
-        size,
-    )

@@ -16,7 +16,7 @@ import click
 from risorius.app.cli.parameters import FiniteRange
 from risorius.app.errors import UserError, in_one_line
 
-from .command_line import FOLDER, PATH, json_option, json_writer, say_progress, told
+from .command_line import FOLDER, json_option, json_writer, say_progress, told
 
 if TYPE_CHECKING:
     from .subjects import Subject
@@ -69,25 +69,16 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
 @click.option(
     "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
 )
-@click.option(
-    "--curves", type=PATH, help="NAME.png: errors over triangles, as NAME_SUBJECT_MEASURE.png."
-)
 def bench_quality(
     reference: Path | None,
     finer: str,
     apart: bool,
     expressions: tuple[str, ...],
-    curves: Path | None,
 ) -> None:
     """Measure how near every scheme comes to a dense face and its picture, for what it spends."""
-    from risorius.app.files import check_png, save_png
-
     from . import quality, quality_report
 
-    if curves is not None:
-        check_png(curves)
     measured = _subjects(reference, finer, apart, expressions)
-    budgets = quality.BUDGETS if curves is None else quality.CURVE_BUDGETS
     found: dict[str, list[quality.Score]] = {}
     for group, members in groupby(measured, lambda subject: subject.group):
         together = list(members)
@@ -95,16 +86,10 @@ def bench_quality(
             score
             for subject in together
             for score in quality.measure(
-                subject, budgets=budgets, expressions=expressions or None, progress=say_progress
+                subject, expressions=expressions or None, progress=say_progress
             )
         ]
         click.echo(quality_report.text(together, scores) + "\n")
-        if curves is None:
-            continue
-        for what, _, _ in quality_report.MEASURED:
-            target = curves.with_stem(f"{curves.stem}_{group}_{what}".replace(" ", "_"))
-            save_png(target, quality_report.error_curves(together[0], scores, what))
-            click.echo(f"{in_one_line(target)}: written", err=True)
     click.echo(f"{quality_report.LEGEND}\n")
     click.echo(quality_report.targets_text(found))
 

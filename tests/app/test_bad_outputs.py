@@ -17,7 +17,6 @@ WRITERS = {
     "sheet": ("capture", "--sheet", "x.png"),
     "figure": ("reproduce", "figure9", "-o", "x.png"),
     "table": ("bench", "refine", "--json", "x.json"),
-    "curves": ("bench", "quality", "--curves", "x.png"),
 }
 
 
@@ -45,7 +44,6 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         "risorius.app.capture.Capture.play",
         "risorius.bench.figure_9.draw",
         "risorius.bench.refine.measure",
-        "risorius.bench.quality.measure",
     ):
         monkeypatch.setattr(name, work)
     monkeypatch.chdir(tmp_path)

@@ -11,7 +11,7 @@ import pytest
 from risorius import assets
 from risorius.bench import methods, quality, subjects
 from risorius.bench.methods import Key
-from risorius.bench.quality_report import STATIC_KEY, error_curves, targets_text, text
+from risorius.bench.quality_report import STATIC_KEY, targets_text, text
 from risorius.bench.subjects import PosePair, Subject
 
 Points = npt.NDArray[np.float64]
@@ -67,8 +67,6 @@ def test_scores_of_a_cylinder() -> None:
     printed = text([subject], scores)
     for part in ("plane: 72 tri", "roll 0.5", f"{static.distance:.3f}", "cubic curvature 2x"):
         assert part in printed
-    for what in ("distance", "picture"):
-        assert error_curves(subject, scores, what, (300, 200)).shape == (200, 300, 3)
 
 
 def test_error_of_the_truth_is_zero() -> None:

@@ -10,7 +10,6 @@ import refinement
 from PIL import Image
 
 from risorius.bench import figure_coherence
-from risorius.bench.charts import Axis, Series, chart
 
 IMAGES = Path(__file__).parents[2] / "docs" / "pictures"
 LARGEST_IMAGE_FILE = 450_000  # bytes
@@ -37,18 +36,6 @@ def test_film_strip() -> None:
     assert is_red[half:].sum() == 0
     assert outcome.values["lines turned without memory"] > 100
     assert outcome.values["lines turned with memory"] == 0
-
-
-def test_chart() -> None:
-    """Curves lie where their values say, and names do not touch."""
-    across = Axis("triangles", 1.0, 16.0, (1, 4, 16), is_logarithmic=True)
-    up = Axis("error", 0.0, 1.0, (0, 0.5, 1))
-    assert across.fraction(4.0) == pytest.approx(0.5)
-    assert up.fraction(0.25) == 0.25
-    series = [Series(name, [(1, 0.5), (16, 0.5)]) for name in "abc"]
-    drawn = chart("title", across, up, series, (300, 200))
-    assert drawn.shape == (200, 300, 3)
-    assert (drawn.min(axis=2) < 128).any()
 
 
 @pytest.mark.parametrize("path", sorted(IMAGES.glob("refine_*.png")), ids=lambda path: path.stem)

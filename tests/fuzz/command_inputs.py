@@ -286,7 +286,6 @@ REFUSED = {
     "bench refine --json folder": "is a folder",
     "bench gaps --json pipe": "is a device",
     "bench gaps --json notes.txt/x": "cannot be written",
-    "bench quality --curves x.pdf": "pictures are written as .png",
     "bench quality --finer none": "nothing to measure",
     "bench quality --finer 4 --expression nobody": "--expression nobody: there are joy, ",
     "bench quality --reference folder": "face.npz: is not there",
