@@ -7,7 +7,6 @@ input triangle, which `Refiner.origins` finds again in each frame.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -33,63 +32,47 @@ SLOW = 0.1
 that share: a pop counts in slow frames, and rounding does not."""
 
 
-@dataclass(frozen=True)
-class Flicker:
-    """How far a surface goes in one frame at most."""
-
-    jump: float
-    """Largest motion of any place over the largest motion of any input vertex in that frame."""
-    turn: float
-    """Largest turn of the normal at any place in one frame [degrees]."""
-
-
-NONE = Flicker(float("nan"), float("nan"))
-"""Of a mesh that decides nothing."""
-
-
-def flicker(
+def largest_jump(
     refiner: refine.Refiner,
     faces: npt.NDArray[np.integer],
     frames: Sequence[Array],
     view: refine.View,
-) -> Flicker:
-    """Refine frame after frame, positions of shape (V, 3), and compare each with the one before."""
+) -> float:
+    """How far a surface goes in one frame at most, positions of `frames` of shape (V, 3).
+
+    The largest motion of any place over the largest motion of any input vertex in that frame.
+    """
     moved = [
         float(np.linalg.norm(after - before, axis=1).max()) for before, after in pairwise(frames)
     ]
     least = SLOW * max(moved)
-    jump = turn = 0.0
-    before: tuple[Array, Array] | None = None
-    for frame, motion in zip(frames, [0.0, *moved], strict=True):
-        points, normals = at_places(refiner, faces, refiner.refine(frame, view=view))
-        if before is not None:
-            distance = np.linalg.norm(points - before[0], axis=2).max()
-            jump = max(jump, float(distance) / max(motion, least))
-            # Chords of unit vectors: the arc cosine of a dot product near 1 is rounding.
-            chord = np.linalg.norm(normals - before[1], axis=2).max()
-            turn = max(turn, float(np.degrees(2.0 * np.arcsin(min(0.5 * chord, 1.0)))))
-        before = points, normals
-    return Flicker(jump, turn)
+    jump = 0.0
+    before = at_places(refiner, faces, refiner.refine(frames[0], view=view))
+    for frame, motion in zip(frames[1:], moved, strict=True):
+        points = at_places(refiner, faces, refiner.refine(frame, view=view))
+        distance = np.linalg.norm(points - before, axis=2).max()
+        jump = max(jump, float(distance) / max(motion, least))
+        before = points
+    return jump
 
 
 def at_places(
     refiner: refine.Refiner, faces: npt.NDArray[np.integer], mesh: refine.RefinedMesh
-) -> tuple[Array, Array]:
-    """Points and unit normals at the PLACES of all input triangles, shape (F, places, 3) each.
+) -> Array:
+    """Points at the PLACES of all input triangles, shape (F, places, 3).
 
     Call it with the last frame of `refiner`.
     """
     origins = refiner.origins()
-    found = np.zeros((len(faces), len(PLACES), 6))
-    _find(PLACES, faces, mesh[:4], origins, found)
-    length = np.maximum(np.linalg.norm(found[..., 3:], axis=2, keepdims=True), 1e-300)
-    return found[..., :3], found[..., 3:] / length
+    found = np.zeros((len(faces), len(PLACES), 3))
+    _find(PLACES, faces, (mesh.positions, mesh.triangles, mesh.source), origins, found)
+    return found
 
 
 @njit
 def _find(places, faces, mesh, origins, found):  # type: ignore[no-untyped-def]
-    """Write position and normal at each place, from the triangle of the mesh that it lies in."""
-    positions, normals, triangles, source = mesh
+    """Write the point at each place, from the triangle of the mesh that it lies in."""
+    positions, triangles, source = mesh
     corners = np.empty((3, 3))
     for t in range(triangles.shape[0]):
         face = source[t]
@@ -116,4 +99,3 @@ def _find(places, faces, mesh, origins, found):  # type: ignore[no-untyped-def]
                 row = triangles[t, c]
                 for i in range(3):
                     found[face, p, i] += weights[c] * positions[row, i]
-                    found[face, p, 3 + i] += weights[c] * normals[row, i]

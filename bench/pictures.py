@@ -6,12 +6,11 @@ SUPERSAMPLING times too large and averaged, so that an outline that is off by a 
 counts by that part, as it does on a screen.
 
     with Pictures(subject) as pictures:
-        errors = pictures.errors("joy", {"mine": (positions, normals, triangles)})
+        error = pictures.error("joy", (positions, normals, triangles))
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,8 +32,6 @@ VIEWS = ("front", "three-quarter", "profile")
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, wrinkles=0.0)
 BACKGROUND = 215
 """Grey level behind the mesh, about that of the window's."""
-VISIBLE = 8.0
-"""Grey levels by which a pixel has to change to be counted as changed."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +42,6 @@ class PictureError:
     """Root mean square of grey levels, over the pixels that either mesh covers."""
     outline: float
     """Pixels covered by one mesh and not by the other, mean over views."""
-    changed: float
-    """Share of the covered pixels that differ by more than VISIBLE from the unrefined mesh."""
-    toward: float
-    """Share of these that are nearer to the dense mesh's than they were; NaN if there are none."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +68,7 @@ class Pictures:
         self.view = refine.View(eye.eye, eye.focal(1.0, SIZE))
         """Where the first picture is taken from, for criteria that ask."""
         self._stream: render.Stream | None = None
-        self._references: dict[str, tuple[Shots, Shots]] = {}
+        self._truth: dict[str, Shots] = {}
 
     def __enter__(self) -> Pictures:
         return self
@@ -83,26 +76,13 @@ class Pictures:
     def __exit__(self, *_: object) -> None:
         self._surface.close()
 
-    def errors(self, expression: str, meshes: Mapping[str, Mesh]) -> dict[str, PictureError]:
-        """Measure meshes in one expression of the subject against its dense mesh."""
-        return {name: self.error(expression, mesh) for name, mesh in meshes.items()}
-
     def error(self, expression: str, mesh: Mesh) -> PictureError:
-        """Measure one mesh."""
-        truth, static = self.references(expression)
-        return difference(self.shoot(mesh), truth, static)
-
-    def references(self, expression: str) -> tuple[Shots, Shots]:
-        """Pictures of the dense and of the unrefined mesh."""
-        if expression not in self._references:
-            pose, subject = self._subject.poses[expression], self._subject
-            self._references = {  # one expression after the other: older ones are not kept
-                expression: (
-                    self.shoot(shaded(pose.dense, subject.dense_faces)),
-                    self.shoot(shaded(pose.coarse, subject.coarse_faces)),
-                )
-            }
-        return self._references[expression]
+        """Measure a mesh in one expression of the subject against its dense mesh."""
+        if expression not in self._truth:
+            dense = shaded(self._subject.poses[expression].dense, self._subject.dense_faces)
+            # One expression after the other: older ones are not kept.
+            self._truth = {expression: self.shoot(dense)}
+        return difference(self.shoot(mesh), self._truth[expression])
 
     def shoot(self, mesh: Mesh) -> Shots:
         """Draw a mesh from all views."""
@@ -138,20 +118,12 @@ class Pictures:
         return stream
 
 
-def difference(shots: Shots, truth: Shots, static: Shots) -> PictureError:
-    """Compare pictures of a mesh with those of the dense and of the unrefined one."""
+def difference(shots: Shots, truth: Shots) -> PictureError:
+    """Compare pictures of a mesh with those of the dense one."""
     either = _block_sums(shots.covered | truth.covered)
-    off, static_off = np.abs(shots.grey - truth.grey), np.abs(static.grey - truth.grey)
+    off = (shots.grey - truth.grey)[either]
     wrong = int(np.count_nonzero(shots.covered != truth.covered)) / SUPERSAMPLING**2
-    changed = np.abs(shots.grey - static.grey) > VISIBLE
-    changed_count = int(np.count_nonzero(changed))
-    better = int(np.count_nonzero(changed & (off < static_off)))
-    return PictureError(
-        float(np.sqrt(np.mean(off[either] ** 2))),
-        wrong / len(shots.grey),
-        changed_count / int(np.count_nonzero(either)),
-        better / changed_count if changed_count else float("nan"),
-    )
+    return PictureError(float(np.sqrt(np.mean(off**2))), wrong / len(shots.grey))
 
 
 def _block_sums(fine: npt.NDArray[Any]) -> npt.NDArray[Any]:

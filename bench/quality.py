@@ -7,9 +7,8 @@ A coarse face moves with a dense one (subjects.py), and is refined by all method
     angle      between the normals there, the median: where lips or lids touch, the nearest point
                of a few per cent lies on the other one and looks the other way, whatever the mesh
                is like, and they would rule a mean
-    picture    grey levels, outline and changed pixels beside pictures of the dense mesh
-               (pictures.py)
-    flicker    how far the surface goes in a frame while the expression comes (flicker.py)
+    picture    grey levels and outline beside pictures of the dense mesh (pictures.py)
+    jump       how far the surface goes in a frame while the expression comes (flicker.py)
 """
 
 from __future__ import annotations
@@ -19,14 +18,14 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from . import flicker
+from .flicker import largest_jump
 from .methods import SCHEMES, Key, Method, methods_for
 from .nearest import nearest_points
 from .pictures import Mesh, Pictures
 from .subjects import Points, PosePair, Subject, vertex_normals
 
 BUDGETS = (2.0,)
-"""Triangles of a refined mesh over those of the coarse one, that the targets speak of."""
+"""Triangles of a refined mesh over those of the coarse one, that is compared."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +43,8 @@ class Score:
     """Root mean square of grey levels, 0..255."""
     outline: float
     """Pixels that one mesh covers and the other does not."""
-    changed: float
-    """Share of pixels that are seen to differ from the unrefined mesh [per cent]."""
-    toward: float
-    """Share of these that are nearer to the truth [per cent]; NaN where there are none."""
     jump: float
     """Largest motion of the surface in a frame over that of the input; NaN: nothing is decided."""
-    turn: float
-    """Largest turn of a normal in a frame [degrees]; NaN likewise."""
 
 
 MEASURES = tuple(each.name for each in fields(Score))[2:]
@@ -85,7 +78,7 @@ def measure(
 
 
 def means(scores: Iterable[Score]) -> dict[Key, Score]:
-    """The mean over expressions for each method; of `jump` and `turn` the largest."""
+    """The mean over expressions for each method; of `jump` the largest."""
     groups: dict[Key, list[Score]] = {}
     for score in scores:
         groups.setdefault(score.key, []).append(score)
@@ -93,10 +86,7 @@ def means(scores: Iterable[Score]) -> dict[Key, Score]:
     def joined(group: list[Score], what: str) -> float:
         """One measure of all expressions."""
         values = np.array([getattr(score, what) for score in group])
-        if what in ("jump", "turn"):
-            return float(values.max())
-        counted = values[~np.isnan(values)]
-        return float(counted.mean()) if len(counted) else float("nan")
+        return float(values.max() if what == "jump" else values.mean())
 
     return {
         key: Score(key, "mean", *(joined(group, what) for what in MEASURES))
@@ -112,22 +102,10 @@ def _score(
     distance, angle = _nearness(mesh, pose, subject)
     seen = pictures.error(expression, mesh)
     count = len(mesh[2])
-    moving = flicker.NONE
+    jump = float("nan")
     if method.refiner is not None:  # last: it overwrites the mesh
-        moving = flicker.flicker(method.refiner, subject.coarse_faces, frames, pictures.view)
-    return Score(
-        method.key,
-        expression,
-        count,
-        distance,
-        angle,
-        seen.rms,
-        seen.outline,
-        100.0 * seen.changed,
-        100.0 * seen.toward,
-        moving.jump,
-        moving.turn,
-    )
+        jump = largest_jump(method.refiner, subject.coarse_faces, frames, pictures.view)
+    return Score(method.key, expression, count, distance, angle, seen.rms, seen.outline, jump)
 
 
 def _nearness(mesh: Mesh, pose: PosePair, subject: Subject) -> tuple[float, float]:

@@ -65,38 +65,28 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
     show_default=True,
     help="The built-in head with so many times its triangles as the truth.",
 )
-@click.option("--apart", is_flag=True, help="Left and right halves of scans, each for itself.")
 @click.option(
     "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
 )
-def bench_quality(
-    reference: Path | None,
-    finer: str,
-    apart: bool,
-    expressions: tuple[str, ...],
-) -> None:
+def bench_quality(reference: Path | None, finer: str, expressions: tuple[str, ...]) -> None:
     """Measure how near every scheme comes to a dense face and its picture, for what it spends."""
     from . import quality, quality_report
 
-    measured = _subjects(reference, finer, apart, expressions)
-    found: dict[str, list[quality.Score]] = {}
-    for group, members in groupby(measured, lambda subject: subject.group):
+    measured = _subjects(reference, finer, expressions)
+    for _, members in groupby(measured, lambda subject: subject.group):
         together = list(members)
-        scores = found[group] = [
+        scores = [
             score
             for subject in together
             for score in quality.measure(
                 subject, expressions=expressions or None, progress=say_progress
             )
         ]
-        click.echo(quality_report.text(together, scores) + "\n")
-    click.echo(f"{quality_report.LEGEND}\n")
-    click.echo(quality_report.targets_text(found))
+        click.echo(quality_report.text(together[0], scores) + "\n")
+    click.echo(quality_report.LEGEND)
 
 
-def _subjects(
-    reference: Path | None, finer: str, apart: bool, expressions: Collection[str]
-) -> list[Subject]:
+def _subjects(reference: Path | None, finer: str, expressions: Collection[str]) -> list[Subject]:
     """Whom to measure in these expressions, or in all; UserError where there is nobody."""
     from risorius import assets
 
@@ -105,7 +95,7 @@ def _subjects(
     found: list[Subject] = []
     if reference is not None:
         with told():
-            found += subjects.scanned(reference, apart=apart)
+            found += subjects.scanned(reference)
     known = dict.fromkeys(name for subject in found for name in subject.poses)
     of_head = assets.load("head").expressions if finer != "none" else {}
     known |= dict.fromkeys(of_head)

@@ -71,10 +71,10 @@ def strength(frame: int) -> float:
     return math.sin(math.pi * frame / FILM) ** 2
 
 
-def scanned(folder: str | Path, *, apart: bool = False) -> list[Subject]:
+def scanned(folder: str | Path) -> list[Subject]:
     """Read a folder of scans: every person and every expression in it.
 
-    Fields that end in _L and _R are two halves of one expression, and are added unless `apart`.
+    Fields that end in _L and _R are two halves of one expression, and are added.
     Raises ValueError, naming the file, if something is missing in it.
     """
     dense = read_arrays(Path(folder) / DENSE, ("vertices", "triangles"))
@@ -84,7 +84,7 @@ def scanned(folder: str | Path, *, apart: bool = False) -> list[Subject]:
     for name, array in dense.items():
         if name in NOT_MOTION or array.shape != shape:
             continue
-        expression = name if apart else name.removesuffix("_L").removesuffix("_R")
+        expression = name.removesuffix("_L").removesuffix("_R")
         moved = MILLIMETRES * array.astype(np.float64)
         fields[expression] = fields.get(expression, np.zeros(shape)) + moved
     if not fields:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 
 from risorius import refine
-from risorius.bench.flicker import PLACES, at_places, flicker
+from risorius.bench.flicker import PLACES, at_places, largest_jump
 from tests import meshes
 
 VIEW = refine.View((0.0, 0.0, 10.0))
@@ -41,11 +41,10 @@ def test_places_of_a_flat_mesh(name: str) -> None:
     options = {"criterion": Switching()} if name == "kahler" else {}
     refiner = refine.create(name, mesh.faces, mesh.vertices, **options)
     for _ in range(2):
-        points, normals = at_places(refiner, mesh.faces, refiner.refine(mesh.vertices))
+        points = at_places(refiner, mesh.faces, refiner.refine(mesh.vertices))
         inside = slice(None) if name == "none" else ~_at_border(mesh.vertices[mesh.faces])
         wanted = np.einsum("pk,fki->fpi", PLACES, mesh.vertices[mesh.faces])
         np.testing.assert_allclose(points[inside], wanted[inside], atol=1e-5)
-        np.testing.assert_allclose(np.abs(normals[..., 2]), 1.0, atol=1e-6)
 
 
 def _at_border(corners: Points) -> npt.NDArray[np.bool_]:
@@ -55,14 +54,13 @@ def _at_border(corners: Points) -> npt.NDArray[np.bool_]:
     return np.asarray(at_border.any(axis=(1, 2)))
 
 
-def test_a_rigid_motion_neither_jumps_nor_turns() -> None:
+def test_a_rigid_motion_does_not_jump() -> None:
     """The surface goes as far as its input."""
     mesh = meshes.octahedron()
     refiner = refine.create("loop", mesh.faces, mesh.vertices)
     frames = [shifted(mesh.vertices, 0.1 * k) for k in range(5)]
-    found = flicker(refiner, mesh.faces, frames, VIEW)
-    assert found.jump == pytest.approx(1.0, abs=1e-5)
-    assert found.turn < 0.1
+    jump = largest_jump(refiner, mesh.faces, frames, VIEW)
+    assert jump == pytest.approx(1.0, abs=1e-5)
 
 
 def test_a_pop_is_found() -> None:
@@ -70,10 +68,10 @@ def test_a_pop_is_found() -> None:
     mesh = meshes.octahedron()
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Switching())
     frames = [shifted(mesh.vertices, 0.01 * k) for k in range(5)]
-    found = flicker(refiner, mesh.faces, frames, VIEW)
+    jump = largest_jump(refiner, mesh.faces, frames, VIEW)
     split = refine.create("loop", mesh.faces, mesh.vertices)
     inward = 1.0 - np.linalg.norm(split.refine(mesh.vertices).positions[: len(mesh.vertices)][0])
-    assert found.jump == pytest.approx(inward / 0.01, rel=0.1)
+    assert jump == pytest.approx(inward / 0.01, rel=0.1)
 
 
 def test_slow_frames_count() -> None:
@@ -81,18 +79,5 @@ def test_slow_frames_count() -> None:
     mesh = meshes.octahedron()
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Switching())
     still = [mesh.vertices, mesh.vertices, shifted(mesh.vertices, 1.0)]
-    alone = flicker(refiner, mesh.faces, still, VIEW).jump
+    alone = largest_jump(refiner, mesh.faces, still, VIEW)
     assert 1.0 < alone < 10.0
-
-
-def test_turns_are_degrees() -> None:
-    """A sheet that is turned by 10 degrees a frame."""
-    mesh = meshes.open_grid(2, 2)
-    refiner = refine.create("none", mesh.faces, mesh.vertices)
-    frames = []
-    for angle in np.radians([0.0, 10.0, 20.0]):
-        x, y, z = mesh.vertices.T
-        frames.append(
-            np.stack([np.cos(angle) * x, y, np.sin(angle) * x + z], axis=1).astype(np.float64)
-        )
-    assert flicker(refiner, mesh.faces, frames, VIEW).turn == pytest.approx(10.0, abs=1e-3)
