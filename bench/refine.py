@@ -13,7 +13,6 @@ rows of one mesh can be compared. The best time is reported beside the median fo
 
 from __future__ import annotations
 
-import itertools
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -25,7 +24,7 @@ import numpy.typing as npt
 from risorius import assets, refine, sim
 
 from .peers import peers_for
-from .starts import Starts, measure_peak, measure_starts
+from .starts import Starts, measure_starts
 from .subjects import settled_positions
 from .timing import interleaved
 from .waving_meshes import Load, waving_mesh
@@ -37,15 +36,11 @@ SETTLED = 90  # steps of 1/60 s after which the face stands still
 SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
 """Per cent of the edges that are split -> quantiles of the drops that are the two thresholds."""
 TRIANGLE_COUNTS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
-SHUFFLED = ("200k shuffled", "1M shuffled")
-"""The same meshes with vertices, triangles and corners in any order; at 10 % only."""
-SIZES = ("face", "20k", "200k", "1M", *SHUFFLED)
+SIZES = ("face", "20k", "200k", "1M")
 """What is measured unless told; 2k is for a quick look."""
 LARGE = 500_000  # triangles from which on two frames must do
 FEWEST_ROUNDS, MOST_ROUNDS = 5, 200
 SECONDS = 7.0  # of timing for each mesh
-COPY = "memcpy of "
-"""What a method's name follows that only copies the output of another."""
 METHODS: tuple[tuple[str, Mapping[str, Any]], ...] = (
     ("kahler", {}),
     ("kahler, blend", {"blend": True}),
@@ -79,37 +74,13 @@ class Row:
         return 1e6 * self.milliseconds / max(self.triangles_out, 1.0)
 
 
-@dataclass(frozen=True)
-class Binding:
-    """What it takes to bind one mesh, and what the refiner then holds."""
-
-    mesh: str
-    triangles: int
-    seconds: float
-    """Shortest of two or more."""
-    megabytes: float
-    """Buffers of the refiner after its first frame at 10 %, output included."""
-    peak_megabytes: float | None
-    """Most memory from before binding to after that frame; None where the system does not tell."""
-
-
 @dataclass
 class Report:
     """All that one run found."""
 
     rows: list[Row] = field(default_factory=list)
-    bindings: list[Binding] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
     starts: Starts | None = None
-
-    def row(self, mesh: str, method: str) -> Row | None:
-        """The row of a method on a mesh, if it was measured."""
-        return next((r for r in self.rows if (r.mesh, r.method) == (mesh, method)), None)
-
-    def copies(self, row: Row) -> float | None:
-        """Time of a method in copies of its own output; None where no copy was measured."""
-        copy = self.row(row.mesh, f"{COPY}{row.method.removeprefix('kahler ')}")
-        return None if copy is None else row.milliseconds / copy.milliseconds
 
 
 @dataclass(frozen=True)
@@ -137,7 +108,7 @@ def measure(
 
     Raises ValueError for a size that there is not.
     """
-    known = ("face", *TRIANGLE_COUNTS, *SHUFFLED)
+    known = ("face", *TRIANGLE_COUNTS)
     unknown = [size for size in sizes if size not in known]
     if unknown:
         raise ValueError(f"unknown size {unknown[0]!r}; there are {', '.join(known)}")
@@ -145,11 +116,7 @@ def measure(
     for size in sizes:
         progress(size)
         load = load_of(size)
-        if size == "face":
-            cases = _face_cases(load, report)
-        else:
-            shares = SHARES if size not in SHUFFLED else {10: SHARES[10]}
-            cases = _waving_cases(load, report, shares)
+        cases = _face_cases(load, report) if size == "face" else _waving_cases(load, report)
         report.rows += _timed(load, cases, seconds)
     if starts:
         progress("starts")
@@ -161,9 +128,8 @@ def load_of(size: str) -> Load:
     """The mesh of a size and the frames that it goes through."""
     if size == "face":
         return face_load()
-    count = TRIANGLE_COUNTS[size.partition(" ")[0]]
-    frame_count = 4 if count < LARGE else 2
-    return waving_mesh(size, count, frame_count=frame_count, shuffled=size in SHUFFLED)
+    count = TRIANGLE_COUNTS[size]
+    return waving_mesh(size, count, frame_count=4 if count < LARGE else 2)
 
 
 def face_load() -> Load:
@@ -190,36 +156,19 @@ def _face_cases(load: Load, report: Report) -> list[_Case]:
     for method, options in METHODS:
         refiner = refine.create("kahler", load.faces, load.rest, **method_options(options))
         cases.append(_own(method, refiner, load))
-        if method == "kahler":
-            cases.append(_copy_of(refiner, load, f"{COPY}kahler"))
-            defaults = refine.THRESHOLD_ONCE, refine.THRESHOLD_TWICE
-            report.bindings.append(_bound(load, *defaults))
     for levels in (1, 2):
         uniform = refine.create("loop", load.faces, load.rest, levels=levels)
         cases.append(_own(f"uniform Loop {levels}x", uniform, load))
     return cases + _peer_cases(load, report, cases[1].triangles)
 
 
-def _waving_cases(
-    load: Load, report: Report, shares: Mapping[int, tuple[float, float]]
-) -> list[_Case]:
-    thresholds = thresholds_of(load, shares)
+def _waving_cases(load: Load, report: Report) -> list[_Case]:
     cases = []
-    for share, (once, twice) in thresholds.items():
-        options = {"threshold_once": once, "threshold_twice": twice}
-        if share == min(thresholds):
-            report.bindings.append(_bound(load, once, twice))
-        refiner = refine.create("kahler", load.faces, load.rest, **options)
+    for share, (once, twice) in thresholds_of(load).items():
+        refiner = refine.create(
+            "kahler", load.faces, load.rest, threshold_once=once, threshold_twice=twice
+        )
         cases.append(_own(f"kahler {share} %", refiner, load))
-        cases.append(_copy_of(refiner, load, f"{COPY}{share} %"))
-        if load.name in SHUFFLED:
-            order = refine.reorder(load.faces, load.rest)
-            frames = [frame[order.vertices] for frame in load.frames]
-            sorted_load = Load(
-                load.name, order.faces.astype(np.int32), load.rest[order.vertices], frames
-            )
-            refiner = refine.create("kahler", sorted_load.faces, sorted_load.rest, **options)
-            cases.append(_own(f"kahler {share} %, reordered", refiner, sorted_load))
     return cases + _peer_cases(load, report, cases[0].triangles)
 
 
@@ -235,27 +184,8 @@ def _own(method: str, refiner: refine.Refiner, load: Load) -> _Case:
     return _Case(method, False, float(np.mean(counts)), refiner.refine, load.frames)
 
 
-def _copy_of(refiner: refine.Refiner, load: Load, method: str) -> _Case:
-    """Copying an output as large as the refiner's, frame by frame: the speed of memory."""
-    meshes = [refiner.refine(frame) for frame in load.frames]
-    sizes = [(len(mesh.positions), len(mesh.triangles)) for mesh in meshes]
-    row_count, count = np.max(sizes, axis=0)
-    vertices = np.ones((2, row_count, 6), np.float32)
-    triangles = np.ones((2, count, 3), np.uint32)
-    next_size = itertools.cycle(sizes)
-
-    def copy(_: Points) -> None:
-        row_count, count = next(next_size)
-        np.copyto(vertices[1, :row_count], vertices[0, :row_count])
-        np.copyto(triangles[1, :count], triangles[0, :count])
-
-    return _Case(method, False, float(np.mean(sizes, axis=0)[1]), copy, load.frames)
-
-
-def thresholds_of(
-    load: Load, shares: Mapping[int, tuple[float, float]]
-) -> dict[int, tuple[float, float]]:
-    """Thresholds that split so many per cent of the edges, by the drops of all frames."""
+def thresholds_of(load: Load) -> dict[int, tuple[float, float]]:
+    """Thresholds that split SHARES of the edges, by the drops of all frames."""
     plain = refine.create("none", load.faces, load.rest)
     a, b = plain.edges.T
     at_rest = _dots(plain.refine(load.rest).normals, a, b)
@@ -263,7 +193,7 @@ def thresholds_of(
         [at_rest - _dots(plain.refine(frame).normals, a, b) for frame in load.frames]
     )
     found = {}
-    for share, quantiles in shares.items():
+    for share, quantiles in SHARES.items():
         once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
         found[share] = (once, twice)
     return found
@@ -273,20 +203,6 @@ def _dots(
     normals: npt.NDArray[np.float32], a: npt.NDArray[np.int32], b: npt.NDArray[np.int32]
 ) -> npt.NDArray[np.float32]:
     return np.asarray(np.einsum("ei,ei->e", normals[a], normals[b]))
-
-
-def _bound(load: Load, once: float, twice: float) -> Binding:
-    seconds = []
-    for _ in range(2):
-        start = time.perf_counter()
-        refiner = refine.create(
-            "kahler", load.faces, load.rest, threshold_once=once, threshold_twice=twice
-        )
-        seconds.append(time.perf_counter() - start)
-    refiner.refine(load.frames[0])
-    assert isinstance(refiner, refine.Kahler)
-    peak = measure_peak(load, once, twice)
-    return Binding(load.name, len(load.faces), min(seconds), refiner.memory / 1e6, peak)
 
 
 def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:

@@ -21,7 +21,7 @@ from .command_line import FOLDER, json_option, json_writer, say_progress, told
 if TYPE_CHECKING:
     from .subjects import Subject
 
-MESHES = ("face", "2k", "20k", "200k", "200k shuffled", "1M", "1M shuffled")
+MESHES = ("face", "2k", "20k", "200k", "1M")
 
 
 @click.command("refine")

@@ -33,13 +33,10 @@ class Load:
     frames: Sequence[Points]
 
 
-def waving_mesh(
-    name: str, triangle_count: int, *, frame_count: int = 4, shuffled: bool = False
-) -> Load:
-    """Make a grid of about `triangle_count` triangles.
+def waving_mesh(name: str, triangle_count: int, *, frame_count: int = 4) -> Load:
+    """Make a grid of about `triangle_count` triangles, in scan order.
 
-    In scan order, neighbours in the mesh are neighbours in memory; `shuffled`, vertices, triangles
-    and corners come in any order, as a careless export leaves them.
+    So neighbours in the mesh are neighbours in memory.
     """
     generator = np.random.default_rng(SEED)
     side = max(4, round((0.5 * triangle_count / (1.0 - len(HOLES) * np.pi * HOLE**2)) ** 0.5))
@@ -52,8 +49,6 @@ def waving_mesh(
     faces = faces[is_solid]
     used, faces = np.unique(faces, return_inverse=True)
     rest, faces = rest[used], faces.reshape(-1, 3)
-    if shuffled:
-        rest, faces = _shuffled(rest, faces, generator)
     frames = [_waved(rest, phase) for phase in np.arange(frame_count) / frame_count]
     return Load(name, faces.astype(np.int32), rest, frames)
 
@@ -72,17 +67,6 @@ def _cut_cells(side: int, generator: np.random.Generator) -> npt.NDArray[np.int6
     falling = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
     is_rising = generator.random(len(a)) < 0.5
     return np.where(is_rising[:, None, None], rising, falling).reshape(-1, 3)
-
-
-def _shuffled(
-    rest: Points, faces: npt.NDArray[np.int64], generator: np.random.Generator
-) -> tuple[Points, npt.NDArray[np.int64]]:
-    place = generator.permutation(len(rest))
-    moved = np.empty_like(rest)
-    moved[place] = rest
-    faces = place[faces][generator.permutation(len(faces))]
-    turns = generator.integers(3, size=len(faces))
-    return moved, np.take_along_axis(faces, (np.arange(3) + turns[:, None]) % 3, axis=1)
 
 
 def _waved(rest: Points, phase: float) -> Points:

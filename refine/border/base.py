@@ -149,11 +149,6 @@ class BaseRefiner(Refiner):
         """Columns of a stream's vertices: 6, 2 for texture coordinates, those of attributes."""
         return GEOMETRY_COLUMNS + (0 if self._values is None else self._values.values.shape[1])
 
-    @property
-    def memory(self) -> int:
-        """Bytes of the arrays that this refiner holds now, its own stream included."""
-        return _bytes_of(self, seen=set())
-
     def refine(
         self,
         positions: npt.NDArray[np.floating],
@@ -246,20 +241,3 @@ _NO_ROWS = StreamArrays(
     np.zeros((0, GEOMETRY_COLUMNS), np.float32), np.zeros((0, 3), np.uint32), np.zeros(0, np.int32)
 )
 _NO_ATTRIBUTES: Mapping[str, Floats] = MappingProxyType({})
-
-
-def _bytes_of(thing: object, seen: set[int]) -> int:
-    """Bytes of the arrays that an object of this package holds, each counted once."""
-    if isinstance(thing, np.ndarray):
-        owner = (
-            thing if thing.base is None or not isinstance(thing.base, np.ndarray) else thing.base
-        )
-        new = id(owner) not in seen
-        seen.add(id(owner))
-        return owner.nbytes if new else 0
-    if isinstance(thing, tuple):  # what compiled code takes as it is
-        return sum(_bytes_of(value, seen) for value in thing)
-    if id(thing) in seen or not hasattr(thing, "__dict__"):
-        return 0
-    seen.add(id(thing))
-    return sum(_bytes_of(value, seen) for value in vars(thing).values())

@@ -412,11 +412,10 @@ def test_bench_refine(tmp_path: Path) -> None:
     target = tmp_path / "times.json"
     result = risorius("bench", "refine", "--size", "2k", "--seconds", "0.05", "--json", target)
     assert result.exit_code == 0, result.output
-    for word in ("kahler 10 %", "memcpy of 10 %", "sparse Loop 1x, numba *", "ns/tri"):
+    for word in ("kahler 10 %", "sparse Loop 1x, numba *", "ns/tri"):
         assert word in result.output
     figures = json.loads(target.read_text())
     assert {row["mesh"] for row in figures["rows"]} == {"2k"}
-    assert figures["bindings"][0]["triangles"] == figures["rows"][0]["triangles_in"]
 
 
 def test_bench_quality_needs_a_subject(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from risorius.refine import connect, create
 
 @pytest.mark.slow
 def test_rows() -> None:
-    """Ours with the share of edges that was asked for, a copy, and peers; times that fit."""
+    """Ours with the share of edges that was asked for, and peers; times that fit."""
     report = refine.measure(sizes=["2k"], seconds=0.05, starts=False)
     rows = {row.method: row for row in report.rows}
     count = rows["kahler 10 %"].triangles_in
@@ -31,11 +31,6 @@ def test_rows() -> None:
     for row in report.rows:
         assert 0.0 < row.best_milliseconds <= row.milliseconds
         assert np.isclose(row.nanoseconds_per_triangle * row.triangles_out, 1e6 * row.milliseconds)
-    (bound,) = report.bindings
-    assert bound.triangles == count
-    assert bound.seconds > 0.0
-    assert 0.1 < bound.megabytes < 10.0
-    assert bound.peak_megabytes is None or 0.1 < bound.peak_megabytes < 50.0
     assert gc.isenabled()
 
 
@@ -45,18 +40,14 @@ def test_unknown_size() -> None:
         refine.measure(sizes=["3k"])
 
 
-@pytest.mark.parametrize("shuffled", [False, True])
-def test_waving_meshes(shuffled: bool) -> None:
-    """A grid is one piece with four borders, no triangle twice, the same however it is stored."""
-    load = waving_mesh("grid", 3_000, shuffled=shuffled)
+def test_waving_meshes() -> None:
+    """A grid is one piece with four borders, no triangle twice."""
+    load = waving_mesh("grid", 3_000)
     mesh = connect(load.faces, len(load.rest))
     assert len(load.rest) - len(mesh.edges) + len(load.faces) == 1 - 3
     assert np.array_equal(np.unique(load.faces), np.arange(len(load.rest)))
     corners = load.rest[load.faces]
     assert (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0).all()
-    plain = waving_mesh("grid", 3_000)
-    assert len(load.faces) == len(plain.faces)
-    assert np.allclose(np.sort(load.frames[1][:, 2]), np.sort(plain.frames[1][:, 2]))
 
 
 @pytest.mark.parametrize("levels", [1, 2])
