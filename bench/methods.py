@@ -105,8 +105,8 @@ def methods_for(
         if scheme == LOOK[0]:
             refiner = bind({"criterion": LOOK[1]})
             bound.append(Method((*LOOK, AS_SET), refiner.refine, refiner))
-        once = bind({"criterion": _Everywhere(1), "blend": False})
-        twice = bind({"criterion": _Everywhere(2)})
+        once = bind({"criterion": Everywhere(1), "blend": False})
+        twice = bind({"criterion": Everywhere(2)})
         bound += [
             Method((scheme, "", ONCE), once.refine, once),
             Method((scheme, "", EVERYWHERE), twice.refine, twice),
@@ -130,7 +130,7 @@ def _whole(
     }
 
 
-class _Everywhere:
+class Everywhere:
     """The criterion that splits every edge once or twice."""
 
     def __init__(self, splits: int) -> None:

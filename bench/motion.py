@@ -91,8 +91,7 @@ def _scores(scans: Scans) -> tuple[list[Row], list[str]]:
     """Score one person; also the names of fields without a score."""
     head = scans.head
     simulation = sim.create(head)
-    areas = _vertex_areas(head.vertices, head.faces)
-    ruler = _Ruler(head.vertices, head.landmarks, areas, head.rig)
+    ruler = _Ruler(head.vertices, head.landmarks, simulation.areas, head.rig)
     rows, left_out = [], []
     for name in scans.names:
         shape = known_shape(name, simulation)
@@ -252,16 +251,6 @@ class _Ruler:
     def _on_skin(self, point: Array) -> Array:
         nearest: Array = self._x[int(((self._x - point) ** 2).sum(axis=1).argmin())]
         return nearest
-
-
-def _vertex_areas(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
-    """A third of the adjacent triangles' area, shape (V,)."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
-    areas: Array = np.bincount(faces.ravel(), np.repeat(third, 3), minlength=len(vertices)).astype(
-        float
-    )
-    return areas
 
 
 def report(rows: list[Row], left_out: list[str], others: Mapping[str, list[Row]]) -> str:

@@ -11,14 +11,13 @@ import numpy.typing as npt
 
 from risorius.jit import njit
 from risorius.refine.beyond.closest import closest_on_triangle
+from risorius.refine.mesh.reorder import places_on_curve
 
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
 LEAF = 4
 """Triangles in a box of the lowest level (chosen by timing)."""
-BITS = 10
-"""Bits of each coordinate on the space-filling curve."""
 STACK = 64
 
 
@@ -43,7 +42,7 @@ def nearest_points(
     `positions`: shape (V, 3); `triangles`: shape (M, 3), at least one.
     """
     corners = np.asarray(positions, dtype=np.float64)[triangles]
-    order = np.argsort(_curve_numbers(corners.mean(axis=1)), kind="stable")
+    order = np.argsort(places_on_curve(corners.mean(axis=1)), kind="stable")
     boxes = _boxes(corners[order])
     queries = np.ascontiguousarray(points, dtype=np.float64)
     distance = np.empty(len(queries))
@@ -51,18 +50,6 @@ def nearest_points(
     weights = np.empty((len(queries), 3))
     _search(queries, np.ascontiguousarray(corners[order]), boxes, distance, triangle, weights)
     return Nearest(distance, order[triangle], weights)
-
-
-def _curve_numbers(centres: Doubles) -> Integers:
-    """Morton numbers: near in number is near in space."""
-    low, high = centres.min(axis=0), centres.max(axis=0)
-    scale = (2**BITS - 1) / np.maximum(high - low, 1e-300)
-    cells = ((centres - low) * scale).astype(np.int64)
-    numbers = np.zeros(len(centres), dtype=np.int64)
-    for bit in range(BITS):
-        for axis in range(3):
-            numbers |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return numbers
 
 
 def _boxes(corners: Doubles) -> Doubles:

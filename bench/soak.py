@@ -13,13 +13,13 @@ Every control jumps to a random value in every frame, and frames are of random l
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
+from risorius.app.mirror import mirrored as on_the_other_side
 
 Array = npt.NDArray[np.float64]
 
@@ -31,10 +31,6 @@ REPEATED = 60.0  # s of simulated time that are run twice
 MIRRORED_FRAMES = 240
 BLOW = 100.0  # mm/s
 ROUNDING = 1e-9  # of the energy: growth below it is arithmetic
-MIRRORED_SIGN = (
-    "jaw_sideways", "gaze_horizontal_left", "gaze_horizontal_right", "head_yaw", "head_roll",
-)  # fmt: skip
-OTHER = {"left": "right", "right": "left"}
 
 
 @dataclass(frozen=True)
@@ -85,16 +81,6 @@ def displacements(simulation: sim.Simulation) -> Array:
     return displacement
 
 
-def mirrored_values(values: Mapping[str, float]) -> dict[str, float]:
-    """The same pose with left and right exchanged."""
-    result = {}
-    for name, value in values.items():
-        stem, _, side = name.rpartition("_")
-        other = f"{stem}_{OTHER[side]}" if side in OTHER else name
-        result[other] = -value if name in MIRRORED_SIGN else value
-    return result
-
-
 def _wild_frame(
     simulation: sim.Simulation, generator: np.random.Generator, *, mirrored: bool = False
 ) -> float:
@@ -105,7 +91,7 @@ def _wild_frame(
     share = np.where(generator.uniform(size=len(limits)) < 1.0 / 3.0, np.round(share), share)
     low, high = np.array(list(limits.values())).T
     values = dict(zip(limits, (low + share * (high - low)).tolist(), strict=True))
-    simulation.set_all(mirrored_values(values) if mirrored else values)
+    simulation.set_all(on_the_other_side(values) if mirrored else values)
     dt = float(generator.uniform(SHORTEST, LONGEST))
     simulation.step(dt)
     return dt

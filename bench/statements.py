@@ -20,6 +20,7 @@ from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import CONFIGURATIONS
 
 from .claims import Measured, Outcome
+from .methods import Everywhere
 from .table1 import papers_refiner
 
 Points = npt.NDArray[np.float64]
@@ -27,17 +28,6 @@ Points = npt.NDArray[np.float64]
 FRAMES_PER_SECOND = 60
 EVERY = 60  # frames from one moment that is looked at to the next
 TURN, SHIFT = np.radians(70.0), (200.0, -50.0, 400.0)  # of the motion that bends nothing, in mm
-
-
-class _Everywhere:
-    """The criterion that splits every edge once."""
-
-    def bind(self, connectivity: object, rest: object, rest_normals: object) -> None:
-        """Need nothing of the mesh."""
-
-    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
-        """Write 1 for every edge."""
-        splits[:] = 1
 
 
 def overview() -> Outcome:
@@ -88,7 +78,7 @@ def smoothing() -> Outcome:
             kept = mesh.positions[:count][still] == positions.astype(np.float32)[still]
             moved += int((~kept.all(axis=1)).sum())
     head = assets.load("head")
-    ours = refine.create("kahler", head.faces, head.vertices, criterion=_Everywhere())
+    ours = refine.create("kahler", head.faces, head.vertices, criterion=Everywhere(1))
     loop = refine.create("loop", head.faces, head.vertices, levels=1)
     off, _ = cKDTree(loop.refine(head.vertices).positions).query(
         ours.refine(head.vertices).positions

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
+from risorius.app import mirror
 from risorius.bench import soak, tearing
 from risorius.bench.timing import WARMING, interleaved, paired
 
@@ -28,21 +29,13 @@ def test_a_folded_triangle_is_counted() -> None:
     assert tearing._inverted(head.vertices, now, head.faces) >= 1
 
 
-def test_mirrored_input_is_that_of_the_other_side() -> None:
-    """Sides change places, what points to a side changes its sign, and twice is once."""
-    values = {"AU12_left": 0.3, "AU12_right": 0.1, "jaw_sideways": 0.5, "jaw_open": 0.2}
-    mirrored = soak.mirrored_values(values)
-    assert mirrored == {"AU12_right": 0.3, "AU12_left": 0.1, "jaw_sideways": -0.5, "jaw_open": 0.2}
-    assert soak.mirrored_values(mirrored) == values
-
-
 def test_motion_that_is_not_mirrored_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """With the signs of sideways motion left as they are, the two runs differ by millimetres."""
     head = assets.load("head")
     monkeypatch.setattr(soak, "MIRRORED_FRAMES", 10)
     simulation = sim.create(head)
     assert soak._mirror_error(simulation, head.mirror, soak.SEED) < 1e-6
-    monkeypatch.setattr(soak, "MIRRORED_SIGN", ())
+    monkeypatch.setattr(mirror, "TURNED", ())
     assert soak._mirror_error(simulation, head.mirror, soak.SEED) > 1.0
 
 
