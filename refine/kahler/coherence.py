@@ -207,11 +207,6 @@ class Coherent:
         )
         return self.states
 
-    def forget(self) -> None:
-        """Take up the next frame as if it were the first: after a cut, or a jump in time."""
-        self.states[:] = 0
-        self.removals_out_of_order = 0
-
 
 @njit
 def follow_splits(

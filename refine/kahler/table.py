@@ -92,11 +92,6 @@ POINTS = _point_coordinates()
 _PLACES = [tuple(point) for point in POINTS.tolist()]  # the same in plain Python, faster for few
 
 
-def configuration_of(splits: tuple[int, int, int]) -> int:
-    """Return the number of the table entry for 0, 1 or 2 splits on each of the three edges."""
-    return splits[0] + 3 * splits[1] + 9 * splits[2]
-
-
 def splits_of(configuration: int) -> tuple[int, int, int]:
     """Return the splits on the three edges that belong to a table entry."""
     return configuration % 3, configuration // 3 % 3, configuration // 9

@@ -11,6 +11,11 @@ from risorius.refine.beyond.blending import RAMP
 from tests.refine import plain_twin
 
 
+def configuration_of(splits: tuple[int, int, int]) -> int:
+    """The number of the table entry for 0, 1 or 2 splits on each of the three edges."""
+    return splits[0] + 3 * splits[1] + 9 * splits[2]
+
+
 class Needed:
     """A criterion that measures what it is told."""
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from risorius.refine import Coherent
 from risorius.refine.kahler import coherence, table
+from tests.refine.cases import configuration_of
 
 TABLES = coherence.sequence_tables()
 NUMBER = {sequence: k for k, sequence in enumerate(TABLES.sequences)}
@@ -47,7 +48,7 @@ def test_entries(length: int) -> None:
         splits = coherence._splits_of(TABLES.sequences[state])
         triangles = TABLES.patterns.of(state)
         table.verify(splits, [tuple(t) for t in triangles.tolist()])
-        configuration = table.configuration_of(splits)
+        configuration = configuration_of(splits)
         assert len(triangles) == table.CONFIGURATIONS.counts[configuration]
         areas = np.linalg.det(table.POINTS[triangles] / 4.0)
         assert (areas > 0.01).all()
@@ -61,7 +62,7 @@ def test_splitting_turns_no_line(length: int) -> None:
         has = coherence._splits_of(TABLES.sequences[state])
         for splits in ALL_SPLITS:
             if all(want >= had for want, had in zip(splits, has, strict=True)):
-                configuration = table.configuration_of(splits)
+                configuration = configuration_of(splits)
                 following = int(TABLES.transitions[state, configuration])
                 assert TABLES.sequences[following][: sum(has)] == TABLES.sequences[state]
                 assert coherence._splits_of(TABLES.sequences[following]) == splits
@@ -76,7 +77,7 @@ def test_taking_back_in_reverse(length: int) -> None:
         sequence = TABLES.sequences[state]
         for left in range(length):
             splits = coherence._splits_of(sequence[:left])
-            configuration = table.configuration_of(splits)
+            configuration = configuration_of(splits)
             back = TABLES.transitions[state, configuration]
             assert TABLES.sequences[back] == sequence[:left]
             assert TABLES.removals[state, configuration] == 0
@@ -101,7 +102,7 @@ def test_transitions_by_hand(
     removed: int,
 ) -> None:
     """Removals in and out of order, and both at once with new splits."""
-    state, configuration = NUMBER[sequence], table.configuration_of(splits)
+    state, configuration = NUMBER[sequence], configuration_of(splits)
     assert TABLES.sequences[TABLES.transitions[state, configuration]] == following
     assert TABLES.removals[state, configuration] == removed
 
@@ -125,7 +126,7 @@ def test_new_splits_make_the_shortest_lines(length: int) -> None:
         best: dict[int, float] = {}
         for other, sequence in enumerate(TABLES.sequences):
             if sequence[:length] == begun:
-                key = table.configuration_of(coherence._splits_of(sequence))
+                key = configuration_of(coherence._splits_of(sequence))
                 best[key] = min(best.get(key, np.inf), lengths[other])
         for configuration, shortest in best.items():
             taken = int(TABLES.transitions[state, configuration])
@@ -137,7 +138,7 @@ def test_any_history(history: list[tuple[int, int, int]]) -> None:
     """Whatever came before, a triangle has the splits that are wanted, and all gone is all new."""
     state = 0
     for splits in history:
-        state = int(TABLES.transitions[state, table.configuration_of(splits)])
+        state = int(TABLES.transitions[state, configuration_of(splits)])
         assert coherence._splits_of(TABLES.sequences[state]) == splits
     assert TABLES.transitions[state, 0] == 0
 
@@ -170,5 +171,3 @@ def test_states_follow_the_tables() -> None:
         assert rows is coherent.states and (rows == states).all()
         assert (coherent.patterns.counts[rows] == table.CONFIGURATIONS.counts[wanted]).all()
     assert coherent.removals_out_of_order == removed > 0
-    coherent.forget()
-    assert coherent.removals_out_of_order == coherent.states.max() == 0

@@ -122,18 +122,6 @@ def test_states_are_all_the_memory() -> None:
             assert ours.tobytes() == theirs.tobytes()
 
 
-def test_forgetting() -> None:
-    """After `forget` a frame is what it would be as the first one."""
-    mesh = meshes.irregular(4)
-    positions = growing(mesh, 3)[-1]
-    used = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
-    for earlier in growing(mesh, 7):
-        used.refine(earlier)
-    history_of(used).forget()
-    fresh = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
-    assert (used.refine(positions).triangles == fresh.refine(positions).triangles).all()
-
-
 def test_not_with_blending() -> None:
     """Blended triangles have no lines to turn: the two options exclude each other."""
     mesh = meshes.octahedron()

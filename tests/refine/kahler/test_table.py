@@ -10,7 +10,7 @@ import pytest
 from risorius import refine
 from risorius.refine.kahler import table
 from tests import meshes
-from tests.refine.cases import Forced, as_lists, assert_equals_twin
+from tests.refine.cases import Forced, as_lists, assert_equals_twin, configuration_of
 from tests.refine.plain_twin import refine as refine_plainly
 
 ALL_SPLITS = list(itertools.product(range(3), repeat=3))
@@ -19,15 +19,15 @@ COUNTS = {0: 1, 1: 2, 2: 4}
 
 def test_configuration_number() -> None:
     """The entry number has the splits as its ternary digits, and back."""
-    assert table.configuration_of((2, 0, 1)) == 11
+    assert configuration_of((2, 0, 1)) == 11
     for splits in ALL_SPLITS:
-        assert table.splits_of(table.configuration_of(splits)) == splits
+        assert table.splits_of(configuration_of(splits)) == splits
 
 
 @pytest.mark.parametrize("splits", ALL_SPLITS)
 def test_counts(splits: tuple[int, int, int]) -> None:
     """Each split adds its points, each point adds a subtriangle: ten for two splits everywhere."""
-    number = table.configuration_of(splits)
+    number = configuration_of(splits)
     expected = 1 + sum({0: 0, 1: 1, 2: 3}[s] for s in splits)
     assert table.CONFIGURATIONS.counts[number] == expected
     assert len(table.subdivide(splits)) == expected
@@ -70,7 +70,7 @@ def test_one_triangle(splits: tuple[int, int, int]) -> None:
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced(splits))
     refined = refiner.refine(mesh.vertices)
     refine.check(refiner, refined, mesh.vertices)
-    assert len(refined.triangles) == table.CONFIGURATIONS.counts[table.configuration_of(splits)]
+    assert len(refined.triangles) == table.CONFIGURATIONS.counts[configuration_of(splits)]
     named_splits = dict(zip([(0, 1), (1, 2), (0, 2)], splits, strict=True))
     twin = refine_plainly(*as_lists(mesh.vertices, mesh.faces), named_splits)
     assert_equals_twin(refiner, refined, twin)
