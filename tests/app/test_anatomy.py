@@ -71,6 +71,7 @@ def check_surface(part: Any) -> None:
     assert np.abs(ends[:, 0] - ends[:, 1]).max(initial=0.0) < 1e-3
 
 
+@pytest.mark.slow
 def test_skin_that_hides_everything_is_drawn_as_ever(studio: Capture) -> None:
     """At opacity 1, and without anything beneath, every byte is that of the usual picture."""
     posed(studio.scene)  # type: ignore[arg-type]
@@ -102,6 +103,7 @@ def test_more_skin_hides_more(studio: Capture) -> None:
     assert off == sorted(off, reverse=True) and off[0] > 5.0 * off[3]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pose", [{}, {"joy": 1.0}, {"jaw_open": 1.0, "head_yaw": 0.6}])
 def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
     """At rest, in a smile, in a turned head that yawns."""
@@ -146,6 +148,7 @@ def test_a_symmetric_face_has_symmetric_solids(studio: Capture, pose: dict[str, 
         assert np.percentile(off, 99) < 0.4, part.name
 
 
+@pytest.mark.slow
 def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> None:
     """They lie in it, and the mandible goes down with the jaw."""
     scene = FaceScene(fit_head(*stranger().write(tmp_path)))
@@ -163,6 +166,7 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
 
 
+@pytest.mark.slow
 def test_the_command_draws_anatomy(tmp_path: Path) -> None:
     """`--anatomy` opens the side that is told; what is not there is told in one line."""
     always = ["capture", "--set", "AU12=1", "--size", "120x120", "--quiet"]

@@ -288,6 +288,7 @@ def workers_of(process: subprocess.Popen[bytes]) -> list[int]:
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 
 
+@pytest.mark.slow
 @linux
 def test_a_worker_is_killed_halfway() -> None:
     """Every film is whole, as it would be without, and each is counted once."""

@@ -149,6 +149,7 @@ def test_a_missing_library_is_named(
     assert line == f"risorius: this needs {package}: pip install 'risorius[export]'"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -402,6 +402,7 @@ def test_a_script_of_shapes_moves_these_alone(
     assert told == pytest.approx([1000 * np.sqrt((off**2).mean()), 1000 * off.max()], abs=0.06)
 
 
+@pytest.mark.slow
 def test_other_controls_are_followed_by_action_units(clip: Clip, tmp_path: Path) -> None:
     """An expression moves the targets of units, each side by its own name."""
     remark = written(clip, tmp_path / "units.glb", "units")
@@ -415,6 +416,7 @@ def test_other_controls_are_followed_by_action_units(clip: Clip, tmp_path: Path)
     assert 1000.0 * farthest(player, clip, "skin") < 8.0
 
 
+@pytest.mark.slow
 def test_a_rig_keeps_the_tongue_in_the_mouth(tmp_path: Path) -> None:
     """tongueOut opens the jaw as well; a yawn must not be made of it."""
     yawn = parse_script(

@@ -281,6 +281,7 @@ def triangles_in(path: Path) -> tuple[Points, Points]:
     return obj_rows(path, "v")[corners[..., 0], :3], obj_rows(path, "vn")[corners[..., 2]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("refinement", [None, REFINED], ids=["mesh", "refined"])
 @pytest.mark.parametrize("kind", ["obj", "ply"])
 def test_sequences_have_every_frame(

@@ -179,6 +179,7 @@ def test_colours_around_are_those_of_the_nearest_edge() -> None:
     assert (filled[..., :3].max(axis=2) > 100).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("samples", [0, 4])
 @pytest.mark.parametrize("colour", [(255, 255, 255), (0, 0, 0), (0, 177, 64)])
 def test_a_transparent_picture_lies_over_any_colour(
@@ -238,6 +239,7 @@ def test_processes_draw_the_same_frames(tmp_path: Path, monkeypatch: pytest.Monk
         assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "3" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_a_still_face_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its picture is shown again until it moves, by one process and by several; passes are not."""
     text = "duration = 2.0\n[[pose]]\ntime = 1.6\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
@@ -357,6 +359,7 @@ def test_memory_stays_flat() -> None:
     assert sizes[1] - sizes[0] < 8e6  # half of the pictures that were read back: 2.3 MB
 
 
+@pytest.mark.slow
 def test_a_range_is_a_part_of_the_film_whoever_draws(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

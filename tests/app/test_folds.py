@@ -126,6 +126,7 @@ def test_the_sheet_has_folds_to_crack() -> None:
     assert len(rims(wild, mesh.triangles)) > len(rims(smooth, mesh.triangles))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
 def test_the_simulated_mesh_keeps_its_bytes(joy: FaceScene, scheme: str) -> None:
     """Folds move what is drawn, by at most a millimetre, and never by another refiner's rows."""
@@ -209,6 +210,7 @@ def _patchwork(head: assets.Head) -> Texture:
     )
 
 
+@pytest.mark.slow
 def test_folds_lie_where_they_belong_in_an_own_layout() -> None:
     """A head with a picture of its own folds as one without, but for a seam along its middle."""
     head = assets.load("head")

@@ -260,6 +260,7 @@ def test_asking_what_a_control_moves_moves_nothing(scene: FaceScene) -> None:
     assert fresh.values == before
 
 
+@pytest.mark.slow
 def test_only_what_can_be_seen_is_drawn() -> None:
     """Between blinks most steps move the face by less than a part of a pixel."""
     scene = FaceScene()

@@ -257,6 +257,7 @@ def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio: Capture) 
     assert not cut.visible[cut.pixels[:, 0] > 200.0].any()
 
 
+@pytest.mark.slow
 def test_another_head_has_the_same_classes() -> None:
     """A head of one's own wears the same texture coordinates, so the same map."""
     other = stranger()
@@ -290,6 +291,7 @@ def test_other_scenes_have_what_makes_sense() -> None:
             passes.draw(studio.camera)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("yaw", [-30.0, 0.0, 30.0])
 def test_an_unusual_person_shuts_the_eyes(yaw: float) -> None:
     """No pixel from below shows an eyeball behind shut lids; open, hundreds do."""

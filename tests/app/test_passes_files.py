@@ -93,6 +93,7 @@ def test_only_what_is_asked_for_is_written(tmp_path: Path) -> None:
     assert "landmarks" not in json.loads((target.parent / "joy.json").read_text())
 
 
+@pytest.mark.slow
 def test_the_colours_are_those_without_passes(tmp_path: Path) -> None:
     """To the last byte, and so are the passes of two runs."""
     for name, passes in (("a", ("--passes", ALL)), ("b", ("--passes", ALL)), ("c", ())):
@@ -105,6 +106,7 @@ def test_the_colours_are_those_without_passes(tmp_path: Path) -> None:
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "c.png").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_head_of_ones_own_and_no_refinement(tmp_path: Path) -> None:
     """Triangles are those of the head that was brought; none is split."""
     other = stranger()

@@ -198,6 +198,7 @@ def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path: Path) -> Non
     assert script.at(1.0)["head_yaw"] == pytest.approx(-20.0 / 45.0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_recording_is_filmed_as_its_script_is(tmp_path: Path) -> None:
     """The same picture of both; mirrored it is another one."""
     path, script = written(tmp_path), tmp_path / "script.toml"

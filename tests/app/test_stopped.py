@@ -23,6 +23,7 @@ def is_there(folder: Path, pattern: str) -> bool:
         return False
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 @pytest.mark.parametrize(
     ("output", "pattern", "number"),

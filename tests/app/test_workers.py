@@ -202,6 +202,7 @@ def parent(process: int) -> int:
     return int(status.split("PPid:")[1].split()[0])
 
 
+@pytest.mark.slow
 def test_a_worker_of_the_cluster_is_killed_halfway(cluster: Any, tmp_path: Path) -> None:
     """Every file is whole, and none we heard of is done again; its process ends with the worker."""
     targets = [tmp_path / f"{number}.txt" for number in range(6)]

@@ -83,6 +83,7 @@ def _colours(head: FittedHead) -> np.ndarray:
     return sampled(head.albedo, head.uv[head.face_uv].astype(np.float64).mean(axis=1))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("write", [_write_obj, _write_glb])
 def test_own_picture_lies_where_the_file_has_it(
     write: Callable[[Path, Stranger], tuple[Path, Path]], other: Stranger, tmp_path: Path
@@ -138,6 +139,7 @@ def test_slopes_turn_with_the_layout() -> None:
     assert np.corrcoef(after[is_within].ravel(), wanted[is_within].ravel())[0, 1] > 0.9
 
 
+@pytest.mark.slow
 def test_vertex_colours_are_drawn(other: Stranger, tmp_path: Path) -> None:
     """A PLY file with red on the right half and blue on the left."""
     is_left = other.mesh.vertices[:, 0] > np.median(other.mesh.vertices[:, 0])
@@ -227,6 +229,7 @@ def test_pictures_are_drawn_from_one_layout_to_another() -> None:
     assert np.array_equal(drawn_over(once, mirrored, (once, upright)), picture)
 
 
+@pytest.mark.slow
 def test_dense_heads_are_simplified_with_their_colours() -> None:
     """Above what can be moved in time, a head keeps its form, openings and colours, and says so."""
     dense = stranger(2)

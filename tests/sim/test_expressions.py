@@ -172,6 +172,7 @@ def test_lips_do_not_cross(
     assert (above - y[lips.lower] - lips.least_gap).min() > -PRESSED_OVERLAP - 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "other",
     [

@@ -58,6 +58,7 @@ def test_closed_mouth_shows_no_teeth(
         assert slit < SHUT, mesh
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sides", "strength"),
     [

@@ -88,6 +88,7 @@ def smooth_wave(mesh: meshes.Mesh, height: float) -> Points:
     return np.column_stack([x, y, heights])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_normals_do_not_pop(scheme: str) -> None:
     """In a smooth motion the shading turns in proportion to the motion, all thresholds crossed.
