@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Iterator
+from importlib import import_module
+from typing import Any
 
 import click
 
@@ -33,6 +35,14 @@ class UserError(Exception):
 
     def __init__(self, text: str) -> None:
         super().__init__(in_one_line(text))
+
+
+def needed(module: str, cure: str) -> Any:
+    """A library that not everybody has; UserError, whose text is `cure`, where it is missing."""
+    try:
+        return import_module(module)
+    except ImportError:
+        raise UserError(cure) from None
 
 
 def line_for(error: Exception) -> str | None:

@@ -26,11 +26,15 @@ from .stopping import cleaned_up_if_stopped, done_whole
 Image = npt.NDArray[np.uint8]  # (H, W, 3), top row first
 
 
+class NoSuchFileError(UserError):
+    """Nothing is there that could be read."""
+
+
 def read_text(path: Path, *, what: str, longest: int) -> str:
     """The text in a file, UTF-8 with or without a byte order mark, of `longest` bytes at most.
 
-    what: what the file is to be, for error texts ("script"). Raises UserError for what is there
-    and of no use, FileNotFoundError where there is nothing.
+    what: what the file is to be, for error texts ("script"). Raises UserError for what is of no
+    use, and NoSuchFileError, which is one, where there is nothing.
     """
     try:
         return read_bytes(path, what=what, longest=longest).decode("utf-8-sig")
@@ -54,7 +58,7 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
         with path.open("rb") as file:
             return file.read(longest if first is None else first)
     except FileNotFoundError:
-        raise
+        raise NoSuchFileError(f"{path}: no such {what}") from None
     except (OSError, ValueError) as error:  # a name that no file can have is a ValueError
         why = getattr(error, "strerror", None) or error
         raise UserError(f"{path}: cannot be read: {why}") from None

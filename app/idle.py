@@ -28,9 +28,9 @@ FOLLOWED, LOST = (45.0, 32.0), (65.0, 45.0)
 class Idle:
     """The life of a scene's face; a scene without one is left as it is."""
 
-    def __init__(self, scene: Scene, seed: int = 0) -> None:
+    def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self._life = Life(seed)
+        self._life = Life()
 
     def beneath(
         self,

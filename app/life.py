@@ -88,12 +88,11 @@ class Life:
         self._twitches = {name: Drift(slow, TWITCH_PERIODS) for name in TWITCHES}
         self._uneven = {name: Drift(slow, TWITCH_PERIODS) for name in TWITCHES}
 
-    def values(self, time: float) -> Values:
-        """What to add to each control at `time` [s] from the start; what is not named is 0."""
-        return {name: value for part in self.parts(time).values() for name, value in part.items()}
-
     def parts(self, time: float) -> dict[str, Values]:
-        """The same in parts, each of which is moved together: lids, eyes, head, breath, muscles."""
+        """What to add to each control at `time` [s] from the start; what is not named is 0.
+
+        In parts, each of which is moved together: lids, eyes, head, breath, muscles.
+        """
         across, along = self._glances.at(time)
         turn, rise = self._glances.of_head(time)
         full, flow = breath(time / BREATH_PERIOD + BREATH_WANDERS * self._breath.at(time))

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from risorius.assets.topology import vertex_normals
 from risorius.jit import njit
 
 Floats = npt.NDArray[np.float64]
@@ -21,12 +22,7 @@ class Skin:
     ) -> None:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
         self.x, self._bone, self._middle = x, bone, middle
-        a, b, c = (x[faces[:, k]] for k in range(3))
-        cross = np.cross(b - a, c - a)
-        normals = np.stack(
-            [np.bincount(faces.T.ravel(), np.tile(each, 3), len(x)) for each in cross.T], 1
-        )
-        self.normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+        self.normals = vertex_normals(x, faces)
         self._tree = cKDTree(x)
 
     def near(self, points: Floats) -> Numbers:

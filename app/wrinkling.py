@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from risorius import assets, refine, render
 from risorius.assets.model import HIGHEST_FOLD
+from risorius.assets.topology import vertex_normals
 
 from .looks import Refinement
 from .scenes import Scene
@@ -93,9 +94,10 @@ class Relief:
 
     def carve(self, mesh: refine.RefinedMesh, rows: Amounts) -> None:
         """Move it and turn its normals, too, for programs that know nothing of the map."""
-        smooth = _normals(mesh)
+        smooth = vertex_normals(mesh.positions.astype(np.float64), mesh.triangles)
         self.move(mesh, rows)
-        turned = mesh.normals + _normals(mesh) - smooth
+        folded = vertex_normals(mesh.positions.astype(np.float64), mesh.triangles)
+        turned = mesh.normals + folded - smooth
         length = np.linalg.norm(turned, axis=1, keepdims=True)
         np.divide(turned, length, out=mesh.normals, where=length > 0.0)
 
@@ -148,16 +150,6 @@ class FoldCriterion:
 def _mixed(first: npt.NDArray[Any], second: npt.NDArray[Any], share: npt.NDArray[Any]) -> Amounts:
     mixed: Amounts = (1.0 - share) * first + share * second
     return mixed
-
-
-def _normals(mesh: refine.RefinedMesh) -> Amounts:
-    """Unit normals of the triangles around each vertex, by area, shape (N, 3)."""
-    a, b, c = (mesh.positions[mesh.triangles[:, k]] for k in range(3))
-    sums = np.zeros_like(mesh.positions)
-    for k in range(3):
-        np.add.at(sums, mesh.triangles[:, k], np.cross(b - a, c - a))
-    normals: Amounts = sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-20)
-    return normals
 
 
 def _bends(heights: Amounts) -> Amounts:

@@ -20,6 +20,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from .model import Part
+from .topology import vertex_normals
 
 Floats = npt.NDArray[np.float64]
 Field = npt.NDArray[np.float32]  # half as wide: what is done to grids is as quick as memory
@@ -124,11 +125,7 @@ def _outer_form(
 ) -> _Field:
     """The skin moved inward, without ears, lids, lips and nose, as a field; or the nose alone."""
     x, faces = (head.vertices - origin) / scale, head.faces
-    cross = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
-    normals = np.zeros_like(x)
-    for corner in range(3):
-        np.add.at(normals, faces[:, corner], cross)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+    normals = vertex_normals(x, faces)
     across = np.abs(x[:, 0])
     is_bone = (
         (np.stack([across - 76.0, x[:, 1] - 8.0, x[:, 2] + 30.0], 1) / (27, 44, 37)) ** 2

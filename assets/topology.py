@@ -58,18 +58,18 @@ def unique_points(points: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArra
     return first[order], np.argsort(order)[number.reshape(-1)]
 
 
-def cross_products(vertices: FloatArray, faces: Faces) -> FloatArray:
+def cross_products(vertices: FloatArray, faces: npt.NDArray[np.integer]) -> FloatArray:
     """Face normals times twice the area, shape (F, 3)."""
-    corner = vertices[faces]
-    return np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    return np.cross(b - a, c - a)
 
 
-def vertex_normals(vertices: FloatArray, faces: Faces) -> FloatArray:
+def vertex_normals(vertices: FloatArray, faces: npt.NDArray[np.integer]) -> FloatArray:
     """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero where none is."""
-    cross = cross_products(vertices, faces)
-    total = np.zeros_like(vertices)
-    for corner in range(3):
-        np.add.at(total, faces[:, corner], cross)
+    cross, corners = cross_products(vertices, faces), faces.T.ravel()
+    total = np.stack(
+        [np.bincount(corners, np.tile(each, 3), len(vertices)) for each in cross.T], axis=1
+    )
     normals: FloatArray = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
     return normals
 

@@ -16,10 +16,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
+from risorius.assets.topology import vertex_normals
 from risorius.refine.mesh.rings import BORDER_RING, warren_weight
 
 from .sparse_loop import subdivision
-from .subjects import vertex_normals
 
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]

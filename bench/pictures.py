@@ -18,8 +18,9 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
+from risorius.assets.topology import vertex_normals
 
-from .subjects import Subject, vertex_normals
+from .subjects import Subject
 
 Array = npt.NDArray[np.float64]
 Mesh = Any

@@ -18,11 +18,13 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from risorius.assets.topology import vertex_normals
+
 from .flicker import largest_jump
 from .methods import SCHEMES, Key, Method, methods_for
 from .nearest import nearest_points
 from .pictures import Mesh, Pictures
-from .subjects import Points, PosePair, Subject, vertex_normals
+from .subjects import Points, PosePair, Subject
 
 BUDGETS = (2.0,)
 """Triangles of a refined mesh over those of the coarse one, that is compared."""

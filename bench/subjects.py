@@ -184,16 +184,6 @@ def settled_positions(
     return simulation.positions.copy()
 
 
-def vertex_normals(positions: Points, faces: npt.NDArray[np.integer]) -> Points:
-    """Unit vertex normals, weighted by area, shape (V, 3)."""
-    a, b, c = (positions[faces[:, k]] for k in range(3))
-    cross = np.cross(b - a, c - a)
-    sums = np.zeros_like(positions)
-    for k in range(3):
-        np.add.at(sums, faces[:, k], cross)
-    return np.asarray(sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300))
-
-
 def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:
     """All arrays of a file; ValueError where it is broken or one of `needed` is missing."""
     if not path.is_file():

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
+from risorius.assets.topology import cross_products
 
 from .report import table
 from .subjects import settled_positions
@@ -71,7 +72,7 @@ def _values(
 
 def _inverted(rest: Array, now: Array, faces: npt.NDArray[np.int32]) -> int:
     """How many triangles turned by more than a right angle against the skin around them."""
-    before, after = _normals(rest, faces), _normals(now, faces)
+    before, after = cross_products(rest, faces), cross_products(now, faces)
     count = 0
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
         away = np.linalg.norm(rest - rest[faces[face]].mean(axis=0), axis=1)
@@ -81,12 +82,6 @@ def _inverted(rest: Array, now: Array, faces: npt.NDArray[np.int32]) -> int:
         turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(right.T @ left.T)]) @ left.T
         count += int((turn @ before[face]) @ after[face] < 0.0)
     return count
-
-
-def _normals(x: Array, faces: npt.NDArray[np.int32]) -> Array:
-    """Normals of triangles, shape (F, 3), not of unit length."""
-    normals: Array = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
-    return normals
 
 
 def report(poses: Sequence[PoseDefects], mixtures: int) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 
 from risorius import __version__
 
-from ..files import cannot_be_written, read_text
+from ..files import NoSuchFileError, cannot_be_written, read_text
 from ..keeping import state_of
 from .listing import LONGEST, Job
 
@@ -27,7 +27,7 @@ class Journal:
         self._begun: set[str] = set()  # outputs that were not there before
         try:
             text = read_text(path, what="journal", longest=LONGEST)
-        except FileNotFoundError:
+        except NoSuchFileError:
             return
         for line in text.splitlines():
             try:

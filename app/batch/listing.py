@@ -34,10 +34,7 @@ class Job:
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
     """The numbers and texts of lines that hold a command; UserError for what cannot be read."""
-    try:
-        text = read_text(path, what="list", longest=LONGEST)
-    except FileNotFoundError:
-        raise UserError(f"{path}: there is no such list") from None
+    text = read_text(path, what="list", longest=LONGEST)
     for number, line in enumerate(text.splitlines(), 1):
         stripped = line.strip()
         if stripped and not stripped.startswith("#"):

@@ -19,7 +19,7 @@ from risorius.assets.identities import DARKEST, LIGHTEST
 from risorius.render import LIGHTS
 
 from ..errors import UserError
-from ..files import read_text
+from ..files import NoSuchFileError, read_text
 from ..recordings.viseme_tracks import is_number
 
 LONGEST_FILE = 2**18  # [bytes]
@@ -74,7 +74,7 @@ def load_table(path: Path | None) -> SampleTable:
     if path is not None:
         try:
             own = tomllib.loads(read_text(path, what="table of samples", longest=LONGEST_FILE))
-        except FileNotFoundError:
+        except NoSuchFileError:
             raise UserError(
                 f"{path}: no such table; `risorius dataset --sample-table > {path.name}` writes one"
             ) from None

@@ -8,7 +8,7 @@ from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from tqdm import tqdm
 
@@ -194,14 +194,6 @@ def export(
     clip = record(script, scene_of(script, head), frames_per_second, span=span, progress=progress)
     remark = write(clip, output, chosen, request)
     return f"{output}: {chosen.title}, {counted(clip.frame_count, 'frame')}", remark
-
-
-def needed(module: str, package: str) -> Any:
-    """A library that only this room uses; UserError where it is not installed."""
-    try:
-        return import_module(module)
-    except ImportError:
-        raise UserError(f"this needs {package}: pip install 'risorius[export]'") from None
 
 
 def names() -> Sequence[str]:

@@ -18,13 +18,14 @@ import PIL.Image
 from risorius.assets.topology import vertex_normals
 from risorius.render.style import linear
 
+from ..errors import needed
 from .clip import Clip, Surface
-from .formats import Request, needed
+from .formats import Request
 
-PACKAGE = "usd-core"
-Gf, Sdf, Tf = (needed(f"pxr.{name}", PACKAGE) for name in ("Gf", "Sdf", "Tf"))
+CURE = "this needs usd-core: pip install 'risorius[export]'"
+Gf, Sdf, Tf = (needed(f"pxr.{name}", CURE) for name in ("Gf", "Sdf", "Tf"))
 Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
-    needed(f"pxr.{name}", PACKAGE) for name in ("Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
+    needed(f"pxr.{name}", CURE) for name in ("Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
 )
 
 MILLIMETRE = 0.001  # metres per unit

@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import needed
 from .clip import Clip
-from .formats import Request, needed
+from .formats import Request
 from .sheets import Sheet, joined, sheets
 
-h5py = needed("h5py", "h5py")
+h5py = needed("h5py", "this needs h5py: pip install 'risorius[export]'")
 
 VERSION = (2, 0)
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")

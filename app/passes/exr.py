@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import UserError
+from ..errors import needed
 
 CHANNELS = {
     "depth": ("depth.Z",),
@@ -30,11 +30,7 @@ NOTHING = 0xFFFFFFFF
 
 def openexr() -> Any:
     """OpenEXR's module; UserError where it is missing."""
-    try:
-        import OpenEXR
-    except ImportError:
-        raise UserError("--passes needs OpenEXR: pip install 'risorius[passes]'") from None
-    return OpenEXR
+    return needed("OpenEXR", "--passes needs OpenEXR: pip install 'risorius[passes]'")
 
 
 def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:

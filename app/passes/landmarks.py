@@ -32,13 +32,11 @@ class Landmarks:
     """The points of one picture: 68 landmarks, the right pupil, the left pupil.
 
     points: in the scene [mm], (70, 3). pixels: x to the right and y down; the middle of the first
-    pixel is (0.5, 0.5), (70, 2). depths: along the camera's axis [mm], (70,). visible: neither
-    hidden nor beside the picture, (70,).
+    pixel is (0.5, 0.5), (70, 2). visible: neither hidden nor beside the picture, (70,).
     """
 
     points: Floats
     pixels: Floats
-    depths: Floats
     visible: npt.NDArray[np.bool_]
 
 
@@ -66,7 +64,7 @@ def landmarks_in(
         _is_visible(depth, x, y, near, int(reach))
         for (x, y), near, reach in zip(pixels.tolist(), nearest, reaches, strict=True)
     ]
-    return Landmarks(points, pixels, depths, np.array(visible))
+    return Landmarks(points, pixels, np.array(visible))
 
 
 def _is_visible(

@@ -19,7 +19,7 @@ from ..script import POSE_SECONDS, TOLERANCE, Channel, Limits, Pose, Script, rou
 from .calibration import calibration_for
 from .mapping import load_mapping
 from .report import Report, report_of
-from .smoothing import OneEuro
+from .smoothing import smoothed
 from .take import Array, Take
 
 LEAST_STEP = 1e-3  # [s] between the first two keys
@@ -38,7 +38,7 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
     calibration = calibration_for(
         take, neutral=playback.neutral, gains=playback.gains, mirror=playback.mirror
     )
-    smooth = OneEuro().take(take) if playback.smooth else take
+    smooth = smoothed(take) if playback.smooth else take
     controls = mapping.controls(calibration.apply(smooth.channels))
     curves = {
         name: np.clip(values, *limits[name]) for name, values in controls.items() if name in limits

@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..errors import UserError
-from ..files import read_text
+from ..files import NoSuchFileError, read_text
 from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 from .take import Array
 
@@ -118,7 +118,7 @@ def load_mapping(path: Path | None) -> MappingTable:
         return usual_mapping()
     try:
         text = read_text(path, what="mapping", longest=LONGEST_FILE)
-    except FileNotFoundError:
+    except NoSuchFileError:
         raise UserError(
             f"{path}: no such mapping; `risorius convert --mapping-table > {path.name}` writes one"
         ) from None

@@ -20,7 +20,6 @@ from .table import Table
 from .take import Array, Take
 from .timing import times_of
 
-NAMED = "Table of named columns"
 PERCENT = 2.0  # shapes beyond are no shares: 0 to 100
 NONSENSE = 3.0  # and shares beyond are no measurements
 MOST_PERCENT = 110.0  # an intensity beyond is none in any unit
@@ -72,7 +71,16 @@ def recognises(names: tuple[str, ...]) -> bool:
     return Columns.of(names).are_known
 
 
-def read(table: Table, request: Request, kind: str = NAMED) -> Take:
+def is_live_link(names: tuple[str, ...]) -> bool:
+    """Whether these are the columns of Live Link Face, whose angles have but one way to count.
+
+    Columns are found by name: writers disagree about their order, and one adds seven of emotions.
+    """
+    folded = {name.casefold() for name in names}
+    return bool(folded & {"timecode", "blendshapecount"}) and recognises(names)
+
+
+def read(table: Table, request: Request) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes: list[str] = []
@@ -84,11 +92,12 @@ def read(table: Table, request: Request, kind: str = NAMED) -> Take:
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, shapes, notes)
-    if columns.angles and kind == NAMED:
+    is_known = is_live_link(table.names)
+    if columns.angles and not is_known:
         notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
     unknown = [table.names[number] for number in columns.unknown]
     return whole_take(
-        kind,
+        "Live Link Face" if is_known else "Table of named columns",
         table.source,
         times,
         channels,

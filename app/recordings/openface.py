@@ -67,10 +67,8 @@ def read(table: Table, request: Request) -> Take:
         if column in numbers:
             channels[name] = sign * np.degrees(numbers[column])
     channels |= _eyes(numbers, channels, notes)
-    seen = numbers.get("success", numbers.get("confidence"))
-    if seen is not None:
-        lost = seen < SEEN
-        channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
+    lost = numbers.get("success", numbers.get("confidence", np.ones(1))) < SEEN
+    channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
     known = {*others, *used, *FACE_COLUMNS}
     version = 2 if "face_id" in places or "gaze_angle_x" in places else 1
     return whole_take(

@@ -69,10 +69,8 @@ def read(table: Table, request: Request) -> Take:
     channels |= _head(numbers, bool(shapes), notes)
     if not any(name.startswith("eyeLook") for name in shapes):
         channels |= _eyes(numbers, channels, notes)
-    score = numbers.get("facescore")
-    if score is not None:
-        lost = ~(score > 0.0)
-        channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
+    lost = ~(numbers.get("facescore", np.ones(1)) > 0.0)
+    channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
     known = {*others, *used, *FACE_COLUMNS, *BOX}
     return whole_take(
         "py-feat 2" if shapes else "py-feat 1",

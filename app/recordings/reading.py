@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import UserError
-from . import live_link, mediapipe_json, named_columns, openface, pyfeat, rhubarb, viseme_tracks
+from . import mediapipe_json, named_columns, openface, pyfeat, rhubarb, viseme_tracks
 from .request import Request
 from .table import Table, header_of, table_in
 from .take import Take
@@ -36,7 +36,7 @@ class DocumentFormat(NamedTuple):
 
 TABLES = (
     TableFormat(rhubarb.recognises_rows, rhubarb.read_rows),
-    TableFormat(live_link.recognises, live_link.read),
+    TableFormat(named_columns.is_live_link, named_columns.read),
     TableFormat(pyfeat.recognises, pyfeat.read),
     TableFormat(openface.recognises, openface.read),
     TableFormat(named_columns.recognises, named_columns.read),

@@ -10,8 +10,8 @@ Input in Interactive Systems".
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,49 +24,17 @@ SPEED = 1.0  # [Hz] that pass of the speed itself
 DEGREES = 30.0  # of an angle that count as one unit
 
 
-class OneEuro:
-    """The filter of one face: give it frame after frame."""
-
-    def __init__(self) -> None:
-        self._names: tuple[str, ...] = ()
-        self._units: Array = np.empty(0)
-        self._values: Array = np.empty(0)
-        self._speeds: Array = np.empty(0)
-
-    def frame(self, channels: Mapping[str, float], seconds: float) -> dict[str, float]:
-        """The channels of the next frame, smoothed; `seconds` have passed since the last one.
-
-        Frames that begin to name other channels begin anew.
-        """
-        names = tuple(channels)
-        if names != self._names:
-            self._names = names
-            self._begin(names)
-        smooth = self.step(np.fromiter(channels.values(), np.float64, len(names)), seconds)
-        return dict(zip(names, smooth.tolist(), strict=True))
-
-    def take(self, take: Take) -> Take:
-        """The whole take, smoothed."""
-        self._begin(tuple(take.channels))
-        rows = np.stack(list(take.channels.values()), axis=1)  # (T, channels)
-        for row, seconds in zip(rows, np.diff(take.times, prepend=0.0).tolist(), strict=True):
-            row[:] = self.step(row, seconds)
-        return replace(take, channels=dict(zip(take.channels, rows.T.copy(), strict=True)))
-
-    def _begin(self, names: tuple[str, ...]) -> None:
-        self._units = np.array([DEGREES if name in ANGLES else 1.0 for name in names])
-        self._values, self._speeds = np.empty(0), np.zeros(len(names))
-
-    def step(self, values: Array, seconds: float) -> Array:
-        """The next values, shape (channels,)."""
-        if not len(self._values):
-            self._values = values.copy()
-        elif seconds > 0.0:
-            moved = values - self._values
-            self._speeds += _share(SPEED, seconds) * (moved / self._units / seconds - self._speeds)
-            cut_off = STILL + OPENING * np.abs(self._speeds)
-            self._values = self._values + _share(cut_off, seconds) * moved
-        return self._values
+def smoothed(take: Take) -> Take:
+    """The take with each channel filtered."""
+    units = np.array([DEGREES if name in ANGLES else 1.0 for name in take.channels])
+    rows = np.stack(list(take.channels.values()), axis=1)  # (T, channels)
+    speeds = np.zeros(len(units))
+    steps = np.diff(take.times).tolist()
+    for (before, row), seconds in zip(pairwise(rows), steps, strict=True):
+        moved = row - before
+        speeds += _share(SPEED, seconds) * (moved / units / seconds - speeds)
+        row[:] = before + _share(STILL + OPENING * np.abs(speeds), seconds) * moved
+    return replace(take, channels=dict(zip(take.channels, rows.T.copy(), strict=True)))
 
 
 def _share(cut_off: float | Array, seconds: float) -> Array:

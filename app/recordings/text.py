@@ -23,10 +23,7 @@ NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no te
 
 def read_recording(path: Path) -> str:
     """The whole text of a file. UserError for what is not there, too long, or no text."""
-    try:
-        content = read_bytes(path, what="recording", longest=LONGEST_FILE)
-    except FileNotFoundError:
-        raise UserError(f"{path}: no such recording") from None
+    content = read_bytes(path, what="recording", longest=LONGEST_FILE)
     if not content.strip():
         raise UserError(f"{path}: is empty; a recording is a table (CSV) or JSON")
     text = decoded(content)
@@ -41,7 +38,7 @@ def read_beginning(path: Path) -> str:
     """The first lines of a file, '' for what is not there or no text."""
     try:
         content = read_bytes(path, what="recording", longest=LONGEST_FILE, first=BEGINNING)
-    except (UserError, FileNotFoundError):
+    except UserError:
         return ""
     return decoded(content) or ""
 

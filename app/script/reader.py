@@ -30,10 +30,7 @@ TRACK_KEYS = ("time", "value", "easing")
 
 def load_script(path: Path) -> Script:
     """Read a script file. Raises UserError with the file and the line or key that is wrong."""
-    try:
-        text = read_text(path, what="script", longest=LONGEST_FILE)
-    except FileNotFoundError:
-        raise UserError(f"{path}: no such script") from None
+    text = read_text(path, what="script", longest=LONGEST_FILE)
     if len(text) > SOON_READ and sys.stderr.isatty():
         click.echo(f"... reading {in_one_line(path)}, {len(text) >> 20} MB", err=True)
     return parse_script(text, source=str(path))

@@ -38,10 +38,7 @@ class Sound:
 
 def load_sound(file: Path, *, rate: int = RATE, is_mono: bool = False) -> Sound:
     """Read a sound file, or the sound of a film; UserError says why there is none in it."""
-    try:
-        read_bytes(file, what="sound", longest=2**40, first=0)
-    except FileNotFoundError:
-        raise UserError(f"{file}: no such sound file") from None
+    read_bytes(file, what="sound file", longest=2**40, first=0)
     name = program()
     source = sound_input(Path(os.path.abspath(file)), LONGEST + 1.0)
     form = ["-map", "0:a:0", *sound_form(rate, is_mono=is_mono), "-f", "wav", "-c", "pcm_s16le"]

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import UserError
+from ..errors import UserError, needed
 from .decoding import load_sound
 
 RATE = 16_000  # [samples/s] for which its model was made
@@ -44,13 +44,11 @@ def phones_in(file: Path, text: str = "") -> tuple[Phone, ...]:
 
     text: the words, if they are known. Raises UserError where there is no speech, or other words.
     """
-    try:
-        import pocketsphinx
-    except ImportError:
-        raise UserError(
-            "hearing speech needs PocketSphinx: pip install 'risorius[speech]' "
-            "(it has no wheel for Python 3.14 yet; take 3.13 for this command)"
-        ) from None
+    pocketsphinx = needed(
+        "pocketsphinx",
+        "hearing speech needs PocketSphinx: pip install 'risorius[speech]' "
+        "(it has no wheel for Python 3.14 yet; take 3.13 for this command)",
+    )
     samples = load_sound(file, rate=RATE, is_mono=True).samples.tobytes()
     if text:
         phones = _aligned(pocketsphinx, samples, _words(text), file)

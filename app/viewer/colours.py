@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
+from risorius.assets.topology import vertex_normals
 from risorius.render.style import AMOUNT_RAMP, SIGNED_RAMP
 
 from ..capture.captions import SPLITS_BAR, ColourBar
@@ -49,9 +50,11 @@ class Colours:
 def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:
     """How far the dot product of the normals fell along the worst edge of each triangle."""
     edges = refiner.edges
-    now, rest = vertex_normals(scene.positions, scene), vertex_normals(scene.rest_positions, scene)
-    drops = _dots(rest, edges) - _dots(now, edges)
-    worst = drops[refiner.triangle_edges].max(axis=1)
+    now, rest = (
+        _dots(vertex_normals(positions, scene.faces), edges)
+        for positions in (scene.positions, scene.rest_positions)
+    )
+    worst = (rest - now)[refiner.triangle_edges].max(axis=1)
     return np.asarray(np.clip(255.0 * worst / MOST_DROP, 0.0, 255.0), np.uint8)
 
 
@@ -76,18 +79,6 @@ def edge_strains(scene: Scene, edges: npt.NDArray[np.int32]) -> FloatArray:
     )
     strain: FloatArray = now / np.maximum(rest, 1e-9) - 1.0
     return strain
-
-
-def vertex_normals(positions: FloatArray, scene: Scene) -> FloatArray:
-    """Unit normals of the simulated mesh, weighted by area, shape (V, 3)."""
-    a, b, c = (positions[scene.faces[:, corner]] for corner in range(3))
-    cross = np.cross(b - a, c - a)
-    corners = scene.faces.T.ravel()
-    normals = np.stack(
-        [np.bincount(corners, np.tile(cross[:, k], 3), len(positions)) for k in range(3)], axis=1
-    )
-    unit: FloatArray = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    return unit
 
 
 def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:

@@ -20,7 +20,7 @@ from risorius import render
 
 from ..anatomy import OPACITY, SIDES, SOLIDS, Dissection
 from ..errors import UserError, in_one_line
-from ..files import read_text, written_atomically
+from ..files import NoSuchFileError, read_text, written_atomically
 from ..looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
 from ..refining import refiner_for
 from ..scenes import Scene
@@ -205,7 +205,7 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     try:
         text = read_text(path, what="file of settings", longest=LONGEST_FILE)
         stored = json.loads(text, parse_int=rules.whole_number)
-    except FileNotFoundError:
+    except NoSuchFileError:
         return settings, ""
     except UserError as error:
         return settings, f"{error}; all is as at first; {rename_unusable(path)}"

@@ -12,11 +12,10 @@ import secrets
 import socket
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ..errors import UserError, in_one_line
+from ..errors import UserError, in_one_line, needed
 from ..stopping import cleaned_up_if_stopped
 from .crew import Crew, Outcome
 
@@ -35,10 +34,8 @@ def run_on_cluster(
     logs: Sequence[Path] | None,
 ) -> Iterator[Outcome]:
     """Yield what became of each item as it ends; UserError where no scheduler answers."""
-    try:
-        distributed: Any = import_module("distributed")  # half of it has no annotations
-    except ImportError:
-        raise UserError("--scheduler needs distributed: pip install 'risorius[cluster]'") from None
+    cure = "--scheduler needs distributed: pip install 'risorius[cluster]'"
+    distributed = needed("distributed", cure)
     try:
         # Asked first: a client takes half a minute to find that nobody is there, and waits for ever
         # where somebody answers who is no scheduler.

@@ -22,7 +22,7 @@ from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
 from ..model import FloatArray, Head, IndexArray
-from ..topology import vertex_normals
+from ..topology import cross_products, vertex_normals
 from .soundness import pieces_of
 from .warp import Similarity, Warp, nearest_on
 
@@ -102,8 +102,7 @@ def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> I
     under = cKDTree(middles).query(given)[1]
     piece = pieces_of(faces, len(vertices))[faces[:, 0]]
     is_skin = piece == np.bincount(piece[under]).argmax()
-    a, b, c = (vertices[faces[under[is_skin[under]], corner]] for corner in range(3))
-    if np.cross(b - a, c - a)[:, 2].sum() < 0.0:
+    if cross_products(vertices, faces[under[is_skin[under]]])[:, 2].sum() < 0.0:
         faces = faces[:, ::-1]
     low, high = given.min(axis=0) - AROUND, given.max(axis=0) + AROUND
     is_near = ((middles > low) & (middles < high)).all(axis=1)

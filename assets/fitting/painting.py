@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 
 from ..files import Image
 from ..model import FloatArray, Head, IndexArray, Segment, SingleArray
+from ..topology import cross_products
 from .warp import SurfacePoints
 
 BoolArray = npt.NDArray[np.bool_]
@@ -47,10 +48,7 @@ def spread_uv(
     vertices, normals, faces = skin
     feet = nearest.interpolate(warped)
     away = np.linalg.norm(feet - vertices, axis=1)
-    across = np.cross(
-        warped[nearest.corners[:, 1]] - warped[nearest.corners[:, 0]],
-        warped[nearest.corners[:, 2]] - warped[nearest.corners[:, 0]],
-    )
+    across = cross_products(warped, nearest.corners)
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
     trust = 1.0 / (1.0 + (away / TRUSTED_WITHIN) ** 2)
     trust[(across * normals).sum(axis=1) < FACING] = 0.0

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from ..model import FloatArray, IndexArray
+from ..topology import cross_products
 
 CANDIDATES = 12  # triangles whose centres are nearest: the nearest triangle is one of them
 WRONG_SIDE = 12.0  # [mm] that a point seems farther away where the surface faces the other way
@@ -141,7 +142,7 @@ def nearest_on(
     So the lower lip's points find the lower lip though the upper one is nearer.
     """
     corners = vertices[faces]
-    directions = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    directions = cross_products(vertices, faces)
     directions /= np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-12)
     count = min(CANDIDATES, len(faces))
     near = cKDTree(corners.mean(axis=1)).query(points, k=count)[1].reshape(len(points), count)

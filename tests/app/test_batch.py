@@ -168,7 +168,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"), [(None, "there is no such list"), ("# nothing\n\n", "there is no command")]
+    ("text", "told"), [(None, "no such list"), ("# nothing\n\n", "there is no command")]
 )
 def test_a_list_of_nothing(text: str | None, told: str) -> None:
     """One line, exit code 2."""

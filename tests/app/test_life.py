@@ -78,14 +78,14 @@ def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
 def test_the_same_seed_and_time_give_the_same_values(seed: int, times: list[float]) -> None:
     """In whatever order they are asked for, and whatever was asked before."""
     one, other = Life(seed), Life(seed)
-    found = [one.values(time) for time in times]
-    assert [other.values(time) for time in reversed(times)] == found[::-1]
+    found = [one.parts(time) for time in times]
+    assert [other.parts(time) for time in reversed(times)] == found[::-1]
 
 
 def test_seeds_differ() -> None:
     """Two faces side by side do not move as one."""
     first, second = (
-        [Life(seed).values(t)[f"{LID}_left"] for t in np.arange(60.0)] for seed in (0, 1)
+        [Life(seed).parts(t)["lids"][f"{LID}_left"] for t in np.arange(60.0)] for seed in (0, 1)
     )
     assert first != second
 
@@ -94,7 +94,8 @@ def test_seeds_differ() -> None:
 def test_values_stay_within_reach(seed: int, time: float) -> None:
     """All are controls of the face within their limits; but for lids and eyes all are small."""
     limits = face_limits()
-    for name, value in Life(seed).values(time).items():
+    parts = Life(seed).parts(time).values()
+    for name, value in (item for part in parts for item in part.items()):
         low, high = limits[name]
         assert low <= value <= high, name
         if not name.startswith((LID, "gaze")):

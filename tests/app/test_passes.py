@@ -206,7 +206,7 @@ def test_landmarks_lie_on_the_depth_map(
     found = landmarks_in(scene, camera, depth)
     assert found.visible.sum() > 35
     columns, rows = np.floor(found.pixels[found.visible]).astype(int).T
-    off = np.abs(depth[rows, columns] - found.depths[found.visible])
+    off = np.abs(depth[rows, columns] - camera.to_camera(found.points[found.visible])[:, 2])
     assert np.median(off) < 0.5
 
 
