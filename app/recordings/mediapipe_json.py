@@ -40,29 +40,37 @@ Shapes = dict[str, float]
 
 
 def recognises(document: Any) -> bool:
-    """Whether there are lists of shapes, or shapes in the first frames of the document."""
-    return bool(_listed(document)) or any(_faces(frame) for frame in _frames(document)[:1000])
+    """Whether there are shapes in the first frames of the document."""
+    if _columns(document) is not None:
+        return True
+    frames, _ = _frames(document)
+    return any(_faces(frame) for frame in frames[:1000])
 
 
 def read(document: Any, source: str, request: Request) -> Take:
     """The take in the document."""
     notes: list[str] = []
     unknown: list[str] = []
-    listed = _listed(document)
-    frames = listed or _frames(document)
-    faces = [_faces(frame) for frame in frames]
-    shapes = _channels(faces, _index_of_face(faces, source, request, notes), unknown)
-    keyed = [_keys(frame) if isinstance(frame, dict) else {} for frame in frames]
-    stamps = {
-        key: np.array([_number(keys.get(key)) for keys in keyed])
-        for key in (*TIMES, *NUMBERS)
-        if any(key in keys for keys in keyed)
-    }
-    times = _times(stamps, len(frames), request.rate, _rate(document), notes)
-    head = _head(keyed)
-    shapes = shares(shapes, notes)
+    table = _columns(document)
+    if table is not None:
+        shapes, stamps, given = table
+    else:
+        frames, given = _frames(document)
+        faces = [_faces(frame) for frame in frames]
+        shapes = _channels(faces, _index_of_face(faces, source, request, notes), unknown)
+        keyed = [_keys(frame) if isinstance(frame, dict) else {} for frame in frames]
+        stamps = {
+            key: np.array([_number(keys.get(key)) for keys in keyed])
+            for key in (*TIMES, *NUMBERS)
+            if any(key in keys for keys in keyed)
+        }
+        shapes |= _head(keyed)
+    count = len(next(iter(shapes.values())))
+    times = _times(stamps, count, request.rate, given, notes)
+    head = {name: values for name, values in shapes.items() if name in HEAD_ANGLES}
+    shapes = shares({name: values for name, values in shapes.items() if name not in head}, notes)
     return whole_take(
-        "JSON of shapes" if listed else "MediaPipe JSON",
+        "MediaPipe JSON" if table is None else "JSON of shapes",
         source,
         times,
         shapes | head,
@@ -72,60 +80,23 @@ def read(document: Any, source: str, request: Request) -> Take:
     )
 
 
-def _rate(document: Any) -> float | None:
-    """The frame rate, where the document tells it."""
-    rate = _number(_first(_keys(document), RATES)) if isinstance(document, dict) else math.nan
-    return rate if 1.0 <= rate <= 1000.0 else None
-
-
-def _listed(document: Any) -> list[dict[str, Any]]:
-    """The frames of a document that has lists of numbers for shapes; none for another one."""
-    if not isinstance(document, dict):
-        return []
-    keys = _keys(document)
-    for names_key, rows_key in SHAPE_ROWS:
-        names, rows = keys.get(names_key), keys.get(rows_key)
-        if isinstance(names, list) and isinstance(rows, list) and rows:
-            known = [shape_of(name) if isinstance(name, str) else None for name in names]
-            if any(known):
-                cells = [row if isinstance(row, list) else [] for row in rows]
-                return [
-                    {name: cell for name, cell in zip(known, row, strict=False) if name}
-                    for row in cells
-                ]
-    inner = _first(keys, SHAPES)
-    columns = inner if isinstance(inner, dict) else document
-    lists = {
-        shape: values
-        for key, values in columns.items()
-        if isinstance(values, list) and values and (shape := shape_of(key))
-    }
-    if not lists or any(isinstance(item, dict | list) for item in next(iter(lists.values()))):
-        return []
-    count = min(map(len, lists.values()))
-    lists |= {
-        key: values
-        for key, values in _keys(document | columns).items()
-        if isinstance(values, list) and key in (*TIMES, *NUMBERS) and len(values) >= count
-    }
-    return [dict(zip(lists, row, strict=True)) for row in zip(*lists.values(), strict=False)]
-
-
-def _frames(document: Any) -> list[Any]:
-    """What stands for the frames."""
+def _frames(document: Any) -> tuple[list[Any], float | None]:
+    """What stands for the frames, and the frame rate where the document tells it."""
     if isinstance(document, dict):
         keys = _keys(document)
+        rate = _number(_first(keys, RATES))
+        given = rate if 1.0 <= rate <= 1000.0 else None
         frames = _first(keys, LISTS)
         if isinstance(frames, list):
-            return frames
+            return frames, given
         shapes = _first(keys, SHAPES)
         if isinstance(shapes, list) and shapes and _category(shapes[0]) is None:
-            return shapes
-        return [document]
+            return shapes, given
+        return [document], given
     if isinstance(document, list):
         is_picture = bool(document) and all(_category(item) is not None for item in document)
-        return [document] if is_picture else document
-    return []
+        return ([document] if is_picture else document), None
+    return [], None
 
 
 def _faces(value: Any) -> list[Shapes]:
@@ -189,6 +160,52 @@ def _channels(faces: Sequence[list[Shapes]], face: int, unknown: list[str]) -> d
                 values[name] = np.full(len(faces), np.nan)
             values[name][row] = score
     return values
+
+
+def _columns(
+    document: Any,
+) -> tuple[dict[str, Array], dict[str, Array], float | None] | None:
+    """Shapes, time stamps and rate of a document that lists numbers; None for another one."""
+    if not isinstance(document, dict):
+        return None
+    _, rate = _frames(document)
+    keys = _keys(document)
+    for names_key, rows_key in SHAPE_ROWS:
+        names, rows = keys.get(names_key), keys.get(rows_key)
+        if isinstance(names, list) and isinstance(rows, list) and rows:
+            shapes = {}
+            for place, name in enumerate(names):
+                if isinstance(name, str) and (shape := shape_of(name)):
+                    shapes[shape] = np.array(
+                        [
+                            _number(row[place])
+                            if isinstance(row, list) and place < len(row)
+                            else math.nan
+                            for row in rows
+                        ]
+                    )
+            if shapes:
+                return shapes, {}, rate
+    inner = _first(keys, SHAPES)
+    columns = inner if isinstance(inner, dict) else document
+    lists = {
+        shape: values
+        for key, values in columns.items()
+        if isinstance(values, list) and values and (shape := shape_of(key))
+    }
+    if not lists or any(isinstance(item, dict | list) for item in next(iter(lists.values()))):
+        return None
+    count = min(len(values) for values in lists.values())
+    stamps = {
+        key: np.array([_number(value) for value in values[:count]])
+        for key, values in _keys(document | columns).items()
+        if isinstance(values, list) and key in (*TIMES, *NUMBERS) and len(values) >= count
+    }
+    shapes = {
+        shape: np.array([_number(value) for value in values[:count]])
+        for shape, values in lists.items()
+    }
+    return shapes, stamps, rate
 
 
 def _head(frames: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
