@@ -11,12 +11,13 @@ import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.assets import checks
 from risorius.assets.generator import form
+from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import FineMesh, Head
 from risorius.assets.subdivision import coarse_places, quarter
 from risorius.assets.topology import boundary_loops, cross_products
+from tests.assets import checks
 
 MOST_FINER_DATA = 1_500_000  # bytes
 
@@ -120,7 +121,7 @@ def test_no_triangle_is_turned_over(head: Head, fine: FineMesh) -> None:
 
 def test_finer_mesh_does_not_cut_itself(fine: FineMesh) -> None:
     """The lips nearly touch; curving them must not push them into each other."""
-    assert len(checks.self_intersections(fine.vertices, fine.faces)) == 0
+    assert len(self_intersections(fine.vertices, fine.faces)) == 0
 
 
 def test_boundaries_become_smooth(head: Head) -> None:
