@@ -13,7 +13,7 @@ landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" 
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum, IntEnum
+from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
@@ -28,15 +28,6 @@ FloatArray = npt.NDArray[np.float64]
 SingleArray = npt.NDArray[np.float32]
 IndexArray = npt.NDArray[np.int32]
 FINER_LEVELS = (1, 2)
-
-
-class Tone(Enum):
-    """Complexions that the skin can be painted in."""
-
-    LIGHT = "light"
-    MEDIUM_LIGHT = "medium-light"  # the image that is shipped
-    MEDIUM = "medium"
-    DARK = "dark"
 
 
 class Segment(IntEnum):
