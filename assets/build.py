@@ -38,7 +38,7 @@ from .generator.tints import paint_tints
 from .generator.unwrap import unwrap
 from .generator.wrinkling import paint_wrinkles
 from .loading import HEAD_FILE, load_head
-from .model import Head, Tone
+from .model import Head
 from .staging import StagingFolder
 from .topology import vertex_normals
 
@@ -160,29 +160,27 @@ def main(arguments: list[str]) -> None:
         prog="python -m risorius.assets.build", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
-    tones = [tone.value for tone in Tone]
-    parser.add_argument("--tone", choices=tones, default=Tone.MEDIUM_LIGHT.value)
     parser.add_argument("--size", type=_size, default=SIZE, help="of picture and wrinkles [texels]")
     given = parser.parse_args(arguments)
     if given.file.is_dir():
         raise IsADirectoryError(errno.EISDIR, "is a folder; name a file", str(given.file))
     given.file.parent.mkdir(parents=True, exist_ok=True)
     with StagingFolder(given.file.parent) as staging:
-        _write(staging / given.file.name, tone=Tone(given.tone), size=given.size)
+        _write(staging / given.file.name, given.size)
         for made in staging.iterdir():
             os.replace(made, given.file.parent / made.name)
     load_head(given.file).openness_file.unlink(missing_ok=True)
 
 
-def _write(file: Path, *, tone: Tone, size: int) -> None:
+def _write(file: Path, size: int) -> None:
     """Build everything into `file` and the files that go with it."""
     _save(file, build_head())
     head = load_head(file)
     _save(head.finer_file, build_finer(head))
     _save(head.wrinkles_file, build_wrinkles(head, size))
     write_image(head.segments_file, paint_segments(head, size))
-    write_image(head.albedo_file, paint_skin(head, tone=tone, size=size))
-    _save(head.tints_file, paint_tints(head, size, tone))
+    write_image(head.albedo_file, paint_skin(head, size=size))
+    _save(head.tints_file, paint_tints(head, size))
 
 
 def _save(path: Path, arrays: dict[str, npt.NDArray[np.generic]]) -> None:

@@ -61,13 +61,8 @@ def load(name: str) -> Head | Plane | Cloth:
     raise AssetError(f"no asset is called {name!r}; available: {', '.join(available())}")
 
 
-def load_head(
-    head_file: Path = HEAD_FILE,
-    *,
-    rig_file: Path = RIG_FILE,
-    layer_files: Mapping[str, Path] = LAYER_FILES,
-) -> Head:
-    """Read a head from its data file, its rig file and the files of its layers of controls.
+def load_head(head_file: Path = HEAD_FILE) -> Head:
+    """Read a head from its data file, and its rig and layers of controls from text files.
 
     The image of the skin lies beside the data file, as a PNG file of the same name; so do the files
     of its tones (`_tints.npz`), of its wrinkles (`_wrinkles.npz`), of its classes
@@ -78,19 +73,16 @@ def load_head(
     """
     arrays = read_arrays(head_file)
     try:
-        return _assemble(arrays, head_file, read_toml(rig_file), read_layers(layer_files))
+        return _assemble(arrays, head_file, read_toml(RIG_FILE), _read_layers())
     except KeyError as error:
         raise AssetError(
             f"{head_file} has no array {error}; rebuild it with 'python -m risorius.assets.build'"
         ) from error
 
 
-def read_layers(files: Mapping[str, Path] = LAYER_FILES) -> tuple[Layer, ...]:
-    """Read layers of controls, title -> file, from the lowest up; a missing file is no layer.
-
-    Raises AssetError when a file is not TOML.
-    """
-    found = ((title, path, read_toml(path)) for title, path in files.items())
+def _read_layers() -> tuple[Layer, ...]:
+    """Layers of controls from the lowest up; a missing file is no layer."""
+    found = ((title, path, read_toml(path)) for title, path in LAYER_FILES.items())
     return tuple(Layer(title, path.name, rows) for title, path, rows in found if rows)
 
 

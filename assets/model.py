@@ -13,7 +13,7 @@ landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" 
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum, IntEnum
+from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
@@ -22,21 +22,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .files import Image, read_arrays_of, read_image
-from .subdivision import coarse_places, quarter
+from .subdivision import quarter
 
 FloatArray = npt.NDArray[np.float64]
 SingleArray = npt.NDArray[np.float32]
 IndexArray = npt.NDArray[np.int32]
 FINER_LEVELS = (1, 2)
-
-
-class Tone(Enum):
-    """Complexions that the skin can be painted in."""
-
-    LIGHT = "light"
-    MEDIUM_LIGHT = "medium-light"  # the image that is shipped
-    MEDIUM = "medium"
-    DARK = "dark"
 
 
 class Segment(IntEnum):
@@ -151,30 +142,28 @@ class Wrinkles:
 
 @dataclass(frozen=True)
 class FineMesh:
-    """The skin of a head with more triangles, at rest, and where it lies on the coarse one.
+    """The skin of a head with more triangles, at rest.
 
     vertices: [mm], shape (n, 3), float64; the first V are those of the head, bit for bit.
     faces: shape (4^level F, 3), int32; the children of face f stand together, in its place.
-    coarse_triangle: number of a face of the head for each vertex, shape (n,), int32.
-    barycentric: coordinates in that face, shape (n, 3), float64; their sum is 1.
     normals: unit normals of the true form, shape (n, 3), float64.
-    coarse_faces: the faces of the head, shape (F, 3), int32.
+    edges: for each cut into four, the ends of the edges that it halved, shape (E, 2), int32; the
+        new vertices are numbered as they are.
     """
 
     vertices: FloatArray
     faces: IndexArray
-    coarse_triangle: IndexArray
-    barycentric: FloatArray
     normals: FloatArray
-    coarse_faces: IndexArray
+    edges: tuple[IndexArray, ...]
 
     def interpolate(self, values: FloatArray | SingleArray) -> FloatArray:
         """Carry values of the head's vertices (depth, weight, motion) over to the fine ones.
 
         values: shape (V,) or (V, k). Returns shape (n,) or (n, k).
         """
-        corners = np.asarray(values, dtype=np.float64)[self.coarse_faces[self.coarse_triangle]]
-        carried: FloatArray = np.einsum("nc,nc...->n...", self.barycentric, corners)
+        carried = np.asarray(values, dtype=np.float64)
+        for edges in self.edges:
+            carried = np.concatenate([carried, carried[edges].mean(axis=1)])
         return carried
 
 
@@ -302,17 +291,18 @@ class Head:
         names = ("added_vertices", "normals")
         arrays = read_arrays_of(self.fingerprint, self.finer_file, names)
         faces, count = self.faces, len(self.vertices)
+        edges = []
         for _ in range(level):
             cut = quarter(faces, count)
             faces, count = cut.faces, count + len(cut.edges)
+            edges.append(cut.edges)
         added = arrays["added_vertices"][: count - len(self.vertices)]
         normals = arrays["normals"][:count].astype(np.float64)
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         vertices = np.vstack([self.vertices, added])
-        fine = FineMesh(vertices, faces, *coarse_places(self.faces, faces), normals, self.faces)
-        for array in (fine.vertices, fine.faces, fine.coarse_triangle, fine.barycentric, normals):
+        for array in (vertices, faces, normals, *edges):
             array.flags.writeable = False
-        return fine
+        return FineMesh(vertices, faces, normals, tuple(edges))
 
 
 @dataclass(frozen=True)

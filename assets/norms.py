@@ -12,22 +12,11 @@ figure have none. Sources:
   what was measured how. In that data zy-zy, go-go and ft-ft were taken with calipers, which press
   on the skin over the bone; a surface may read wider there.
 
-Depths of bone below the skin, each read in the abstract of its study; the tables behind the pooled
-means could not be read:
-
-- Facial soft tissue of Lebanese adults with well-balanced faces (2018), doi
-  10.1016/j.forsciint.2018.10.021: cephalograms of 87 men and 135 women.
-- Soft tissue of the lower anterior face by cone-beam tomography (Angle Orthodontist 85:211-217,
-  2015), doi 10.2319/040114-237.1: 18 women with a normal vertical pattern.
-
-All of them describe samples, not how a face ought to be. Cross-check of one row: a systematic
+Both describe samples, not how a face ought to be. Cross-check of one row: a systematic
 review of 67 studies (pmc.ncbi.nlm.nih.gov/articles/PMC9029890) has 31.4 +- 2.5 mm for White en-en.
 """
 
 from dataclasses import dataclass
-
-WEINBERG_2016 = "Weinberg et al. 2016, doi 10.1597/15-199, at 25 years"
-USUAL = 2.0  # deviations around the mean that count as usual: 95 of 100 persons
 
 
 @dataclass(frozen=True)
@@ -54,14 +43,34 @@ class Norm:
     women: Sample
     men: Sample
 
-    def usual_for(self, value: float) -> str:
-        """Whom a value is usual for: "both", "women", "men" or "nobody"."""
-        is_usual = [abs(sample.score(value)) <= USUAL for sample in (self.women, self.men)]
-        names = {(True, True): "both", (True, False): "women", (False, True): "men"}
-        return names.get((is_usual[0], is_usual[1]), "nobody")
 
+DISTANCES = {
+    "n-gn": ("nasion", "gnathion"),
+    "n-sn": ("nasion", "subnasale"),
+    "sn-gn": ("subnasale", "gnathion"),
+    "n-prn": ("nasion", "pronasale"),
+    "sn-prn": ("subnasale", "pronasale"),
+    "sn-sto": ("subnasale", "stomion"),
+    "sn-ls": ("subnasale", "labiale_superius"),
+    "ls-sto": ("labiale_superius", "stomion"),
+    "sto-li": ("stomion", "labiale_inferius"),
+    "li-sl": ("labiale_inferius", "sublabiale"),
+    "tr-n": ("trichion", "nasion"),
+    "en-en": ("endocanthion_right", "endocanthion_left"),
+    "ex-ex": ("exocanthion_right", "exocanthion_left"),
+    "en-ex": ("endocanthion_left", "exocanthion_left"),
+    "ps-pi": ("palpebrale_superius_left", "palpebrale_inferius_left"),
+    "al-al": ("alare_right", "alare_left"),
+    "ch-ch": ("cheilion_right", "cheilion_left"),
+    "cph-cph": ("crista_philtri_right", "crista_philtri_left"),
+    "ft-ft": ("frontotemporale_right", "frontotemporale_left"),
+    "zy-zy": ("zygion_right", "zygion_left"),
+    "go-go": ("gonion_right", "gonion_left"),
+    "t-t": ("tragion_right", "tragion_left"),
+}
+"""Measures by their anthropometric codes: the anatomical points between which they are taken."""
 
-# Measure by its anthropometric code. Not found with a deviation: sn-gn, tr-n, t-t, ps-pi.
+# Measures by the same codes. Not found with a deviation: sn-gn, tr-n, t-t, ps-pi.
 NORMS = {
     "n-gn": Norm(Sample(118.0, 5.8, 1476), Sample(126.6, 6.6, 918)),
     "n-sn": Norm(Sample(54.5, 3.6, 1502), Sample(56.7, 3.9, 952)),
@@ -81,17 +90,4 @@ NORMS = {
     "zy-zy": Norm(Sample(130.1, 5.3, 1337), Sample(137.1, 6.3, 883)),
     "go-go": Norm(Sample(97.0, 6.5, 1382), Sample(103.7, 7.1, 898)),
     "ft-ft": Norm(Sample(105.7, 7.8, 1404), Sample(110.4, 8.4, 913)),
-}
-
-
-LEBANON_2018 = "87 men, 135 women, doi 10.1016/j.forsciint.2018.10.021"
-TOMOGRAPHY_2015 = "18 women, doi 10.2319/040114-237.1"
-
-# Anatomical name: published depth of bone [mm] and its source; no other figure could be read.
-DEPTHS = {
-    "rhinion": (Sample(3.07, 0.72, 222), LEBANON_2018),
-    "subnasale": (Sample(15.61, 2.38, 222), LEBANON_2018),
-    "labiale_superius": (Sample(13.31, 2.01, 18), TOMOGRAPHY_2015),
-    "labiale_inferius": (Sample(15.08, 1.94, 18), TOMOGRAPHY_2015),
-    "pogonion": (Sample(14.69, 3.08, 18), TOMOGRAPHY_2015),
 }

@@ -19,6 +19,7 @@ from scipy import ndimage
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
+from .generator.fields import smooth_maximum, smooth_minimum
 from .model import Part
 from .topology import vertex_normals
 
@@ -89,7 +90,7 @@ def build_skull(
         shape = carve[name](field, marks, eyes)
         for part in head.parts:  # bone holds the teeth as gums do
             if part.name.startswith("gums") and part.bone == name:
-                shape = _with(shape, _around(field, (part.vertices - origin) / scale), 3.0)
+                shape = smooth_minimum(shape, _around(field, (part.vertices - origin) / scale), 3.0)
         shape = ndimage.gaussian_filter(shape, 0.55)
         points, faces = _mesh(shape)
         normals = _sampled(np.gradient(shape), points)
@@ -203,7 +204,7 @@ def _spine(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     )
     arch = lump(0.0, -1.0, -14.0, (17.0, 5.5, 9.0))
     thorn = lump(0.0, -4.0, -29.0, (3.6, 4.6, np.where(is_atlas, 6.0, 14.0)))
-    form = _with(_with(body, wing, 4.0), _with(arch, thorn, 4.0), 4.0)
+    form = smooth_minimum(smooth_minimum(body, wing, 4.0), smooth_minimum(arch, thorn, 4.0), 4.0)
     ends = np.maximum(y - TOP - 6.0, -field.outside)
     return np.asarray(np.maximum(form, ends), np.float32)
 
@@ -213,18 +214,18 @@ def _nose(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     x, y, z = field.places
     wide = 6.0 + 11.0 * np.clip((marks[28, 1] - y) / (marks[28, 1] - marks[33, 1]), 0.0, 1.0)
     box = np.maximum.reduce([np.abs(x) - wide, y - marks[28, 1], marks[33, 1] + 1.0 - y, 62.0 - z])
-    return _within(field.outside, box, 5.0)
+    return smooth_maximum(field.outside, box, 5.0)
 
 
 def _cranium(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     x, y, z = field.places
     across = np.abs(x)
     # Ears leave a gap in the form, which is wide there; behind it the mastoid.
-    form = _within(field.outside, across - 61.0 - 0.35 * np.maximum(y - 12.0, 0.0), 8.0)
+    form = smooth_maximum(field.outside, across - 61.0 - 0.35 * np.maximum(y - 12.0, 0.0), 8.0)
     mastoid = (
         np.sqrt(((across - 47) / 10) ** 2 + ((y + 14) / 18) ** 2 + ((z + 20) / 12) ** 2) - 1
     ) * 11
-    form = _with(form, mastoid, 6.0)
+    form = smooth_minimum(form, mastoid, 6.0)
     # The hollow for the temporal muscle, deepest behind the eye, and the arch that spans it.
     fossa = np.exp(-(((z - 26.0) / 24.0) ** 2) - ((y - 26.0) / 26.0) ** 2) * (across > 25.0)
     solid = np.maximum(form + 9.5 * fossa, np.minimum(_polygon(z, y, BASE), mastoid))
@@ -233,7 +234,7 @@ def _cranium(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     )
     solid = _without(solid, np.maximum(below, 41.0 - across), 4.0)
     arch = np.maximum(np.maximum(form - 0.5, -6.5 - form), _polygon(z, y, ARCH))
-    solid = _with(solid, arch, 4.0)
+    solid = smooth_minimum(solid, arch, 4.0)
     for eye in eyes:
         side = np.sign(eye[0])
         back = eye[2] + 12.0 - z  # behind the rim
@@ -259,9 +260,9 @@ def _mandible(field: _Field, marks: Field, eyes: list[Field]) -> Field:
     shift = marks[8, 1] + 98.0
     body = _polygon(z, y - shift * np.clip(-y / 98.0, 0, 1), MANDIBLE)
     # Below the arch the form is as wide as the cheek: the ramus stands within.
-    outer = _within(form, across - 51.0 - 0.08 * (y + 40.0), 6.0)
+    outer = smooth_maximum(form, across - 51.0 - 0.08 * (y + 40.0), 6.0)
     thick = 8.0 + 4.0 * np.clip((z - 10.0) / 40.0, 0.0, 1.0)
-    return _within(_within(outer, -thick - outer, 3.0), body, 5.0)
+    return smooth_maximum(smooth_maximum(outer, -thick - outer, 3.0), body, 5.0)
 
 
 def _around(field: _Field, points: Floats) -> Field:
@@ -292,21 +293,9 @@ def _polygon(u: Field, v: Field, corners: Any) -> Field:
     return np.broadcast_to(signed, u.shape)
 
 
-def _with(a: Field, b: Field, round_: float) -> Field:
-    """Both solids, with a fillet."""
-    blend = np.maximum(round_ - np.abs(a - b), 0.0) / round_
-    both: Field = np.minimum(a, b) - 0.25 * round_ * blend**2
-    return both
-
-
-def _within(a: Field, b: Field, round_: float) -> Field:
-    """What is in both solids, with rounded edges."""
-    return -_with(-a, -b, round_)
-
-
 def _without(a: Field, b: Field, round_: float) -> Field:
     """The first solid less the second, with rounded edges."""
-    return _within(a, -b, round_)
+    return smooth_maximum(a, -b, round_)
 
 
 def _sampled(fields: Any, points: Floats) -> Floats:

@@ -1,10 +1,8 @@
 """A folder beside a file, in which the file is made before it takes its place.
 
 It goes when the work ends. Where the process was killed it stays: the next one that works in the
-same place sweeps it away, if it is ours, left and old. A folder is ours by its name, by the mark
-in it and by who owns it; it is left if nobody has locked the mark, for the system lets go of locks
-however a process ends; and it is old a day after the last change in it, because other machines
-that share a disk may not see the lock, and a run that works changes something every few minutes.
+same place sweeps it away, if it is ours and old. A folder is ours by its name and by who owns it,
+and old a day after the last change in it: a run that works changes something every few minutes.
 """
 
 import contextlib
@@ -20,10 +18,7 @@ from typing import IO, Any
 
 PREFIX = ".risorius-"  # what the names of such folders begin with
 OLD = 86_400.0  # [s] since the last change in a folder that is swept away
-MARK = "made-by-risorius"  # the file in it that says so, and is locked
-INSIDE = "new"  # the folder in it that holds what is made
 _NAME = re.compile(re.escape(PREFIX) + "[0-9a-f]{12}")
-_MARK_TEXT = b"Risorius makes files here, and takes this folder away when they are made.\n"
 _swept: set[Path] = set()  # where this process has looked for what others left
 
 
@@ -35,51 +30,30 @@ class StagingFolder:
 
     def __init__(self, parent: Path) -> None:
         self._folder = parent / f"{PREFIX}{secrets.token_hex(6)}"
-        self._lock: IO[Any] | None = None
 
     def __enter__(self) -> Path:
         if self._folder.parent not in _swept:  # to look through 100 000 files takes a second
             _swept.add(self._folder.parent)
             sweep(self._folder.parent)
-        try:
-            self._folder.mkdir(mode=0o700)
-            self._lock = locked(self._folder / MARK)
-            if self._lock is not None:
-                self._lock.write(_MARK_TEXT)
-                self._lock.flush()
-            (self._folder / INSIDE).mkdir()
-        except BaseException:
-            self.remove()
-            raise
-        return self._folder / INSIDE
+        self._folder.mkdir(mode=0o700)
+        return self._folder
 
     def __exit__(self, *_: object) -> None:
         self.remove()
 
     def remove(self) -> None:
         """Take it away with all that is in it; nothing the second time."""
-        if self._lock is not None:
-            with contextlib.suppress(OSError):  # on a full disk the mark cannot be written out
-                self._lock.close()
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
 def is_staging_folder(path: Path) -> bool:
-    """Whether a path is such a folder, made by this user, with nothing else in it."""
+    """Whether a path is such a folder, no link to one, and made by this user."""
     try:
         found = path.lstat()
-        is_own = sys.platform == "win32" or found.st_uid == os.getuid()
-        if not (_NAME.fullmatch(path.name) and stat.S_ISDIR(found.st_mode) and is_own):
-            return False
-        names = set(os.listdir(path))
-        mark = (path / MARK).lstat()
-        if not (names <= {MARK, INSIDE} and stat.S_ISREG(mark.st_mode)):
-            return False
-        if INSIDE in names and not stat.S_ISDIR((path / INSIDE).lstat().st_mode):
-            return False
-        return mark.st_size == len(_MARK_TEXT) and (path / MARK).read_bytes() == _MARK_TEXT
     except OSError:
         return False
+    is_own = sys.platform == "win32" or found.st_uid == os.getuid()
+    return bool(_NAME.fullmatch(path.name)) and stat.S_ISDIR(found.st_mode) and is_own
 
 
 def sweep(parent: Path) -> None:
@@ -88,10 +62,7 @@ def sweep(parent: Path) -> None:
         for path in [item for item in parent.iterdir() if item.name.startswith(PREFIX)]:
             with contextlib.suppress(OSError):
                 if is_staging_folder(path) and _last_change(path) < time.time() - OLD:
-                    lock = locked(path / MARK)
-                    if lock is not None:
-                        lock.close()
-                        shutil.rmtree(path, ignore_errors=True)
+                    shutil.rmtree(path, ignore_errors=True)
 
 
 def _last_change(path: Path) -> float:

@@ -16,16 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 IndexArray = npt.NDArray[np.int32]
-# Corners of the children in the corners of the parent.
-_HALF = 0.5
-CHILDREN = np.array(
-    [
-        [[1, 0, 0], [_HALF, _HALF, 0], [_HALF, 0, _HALF]],
-        [[_HALF, _HALF, 0], [0, 1, 0], [0, _HALF, _HALF]],
-        [[_HALF, 0, _HALF], [0, _HALF, _HALF], [0, 0, 1]],
-        [[_HALF, _HALF, 0], [0, _HALF, _HALF], [_HALF, 0, _HALF]],
-    ]
-)
 
 
 @dataclass(frozen=True)
@@ -48,20 +38,3 @@ def quarter(faces: IndexArray, vertex_count: int) -> Quartered:
     a, b, c = faces.T
     children = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1)
     return Quartered(children.reshape(-1, 3).astype(np.int32), edges.astype(np.int32))
-
-
-def coarse_places(
-    faces: IndexArray, fine_faces: IndexArray
-) -> tuple[IndexArray, npt.NDArray[np.float64]]:
-    """Where fine vertices lie on the coarse mesh, by the order of the children alone.
-
-    faces, fine_faces: before the first and after the last cut. Returns a coarse triangle of each
-    fine vertex, shape (n,), and its barycentric coordinates there, shape (n, 3): exact multiples
-    of 1/2 to the power of the number of cuts.
-    """
-    corners = np.broadcast_to(np.eye(3), (len(faces), 3, 3))
-    while len(corners) < len(fine_faces):
-        corners = np.einsum("kij,fjl->fkil", CHILDREN, corners).reshape(-1, 3, 3)
-    _, first = np.unique(fine_faces, return_index=True)
-    triangle = (first // 3) * len(faces) // len(fine_faces)
-    return triangle.astype(np.int32), corners.reshape(-1, 3)[first]

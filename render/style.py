@@ -36,8 +36,6 @@ class ColourBy(Enum):
 
 # Albedos, chosen by eye under this package's light.
 SKIN: Colour = (0.79, 0.625, 0.545)
-SKIN_LIGHT: Colour = (0.88, 0.75, 0.685)
-SKIN_DARK: Colour = (0.47, 0.325, 0.255)
 FLESH: Colour = (0.45, 0.19, 0.17)  # inside of lids and mouth
 INNER_SHARE = 0.75  # of a cold albedo, on its back side
 WARM = 0.8  # from which on an albedo is that of skin

@@ -27,7 +27,6 @@ LANDMARK_COUNT = 68
 # The middle of each lip: away from the corners, and not the inner points, which often coincide.
 UPPER_LIP = (50, 51, 52)
 LOWER_LIP = (56, 57, 58)
-MOUTH_CORNERS = (48, 54, 60, 64)
 INNER_CORNERS = (60, 64)
 UPPER_INNER, LOWER_INNER = (60, 61, 62, 63, 64), (60, 67, 66, 65, 64)  # lines of the inner lips
 

@@ -1,7 +1,7 @@
 """The programs that make the built-in head from hand-placed numbers.
 
 Reading order: `form` says what the head looks like (an implicit surface put together from
-`sections`, `nose`, `lips` and `lids`); `eye_rows`, `mouth_rows`, `nostril_rows`, `ear_rows` and
+`sections`, `nose` and `lips`); `eye_rows`, `mouth_rows`, `nostril_rows`, `ear_rows` and
 `outline` say where vertices must lie; `infill` and `remesh` fill the rest with triangles; `skin`
 puts one half together and mirrors it; `landmarks`, `bones`, `eyeballs`, `lashes`, `dentition` and
 `oral` add what belongs to it, `ambient` the darkness within the mouth. `unwrap` lays the skin flat;

@@ -2,7 +2,7 @@
 
 Depths: chosen, in the range that adult tables have. The pooled means (Stephan and Simpson 2008,
 "Facial soft tissue depths in craniofacial identification (part I)", J. Forensic Sci. 53:1257-1272)
-were not read in print; what was read stands in `assets.norms.DEPTHS`, and a test compares. Gonion,
+were not read in print; what was read stands in docs/head.md, and a test compares. Gonion,
 zygion and lower molar are deeper by what a later pooling adds (Hona and Stephan 2024, abstract).
 Points that such tables lack (lids, temple, neck) are marked.
 Weights: the lower lip and the chin follow the mandible, everything above the mouth the cranium; the

@@ -6,24 +6,27 @@ Source of the smooth minimum: Quílez, "smooth minimum" (polynomial form), a wel
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 Points = npt.NDArray[np.float64]
 Values = npt.NDArray[np.float64]
+Grid = npt.NDArray[Any]  # values of single or double precision
 Field = Callable[[Points], Values]
 
 GRADIENT_STEP = 0.15  # [mm]; chosen: well below the finest edge, well above rounding
 
 
-def smooth_minimum(first: Values, second: Values, radius: float | Values) -> Values:
+def smooth_minimum(first: Grid, second: Grid, radius: float | Values) -> Grid:
     """Join two fields; `radius` [mm] is the width of the fillet between them."""
     overlap = np.maximum(radius - np.abs(first - second), 0.0) / radius
-    return np.minimum(first, second) - overlap * overlap * radius * 0.25
+    joined: Grid = np.minimum(first, second) - overlap * overlap * radius * 0.25
+    return joined
 
 
-def smooth_maximum(first: Values, second: Values, radius: float | Values) -> Values:
+def smooth_maximum(first: Grid, second: Grid, radius: float | Values) -> Grid:
     """Intersect two fields; subtract one by passing its negative."""
     return -smooth_minimum(-first, -second, radius)
 

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..checks import self_intersections
 from ..subdivision import quarter
 from ..topology import Faces, cross_products, edge_faces, edge_key, vertex_normals
 from .fields import Points, Values, gradient, project, unit
 from .form import distance
+from .intersections import self_intersections
 from .skin import SkinMesh
 
 LEVELS = 2

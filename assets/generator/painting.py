@@ -9,14 +9,14 @@ import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
 from ..files import Image
-from ..model import Head, Tone
+from ..model import Head
 from . import lips
 from .brows import brow_cover
 from .fields import Points, Values, bump, smooth_step
 from .form import FOLD
 from .grain import SEED, blotches, crop, freckles, pores
 from .noise import noise
-from .pigments import COMPLEXIONS, MELANIN, Complexion, reflectance, to_linear, to_screen
+from .pigments import MELANIN, OWN, Complexion, reflectance, to_linear, to_screen
 from .regions import alar_groove, beard, blood, red, scalp, tan
 from .texels import Texels, left_texels
 
@@ -33,10 +33,9 @@ NOSTRIL = (0.20, 0.085, 0.075)
 PADDING = 24.0  # texels
 
 
-def paint_skin(head: Head, *, tone: Tone, size: int = SIZE) -> Image:
+def paint_skin(head: Head, *, complexion: Complexion = OWN, size: int = SIZE) -> Image:
     """Paint the skin of a head, shape (size, size, 3), uint8, sRGB; row 0 is v = 1."""
     texels = left_texels(head, size)
-    complexion = COMPLEXIONS[tone]
     melanin, redness, shadow = pigments(texels, complexion)
     grain = texel_size(texels)
     image = np.zeros((size, size, 3))

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model import Tone
 from .fields import Points, Values
 
 PALE = np.array([0.12, 0.27, 0.42])  # density of skin without pigments
@@ -30,12 +29,13 @@ class Complexion:
     hair: tuple[float, float, float]
 
 
-COMPLEXIONS = {
-    Tone.LIGHT: Complexion(0.17, 1.05, 1.0, (0.33, 0.235, 0.165)),
-    Tone.MEDIUM_LIGHT: Complexion(0.40, 1.0, 0.7, (0.20, 0.14, 0.105)),
-    Tone.MEDIUM: Complexion(0.75, 0.95, 0.4, (0.135, 0.095, 0.075)),
-    Tone.DARK: Complexion(1.55, 0.85, 0.2, (0.075, 0.058, 0.052)),
-}
+OWN = Complexion(0.40, 1.0, 0.7, (0.20, 0.14, 0.105))  # that of the picture that is shipped
+COMPLEXIONS = (  # from light to dark
+    Complexion(0.17, 1.05, 1.0, (0.33, 0.235, 0.165)),
+    OWN,
+    Complexion(0.75, 0.95, 0.4, (0.135, 0.095, 0.075)),
+    Complexion(1.55, 0.85, 0.2, (0.075, 0.058, 0.052)),
+)
 
 
 def reflectance(melanin: Values, blood: Values, shadow: Values) -> Points:

@@ -4,7 +4,7 @@ A direction is measured from a vertical axis up to CROWN, and from the axis' upp
 that the crown of the head is a dome without a pole in the way. At every height the head is cut as a
 superellipse (Lamé's curve): how far it reaches forward, sideways and backward, and how square it
 is, are curves over the height. Under the line of the jaw it falls away, onto a neck made likewise.
-The numbers are placed by eye toward adult means of well-known distances (see `assets.report`).
+The numbers are placed by eye toward adult means of well-known distances (see `assets.norms`).
 """
 
 from functools import cache

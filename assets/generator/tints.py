@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from ..model import Head, Tone
+from ..model import Head
 from .brows import across_brow
 from .painting import covers, laid_over, pigments, texel_size
-from .pigments import BLOOD, COMPLEXIONS, MELANIN, Complexion, reflectance
+from .pigments import BLOOD, MELANIN, OWN, Complexion, reflectance
 from .regions import beard, behind_hairline, red
 from .texels import Texels, left_texels
 
@@ -23,18 +23,17 @@ BEHIND, IN_FRONT = 30.0, 10.0  # [mm]
 FACE = 60.0  # [mm] z in front of which a texel belongs to the face
 
 
-def paint_tints(head: Head, size: int, tone: Tone) -> dict[str, npt.NDArray[np.generic]]:
+def paint_tints(head: Head, size: int) -> dict[str, npt.NDArray[np.generic]]:
     """Maps over a picture of `size` x `size`, in hundredths, uint8; row 0 is v = 1.
 
     Of shape (size / 4, size / 4) are melanin, blood: weight of a step of each; lips, beard: how
     much of either there is; brow: place across it, 1 at its edge, 2 far from it; scalp: how far
     behind a line `IN_FRONT` of the hairline, 1 for `BEHIND`.
     hair: how much of its colour lies on each texel, linear light, shape (size, size). skin: linear
-    light 0..1 of the bare skin of the face, and its two weights, shape (5,). tone: that of the
-    picture.
+    light 0..1 of the bare skin of the face, and its two weights, shape (5,).
     """
     texels = left_texels(head, size)
-    own = replace(COMPLEXIONS[tone], hair=(0.0, 0.0, 0.0))
+    own = replace(OWN, hair=(0.0, 0.0, 0.0))
     fine = texel_size(texels)
     base = _light(texels, own, fine)
     darker = _light(texels, replace(own, melanin=own.melanin + 1.0), fine)
@@ -61,7 +60,6 @@ def paint_tints(head: Head, size: int, tone: Tone) -> dict[str, npt.NDArray[np.g
         "scalp": _coarse(_image(texels, (behind_hairline(texels) + IN_FRONT) / BEHIND, size), 0.0),
         "hair": _bytes(np.nan_to_num(_image(texels, left, size, right))),
         "skin": np.array(skin),
-        "tone": np.array(tone.value),
         "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 

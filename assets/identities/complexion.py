@@ -28,10 +28,10 @@ from ..files import Image, read_arrays_of
 from ..fitting.head import FittedHead
 from ..generator.eyeballs import IRISES, eyeball
 from ..generator.painting import BEARD_SHADOW
-from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, SHADOW, to_linear, to_screen
+from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW, to_linear, to_screen
 from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
-from ..model import FloatArray, Part, Segment, SingleArray, Tone
+from ..model import FloatArray, Part, Segment, SingleArray
 from .person import Person
 from .traits import Identity, Sex
 
@@ -89,7 +89,6 @@ class _Tints:
     skin: FloatArray  # (5,)
     melanins: FloatArray  # of the tones in `angles`
     angles: FloatArray  # ITA, rising
-    own: Tone
 
 
 def lab(light: npt.ArrayLike) -> FloatArray:
@@ -116,7 +115,7 @@ def recoloured(angle: float, *, blood: float = 1.0, features: Features = PLAIN) 
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
     tints = _tints()
     melanin = float(np.interp(angle, tints.angles, tints.melanins))
-    density, redness, hair = _changes(melanin, blood, tints.own)
+    density, redness, hair = _changes(melanin, blood)
     hair = hair + features.fair * (to_linear(np.array(FAIR_HAIR)) - hair)
     grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
@@ -225,22 +224,20 @@ def in_own_colours(
 def own_angle() -> float:
     """ITA [deg] of the picture that is shipped."""
     tints = _tints()
-    return float(np.interp(-COMPLEXIONS[tints.own].melanin, -tints.melanins, tints.angles))
+    return float(np.interp(-OWN.melanin, -tints.melanins, tints.angles))
 
 
-def _changes(melanin: float, blood: float, own: Tone) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _changes(melanin: float, blood: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Density of melanin and blood that comes to the picture's, and light of hair; (3,) each."""
-    known = sorted(COMPLEXIONS.values(), key=lambda complexion: complexion.melanin)
-    amounts = [complexion.melanin for complexion in known]
-    usual = np.interp(melanin, amounts, [complexion.blood for complexion in known])
+    amounts = [complexion.melanin for complexion in COMPLEXIONS]
+    usual = np.interp(melanin, amounts, [complexion.blood for complexion in COMPLEXIONS])
     hair = [
         np.interp(melanin, amounts, channel)
-        for channel in to_linear(np.array([complexion.hair for complexion in known])).T
+        for channel in to_linear(np.array([complexion.hair for complexion in COMPLEXIONS])).T
     ]
-    before = COMPLEXIONS[own]
     more = max(melanin - amounts[-1], 0.0)
-    density = (melanin - more - before.melanin) * MELANIN + more * DARK_MELANIN
-    return density, (blood * usual - before.blood) * BLOOD, np.array(hair)
+    density = (melanin - more - OWN.melanin) * MELANIN + more * DARK_MELANIN
+    return density, (blood * usual - OWN.blood) * BLOOD, np.array(hair)
 
 
 @lru_cache(maxsize=1)
@@ -249,7 +246,7 @@ def _tints() -> _Tints:
 
     head = load("head")
     soft_ones = ("melanin", "blood", "lips", "beard", "brow", "scalp")
-    names = (*soft_ones, "hair", "skin", "tone")
+    names = (*soft_ones, "hair", "skin")
     arrays = read_arrays_of(head.fingerprint, head.tints_file, names)
     height, width = head.albedo.shape[:2]
     if arrays["hair"].shape != (height, width):
@@ -259,16 +256,15 @@ def _tints() -> _Tints:
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
         soft[name] = np.asarray(finer, dtype=np.float32)
-    own = Tone(str(arrays["tone"]))
     hair = (arrays["hair"] / 100.0).astype(np.float32)
-    hair_light = to_linear(np.array(COMPLEXIONS[own].hair)).astype(np.float32)
+    hair_light = to_linear(np.array(OWN.hair)).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
     bare = np.maximum(light - hair[..., None] * hair_light, 0.0)
     skin, weights = arrays["skin"][:3], arrays["skin"][3:]
     melanins = np.linspace(MOST, LEAST, 200)
     tones = []
     for melanin in melanins:
-        density, redness, _ = _changes(float(melanin), 1.0, own)
+        density, redness, _ = _changes(float(melanin), 1.0)
         tones.append(skin * np.exp(-weights[0] * density - weights[1] * redness))
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3))
     detail = (lightness - uniform_filter(lightness, DETAIL)) * (hair < 0.02)
@@ -280,7 +276,6 @@ def _tints() -> _Tints:
         skin=arrays["skin"],
         melanins=melanins,
         angles=typology_angle(tones),
-        own=own,
     )
 
 

@@ -17,8 +17,7 @@ import numpy.typing as npt
 
 from ..errors import AssetError
 from ..model import Eye, FloatArray, Head
-from ..norms import NORMS
-from ..report import DISTANCES
+from ..norms import DISTANCES, NORMS
 
 # How far points move together [mm], and how far they move over such ways.
 KERNEL = ((75.0, 7.0), (30.0, 3.5), (15.0, 1.6), (8.0, 1.0))
@@ -28,8 +27,6 @@ NEAR = 1e-4  # [mm]
 TOLERANCE = 0.05  # [mm]: what is farther off is told
 JITTER = 1e-7  # of the largest eigenvalue, so that points that nearly coincide do no harm
 
-PAIRS = {title.rpartition(", ")[2]: (first, second) for title, first, second in DISTANCES}
-"""Code of a measure -> the names of the anatomical points between which it is taken."""
 # An eye's length is hardly more than en-en and ex-ex make it in front view. What they leave of it,
 # up and back, is looked for in its place: Newton's method would divide by almost nothing.
 EYE = "en-ex"
@@ -65,14 +62,14 @@ class Shaper:
 
     def __init__(self, head: Head, more: Sequence[int]) -> None:
         """more: numbers of vertices that are pushed, beside those that are measured."""
-        ends = [head.anatomy[name] for pair in PAIRS.values() for name in pair]
+        ends = [head.anatomy[name] for pair in DISTANCES.values() for name in pair]
         numbers = np.unique([*ends, *more])
         numbers = np.unique(np.concatenate([numbers, head.mirror[numbers]]))
         self._place = {int(number): i for i, number in enumerate(numbers)}
         self._rest: FloatArray = head.vertices[numbers]
         self._opposite = np.array([self._place[int(head.mirror[n])] for n in numbers])
         self._ends = np.array(
-            [[self._place[head.anatomy[name]] for name in PAIRS[code]] for code in NORMS]
+            [[self._place[head.anatomy[name]] for name in DISTANCES[code]] for code in NORMS]
         )
         alike = kernel(self._rest, self._rest)
         self._alike = alike + JITTER * alike.max() * len(alike) * np.eye(len(alike))
@@ -161,7 +158,7 @@ class Shaper:
 
 
 def measures_of(vertices: FloatArray, anatomy: Mapping[str, int]) -> dict[str, float]:
-    """All distances of the report between vertices (V, 3), code -> [mm].
+    """All `DISTANCES` between vertices (V, 3), code -> [mm].
 
     What is taken on one side is the mean of both.
     """
@@ -170,12 +167,12 @@ def measures_of(vertices: FloatArray, anatomy: Mapping[str, int]) -> dict[str, f
         """Their distance."""
         return float(np.linalg.norm(vertices[anatomy[first]] - vertices[anatomy[second]]))
 
-    right = {name: name.replace("_left", "_right") for pair in PAIRS.values() for name in pair}
+    right = {name: name.replace("_left", "_right") for pair in DISTANCES.values() for name in pair}
     return {
         code: between(a, b)
         if "_right" in a + b
         else 0.5 * (between(a, b) + between(right[a], right[b]))
-        for code, (a, b) in PAIRS.items()
+        for code, (a, b) in DISTANCES.items()
     }
 
 

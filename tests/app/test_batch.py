@@ -294,7 +294,7 @@ def test_a_worker_is_killed_halfway() -> None:
     """Every film is whole, as it would be without, and each is counted once."""
     names = films(4)
     process = started("--jobs", "2", "--quiet")
-    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/*.mp4"))))
     os.kill(workers_of(process)[0], signal.SIGKILL)
     _, told = process.communicate(timeout=120)
     assert process.returncode == 0, told
@@ -314,7 +314,7 @@ def test_stopped_halfway_and_resumed(number: signal.Signals) -> None:
     """Nothing half-written is left, no process runs on, and what is missing is made afterwards."""
     names = films(3)
     process = started("--jobs", "2", "--quiet")
-    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/*.mp4"))))
     process.send_signal(number)
     _, told = process.communicate(timeout=60)
     assert process.returncode == -number
@@ -356,7 +356,7 @@ def test_a_cluster_loses_a_worker_halfway(cluster: Any) -> None:
     """Every film is whole, none is made twice, and all are as they are here."""
     names = films(4)
     process = started("--scheduler", cluster.scheduler_address, "--quiet")
-    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/*.mp4"))))
     with sys.modules["distributed"].Client(cluster.scheduler_address) as client:
         os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
     _, told = process.communicate(timeout=200)
@@ -376,7 +376,7 @@ def test_ctrl_c_reaches_the_cluster(cluster: Any) -> None:
     """What workers have half written goes, and what was not begun is not begun."""
     films(6)
     process = started("--scheduler", cluster.scheduler_address, "--quiet")
-    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/new/*.mp4"))))
+    wait_until(lambda: bool(list(Path("made").glob(".risorius-*/*.mp4"))))
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
     assert process.returncode == -signal.SIGINT

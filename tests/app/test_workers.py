@@ -152,7 +152,7 @@ def test_nothing_runs_on_when_it_is_stopped(tmp_path: Path, number: signal.Signa
         [sys.executable, "-c", STOPPED, str(tmp_path)],
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
-    wait_until(lambda: len(list(tmp_path.glob(".risorius-*/new/?"))) == 2)
+    wait_until(lambda: len(list(tmp_path.glob(".risorius-*/?"))) == 2)
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
     threads = Path(f"/proc/{process.pid}/task").glob("*/children")
     workers = [int(each) for file in threads for each in file.read_text().split()]

@@ -11,12 +11,13 @@ import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.assets import checks
 from risorius.assets.generator import form
+from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import FineMesh, Head
-from risorius.assets.subdivision import coarse_places, quarter
+from risorius.assets.subdivision import quarter
 from risorius.assets.topology import boundary_loops, cross_products
+from tests.assets import checks
 
 MOST_FINER_DATA = 1_500_000  # bytes
 
@@ -50,10 +51,7 @@ def test_coarse_vertices_are_fine_vertices(head: Head, fine: FineMesh) -> None:
 
 
 def test_map_reproduces_the_coarse_mesh(head: Head, fine: FineMesh) -> None:
-    """Barycentric coordinates are coordinates; coarse vertices map onto themselves exactly."""
-    assert fine.coarse_triangle.shape == (len(fine.vertices),)
-    assert fine.barycentric.shape == (len(fine.vertices), 3)
-    assert np.all(fine.barycentric.sum(axis=1) == 1.0) and fine.barycentric.min() == 0.0
+    """Coarse vertices map onto themselves exactly."""
     mapped = fine.interpolate(head.vertices)
     assert np.array_equal(mapped[: len(head.vertices)], head.vertices)
     number = fine.interpolate(np.arange(len(head.vertices), dtype=np.float64))
@@ -120,7 +118,7 @@ def test_no_triangle_is_turned_over(head: Head, fine: FineMesh) -> None:
 
 def test_finer_mesh_does_not_cut_itself(fine: FineMesh) -> None:
     """The lips nearly touch; curving them must not push them into each other."""
-    assert len(checks.self_intersections(fine.vertices, fine.faces)) == 0
+    assert len(self_intersections(fine.vertices, fine.faces)) == 0
 
 
 def test_boundaries_become_smooth(head: Head) -> None:
@@ -156,14 +154,11 @@ def test_normals_are_unit_and_agree_with_the_faces(fine: FineMesh) -> None:
 
 
 def test_quartering_follows_the_picture() -> None:
-    """Two triangles with one edge in common: five edges, eight children, one place for each."""
+    """Two triangles with one edge in common: five edges, eight children."""
     faces = np.array([[0, 1, 2], [2, 1, 3]], dtype=np.int32)
     cut = quarter(faces, 4)
     assert cut.edges.tolist() == [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]
     assert cut.faces[:4].tolist() == [[0, 4, 5], [4, 1, 6], [5, 6, 2], [4, 6, 5]]
-    triangle, places = coarse_places(faces, quarter(cut.faces, 9).faces)
-    assert set(triangle.tolist()) == {0, 1}
-    assert set(np.unique(places)) == {0.0, 0.25, 0.5, 0.75, 1.0}
 
 
 def test_arrays_cannot_be_written(fine: FineMesh) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from risorius import assets
+from risorius.assets import loading
 from risorius.assets.cloth import COLOURS
 from risorius.assets.loading import HEAD_FILE, load_head
 
@@ -108,22 +109,28 @@ def test_incomplete_data_file_names_what_is_missing(tmp_path: Path) -> None:
         load_head(tmp_path / "old.npz")
 
 
-def test_text_files_are_optional_but_must_be_toml(tmp_path: Path) -> None:
+def test_text_files_are_optional_but_must_be_toml(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """No rig is an empty rig; a broken rig is an error that names the file."""
     nowhere = tmp_path / "none.toml"
-    head = load_head(rig_file=nowhere, layer_files={"Expressions": nowhere})
+    monkeypatch.setattr(loading, "RIG_FILE", nowhere)
+    monkeypatch.setattr(loading, "LAYER_FILES", {"Expressions": nowhere})
+    head = load_head()
     assert head.rig == {} and head.layers == () and head.expressions == {}
     broken = tmp_path / "rig.toml"
     broken.write_text("[muscle\n", encoding="utf-8")
     with pytest.raises(assets.AssetError, match=r"rig\.toml is not readable as TOML"):
-        load_head(rig_file=broken, layer_files={})
+        monkeypatch.setattr(loading, "RIG_FILE", broken)
+        load_head()
 
 
-def test_layers_arrive_as_written(tmp_path: Path) -> None:
+def test_layers_arrive_as_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A table of expressions keeps its rows, and knows its file for error texts."""
     file = tmp_path / "expressions.toml"
     file.write_text("[smile]\nzygomaticus_major_left = 0.8\n", encoding="utf-8")
-    head = load_head(rig_file=tmp_path / "none.toml", layer_files={"Expressions": file})
+    monkeypatch.setattr(loading, "LAYER_FILES", {"Expressions": file})
+    head = load_head()
     assert head.expressions == {"smile": {"zygomaticus_major_left": 0.8}}
     assert [(layer.title, layer.source) for layer in head.layers] == [
         ("Expressions", "expressions.toml")

@@ -8,12 +8,12 @@ import pytest
 from scipy.spatial import cKDTree
 
 from risorius import assets
-from risorius.assets import checks
 from risorius.assets.generator import form
 from risorius.assets.generator.fields import gradient
+from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.model import Head
-from risorius.assets.report import distance_rows, quality_rows, topology_rows
 from risorius.assets.topology import boundary_loops, cross_products, smallest_angles
+from tests.assets import checks
 
 TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
 
@@ -57,7 +57,7 @@ def test_mesh_is_its_own_mirror_image(head: Head) -> None:
 
 def test_mesh_does_not_cut_itself(head: Head) -> None:
     """Lips are closed and lids are folded, yet no two faces intersect."""
-    assert len(checks.self_intersections(head.vertices, head.faces)) == 0
+    assert len(self_intersections(head.vertices, head.faces)) == 0
 
 
 def test_triangles_are_well_shaped(head: Head) -> None:
@@ -189,32 +189,11 @@ def _nostril_faces(head: Head) -> npt.NDArray[np.bool_]:
     return np.asarray(near[head.faces].all(axis=1))
 
 
-def test_report_measures_a_plausible_face(head: Head) -> None:
-    """Wide limits of adult faces; the point is that no row is nonsense."""
-    every = [*topology_rows(head), *quality_rows(head), *distance_rows(head)]
-    rows = {row.title: row.value for row in every}
-    limits = {
-        "face height, n-gn": (105, 130),
-        "nose height, n-sn": (46, 60),
-        "nose protrusion, sn-prn": (16, 24),
-        "between inner eye corners, en-en": (28, 37),
-        "between outer eye corners, ex-ex": (82, 98),
-        "eye fissure height, ps-pi": (9, 12),
-        "nose width, al-al": (29, 39),
-        "mouth width, ch-ch": (45, 59),
-        "face width, zy-zy": (120, 145),
-    }
-    for title, (low, high) in limits.items():
-        assert low < rows[title] < high, title
-    assert rows["self-intersecting pairs"] == 0
-    assert rows["pieces"] == 1
-
-
 def test_checks_find_faults() -> None:
     """A check that cannot fail protects nobody."""
     points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1.5, 0.5]])
     crossing = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32)
-    assert checks.self_intersections(points, crossing).tolist() == [[0, 1]]
+    assert self_intersections(points, crossing).tolist() == [[0, 1]]
     assert checks.component_count(crossing) == 2
     repeated = np.array([[0, 1, 2], [0, 1, 3]], dtype=np.int32)
     assert not checks.is_manifold(repeated)

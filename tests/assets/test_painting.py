@@ -14,10 +14,10 @@ from risorius import assets
 from risorius.assets.generator import brows, form
 from risorius.assets.generator.noise import noise
 from risorius.assets.generator.painting import paint_skin
-from risorius.assets.generator.pigments import reflectance, to_linear, to_screen
+from risorius.assets.generator.pigments import COMPLEXIONS, reflectance, to_linear, to_screen
 from risorius.assets.generator.texels import Texels, corner_values, left_texels, rasterise
 from risorius.assets.loading import HEAD_FILE, load_head
-from risorius.assets.model import Head, Tone
+from risorius.assets.model import Head
 
 Colours = npt.NDArray[np.float64]
 LARGEST_IMAGE_FILE = 1_250_000  # bytes
@@ -121,7 +121,8 @@ def test_picture_goes_on_outside_the_skin(head: Head) -> None:
 def test_tones_are_ordered_and_all_have_lips() -> None:
     """From light to dark, each clearly darker than the one before."""
     sizes = 256
-    images = [paint_skin(assets.load("head"), tone=tone, size=sizes) for tone in Tone]
+    head = assets.load("head")
+    images = [paint_skin(head, complexion=each, size=sizes) for each in COMPLEXIONS]
     lightness = [float(image.mean()) for image in images]
     assert all(first > second + 8.0 for first, second in pairwise(lightness))
 

@@ -36,8 +36,6 @@ def killed(tmp_path: Path) -> Path:
     made = StagingFolder(tmp_path)
     (made.__enter__() / "film.mp4").write_bytes(b"half")
     [path] = tmp_path.iterdir()
-    assert made._lock is not None
-    made._lock.close()
     return path
 
 
@@ -45,8 +43,7 @@ def test_a_folder_is_gone_after_the_work(tmp_path: Path) -> None:
     """However the work ends."""
     with StagingFolder(tmp_path) as folder:
         (folder / "x").touch()
-        [path] = tmp_path.iterdir()
-        assert is_staging_folder(path) and folder.parent == path
+        assert is_staging_folder(folder) and list(tmp_path.iterdir()) == [folder]
     with pytest.raises(RuntimeError, match="in the middle"), StagingFolder(tmp_path):
         raise RuntimeError("in the middle")
     assert list(tmp_path.iterdir()) == []
@@ -66,20 +63,10 @@ def test_what_a_killed_process_leaves_is_swept_away_when_old(tmp_path: Path) -> 
         assert list(tmp_path.iterdir()) == names
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="a file that is open is not removed there")
-def test_a_folder_in_use_stays(killed: Path, tmp_path: Path) -> None:
-    """Locked by a process that lives, however long nothing has changed."""
-    with StagingFolder(tmp_path) as folder:
-        made_old(tmp_path)
-        sweep(tmp_path)
-        assert list(tmp_path.iterdir()) == [folder.parent]  # the other one is gone
-    assert not killed.exists()
-
-
 def test_a_film_that_still_grows_stays(killed: Path) -> None:
-    """Another machine that shares the disk may be writing; its lock is not seen."""
+    """Whoever writes it, on this machine or on another that shares the disk."""
     made_old(killed)
-    (killed / "new" / "film.mp4").write_bytes(b"more")
+    (killed / "film.mp4").write_bytes(b"more")
     sweep(killed.parent)
     assert killed.exists()
     made_old(killed)
@@ -93,15 +80,12 @@ def test_a_film_that_still_grows_stays(killed: Path) -> None:
         lambda path: path.rename(path.with_name(".risorius-old")),
         lambda path: path.rename(path.with_name(path.name + "0")),
         lambda path: path.rename(path.with_name(path.name.lstrip("."))),
-        lambda path: (path / "made-by-risorius").unlink(),
-        lambda path: (path / "made-by-risorius").write_text("somebody else"),
-        lambda path: (path / "mine.txt").write_text("mine"),
         lambda path: (path.rename(path.parent / "real"), path.symlink_to(path.parent / "real")),
         lambda path: (shutil.rmtree(path), path.write_text("a file")),
     ],
 )
 def test_nothing_else_is_swept_away(killed: Path, change: object) -> None:
-    """Another name, no mark or another one, something else in it, a link, a file: all stay."""
+    """Another name, a link, a file: all stay."""
     folder = killed.parent
     assert is_staging_folder(killed)
     change(killed)  # type: ignore[operator]

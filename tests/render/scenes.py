@@ -15,6 +15,9 @@ SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from anot
 PLAIN = render.Style(background=render.WHITE, shadows=False)
 """Skin before pure white, so that what is not white is drawn."""
 
+LIGHT_SKIN, DARK_SKIN = (0.88, 0.75, 0.685), (0.47, 0.325, 0.255)
+"""Albedos."""
+
 STILL = {"cranium": np.eye(4), "eye_left": np.eye(4)}
 """Bones at rest."""
 

@@ -11,7 +11,20 @@ import pytest
 from risorius import render
 from risorius.app.cli.options import LIGHT_NAMES
 
-from .scenes import PLAIN, STILL, Ball, SignedImage, draw_image, drawn, joined, lent, sphere, square
+from .scenes import (
+    DARK_SKIN,
+    LIGHT_SKIN,
+    PLAIN,
+    STILL,
+    Ball,
+    SignedImage,
+    draw_image,
+    drawn,
+    joined,
+    lent,
+    sphere,
+    square,
+)
 
 SHADED = replace(PLAIN, shadows=True, albedo=render.CLAY)
 NO_RIM = replace(render.Light(), rim=(0.0, 0.0, 0.0))
@@ -71,7 +84,7 @@ def test_key_from_above_is_steady(surface: render.Surface) -> None:
 @pytest.mark.parametrize("name", render.LIGHTS)
 def test_no_light_burns_or_blackens(surface: render.Surface, name: str) -> None:
     """A ball of light skin and one of dark skin: all of what faces the viewer has a colour."""
-    for albedo, low, high in ((render.SKIN_LIGHT, 60, 254), (render.SKIN_DARK, 16, 235)):
+    for albedo, low, high in ((LIGHT_SKIN, 60, 254), (DARK_SKIN, 16, 235)):
         style = replace(PLAIN, albedo=albedo, light=render.LIGHTS[name])
         image = draw_image(surface, sphere(4, 50.0), style)
         middle = drawn(image) & (np.hypot(*np.indices(image.shape[:2]) - 47.5) < 32)

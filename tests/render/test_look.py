@@ -16,7 +16,7 @@ from PIL import Image
 
 from risorius import render
 
-from .scenes import Ball, joined, lent, sphere, square
+from .scenes import LIGHT_SKIN, Ball, joined, lent, sphere, square
 
 STORED = Path(__file__).parent / "pictures"
 SIZE = (160, 120)
@@ -72,5 +72,5 @@ def test_stored_pictures_would_notice() -> None:
     """The tolerance is tight: a slightly different skin is a failure."""
     with render.open_offscreen(SIZE) as surface:
         frame = scene(surface, STYLES["pixel"]).astype(int)
-        paler = scene(surface, replace(STYLES["pixel"], albedo=render.SKIN_LIGHT)).astype(int)
+        paler = scene(surface, replace(STYLES["pixel"], albedo=LIGHT_SKIN)).astype(int)
     assert np.abs(frame - paler).max(axis=2).mean() > 3.0

@@ -10,7 +10,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, draw_image, facing, lent, sphere, square
+from .scenes import DARK_SKIN, PLAIN, Shape, draw_image, facing, lent, sphere, square
 
 SignedImage = npt.NDArray[np.int32]
 
@@ -101,7 +101,7 @@ def test_albedo_has_no_say_under_a_texture(surface: render.Surface) -> None:
     style = replace(PLAIN, subsurface=1.0)
     frames = [
         textured(surface, quarters(), replace(style, albedo=albedo))
-        for albedo in (render.SKIN_DARK, render.CLAY)
+        for albedo in (DARK_SKIN, render.CLAY)
     ]
     assert (frames[0] == frames[1]).all()
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from risorius.assets import checks
+from risorius.assets.generator.intersections import self_intersections
 
 
 def test_large_and_small_triangles_are_compared() -> None:
@@ -14,12 +14,12 @@ def test_large_and_small_triangles_are_compared() -> None:
     )
     vertices = points.reshape(-1, 3)
     faces = np.arange(150, dtype=np.int32).reshape(-1, 3)
-    found = {tuple(sorted(pair)) for pair in checks.self_intersections(vertices, faces).tolist()}
+    found = {tuple(sorted(pair)) for pair in self_intersections(vertices, faces).tolist()}
     expected = {
         (i, j)
         for i in range(50)
         for j in range(i + 1, 50)
-        if len(checks.self_intersections(points[[i, j]].reshape(-1, 3), faces[:2]))
+        if len(self_intersections(points[[i, j]].reshape(-1, 3), faces[:2]))
     }
     assert len(expected) > 30
     assert found == expected

@@ -1,0 +1,68 @@
+"""Where a surface cuts through itself."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from ..topology import Faces
+from .fields import Points
+
+INSIDE = 1e-6  # relative; touching at a corner or an edge does not count as intersecting
+
+
+def self_intersections(vertices: Points, faces: Faces) -> Faces:
+    """Pairs of faces without a common vertex that cut through each other, shape (k, 2)."""
+    corner = vertices[faces]
+    pairs = _near_pairs(corner)
+    first, second = pairs[:, 0], pairs[:, 1]
+    apart = (faces[first][:, :, None] != faces[second][:, None, :]).all(axis=(1, 2))
+    pairs = pairs[apart]
+    hit = np.zeros(len(pairs), dtype=bool)
+    for one, other in ((0, 1), (1, 0)):
+        for k in range(3):
+            start = corner[pairs[:, one], k]
+            end = corner[pairs[:, one], (k + 1) % 3]
+            hit |= _segment_cuts(start, end, corner[pairs[:, other]])
+    cutting: Faces = pairs[hit].astype(np.int32)
+    return cutting
+
+
+def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
+    """Pairs of triangles whose surrounding balls meet, each pair once, shape (k, 2).
+
+    By classes of size, so that a few large triangles do not make all small ones look far around.
+    """
+    centre = corner.mean(axis=1)
+    radius = np.linalg.norm(corner - centre[:, None], axis=2).max(axis=1)
+    size = np.floor(np.log2(np.maximum(radius, 1e-6)))
+    classes = [np.flatnonzero(size == value) for value in np.unique(size)]
+    trees = [cKDTree(centre[members]) for members in classes]
+    found = []
+    for i, members in enumerate(classes):
+        for j in range(i + 1):
+            reach = float(radius[members].max() + radius[classes[j]].max())
+            near = trees[i].sparse_distance_matrix(trees[j], reach, output_type="coo_matrix")
+            found.append(np.stack([members[near.row], classes[j][near.col]], axis=1))
+            if i == j:
+                found[-1] = found[-1][found[-1][:, 0] < found[-1][:, 1]]
+    pairs = np.concatenate(found)
+    distance = np.linalg.norm(centre[pairs[:, 0]] - centre[pairs[:, 1]], axis=1)
+    meeting: npt.NDArray[np.int64] = pairs[distance < radius[pairs].sum(axis=1)]
+    return meeting
+
+
+def _segment_cuts(start: Points, end: Points, triangle: Points) -> npt.NDArray[np.bool_]:
+    """Möller and Trumbore 1997, row by row."""
+    direction = end - start
+    edge_u, edge_v = triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0]
+    p = np.cross(direction, edge_v)
+    determinant = (edge_u * p).sum(axis=1)
+    is_parallel = np.abs(determinant) < 1e-12
+    inverse = 1.0 / np.where(is_parallel, 1.0, determinant)
+    offset = start - triangle[:, 0]
+    u = (offset * p).sum(axis=1) * inverse
+    q = np.cross(offset, edge_u)
+    v = (direction * q).sum(axis=1) * inverse
+    along = (edge_v * q).sum(axis=1) * inverse
+    in_triangle = (u > INSIDE) & (v > INSIDE) & (u + v < 1 - INSIDE)
+    return np.asarray(in_triangle & (along > INSIDE) & (along < 1 - INSIDE) & ~is_parallel)

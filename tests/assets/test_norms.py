@@ -1,0 +1,92 @@
+"""The built-in head against published norms, and the page that shows both."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius import assets
+from risorius.assets.identities.shaping import measures_of
+from risorius.assets.model import Head
+from risorius.assets.norms import NORMS, Sample
+
+LEBANON_2018 = "87 men, 135 women, doi 10.1016/j.forsciint.2018.10.021"
+TOMOGRAPHY_2015 = "18 women, doi 10.2319/040114-237.1"
+
+DEPTHS = {
+    "rhinion": (Sample(3.07, 0.72, 222), LEBANON_2018),
+    "subnasale": (Sample(15.61, 2.38, 222), LEBANON_2018),
+    "labiale_superius": (Sample(13.31, 2.01, 18), TOMOGRAPHY_2015),
+    "labiale_inferius": (Sample(15.08, 1.94, 18), TOMOGRAPHY_2015),
+    "pogonion": (Sample(14.69, 3.08, 18), TOMOGRAPHY_2015),
+}
+"""Anatomical name: published depth of bone [mm] and its source; no other figure could be read.
+
+Each was read in the abstract of its study: "Facial soft tissue of Lebanese adults with
+well-balanced faces", cephalograms; soft tissue of the lower anterior face by cone-beam tomography,
+Angle Orthodontist 85:211-217, persons with a normal vertical pattern.
+"""
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+@pytest.fixture(scope="module")
+def measures(head: Head) -> dict[str, float]:
+    """What it measures."""
+    return measures_of(head.vertices, head.anatomy)
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    """What the documentation says about it."""
+    return (Path(__file__).parents[2] / "docs" / "head.md").read_text(encoding="utf-8")
+
+
+def test_head_is_usual_in_every_measure_with_a_norm(measures: dict[str, float]) -> None:
+    """Within two deviations of the mean of women and of men: so it was when the norms came in."""
+    for code, norm in NORMS.items():
+        for sample in (norm.women, norm.men):
+            assert abs(sample.score(measures[code])) <= 2.0, code
+    assert 9.0 < measures["ps-pi"] < 12.0  # the eyes are open
+
+
+def test_head_is_near_the_middle_on_the_whole(measures: dict[str, float]) -> None:
+    """Usual in each measure is not enough: between the sexes the scores must not pile up."""
+    scores = [
+        0.5 * (norm.women.score(measures[code]) + norm.men.score(measures[code]))
+        for code, norm in NORMS.items()
+    ]
+    assert abs(float(np.mean(scores))) < 0.6
+    assert float(np.sqrt(np.mean(np.square(scores)))) < 1.0
+
+
+def test_norms_are_plausible_figures() -> None:
+    """Against slips of the pen: deviations of 4 to 25 %, men larger, large samples."""
+    for code, norm in NORMS.items():
+        assert norm.men.mean > norm.women.mean, code
+        for sample in (norm.women, norm.men):
+            assert 0.03 < sample.deviation / sample.mean < 0.25, code
+            assert sample.size > 800, code
+
+
+def test_the_page_shows_the_measures_and_the_norms(measures: dict[str, float], page: str) -> None:
+    """All of them, with scores where there is a norm."""
+    for code, value in measures.items():
+        row = f", {code} | {value:.1f} |"
+        for sample in (NORMS[code].women, NORMS[code].men) if code in NORMS else ():
+            score = f"{sample.score(value):+.1f}"
+            row += f" {sample.mean:.1f} ± {sample.deviation:.1f} | {score} |"
+        assert row in page
+
+
+def test_bone_lies_as_deep_as_was_published(head: Head, page: str) -> None:
+    """Within two deviations wherever a figure could be read; every figure is on the page."""
+    for name, (sample, source) in DEPTHS.items():
+        depth = float(head.bone_depth[head.anatomy[name]])
+        assert abs(sample.score(depth)) < 2.0, name
+        published = f"{sample.mean:.1f} ± {sample.deviation:.1f} | {sample.score(depth):+.1f}"
+        assert f"{name.replace('_', ' ')} | {depth:.1f} | {published} | {source} |" in page
