@@ -94,12 +94,8 @@ class MarkingPicture:
 
     def close(self) -> None:
         """Let go of everything."""
-        for drawn in (*self._mesh.meshes, *self._guide.meshes):
-            drawn.stream.release()
-        if self._guide.texture is not None:
-            self._guide.texture.release()
-        if self._guide.wrinkling is not None:
-            self._guide.wrinkling.map.release()
+        self._mesh.release()
+        self._guide.release()
         self._renderer.release()
 
     def draw(self, view: View) -> None:
