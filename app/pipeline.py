@@ -98,7 +98,8 @@ class Pipeline:
         """Bind what is to be drawn of the scene, left to right."""
         self.scene = scene
         self.renderer = renderer
-        self.texture = texture_of(scene, renderer)
+        self.texture: render.Texture | None = None
+        self.set_tone(None)
         self.wrinkling = wrinkling_of(scene, renderer)
         self.solids = Solids(scene)
         self.bind(refinements)
@@ -106,6 +107,25 @@ class Pipeline:
     def bind(self, refinements: Sequence[Refinement]) -> None:
         """Draw these from here on; refiners begin anew."""
         self.meshes = [DrawnMesh.of(self.scene, self.renderer, each) for each in refinements]
+
+    def set_tone(self, tone: float | None) -> None:
+        """Hand the scene's albedo to the renderer, in a tone [deg] where it has any."""
+        scene = self.scene
+        if scene.albedo is None:
+            return
+        if self.texture is not None:
+            self.texture.release()
+        albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
+        self.texture = self.renderer.load_texture(albedo, scene.openness())
+
+    def release(self) -> None:
+        """Let go of what the renderer holds for the scene."""
+        for drawn in self.meshes:
+            drawn.stream.release()
+        if self.texture is not None:
+            self.texture.release()
+        if self.wrinkling is not None:
+            self.wrinkling.map.release()
 
     def step(self, seconds: float) -> None:
         """The upper half of the figure: time passes, and the triangle mesh follows."""
@@ -125,43 +145,32 @@ class Pipeline:
     ) -> None:
         """The lower half: refine the mesh by each refiner, and draw it into its viewport."""
         self.solids.follow(dissection)
-        amounts = None
-        if self.wrinkling is not None and style.shows_wrinkles:
-            amounts = self.wrinkling.amounts(self.scene.positions)
+        amounts = self.amounts(style)
         self.renderer.draw_background(style, *viewports)
         for drawn, viewport in zip(self.meshes, viewports, strict=True):
             drawn.refine(self.scene.positions, camera, viewport)
             drawn.upload(amounts, style.wrinkles)
-            self._draw(drawn, camera, style, viewport, dissection)
+            values = None
+            if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
+                values = splits_of_source(drawn.refiner, drawn.mesh)
+            where, skin = {"viewport": viewport}, self.skin_of(drawn, values)
+            self.solids.draw(
+                self.renderer, drawn.stream, camera, style, dissection, where=where, skin=skin
+            )
 
-    def _draw(
-        self,
-        drawn: DrawnMesh,
-        camera: render.OrbitCamera,
-        style: render.Style,
-        viewport: Viewport,
-        dissection: Dissection,
-    ) -> None:
-        values = None
-        if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
-            values = splits_of_source(drawn.refiner, drawn.mesh)
-        skin: dict[str, Any] = {
+    def amounts(self, style: render.Style) -> Amounts | None:
+        """How far each vertex wrinkles now; None where that does not show."""
+        if self.wrinkling is None or not style.shows_wrinkles:
+            return None
+        return self.wrinkling.amounts(self.scene.positions)
+
+    def skin_of(self, drawn: DrawnMesh, values: npt.NDArray[Any] | None) -> dict[str, Any]:
+        """What the renderer is told of a mesh's skin; values: by which it is coloured."""
+        return {
             "values": values,
             "texture": self.texture if drawn.has_uv else None,
             "wrinkles": self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
         }
-        where, stream = {"viewport": viewport}, drawn.stream
-        self.solids.draw(self.renderer, stream, camera, style, dissection, where=where, skin=skin)
-
-
-def texture_of(
-    scene: Scene, renderer: render.Renderer, tone: float | None = None
-) -> render.Texture | None:
-    """Hand the scene's albedo to the renderer, in a tone [deg] where it has any; None without."""
-    if scene.albedo is None:
-        return None
-    albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
-    return renderer.load_texture(albedo, scene.openness())
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:

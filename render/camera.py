@@ -150,7 +150,7 @@ class OrbitCamera:
         degrees = 2.0 * math.degrees(math.atan(half))
         return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
 
-    def focal(self, aspect: float, height: int) -> float:
+    def focal(self, aspect: float, height: float) -> float:
         """Pixels that a length of 1 covers at distance 1 from the eye, in `height` pixels."""
         return 0.5 * height * (self._eye_distance / self.distance) / self._half_height(aspect)
 

@@ -51,12 +51,6 @@ class WindowSurface(Surface):
         return self._compositor.size
 
     @property
-    def window_size(self) -> tuple[int, int]:
-        """Width and height of the window [screen units]."""
-        width, height = self._glfw.get_window_size(self.handle)
-        return int(width), int(height)
-
-    @property
     def is_resized(self) -> bool:
         """Whether the window is no longer of the size that was drawn last."""
         return _framebuffer_size(self._glfw, self.handle) != self.size
@@ -178,12 +172,7 @@ class _Loader:
 
 
 def open_window(
-    size: tuple[int, int],
-    title: str,
-    *,
-    samples: int = 4,
-    visible: bool = True,
-    vertical_sync: bool = True,
+    size: tuple[int, int], title: str, *, samples: int = 4, visible: bool = True
 ) -> WindowSurface:
     """Open a window of `size` screen units; its frame may have more pixels than that.
 
@@ -203,7 +192,7 @@ def open_window(
         if not handle:
             raise diagnose("opening a window", "; ".join(complaints))
     glfw.make_context_current(handle)
-    glfw.swap_interval(1 if visible and vertical_sync else 0)
+    glfw.swap_interval(1 if visible else 0)
     try:
         loader: dict[str, Any] = {"context": _Loader(glfw)}
         gl = moderngl.create_context(require=330, **loader)

@@ -8,7 +8,6 @@ import os
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,61 +19,46 @@ from ..batch.listing import Job, clashes, lines_of, words_of
 from ..errors import UserError, counted, in_one_line
 from ..files import cannot_be_written, check_apart
 from ..stopping import cleaned_up_if_stopped
-from .options import PATH, packed
+from .options import PATH
 
 LISTED = ("capture", "export", "convert", "speak")  # commands that a line may hold
 OUTPUTS = ("output", "sheet")  # how their parameters for what they write are called
 MOST_TOLD = 20  # lines that are wrong
 
 
-@dataclass(frozen=True)
-class Batching:
-    """What batch alone is told."""
-
-    jobs: int | None
-    scheduler: str | None
-    resume: bool
-    retries: int
-    logs: Path | None
-    quiet: bool
-
-
-with_batching = packed(
-    "batching",
-    Batching,
-    click.option(
-        "--jobs", type=click.IntRange(1, 1024), help="Lines at once; as many as cores unless told."
-    ),
-    click.option(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="Of a Dask cluster that does the work: tcp://host:8786.",
-    ),
-    click.option(
-        "--resume",
-        is_flag=True,
-        help="Leave out lines whose outputs are there and would come out the same.",
-    ),
-    click.option(
-        "--retries",
-        type=click.IntRange(0, 10),
-        default=2,
-        show_default=True,
-        help="How often a line is tried again whose process died.",
-    ),
-    click.option(
-        "--logs",
-        type=PATH,
-        help="A folder for what lines print; LIST_logs beside LIST unless told.",
-    ),
-    click.option("--quiet", is_flag=True, help="No progress bar."),
-)
-
-
 @click.command()
 @click.argument("listing", metavar="LIST", type=PATH)
-@with_batching
-def batch(listing: Path, batching: Batching) -> None:
+@click.option(
+    "--jobs", type=click.IntRange(1, 1024), help="Lines at once; as many as cores unless told."
+)
+@click.option(
+    "--scheduler", metavar="ADDRESS", help="Of a Dask cluster that does the work: tcp://host:8786."
+)
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Leave out lines whose outputs are there and would come out the same.",
+)
+@click.option(
+    "--retries",
+    type=click.IntRange(0, 10),
+    default=2,
+    show_default=True,
+    help="How often a line is tried again whose process died.",
+)
+@click.option(
+    "--logs", type=PATH, help="A folder for what lines print; LIST_logs beside LIST unless told."
+)
+@click.option("--quiet", is_flag=True, help="No progress bar.")
+def batch(
+    listing: Path,
+    jobs: int | None,
+    scheduler: str | None,
+    resume: bool,
+    retries: int,
+    logs: Path | None,
+    quiet: bool,
+) -> None:
     """Do a list of commands side by side.
 
     LIST is a text file with a command in each line, as typed after risorius. Lines may hold
@@ -85,25 +69,25 @@ def batch(listing: Path, batching: Batching) -> None:
     from ..batch.summary import save_summary, table
     from ..workers.child import cores
 
-    if batching.jobs is not None and batching.scheduler is not None:
+    if jobs is not None and scheduler is not None:
         raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
     start = time.monotonic()
-    logs = (batching.logs or listing.parent / f"{listing.stem}_logs").absolute()
+    logs = (logs or listing.parent / f"{listing.stem}_logs").absolute()
     journal = Journal(logs / "journal.jsonl")
-    jobs = jobs_in(listing, journal)
+    listed = jobs_in(listing, journal)
     with cannot_be_written(logs):
         logs.mkdir(parents=True, exist_ok=True)
     results = []
     lines = run_lines(
-        jobs,
+        listed,
         journal,
         logs,
-        processes=batching.jobs or cores(),
-        scheduler=batching.scheduler,
-        retries=batching.retries,
-        resume=batching.resume,
+        processes=jobs or cores(),
+        scheduler=scheduler,
+        retries=retries,
+        resume=resume,
     )
-    with tqdm(total=len(jobs), unit="line", disable=batching.quiet or None) as bar:
+    with tqdm(total=len(listed), unit="line", disable=quiet or None) as bar:
         with cleaned_up_if_stopped(bar.close):
             for result in lines:
                 results.append(result)

@@ -2,70 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import click
 
 from ..errors import counted, in_one_line
-from .options import PATH, packed
+from .options import PATH
 from .parameters import Size
 
 MOST = 1_000_000  # samples; their names have six digits
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """What decides the samples, beside their number."""
-
-    sample: Path | None
-    camera: str | None
-    seed: int
-    passes: str
-    size: tuple[int, int]
-    background: str | None
-    heads: Path | None
-
-
-with_drawn = packed(
-    "drawn",
-    Drawn,
-    click.option(
-        "--sample", type=PATH, help="Your table of what faces do; --sample-table prints ours."
-    ),
-    click.option(
-        "--camera",
-        metavar="YAW[,PITCH[,ZOOM]]",
-        help="Where from, in degrees: each a number or LOW:HIGH, as in -30:30,-10:10,0.9:1.2; "
-        "as the table has it unless told.",
-    ),
-    click.option(
-        "--seed",
-        type=click.IntRange(0, 2**32 - 1),
-        default=0,
-        show_default=True,
-        help="Which samples.",
-    ),
-    click.option(
-        "--passes",
-        default="segmentation",
-        metavar="NAME,...",
-        show_default=True,
-        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation; "
-        "landmarks are always there.",
-    ),
-    click.option("--size", type=Size(), default=(512, 512), help="512x512 unless told."),
-    click.option(
-        "--background",
-        metavar="COLOUR|FOLDER",
-        help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours unless told.",
-    ),
-    click.option(
-        "--heads",
-        type=PATH,
-        help="A folder of heads of your own: NAME.obj, and its landmarks in NAME.json.",
-    ),
-)
 
 
 def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool) -> None:
@@ -80,7 +26,37 @@ def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool)
 @click.command()
 @click.option("--count", type=click.IntRange(1, MOST), required=True, help="How many samples.")
 @click.option("-o", "--output", type=PATH, required=True, help="The set's folder.")
-@with_drawn
+@click.option(
+    "--sample", type=PATH, help="Your table of what faces do; --sample-table prints ours."
+)
+@click.option(
+    "--camera",
+    metavar="YAW[,PITCH[,ZOOM]]",
+    help="Where from, in degrees: each a number or LOW:HIGH, as in -30:30,-10:10,0.9:1.2; "
+    "as the table has it unless told.",
+)
+@click.option(
+    "--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Which samples."
+)
+@click.option(
+    "--passes",
+    default="segmentation",
+    metavar="NAME,...",
+    show_default=True,
+    help="Beside each picture: depth, normal, triangle, splits, tension, segmentation; "
+    "landmarks are always there.",
+)
+@click.option("--size", type=Size(), default=(512, 512), help="512x512 unless told.")
+@click.option(
+    "--background",
+    metavar="COLOUR|FOLDER",
+    help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours unless told.",
+)
+@click.option(
+    "--heads",
+    type=PATH,
+    help="A folder of heads of your own: NAME.obj, and its landmarks in NAME.json.",
+)
 @click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes."
 )
@@ -98,11 +74,12 @@ def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool)
 def dataset(
     count: int,
     output: Path,
-    drawn: Drawn,
+    passes: str,
     jobs: int,
     resume: bool,
     coco: bool,
     quiet: bool,
+    **drawn: Any,
 ) -> None:
     """Make pictures of faces with exact labels.
 
@@ -112,7 +89,7 @@ def dataset(
     from ..dataset.making import make_set
     from ..dataset.request import request_of
 
-    request = request_of(output, **{**vars(drawn), "passes": drawn.passes.split(",")})
+    request = request_of(output, passes=passes.split(","), **drawn)
     made = make_set(request, count, jobs=jobs, resume=resume, coco=coco, progress=not quiet)
     click.echo(
         f"{in_one_line(output)}: {counted(made.samples, 'sample')}, {made.new} of them new, "

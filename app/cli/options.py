@@ -15,7 +15,7 @@ from ..errors import UserError
 from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from ..playback import LEAD, Playback
 from .dissecting import DISSECTING, DISSECTION_OPTIONS
-from .parameters import BackgroundName, FiniteRange, Looks, PersonName, Refiner, Size
+from .parameters import BackgroundName, FiniteRange, PersonName, Size, looks_from, refiners_from
 
 if TYPE_CHECKING:
     from risorius import render
@@ -188,7 +188,8 @@ REFINING = (
     ),
     click.option(
         "--refiner",
-        type=Refiner(),
+        metavar="NAME",
+        shell_complete=refiners_from,
         help="Refine plug-in, unless that of the look (risorius doctor lists them); none draws the "
         "mesh as it is.",
     ),
@@ -231,7 +232,7 @@ with_filming = packed(
     click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
     click.option(
         "--compare",
-        type=Looks(),
+        shell_complete=looks_from,
         is_flag=False,
         flag_value=STATIC,
         metavar="[NAME,...]",

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.shell_completion import CompletionItem
 
 from ..looks import LOOKS
 
@@ -80,42 +78,20 @@ class FiniteRange(click.FloatRange):
         return number
 
 
-class Refiner(click.ParamType[str]):
-    """The name of a refiner, which a shell completes."""
+def refiners_from(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+    """What a shell offers for the name of a refiner."""
+    from risorius import refine
 
-    name = "NAME"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Take it as it is; what there is, is asked for later."""
-        return str(value)
-
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        """Those that are registered and begin so."""
-        from risorius import refine
-
-        return _beginning(incomplete, refine.available())
+    return [name for name in refine.available() if name.startswith(begun)]
 
 
-class Looks(Refiner):
-    """Names of looks and refiners, with commas between them; a shell completes the last."""
+def looks_from(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+    """What a shell offers for looks and refiners with commas between them: for the last."""
+    from risorius import refine
 
-    name = "NAMES"
-
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        """Those that begin like the last one."""
-        from risorius import refine
-
-        before, comma, last = incomplete.rpartition(",")
-        names = _beginning(last, (*LOOKS, *refine.available()))
-        return [CompletionItem(f"{before}{comma}{item.value}") for item in names]
-
-
-def _beginning(start: str, names: Iterable[str]) -> list[CompletionItem]:
-    return [CompletionItem(name) for name in names if name.startswith(start)]
+    before, comma, last = begun.rpartition(",")
+    names = (name for name in (*LOOKS, *refine.available()) if name.startswith(last))
+    return [f"{before}{comma}{name}" for name in names]
 
 
 class PersonName(click.ParamType[int | str]):

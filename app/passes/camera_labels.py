@@ -37,13 +37,13 @@ class CameraLabels:
     (3,) [mm].
     """
 
-    size: tuple[int, int]
+    size: tuple[float, float]
     intrinsics: Floats
     rotation: Floats
     translation: Floats
 
     @classmethod
-    def of(cls, camera: render.OrbitCamera, size: tuple[int, int]) -> CameraLabels:
+    def of(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
         """What `camera` sees in a picture of `size`."""
         width, height = size
         focal = camera.focal(width / height, height)

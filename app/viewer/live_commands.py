@@ -5,7 +5,6 @@ What it leads wins over sliders and script; controls that it does not name stay 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -33,15 +32,9 @@ class LiveCommands:
     own_address: what a phone must send to, "" without a network.
     """
 
-    def __init__(
-        self,
-        session: Session,
-        panels: PanelState,
-        wake: Callable[[], None],
-        clock: Callable[[], float] = time.perf_counter,
-    ) -> None:
+    def __init__(self, session: Session, panels: PanelState, wake: Callable[[], None]) -> None:
         """wake: makes a window that waits for events go on; it is called from another thread."""
-        self._session, self._panels, self._wake, self._clock = session, panels, wake, clock
+        self._session, self._panels, self._wake = session, panels, wake
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
         self.own_address = ""
@@ -59,7 +52,7 @@ class LiveCommands:
         """Listen from now on, and show the panel that tells of it; UserError if that cannot be."""
         check_scene(self._session.scene.name)
         self.stop()
-        face = LiveFace(wanted, wake=self._wake, clock=self._clock)
+        face = LiveFace(wanted, wake=self._wake)
         try:
             face.table.check(self._session.controls.limits)
         except UserError:
@@ -145,8 +138,3 @@ class LiveCommands:
     def due_in(self) -> float:
         """How long the window may sleep [s]: until the face is lost, if nothing comes."""
         return LOST_AFTER - self.face.silence if self.face and self.is_receiving else float("inf")
-
-    @property
-    def presence(self) -> float:
-        """How far somebody who is there leads the face, 0 to 1."""
-        return self.face.presence if self.face is not None else 0.0

@@ -27,16 +27,13 @@ class Messages:
         """Show a line in place of the one before."""
         self.text, self.is_error, self.seconds_left = sentence(text), error, SECONDS
 
-    def attempt(self, task: Task, otherwise: Task = lambda: None) -> None:
-        """Do something, and show what it has to say or what the user may have to mend.
-
-        otherwise: what to do after an error.
-        """
+    def attempt(self, task: Task) -> None:
+        """Do something, and show what it has to say or what the user may have to mend."""
         try:
             line = task()
         except (UserError, OSError) as error:
             self.say(str(error), error=True)
-            line = otherwise()
+            return
         if line:
             self.say(line)
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import render
+from risorius.sim.landmarks import polyline_distance
 
 from ..pipeline import Viewport
 
@@ -19,11 +20,10 @@ MUSCLE_REACH = 14.0  # [mm] from a fibre within which a click on the skin means 
 
 @dataclass(frozen=True)
 class Ray:
-    """What the camera sees in one pixel; matrices: of a point, row vector, to clip space."""
+    """What the camera sees in one pixel."""
 
     origin: FloatArray
     direction: FloatArray
-    to_clip: FloatArray
 
     @classmethod
     def through(
@@ -36,7 +36,7 @@ class Ray:
         y = 2.0 * (place[1] - bottom) / height - 1.0
         ends = np.array([[x, y, -1.0, 1.0], [x, y, 1.0, 1.0]]) @ np.linalg.inv(to_clip)
         near, far = ends[:, :3] / ends[:, 3:]
-        return cls(near, (far - near) / np.linalg.norm(far - near), to_clip)
+        return cls(near, (far - near) / np.linalg.norm(far - near))
 
     def at_depth_of(self, point: FloatArray, axis: FloatArray) -> FloatArray:
         """Where the ray meets the plane through `point` across `axis` (the line of sight)."""
@@ -74,27 +74,16 @@ def skin_under(
     return point
 
 
-def muscle_at(
-    point: FloatArray, fibres: Mapping[str, Sequence[FloatArray]], reach: float = MUSCLE_REACH
-) -> str | None:
+def muscle_at(point: FloatArray, fibres: Mapping[str, Sequence[FloatArray]]) -> str | None:
     """The muscle whose fibres come nearest to a point of the skin, or None if all are far."""
-    nearest = {
-        name: min(_distance(point, line) for line in lines)
+    nearest = {  # its end once more: a fibre may be a single point
+        name: min(
+            float(polyline_distance(point[None], np.vstack([line, line[-1:]]))[0]) for line in lines
+        )
         for name, lines in fibres.items()
         if lines
     }
     if not nearest:
         return None
     name = min(nearest, key=lambda each: nearest[each])
-    return name if nearest[name] <= reach else None
-
-
-def _distance(point: FloatArray, line: FloatArray) -> float:
-    """From a point to a polyline (n, 3)."""
-    if len(line) < 2:
-        return float(np.linalg.norm(line - point, axis=1).min(initial=np.inf))
-    start, segment = line[:-1], np.diff(line, axis=0)
-    length = np.maximum((segment**2).sum(axis=1), 1e-12)
-    along = np.clip(((point - start) * segment).sum(axis=1) / length, 0.0, 1.0)
-    feet = start + along[:, None] * segment
-    return float(np.linalg.norm(feet - point, axis=1).min())
+    return name if nearest[name] <= MUSCLE_REACH else None

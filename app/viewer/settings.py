@@ -215,10 +215,7 @@ def load_settings(path: Path) -> tuple[Settings, str]:
             f"{path}: not valid JSON: {error}; all is as at first; {rename_unusable(path)}",
         )
     accepted = refused.table("", stored, rules.rules_of(Settings).get)
-    asked = accepted.pop("display", {})
-    if isinstance(asked, dict) and "beside" in asked:  # as `a` was called when it was alone
-        asked = {"a": asked["beside"], **asked}
-    display = refused.table("display.", asked, rules.rules_of(Display).get)
+    display = refused.table("display.", accepted.pop("display", {}), rules.rules_of(Display).get)
     options = refused.table("display.options.", display.pop("options", {}), rules.table_of_refiner)
     display["options"] = {
         name: refused.table(f"display.options.{name}.", found, lambda _: rules.option)

@@ -10,14 +10,12 @@ from typing import Any, NamedTuple
 
 from risorius import render
 
-from ..anatomy import Solids
 from ..capture.captions import SPLITS_BAR, Label, captioned, labels
 from ..files import Image
 from ..looks import STATIC, Refinement
-from ..pipeline import DrawnMesh, Viewport, texture_of
+from ..pipeline import DrawnMesh, Pipeline, Viewport
 from ..refining import open_choices, options_of
 from ..scenes import Scene
-from ..wrinkling import wrinkling_of
 from .colours import COLOURS, Amounts
 from .frame_times import FrameTimes
 from .level_of_detail import FULL
@@ -50,11 +48,9 @@ class Stage:
     def _bind_scene(self, scene: Scene, display: Display) -> None:
         self.scene = scene
         self.renderer = render.Renderer(self.surface)
-        self._texture = texture_of(scene, self.renderer)
+        self._pipeline = Pipeline(scene, self.renderer, [Refinement(refiner=STATIC)])
         self._tone: float | None = None
-        self._wrinkling = wrinkling_of(scene, self.renderer)
-        self._solids = Solids(scene)
-        self.static = DrawnMesh.of(scene, self.renderer, Refinement(refiner=STATIC))
+        self.static = self._pipeline.meshes[0]
         self.refined = self.a = self.b = self.static  # what is chosen, what else is compared
         self.refiner_options: dict[str, Any] = {}  # of `refined`, with their defaults
         self.open_choices: dict[str, dict[str, Any]] = {}  # and what those may be that are open
@@ -63,22 +59,19 @@ class Stage:
 
     def set_scene(self, scene: Scene, display: Display) -> None:
         """Take another scene in place of this one."""
-        meshes = self.static, self.refined, self.a, self.b
-        for stream in {id(each): each.stream for each in meshes}.values():
-            stream.release()
-        if self._texture is not None:
-            self._texture.release()
-        if self._wrinkling is not None:
-            self._wrinkling.map.release()
+        for drawn in (self.refined, self.a, self.b):
+            if drawn is not self.static:
+                drawn.stream.release()
+        self._pipeline.release()
         self.renderer.release()
         self._bind_scene(scene, display)
 
     def bind(self, display: Display) -> None:
         """Bind the refiners that `display` asks for; UserError if one refuses its options."""
         tone = TONES[display.tone]
-        if tone != self._tone and self._texture is not None:
-            self._texture.release()
-            self._texture, self._tone = texture_of(self.scene, self.renderer, tone), tone
+        if tone != self._tone:
+            self._pipeline.set_tone(tone)
+            self._tone = tone
         chosen = display.refinement_on(self.scene)
         if self._is_rebound("refined", chosen):
             self.refiner_options = options_of(display.refiner_on(self.scene))
@@ -128,10 +121,8 @@ class Stage:
         camera, display, viewport, times = view.camera, view.display, view.viewport, self._times
         shots = self.shots(display, viewport)
         style = style_of(display, view.background)
-        amounts = None
-        if self._wrinkling is not None and style.shows_wrinkles:
-            with times.timed("refinement"):
-                amounts = self._wrinkling.amounts(self.scene.positions)
+        with times.timed("refinement"):
+            amounts = self._pipeline.amounts(style)
         for shot in shots:
             with times.timed("refinement"):
                 shot.drawn.refine(self.scene.positions, camera, shot.viewport)
@@ -140,7 +131,7 @@ class Stage:
         with times.timed("draw"):
             self.surface.begin()
             overlays = self._overlays(view, () if is_photo else view.pointed)
-            self._solids.follow(display.dissection)
+            self._pipeline.solids.follow(display.dissection)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
                 values = COLOURS[display.colours].values(self.scene, shot.drawn)
@@ -166,13 +157,11 @@ class Stage:
         self, shot: Shot, view: View, style: render.Style, values: Amounts | None
     ) -> None:
         camera, dissection, stream = view.camera, view.display.dissection, shot.drawn.stream
-        where: dict[str, Any] = {"viewport": shot.viewport, "clip": shot.clip}
-        texture = self._texture if shot.drawn.has_uv else None
-        wrinkles = self._wrinkling.map if self._wrinkling and shot.drawn.has_uv else None
-        skin: dict[str, Any] = {"values": values, "texture": texture, "wrinkles": wrinkles}
-        self._solids.draw(self.renderer, stream, camera, style, dissection, where=where, skin=skin)
+        where = {"viewport": shot.viewport, "clip": shot.clip}
+        skin, solids = self._pipeline.skin_of(shot.drawn, values), self._pipeline.solids
+        solids.draw(self.renderer, stream, camera, style, dissection, where=where, skin=skin)
         if not (self.surface.samples or dissection.is_on(self.scene)):
-            self.renderer.draw_outline(stream, camera, style, texture=texture, **where)
+            self.renderer.draw_outline(stream, camera, style, texture=skin["texture"], **where)
 
     def _overlays(self, view: View, pointed: tuple[str, ...]) -> list[Lines]:
         edges, names = self.static.refiner.edges, view.display.overlays

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from risorius.app.errors import UserError
 from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, State
 from risorius.app.live.sender import Sender
 from risorius.app.scenes import build_scene
-from risorius.app.viewer import Viewer
+from risorius.app.viewer import Viewer, live_commands
 from risorius.app.viewer.live_commands import LiveCommands
 from risorius.app.viewer.panel_state import PanelState
 from risorius.app.viewer.panels.live import shown_of
@@ -52,7 +53,7 @@ def clock(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> FrameClock:
     """What the live face in the window takes for the time."""
     told = FrameClock(viewer.frame)
     monkeypatch.setattr(viewer, "frame", told.frame)
-    monkeypatch.setattr(viewer.live, "_clock", told)
+    monkeypatch.setattr(live_commands, "LiveFace", partial(LiveFace, clock=told))
     return told
 
 
@@ -89,7 +90,7 @@ def sending(face: LiveFace, file: Path) -> Iterator[None]:
 
 def hold(viewer: Viewer, face: LiveFace, seconds: float, **channels: float) -> None:
     """Send the same face with every frame of the window, for a while and until it leads."""
-    clock = viewer.live._clock
+    clock = face._clock
     end = clock() + seconds
     with Sender("livelink", LOOPBACK, face.port, "Ada") as sender:
 
@@ -123,7 +124,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path,
         assert until(viewer, lambda: moved(viewer) > 8.0, 60.0)
         assert face.state is State.RECEIVING and not viewer.is_idle
         assert viewer.session.current["jawOpen"] > 0.1 and not face.unusable
-    assert until(viewer, lambda: viewer.live.presence == 0.0)
+    assert until(viewer, lambda: face.presence == 0.0)
     assert face.state is State.LOST
     assert until(viewer, lambda: moved(viewer) < 0.3)
     assert until(viewer, lambda: viewer.is_idle)
@@ -139,7 +140,7 @@ def test_live_leads_what_it_names_and_sliders_keep_the_rest(viewer: Viewer) -> N
     assert viewer.session.current["jawOpen"] == pytest.approx(0.8)
     assert viewer.session.current["AU9"] == 0.3
     assert viewer.session.values["jawOpen"] == 0.2
-    assert until(viewer, lambda: viewer.live.presence == 0.0)
+    assert until(viewer, lambda: face.presence == 0.0)
     assert viewer.session.current["jawOpen"] == 0.2
     viewer.session.undo()
     assert viewer.session.values["jawOpen"] == 0.0
@@ -158,7 +159,7 @@ def test_a_signal_that_comes_back_is_taken_up_smoothly(viewer: Viewer) -> None:
 
     viewer.session.advance = noting  # type: ignore[method-assign]
     try:
-        assert until(viewer, lambda: viewer.live.presence == 0.0)
+        assert until(viewer, lambda: face.presence == 0.0)
         draw_frames(viewer, 10)
         hold(viewer, face, 1.0, jawOpen=0.8)
     finally:
@@ -176,7 +177,7 @@ def test_when_nobody_is_there_the_face_lives_by_itself(viewer: Viewer) -> None:
         assert viewer.life.is_on
         hold(viewer, face, 0.5, jawOpen=0.3)
         assert not viewer.life.is_on
-        assert until(viewer, lambda: viewer.live.presence == 0.0)
+        assert until(viewer, lambda: face.presence == 0.0)
         assert viewer.life.is_on
     finally:
         viewer.settings.is_alive = False
@@ -252,7 +253,7 @@ def test_a_face_that_holds_still_lets_the_window_rest(viewer: Viewer) -> None:
     """The same frame again and again moves nothing; when it ends, that is noticed in time."""
     face = listen(viewer)
     hold(viewer, face, 2.0, jawOpen=0.3)
-    assert viewer.physics.is_at_rest and viewer.live.presence == 1.0
+    assert viewer.physics.is_at_rest and face.presence == 1.0
     assert 0.0 < viewer.live.due_in() < 1.0
     assert until(viewer, lambda: face.state is State.LOST)
 

@@ -175,13 +175,6 @@ def test_a_file_that_may_not_be_read(path: Path, monkeypatch: pytest.MonkeyPatch
     assert re.search(r"Permission denied.*cannot be set aside \(.*written anew", complaint)
 
 
-def test_what_was_compared_is_compared_again(path: Path) -> None:
-    """A file of an older version, which had one side of a comparison, by another name."""
-    path.write_text(json.dumps({"display": {"compare": "wipe", "beside": "paper"}}))
-    settings, told = load_settings(path)
-    assert (settings.display.compare, settings.display.a, told) == ("wipe", "paper", "")
-
-
 def test_of_many_values_the_first_are_told(path: Path) -> None:
     """One line has no room for more; it holds no line ends of the file's."""
     folds = {f"a\nb{number}": number for number in range(1000)}

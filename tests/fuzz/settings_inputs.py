@@ -47,7 +47,7 @@ FILES: dict[str, bytes] = {
     "skin unknown": b'{"display": {"skin": "fur"}}',
     "colours unknown": b'{"display": {"colours": "rainbow"}}',
     "look unknown": b'{"display": {"look": "painted"}}',
-    "compared with nothing known": b'{"display": {"compare": "wipe", "beside": "magic"}}',
+    "compared with nothing known": b'{"display": {"compare": "wipe", "a": "magic"}}',
     "refiner unknown": b'{"display": {"refiner": "magic"}}',
     "options of a list": b'{"display": {"options": {"kahler": [1]}}}',
     "options unknown": b'{"display": {"options": {"kahler": {"sharpness": 1}}}}',

@@ -23,5 +23,5 @@ def window() -> Iterator[render.WindowSurface]:
     """A small window, where there is a screen."""
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         pytest.skip("DISPLAY is not set: run the tests under `xvfb-run -a` to test windows, too")
-    with render.open_window((96, 96), "test", vertical_sync=False) as opened:
+    with render.open_window((96, 96), "test") as opened:
         yield opened

@@ -12,6 +12,7 @@ from risorius.assets.topology import vertex_normals
 from risorius.sim.landmarks import MIRRORED
 
 from ...looks import STATIC, Refinement
+from ...passes.camera_labels import CameraLabels
 from ...pipeline import Pipeline, Viewport
 from ...scenes import Scene, build_scene
 from ..settings import Display, Settings
@@ -93,12 +94,8 @@ class MarkingPicture:
 
     def close(self) -> None:
         """Let go of everything."""
-        for drawn in (*self._mesh.meshes, *self._guide.meshes):
-            drawn.stream.release()
-        if self._guide.texture is not None:
-            self._guide.texture.release()
-        if self._guide.wrinkling is not None:
-            self._guide.wrinkling.map.release()
+        self._mesh.release()
+        self._guide.release()
         self._renderer.release()
 
     def draw(self, view: View) -> None:
@@ -149,8 +146,5 @@ def places_in(
 ) -> list[Spot]:
     """Where a camera that fills an area of the window sees points (n, 3) [window units]."""
     left, top, width, height = area
-    matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / max(height, 1.0)))
-    clip = np.column_stack([points, np.ones(len(points))]) @ matrix
-    middle = np.array([left + 0.5 * width, top + 0.5 * height])
-    places = middle + 0.5 * clip[:, :2] / clip[:, 3:] * (width, -height)
-    return [(x, y) for x, y in places.tolist()]
+    seen = CameraLabels.of(camera, (width, max(height, 1.0))).project(points)
+    return [(left + x, top + y) for x, y in seen.tolist()]
