@@ -125,6 +125,6 @@ def drop(viewer: Viewer, *paths: Path) -> None:
         [*command, *map(str, paths)], stderr=subprocess.PIPE, text=True,
         cwd=Path(__file__).parents[2],
     )  # fmt: skip
-    assert until(viewer, lambda: source.poll() is not None, 20.0)
+    assert until(viewer, lambda: source.poll() is not None, 60.0)
     assert source.returncode == 0, source.communicate()[1]
     draw_frames(viewer)
