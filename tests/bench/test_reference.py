@@ -117,7 +117,11 @@ def test_bench_quality_runs_on_it(checkout: Path) -> None:
         "bench", "quality", "--reference", checkout.parent / "made", "--finer", "none"
     )
     assert result.exit_code == 0, result.output
-    assert "jawOpen" in result.output and "mouthSmile" in result.output
+    for title in ("scan", "other persons"):
+        assert f"{title}: 2028 triangles against 3200\n" in result.output
+    rows = [line for line in result.output.splitlines() if line.startswith("cubic twice ")]
+    triangles, _, better = rows[0].removeprefix("cubic twice").split()[:3]
+    assert float(triangles) > 10 and float(better.rstrip("%")) > 50, "nearer to the dense face"
 
 
 @pytest.mark.parametrize(
