@@ -14,7 +14,7 @@ import numpy.typing as npt
 from risorius import sim
 
 from ..errors import counted
-from ..mirror import OPPOSITE, parted, twin_of
+from ..mirror import OPPOSITE, TURNED, parted, twin_of
 from ..vocabulary import called
 from .messages import Message
 from .picking import muscle_at
@@ -48,7 +48,11 @@ class SkinDrag:
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
         self.offset = np.zeros(3)
         poses = poses and not session.live.is_on  # which leads where it wants
-        self._candidates = _candidates(session, linked=settings.is_linked) if poses else []
+        rest = self._simulation.rest_positions[self._vertices]
+        is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
+        self._candidates = (
+            _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
+        )
         self._own: dict[str, float] = {}  # what solved controls had before
         self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
 
@@ -103,13 +107,18 @@ class SkinDrag:
                 self._session.set(name, value)
 
 
-def _candidates(session: Session, *, linked: bool) -> list[tuple[str, ...]]:
-    """The controls that a finger on the skin may move, in one tuple those that go together."""
+def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple[str, ...]]:
+    """The controls that a finger on the skin may move, in one tuple those that go together.
+
+    Beside the middle (`is_aside`) linked sides move alike, so nothing goes to one of them.
+    """
     found, values = list[tuple[str, ...]](), session.values
     lowest = session.scene.simulation.controls  # type: ignore[attr-defined]
     for name in lowest:
         twin, is_whole = twin_of(name), f"{name}_left" in lowest
         if is_whole or name.startswith(NOT_PULLED):
+            continue
+        if linked and is_aside and (name in TURNED or parted(name)[0] in OPPOSITE):
             continue
         is_pair = linked and twin != name and values[name] == values[twin]
         if not is_pair or parted(name)[0] in OPPOSITE:

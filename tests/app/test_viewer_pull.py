@@ -130,6 +130,7 @@ def test_linked_sides_are_pulled_together(viewer: Viewer) -> None:
     xdotool(viewer, "mouseup", 1)
     values = viewer.session.values
     assert values[f"{MAJOR}_right"] == values[f"{MAJOR}_left"] > 0.3
+    assert not any(values[name] for name in values if "sideways" in name), "nothing to one side"
     assert viewer.messages.text.startswith("Smile muscle, both sides 0.")
 
 
