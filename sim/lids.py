@@ -74,7 +74,7 @@ class LidVertices(NamedTuple):
     inward: Array  # (eyes, 3) unit, from the outer to the inner corner
     slide: tuple[float, float]  # mm inward when closed: upper, lower lid
     raise_slide: float  # mm inward when raised
-    upper_follows: float  # share of the vertical gaze
+    upper_follows: tuple[float, float]  # share of the vertical gaze: up, down
     lower_follows: float
     sideways_follow: float  # share of the horizontal gaze
 
@@ -295,10 +295,9 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
         inward = max(close, drive[e, 1]) * lids.slide[1]
         angle = lids.closing[row] * close
         if lids.upper[row]:
+            follows = lids.upper_follows[0 if gaze[e, 1] > 0.0 else 1]
             low = free - alpha
-            free = max(
-                fold * (lids.aperture[e] * drive[e, 2] + lids.upper_follows * gaze[e, 1]), low
-            )
+            free = max(fold * (lids.aperture[e] * drive[e, 2] + follows * gaze[e, 1]), low)
             inward = close * lids.slide[0] + (1.0 - close) * drive[e, 2] * lids.raise_slide
             angle -= close**3 * lids.overlap[row]  # late: half a blink is half closed
         free *= 1.0 - close

@@ -102,7 +102,9 @@ class Eyes:
     """Eyeballs, and how the lids ride on them."""
 
     gaze_deg: float = _number(0.0, 60.0, default=30.0)  # eye rotation at gaze = 1
-    upper_lid_follows: float = _number(0.0, 1.0, default=0.55)  # share of the vertical gaze angle
+    upper_lid_follows: tuple[float, float] = _vector(
+        2, 0.0, 1.0, default=(0.55, 0.8)
+    )  # share of the vertical gaze angle: up, down
     lower_lid_follows: float = _number(0.0, 1.0, default=0.3)
     lid_reach: float = _number(2.0, 30.0, default=8.0)  # mm from the margin to where the lid ends
     lid_plateau: float = _number(0.0, 20.0, default=2.0)  # mm from the margin that move as one
