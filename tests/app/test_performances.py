@@ -123,6 +123,17 @@ def test_a_script_follows_the_recording_with_fewer_keys() -> None:
     assert len(script.tracks["jawOpen"]) < len(take.times) / 2
 
 
+def test_a_neutral_longer_than_the_recording_is_told() -> None:
+    take = take_of(jawOpen=wave())
+    _, report = script_of(take, Playback(neutral="first:99"), limits_of("face"))
+    assert report.notes == (
+        "--neutral first:99 is longer than the recording, 3.00 s: the neutral face is the median "
+        "of all of it.",
+    )
+    _, report = script_of(take, Playback(neutral="first:3"), limits_of("face"))
+    assert not report.notes
+
+
 @given(st.dictionaries(st.sampled_from(ARKIT), st.floats(0.0, 1.0), min_size=1))
 def test_a_face_that_never_moves_rests(held: dict[str, float]) -> None:
     script, _ = script_of(take_of(**held), Playback(neutral="first:1"), limits_of("face"))
