@@ -221,16 +221,23 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         ),
         (["view", "--option", "threshold_once=0.2"], "threshold_once: counts for the criterion"),
         (
-            ["capture", "SMILE", "-o", "x.mp4", "--look", "paper"]
-            + ["--option", "threshold_once=0.2"],
+            [
+                "capture",
+                "SMILE",
+                "-o",
+                "x.mp4",
+                "--look",
+                "paper",
+                "--option",
+                "threshold_once=0.2",
+            ],
             "0 <= threshold_once <= threshold_twice",
         ),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "scheme=round"], "'round' is unknown"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "cubic"], "write NAME=VALUE"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "attributes=3"], "option attributes; it"),
         (
-            ["capture", "SMILE", "-o", "x.mp4", "--look", "paper"]
-            + ["--option", "threshold_once=a"],
+            ["capture", "SMILE", "-o", "x.mp4", "--look", "paper", "--option", "threshold_once=a"],
             "be a number",
         ),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "blend=maybe"], "must be on or off"),
