@@ -229,7 +229,7 @@ class Session:
             return None
         what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
         self.history.note(self._document(), f"Let go of {what}", lambda later: later)
-        return f"{what} not keyed, so let go; Ctrl+Z brings the pose back"
+        return f"{what} not keyed, so let go; [Undo] brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
@@ -252,7 +252,7 @@ class Session:
 
     def _refuse_while_recording(self) -> None:
         if self.is_recording:
-            raise UserError("stop the recording first (Ctrl+R): it goes into the script as it is")
+            raise UserError("stop the recording first ([Record]): it goes into the script as it is")
 
     def set_key(self, *, is_whole: bool = False) -> float:
         """The face as it is becomes a key, is_whole: of all tracks, whatever differs; its time."""
