@@ -44,9 +44,9 @@ TIMELINE = (
 # Menus by column, and what the mouse does.
 COLUMNS = (
     ("File", "Edit", "Time"),
-    ("Keys", "Expression", "Live", "Help"),
+    ("Keys", "Expression"),
     ("View", "Landmarks"),
-    ("Mouse", "Timeline"),
+    ("Mouse", "Timeline", "Live", "Help"),
 )
 NARROW_COLUMNS = (
     ("File", "Edit", "Time", "Live", "Help"),
