@@ -11,9 +11,13 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
+from .errors import UserError
+
 STATIC = "none"  # the refiner that leaves the mesh as it is
 CHANGED = ", changed"  # after the name of what has options over its own
 FIRST_LOOK, PAPERS_LOOK = "smooth", "paper"  # the one that is seen unless told, and the paper's
+THRESHOLDS = "threshold_once", "threshold_twice"  # options of this criterion alone:
+PAPERS_CRITERION = "normal"
 
 
 @dataclass(frozen=True)
@@ -68,6 +72,23 @@ class Refinement:
         look = LOOKS[self.look][scene]
         name = look.refiner if self.refiner is None else self.refiner
         return name, {**look.told(name), **self.options}
+
+    def has_thresholds(self, scene: str) -> bool:
+        """Whether the criterion is, or has in it, the one that THRESHOLDS are of."""
+        return PAPERS_CRITERION in self._criterion(scene).split("+")
+
+    def check(self, scene: str) -> None:
+        """Raise UserError for options that would do nothing on the scene of this name."""
+        unused = [name for name in THRESHOLDS if name in self.options]
+        if unused and not self.has_thresholds(scene):
+            raise UserError(
+                f"--option {unused[0]}: counts for the criterion {PAPERS_CRITERION} alone, and "
+                f"here it is {self._criterion(scene)}; leave it out, or add "
+                f"--option criterion={PAPERS_CRITERION}"
+            )
+
+    def _criterion(self, scene: str) -> str:
+        return str(self.on(scene)[1].get("criterion", PAPERS_CRITERION))
 
     def folds(self, scene: str) -> bool:
         """Whether wrinkles become shape; the mesh as it is has no triangles for it."""

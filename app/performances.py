@@ -70,7 +70,7 @@ def read_performance(
     playback = playback or Playback()
     if is_recording(path) or not _is_script(path):
         take = read_take(path, face=playback.face, rate=playback.rate)
-        return script_of(take, playback, limits or face_limits())
+        return script_of(take, playback, limits or limits_of("face"))
     script = load_script(path)
     if playback != Playback():
         raise UserError(f"{path}: is a script, and {options_in(playback)} is for recordings")
@@ -97,9 +97,9 @@ def options_in(playback: Playback) -> str:
 
 
 @functools.cache
-def face_limits() -> Limits:
-    """The lowest and highest value of each control that faces have."""
-    return SCENES["face"]().limits
+def limits_of(scene: str) -> Limits:
+    """The lowest and highest value of each control of the scene of this name."""
+    return SCENES[scene]().limits
 
 
 def held_pose(settings: Sequence[str]) -> Script:

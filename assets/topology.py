@@ -28,25 +28,27 @@ def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
 def boundary_loops(faces: Faces) -> list[list[int]]:
     """Closed rows of boundary vertices, in the direction of their faces, longest first.
 
-    Raises ValueError where the boundary branches, that is, where the mesh is not a manifold.
+    At a vertex where holes meet, a row goes on around the faces beside it; it may come back there.
+    Raises ValueError where two faces run along an edge the same way: that is no surface.
     """
-    directed = {
-        (first, second) for a, b, c in faces.tolist() for first, second in ((a, b), (b, c), (c, a))
-    }
-    following: dict[int, int] = {}
-    for first, second in sorted(directed):
-        if (second, first) not in directed:
-            if first in following:
-                raise ValueError(f"the boundary branches at vertex {first}")
-            following[first] = second
+    third: dict[Edge, int] = {}  # vertex of the face to the left of each directed edge
+    for a, b, c in faces.tolist():
+        for first, second, other in ((a, b, c), (b, c, a), (c, a, b)):
+            if (first, second) in third:
+                raise ValueError(f"two faces run from vertex {first} to {second}")
+            third[first, second] = other
+    left = {way for way in third if way[::-1] not in third}
     loops = []
-    while following:
-        start = min(following)
-        loop = [start]
-        while following[loop[-1]] != start:
-            loop.append(following[loop[-1]])
-        for vertex in loop:
-            del following[vertex]
+    while left:
+        first, second = min(left)
+        loop = []
+        while (first, second) in left:
+            left.remove((first, second))
+            loop.append(first)
+            following = third[first, second]
+            while (following, second) in third:
+                following = third[following, second]
+            first, second = second, following
         loops.append(loop)
     return sorted(loops, key=len, reverse=True)
 

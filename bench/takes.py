@@ -16,7 +16,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from risorius.app.performances import face_limits
+from risorius.app.performances import limits_of
 from risorius.app.playback import Playback
 from risorius.app.recordings import read_take
 from risorius.app.recordings.conversion import script_of
@@ -38,7 +38,7 @@ Result = TypeVar("Result")
 
 def report(minutes: float) -> str:
     """Measure a recording of so many minutes, and tell."""
-    limits = face_limits()
+    limits = limits_of("face")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "take.csv"
         path.write_text(made_up(minutes), encoding="utf-8")

@@ -8,6 +8,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from ..batch.journal import Journal
 from ..batch.listing import Job, clashes, lines_of, words_of
 from ..errors import UserError, counted, in_one_line
 from ..files import cannot_be_written, check_apart
+from ..playback import Playback
 from ..stopping import cleaned_up_if_stopped
 from .options import PATH
 
@@ -173,7 +175,7 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         f"{command.callback.__module__}:{command.callback.__name__}",
         tuple(arguments),
         Path.cwd(),
-        tuple(path.absolute() for path in (*inputs, *_named_in(given.get("script")))),
+        tuple(path.absolute() for path in (*inputs, *_named_in(given))),
         tuple(path.absolute() for path in outputs),
         tuple(path.absolute() for path in beside),
     )
@@ -191,11 +193,17 @@ def _beside(name: str, given: dict[str, Any]) -> list[Path]:
     return beside(output) if output and is_picture and given.get("passes") else []
 
 
-def _named_in(script: Path | None) -> Iterator[Path]:
-    """The files that a script names: its sound. UserError for a broken script."""
-    if script is not None and script.suffix.lower() == ".toml":
-        from ..script import load_script
+def _named_in(given: dict[str, Any]) -> Iterator[Path]:
+    """The files that a line's script names: its sound. UserError for what cannot be played.
 
-        sound = load_script(script).sound
-        if sound is not None:
-            yield sound
+    A recording, whose reading takes long, is played by the controls that every face has.
+    """
+    from ..performances import limits_of, script_for
+
+    script, settings = given.get("script"), given.get("settings", ())
+    if settings or (script is not None and script.suffix.lower() == ".toml"):
+        playback = Playback(**{each.name: given[each.name] for each in fields(Playback)})
+        performance = script_for(script, given["scene"], settings, playback=playback)
+        performance.check(limits_of(performance.scene))
+        if performance.sound is not None:
+            yield performance.sound

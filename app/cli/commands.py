@@ -85,6 +85,7 @@ def capture(
         raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
     performance = _played(script, scene, sound, playback, settings, quiet=filming.quiet)
     refinement = drawing.refinement()
+    refinement.check(performance.scene)
     options = CaptureOptions(
         size=filming.size,
         frames_per_second=filming.fps,
@@ -276,6 +277,8 @@ def open_window(
 
         check_scene(performance.scene)
     told_of = (drawing.refinement(), dissection_of(drawing)) if drawing.is_told else None
+    if told_of is not None:
+        told_of[0].check("face" if performance is None else performance.scene)
     if mesh is None:
         drawing.check_head()
     path = settings_path()

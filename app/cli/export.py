@@ -99,6 +99,8 @@ def export(
     check_request(output, chosen, request)
     tell = None if exporting.quiet else told
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    if request.refinement is not None:
+        request.refinement.check(performance.scene)
     head = subject.fitted_head()
     line, remark = write(
         performance, output, chosen, request, head=head, frames_per_second=exporting.fps

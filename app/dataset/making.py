@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
@@ -17,6 +18,7 @@ from .card import card_of
 from .coco import write_coco
 from .folder import SetFolder
 from .index import write_index
+from .persons import check_head
 from .request import Request
 from .sampling import draw
 from .studio import Studio
@@ -29,6 +31,7 @@ class Batch:
     """Samples that a process is to make."""
 
     request: Request
+    person: int
     indices: tuple[int, ...]
 
 
@@ -64,8 +67,11 @@ def make_set(
                 "or more"
             )
         batches = _batches(request, [index for index in range(count) if index not in there])
-        size = 0
         is_silent = not progress or None
+        if request.heads:
+            heads = dict.fromkeys(request.heads[batch.person] for batch in batches)
+            _check_heads([*heads], folder, jobs, is_silent)
+        size = 0
         bar = tqdm(total=count, initial=len(there), unit="sample", disable=is_silent, leave=False)
         logs = [folder.log] * len(batches)
         with cleaned_up_if_stopped(bar.close), bar:
@@ -76,6 +82,25 @@ def make_set(
                 bar.update(len(outcome.item.indices))
         _finish(folder, request, count, coco=coco)
     return Made(count, count - len(there), size)
+
+
+def _check_heads(
+    heads: Sequence[Path], folder: SetFolder, jobs: int, is_silent: bool | None
+) -> None:
+    """UserError, before the first sample, that names all heads which cannot be fitted.
+
+    Found later, one would spoil the set: it is resumed with the same heads alone.
+    """
+    broken = []
+    logs = [folder.log] * len(heads)
+    bar = tqdm(total=len(heads), unit="head", disable=is_silent, leave=False)
+    with cleaned_up_if_stopped(bar.close), bar:
+        for outcome in run_all(check_head, heads, jobs=jobs, logs=logs):
+            if outcome.error is not None:
+                broken.append(outcome.error)
+            bar.update()
+    if broken:
+        raise UserError("; ".join(sorted(broken)))
 
 
 def make_samples(batch: Batch) -> int:
@@ -96,8 +121,8 @@ def _batches(request: Request, missing: Sequence[int]) -> list[Batch]:
     for index in missing:
         by_person.setdefault(draw(request.table, request.seed, index).person, []).append(index)
     return [
-        Batch(request, tuple(indices[first : first + BATCH]))
-        for _, indices in sorted(by_person.items())
+        Batch(request, person, tuple(indices[first : first + BATCH]))
+        for person, indices in sorted(by_person.items())
         for first in range(0, len(indices), BATCH)
     ]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -43,9 +44,8 @@ def person_of(request: Request, number: int) -> Somebody:
     labels: dict[str, Any] = {"number": number, "tone": tone, "irises": irises}
     features = Features()
     if request.heads:
-        file = request.heads[number]
-        head = fit_head(file, file.with_suffix(".json"))
-        labels["head"] = file.name
+        head = _fitted(request.heads[number])
+        labels["head"] = request.heads[number].name
     else:
         made = make_person(sample_identity(int(seeds.generate_state(1)[0])))
         labels["sex"] = made.identity.sex.value
@@ -54,3 +54,12 @@ def person_of(request: Request, number: int) -> Somebody:
         features = features_of(made.identity, tone, random)
         head = made
     return Somebody(coloured(head, angle=tone, irises=irises, features=features), labels)
+
+
+def check_head(file: Path) -> None:
+    """Raise AssetError for a head of the user's that cannot be fitted."""
+    _fitted(file)
+
+
+def _fitted(file: Path) -> FittedHead:
+    return fit_head(file, file.with_suffix(".json"))

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -129,19 +130,20 @@ def record(
     Raises UserError where the scene has not what the script asks for.
     """
     scene = scene_of(script) if scene is None else scene
-    positions: list[Singles] = []
+    begin, end = span or (0.0, script.duration)
+    most = round(end * frames_per_second) + 1
+    positions = np.empty((most, *scene.positions.shape), np.float32)
     bones: list[Mapping[str, Floats]] = []
-    shapes: dict[str, list[Singles]] = {part.name: [] for part in scene.parts}
+    parts = [_Part(part, most) for part in scene.parts]
     simulation = scene.simulation if isinstance(scene, FaceScene) else None
     controls, activations = list[Floats](), list[Floats]()
-    begin, end = span or (0.0, script.duration)
     for now in play(scene, script, frames_per_second, until=end, progress=progress):
         if now < begin - 0.5 / frames_per_second:
             continue
-        positions.append(scene.positions.astype(np.float32))
+        positions[len(bones)] = scene.positions
         bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
-        for part in scene.parts:
-            shapes[part.name].append(part.vertices)
+        for each in parts:
+            each.add_frame()
         controls.append(np.array([*scene.values.values()]))
         activations.append(np.array([*simulation.sums.values()] if simulation else []))
     matrices = {name: np.stack([each[name] for each in bones]) for name in bones[0]}
@@ -149,27 +151,15 @@ def record(
         "skin" if simulation else scene.name,
         scene.rest_positions,
         scene.faces,
-        np.stack(positions),
+        positions[: len(bones)],
         uv=scene.uv,
         face_uv=scene.face_uv,
     )
-    parts = [
-        Surface(
-            part.name,
-            shapes[part.name][0].astype(np.float64),
-            part.faces,
-            _bent(shapes[part.name]),
-            matrices[part.bone],
-            colours=part.colours,
-            shine=part.shine,
-        )
-        for part in scene.parts
-    ]
     return Clip(
         scene,
         script,
         frames_per_second,
-        (skin, *parts),
+        (skin, *(each.surface(matrices) for each in parts)),
         matrices,
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
         dict(
@@ -178,6 +168,36 @@ def record(
     )
 
 
-def _bent(shapes: list[Singles]) -> Singles | None:
-    """The shapes of a part in all frames; None for one that is rigid."""
-    return None if all(each is shapes[0] for each in shapes) else np.stack(shapes)
+class _Part:
+    """A part of a scene in all frames, each once in memory."""
+
+    def __init__(self, part: Any, most: int) -> None:
+        """most: frames."""
+        self._part, self._most, self._count = part, most, 0
+        self._first: Singles = part.vertices
+        self._shapes: Singles | None = None  # as long as it is rigid
+
+    def add_frame(self) -> None:
+        """Keep the part as it is now; it has a new array where it is bent in another way."""
+        shape = self._part.vertices
+        if not self._count:
+            self._first = shape
+        if self._shapes is None and shape is not self._first:
+            self._shapes = np.empty((self._most, *shape.shape), np.float32)
+            self._shapes[: self._count] = self._first
+        if self._shapes is not None:
+            self._shapes[self._count] = shape
+        self._count += 1
+
+    def surface(self, matrices: Mapping[str, Floats]) -> Surface:
+        """What was kept; matrices: of the bones."""
+        part = self._part
+        return Surface(
+            part.name,
+            self._first.astype(np.float64),
+            part.faces,
+            None if self._shapes is None else self._shapes[: self._count],
+            matrices[part.bone],
+            colours=part.colours,
+            shine=part.shine,
+        )

@@ -17,7 +17,7 @@ from risorius.assets.topology import vertex_normals
 
 from ..scenes import FaceScene, Scene
 from .clip import Clip, Surface
-from .morphs import Floats, decompose, follow
+from .morphs import Floats, Singles, decompose, follow, parts_of
 
 HEAD, JAW = "cranium", "mandible"  # names of bones
 
@@ -50,13 +50,13 @@ def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
         if surface.shapes is None:
             pieces.append(rigid_piece(surface, part))
             continue
-        shapes = surface.shapes.astype(np.float64)
-        if part is None:
-            shapes = in_head(clip.scene, None, shapes, clip.bones)
-        morphs = decompose(shapes - surface.rest)
+        moved = _moved(clip, surface, part, surface.shapes)
+        morphs = decompose(moved)
         names = tuple(f"motion {index + 1}" for index in range(len(morphs.targets)))
         normals = vertex_normals(surface.rest, surface.faces)
-        bends = follow(morphs.weights, normals_of(shapes, surface.faces) - normals)
+        shapes = (surface.rest + moved[some] for some in parts_of(len(moved)))
+        bent = (normals_of(each, surface.faces) - normals for each in shapes)
+        bends = follow(morphs.weights, bent)
         bone = None if part is None else part.bone
         pieces.append(
             Piece(
@@ -65,6 +65,18 @@ def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
         )
         error = max(error, morphs.error)
     return pieces, error
+
+
+def _moved(clip: Clip, surface: Surface, part: Any, shapes: Singles) -> Singles:
+    """How far the vertices are from rest in each frame, before bones move them, shape (N, V, 3)."""
+    moved = np.empty_like(shapes)
+    for some in parts_of(len(shapes)):
+        there: npt.NDArray[np.floating] = shapes[some]
+        if part is None:
+            bones = {name: matrices[some] for name, matrices in clip.bones.items()}
+            there = in_head(clip.scene, None, there, bones)
+        moved[some] = there - surface.rest
+    return moved
 
 
 def rigid_piece(surface: Surface, part: Any) -> Piece:

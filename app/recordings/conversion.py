@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import in_one_line
 from ..playback import LEAD, Playback
 from ..script import POSE_SECONDS, TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
-from .calibration import calibration_for
+from .calibration import calibration_for, note_of_neutral
 from .mapping import load_mapping
 from .report import Report, report_of
 from .smoothing import smoothed
@@ -43,6 +43,7 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
     curves = {
         name: np.clip(values, *limits[name]) for name, values in controls.items() if name in limits
     }
+    take = replace(take, notes=(*note_of_neutral(take, playback.neutral), *take.notes))
     report = report_of(take, calibration, mapping, controls, limits)
     script = _script(take, curves, playback.lead)
     return script, report

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
+from .faces import only_one
 from .gaps import whole_take
 from .named_columns import is_calibrated, shares
 from .names import HEAD_ANGLES
@@ -53,6 +54,7 @@ def read(document: Any, source: str, request: Request) -> Take:
     unknown: list[str] = []
     table = _columns(document)
     if table is not None:
+        only_one(source, request)
         shapes, stamps, given = table
     else:
         frames, given = _frames(document)

@@ -55,11 +55,11 @@ class Command:
 
 
 def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> dict[str, str]:
-    """Give commands with keys another one alone, by their labels; by these, all keys as told."""
-    with_keys = [command for command in commands if command.key]
-    for command in with_keys:
+    """Give commands another key alone, by their labels; by these, all keys as told."""
+    doing = [command for command in commands if command.submenu is None]
+    for command in doing:
         command.chosen_key = changed.get(command.label, "")
-    return {command.label: command.displayed_keys for command in with_keys}
+    return {command.label: command.displayed_keys for command in doing}
 
 
 def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:

@@ -231,7 +231,7 @@ class Gui:
 
     def with_keys(self, text: str) -> str:
         """A text with the keys that commands have now, in place of their labels in brackets."""
-        return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1], found[0]), text)
+        return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1]) or found[0], text)
 
     def remember(self, name: str) -> None:
         """Keep where the item drawn last is."""

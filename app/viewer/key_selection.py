@@ -45,7 +45,7 @@ class KeySelection:
         """Take the selected keys away."""
         what = counted(len(self.places), "key")
         self._session.edit(keyframes.without(self._session.script, self.places), f"Delete {what}")
-        return f"{what} deleted; Ctrl+Z brings back"
+        return f"{what} deleted; [Undo] brings back"
 
     def delete_if_meant(self) -> Message:
         """Take them away if nothing but the timeline was touched since they were selected."""
@@ -61,7 +61,7 @@ class KeySelection:
     def copy(self) -> Message:
         """Keep the selected keys, to be pasted elsewhere."""
         self.copied = self._session.script, self.places
-        return f"{counted(len(self.places), 'key')} copied; Ctrl+V pastes at the time shown"
+        return f"{counted(len(self.places), 'key')} copied; [Paste] pastes at the time shown"
 
     def paste(self) -> Message:
         """The keys that were copied, from the time shown on; also those of another script."""

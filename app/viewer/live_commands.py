@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from ..errors import UserError
 from ..live import LOST_AFTER, Listening, LiveFace, State, own_address
+from ..recordings.calibration import Calibration
 from .messages import Message
 from .panel_state import PanelState
 from .session import Session
@@ -40,6 +41,7 @@ class LiveCommands:
         self.own_address = ""
         self.has_changed = False  # what can be said of who sends, in the last `advance`
         self._told: object = None
+        self._kept: tuple[str, Calibration] | None = None  # of whom, when `stop` ended it
 
     # Commands
 
@@ -65,16 +67,20 @@ class LiveCommands:
     def stop(self) -> None:
         """Listen no longer; the face is where sliders or script have it."""
         if self.face is not None:
+            self._kept = self.face.listening.kind, self.face.calibration
             self.face.close()
         self.face = None
         self._session.live.take({}, 0.0)
 
     def toggle(self) -> Message:
-        """Begin or end."""
-        if self.face is None:
-            return self.start(self.wanted)
-        self.stop()
-        return None
+        """Begin, with neutral face and gains as they were left for this protocol, or end."""
+        if self.is_on:
+            self.stop()
+            return None
+        line = self.start(self.wanted)
+        if self.face is not None and self._kept is not None and self._kept[0] == self.wanted.kind:
+            self.face.calibration = self._kept[1]
+        return line
 
     @property
     def can_calibrate(self) -> bool:

@@ -177,7 +177,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
     def toggle_full() -> Message:
         """Fill the screen, or go back."""
         placement.toggle_full()
-        return "F11 leaves the full screen" if placement.is_full else None
+        return "[Full screen] leaves the full screen" if placement.is_full else None
 
     muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
     views = (  # Alt: where there is no number pad
@@ -227,7 +227,7 @@ def live_menu(live: LiveCommands) -> Menu:
     return (
         command("Listen", "Ctrl+L", live.toggle, lambda: live.is_on),
         command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.can_calibrate),
-        command("Mirror", "", live.toggle_mirror, mirrored, lambda: live.is_on),
+        command("Mirrored", "", live.toggle_mirror, mirrored, lambda: live.is_on),
     )
 
 

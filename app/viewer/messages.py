@@ -17,7 +17,10 @@ Task = Callable[[], Message]  # what a user asks for; it may raise UserError or 
 
 @dataclass
 class Messages:
-    """One line at a time, at the foot of the picture; an error stays until it is clicked."""
+    """One line at a time, at the foot of the picture; an error stays until it is clicked.
+
+    Keys stand in it as in hints, see `Gui.with_keys`: by the labels of commands, in brackets.
+    """
 
     text: str = ""
     is_error: bool = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 from functools import partial
 from pathlib import Path
 
@@ -64,6 +65,8 @@ from .soundtrack import Soundtrack
 from .stage import Stage
 from .time_axis import TimeAxis
 from .view import View
+
+LOG = logging.getLogger("risorius.viewer")  # what is told where there is no window any more
 
 
 class Parts:
@@ -187,8 +190,10 @@ class Parts:
 
     def close(self) -> None:
         """Remember the settings, and let go of everything."""
-        with contextlib.suppress(UserError):  # a disk that is full must not keep the window open
+        try:
             self.remember()
+        except UserError as error:  # a disk that is full must not keep the window open
+            LOG.warning("risorius: %s; the next window does not look as this one", error)
         self.live.stop()
         self.exporter.close()
         self.leave_marking()

@@ -159,14 +159,18 @@ def work_of(session: Session) -> Work:
         script=session.script if is_unsaved else None,
         path=session.file.path if is_unsaved else None,
         recording=session.recording_so_far,
-        pose=pose if session.has_unsaved_pose else None,
+        pose=pose if _has_pose(session) else None,
     )
+
+
+def _has_pose(session: Session) -> bool:
+    return session.has_unsaved_pose or session.has_moved_in_pause
 
 
 def _state(session: Session) -> object:
     """What tells whether `work_of` would give something else; quickly made and compared."""
     return (
         session.script if session.script_is_unsaved else None,
-        dict(session.values) if session.has_unsaved_pose else None,
+        dict(session.values) if _has_pose(session) else None,
         session.recorded_seconds,
     )

@@ -146,7 +146,7 @@ class ScriptCommands:
     def toggle_recording(self) -> Message:
         """Record the sliders into the script, or end that."""
         line = self._session.toggle_recording()
-        return line if self._session.is_recording else f"{line}; Ctrl+S saves it"
+        return line if self._session.is_recording else f"{line}; [Save script] saves it"
 
     def save_recording(self, then: Task) -> Message:
         """End the recording, and save it."""

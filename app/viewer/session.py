@@ -40,10 +40,9 @@ class Session:
         self.script = script
         self.file = ScriptFile.of(script)
         self.time, self.speed = 0.0, 1.0
-        self.is_playing = self.is_looping = False
+        self.is_playing = self.is_looping = self.is_keying = False  # keying: hands set keys at once
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.is_following = any(self.values.values())  # the script; a neutral face need not yet
-        self.is_keying = False  # what is changed by hand becomes a key at once
         self._is_touched = False  # by hand, since something was noted
         self._recorder: Recorder | None = None
         self.live = Lead()  # a live face, which leaves no trace in what can be undone
@@ -230,7 +229,7 @@ class Session:
             return None
         what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
         self.history.note(self._document(), f"Let go of {what}", lambda later: later)
-        return f"{what} not keyed, so let go; Ctrl+Z brings the pose back"
+        return f"{what} not keyed, so let go; [Undo] brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
@@ -253,7 +252,7 @@ class Session:
 
     def _refuse_while_recording(self) -> None:
         if self.is_recording:
-            raise UserError("stop the recording first (Ctrl+R): it goes into the script as it is")
+            raise UserError("stop the recording first ([Record]): it goes into the script as it is")
 
     def set_key(self, *, is_whole: bool = False) -> float:
         """The face as it is becomes a key, is_whole: of all tracks, whatever differs; its time."""
@@ -334,6 +333,11 @@ class Session:
         """How long the recording is so far."""
         return self._recorder.time - self._recorder.start if self._recorder is not None else 0.0
 
+    @property
+    def has_moved_in_pause(self) -> bool:
+        """Whether controls were moved while the recording is paused, which it has not."""
+        return self._recorder is not None and not self.is_playing and bool(self._recorder.missed)
+
     # Files
 
     def open(self, script: Script) -> None:
@@ -376,11 +380,8 @@ class Session:
     @property
     def unsaved(self) -> str:
         """What would be lost by closing, in words; "" for nothing."""
-        lost = {
-            "the pose": self.has_unsaved_pose,
-            "the script": self.script_is_unsaved,
-            "the recording": self.is_recording,
-        }
+        lost = {"the pose": self.has_unsaved_pose, "the script": self.script_is_unsaved}
+        lost["the recording"] = self.is_recording
         return " and ".join(what for what, is_lost in lost.items() if is_lost)
 
     @property
@@ -391,8 +392,7 @@ class Session:
     @property
     def name(self) -> str:
         """What the script is called: by its file, if there is one, else by its title."""
-        path = self.file.path
-        return path.name if path is not None else self.script.title or "Untitled"
+        return self.file.path.name if self.file.path else self.script.title or "Untitled"
 
     @property
     def has_unsaved_pose(self) -> bool:

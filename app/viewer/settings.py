@@ -20,7 +20,7 @@ from risorius import render
 
 from ..anatomy import OPACITY, SIDES, SOLIDS, Dissection
 from ..errors import UserError, in_one_line
-from ..files import NoSuchFileError, read_text, written_atomically
+from ..files import NoSuchFileError, read_text, save_text
 from ..looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
 from ..refining import refiner_for
 from ..scenes import Scene
@@ -281,5 +281,4 @@ def _suits(scene: Scene, refinement: Refinement) -> bool:
 
 def save_settings(path: Path, settings: Settings) -> None:
     """Write the file; UserError where that cannot be."""
-    with written_atomically(path) as part:
-        part.write_text(json.dumps(asdict(settings), indent=1), encoding="utf-8")
+    save_text(path, json.dumps(asdict(settings), indent=1))

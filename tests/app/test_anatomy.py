@@ -166,6 +166,18 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
 
 
+def test_holes_that_meet_leave_a_head_its_anatomy(tmp_path: Path) -> None:
+    """Two triangles that share a vertex of the crown are missing; the neck still has its end."""
+    mine = stranger()
+    faces, crown = mine.mesh.faces, mine.mesh.vertices[:, 2].argmax()
+    ring = np.flatnonzero((faces == crown).any(axis=1))
+    opposite = next(n for n in ring[1:] if len({*faces[n]} & {*faces[ring[0]]}) == 1)
+    kept = np.delete(faces, [ring[0], opposite], axis=0)
+    solids = Solids(FaceScene(fit_head(*mine.write(tmp_path, faces=kept))))
+    solids.follow(BOTH)
+    assert "neck_section" in [part.name for part in solids.parts]
+
+
 @pytest.mark.slow
 def test_the_command_draws_anatomy(tmp_path: Path) -> None:
     """`--anatomy` opens the side that is told; what is not there is told in one line."""

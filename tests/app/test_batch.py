@@ -121,6 +121,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
     Path("mine").mkdir()
     Path("mine/notes.txt").write_text("mine")
     Path("broken.toml").write_text("duration = [")
+    Path("strange.toml").write_text(SCRIPT.format(0.5, "AU99"))
     Path("clips.txt").write_text(
         "capture joy.toml -o joy.mp4 --size 320x\n"
         "capture joy.toml -o 'joy.mp4\n"
@@ -138,6 +139,9 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         "capture joy.toml -o e.mp4 --colour\n"
         "capture joy.toml -o f.mp4 --sheet joy.toml\n"
         "capture joy.toml -o g.avi\n"
+        "capture strange.toml -o h.mp4\n"
+        "export --set joyful=1 -o i.npz\n"
+        "capture joy.toml -o j.mp4 --scene plane\n"
     )
     before = contents(".")
     ended = batch()
@@ -158,6 +162,9 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         (15, "is read and would be written"),
         (14, "--colour"),
         (16, "what is '.avi'"),
+        (17, "strange.toml: unknown name 'AU99'"),
+        (18, "unknown name 'joyful'; did you mean joy"),
+        (19, "joy.toml: unknown name 'joy'"),
     )
     assert ended.exit_code == 2 and ended.stdout == ""
     for number, part in words:
@@ -198,11 +205,12 @@ def test_jobs_and_scheduler_exclude_each_other() -> None:
 @pytest.mark.slow
 def test_what_fails_fails_alone() -> None:
     """Exit code 1, the reason in one line and in the summary; it is tried again with --resume."""
-    Path("sadness.toml").write_text(SCRIPT.format(0.5, "no_such_control"))
+    Path("silent.wav").write_text("no sound")
+    Path("sadness.toml").write_text('sound = "silent.wav"\n' + SCRIPT.format(0.5, "sadness"))
     ended = batch("--jobs", "1")
     assert ended.exit_code == 1
     assert statuses() == ["ok", "failed", "ok", "ok"]
-    assert "no_such_control" in rows()[4]["error"] and not contents("films")
+    assert "silent.wav" in rows()[4]["error"] and not contents("films")
     assert [line for line in ended.stderr.splitlines() if "clips.txt:4: " in line]
     Path("sadness.toml").write_text(SCRIPT.format(0.5, "sadness"))
     assert batch("--resume").exit_code == 0

@@ -213,12 +213,33 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         (["capture", "SMILE", "-o", "x.mp4", "--time", "1"], "it goes with -o PICTURE.png"),
         (
             ["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=0.2"],
-            "threshold_once",
+            "threshold_once: counts for the criterion normal alone, and here it is bulge+rest;",
+        ),
+        (
+            ["export", "SMILE", "-o", "x.usdz", "--refined", "--option", "threshold_twice=0.2"],
+            "threshold_twice: counts for the criterion normal alone, and here it is bulge+rest;",
+        ),
+        (["view", "--option", "threshold_once=0.2"], "threshold_once: counts for the criterion"),
+        (
+            [
+                "capture",
+                "SMILE",
+                "-o",
+                "x.mp4",
+                "--look",
+                "paper",
+                "--option",
+                "threshold_once=0.2",
+            ],
+            "0 <= threshold_once <= threshold_twice",
         ),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "scheme=round"], "'round' is unknown"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "cubic"], "write NAME=VALUE"),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "attributes=3"], "option attributes; it"),
-        (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=a"], "be a number"),
+        (
+            ["capture", "SMILE", "-o", "x.mp4", "--look", "paper", "--option", "threshold_once=a"],
+            "be a number",
+        ),
         (["capture", "SMILE", "-o", "x.mp4", "--option", "blend=maybe"], "must be on or off"),
         (
             ["capture", "SMILE", "-o", "x.mp4", "--option", "blend=True", "--option", "coherent=1"],

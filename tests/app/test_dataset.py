@@ -261,6 +261,24 @@ def test_heads_of_a_folder_are_the_persons(tmp_path: Path) -> None:
     assert shot.known.labels["person"]["head"] == "one.obj"
 
 
+def test_broken_heads_are_told_before_the_first_sample(tmp_path: Path) -> None:
+    """All in one line, so that the folder can be put right at once."""
+    heads, folder = tmp_path / "heads", tmp_path / "set"
+    heads.mkdir()
+    head = FaceScene().head
+    lines = [f"v {x} {y} {z}" for x, y, z in head.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in head.faces + 1]
+    for name in ("a", "b", "c"):
+        (heads / f"{name}.obj").write_text("\n".join(lines), "utf-8")
+        (heads / f"{name}.json").write_text(json.dumps(head.landmarks.tolist()), "utf-8")
+    (heads / "b.obj").write_text("no mesh", "utf-8")
+    (heads / "c.json").write_text("[]", "utf-8")
+    result = run(folder, "--heads", str(heads), count=30)
+    assert result.exit_code == 2 and len(result.stderr.splitlines()) == 1
+    assert "b.obj" in result.stderr and "c.json" in result.stderr
+    assert not list(folder.glob("*.png"))
+
+
 @pytest.mark.parametrize(
     ("options", "told"),
     [

@@ -10,6 +10,7 @@ import re
 import struct
 import subprocess
 import sys
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,10 +26,12 @@ from hypothesis import strategies as st
 from risorius import assets, sim
 from risorius.__main__ import command as risorius
 from risorius.app.export import pieces
-from risorius.app.export.clip import Clip, record
+from risorius.app.export.clip import Clip, Surface, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
+from risorius.app.export.pieces import moving_pieces
 from risorius.app.export.rig import fit
+from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
 from risorius.assets.topology import vertex_normals
 
@@ -319,6 +322,22 @@ def test_targets_come_as_near_as_they_say(
     assert abs(off.max() - morphs.error) < 1e-6
     if most > rank:
         assert morphs.error <= tolerance + 1e-6
+
+
+def test_long_clips_take_little_memory_beside_their_own() -> None:
+    """Positions are never all there in double precision, nor normals of all frames."""
+    scene, generator = build_scene("plane"), np.random.default_rng(3)
+    shapes = scene.rest_positions.astype(np.float32) + np.tensordot(
+        generator.normal(size=(10_000, 5)), generator.normal(size=(5, *scene.positions.shape)), 1
+    ).astype(np.float32)
+    plane = Surface("plane", scene.rest_positions, scene.faces, shapes)
+    script = parse_script(SHAPES, source="test")
+    tracemalloc.start()
+    try:
+        moving_pieces(Clip(scene, script, 24.0, (plane,), {}, {}, {}))
+        assert tracemalloc.get_traced_memory()[1] < 3.0 * shapes.nbytes
+    finally:
+        tracemalloc.stop()
 
 
 @given(st.integers(1, 5), st.integers(3, 9), st.integers(0, 2**32 - 1))

@@ -13,7 +13,7 @@ from risorius.app.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
 from risorius.app.idle import EYES_MOST, Idle, looking_at
 from risorius.app.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
-from risorius.app.performances import face_limits, script_for
+from risorius.app.performances import limits_of, script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
 from risorius.app.viewer.frame_times import FrameTimes
@@ -93,7 +93,7 @@ def test_seeds_differ() -> None:
 @given(st.integers(0, 1000), st.floats(0.0, 3600.0))
 def test_values_stay_within_reach(seed: int, time: float) -> None:
     """All are controls of the face within their limits; but for lids and eyes all are small."""
-    limits = face_limits()
+    limits = limits_of("face")
     parts = Life(seed).parts(time).values()
     for name, value in (item for part in parts for item in part.items()):
         low, high = limits[name]

@@ -14,7 +14,7 @@ from PIL import Image
 
 from risorius.__main__ import command
 from risorius.app.errors import UserError
-from risorius.app.performances import face_limits, read_performance, script_for
+from risorius.app.performances import limits_of, read_performance, script_for
 from risorius.app.playback import LEAD, Playback
 from risorius.app.recordings import Take
 from risorius.app.recordings.conversion import lead_of, script_of
@@ -66,7 +66,7 @@ def risorius(*arguments: object) -> Result:
 @given(st.floats(0.0, 0.3), st.floats(0.0, 2.5))
 def test_the_lead_shifts_what_is_played(lead: float, moment: float) -> None:
     take = take_of(jawOpen=wave(), head_yaw=20.0 * wave())
-    script, _ = script_of(take, Playback(neutral="none", lead=lead), face_limits())
+    script, _ = script_of(take, Playback(neutral="none", lead=lead), limits_of("face"))
     for name, size in (("jawOpen", 1.0), ("head_yaw", 20.0 / 45.0)):
         recorded = np.interp(moment + lead_of(name, lead), take.times, size * wave())
         assert script.at(moment)[name] == pytest.approx(recorded, abs=2.0 * TOLERANCE)
@@ -117,17 +117,28 @@ def test_recorded_nods_come_through(face: FaceScene, a_second: float, share: flo
 
 def test_a_script_follows_the_recording_with_fewer_keys() -> None:
     take = take_of(jawOpen=wave())
-    script, _ = script_of(take, Playback(neutral="none", lead=0.0), face_limits())
+    script, _ = script_of(take, Playback(neutral="none", lead=0.0), limits_of("face"))
     played = [script.at(float(time))["jawOpen"] for time in take.times]
     np.testing.assert_allclose(played, take.channels["jawOpen"], atol=2.0 * TOLERANCE)
     assert len(script.tracks["jawOpen"]) < len(take.times) / 2
 
 
+def test_a_neutral_longer_than_the_recording_is_told() -> None:
+    take = take_of(jawOpen=wave())
+    _, report = script_of(take, Playback(neutral="first:99"), limits_of("face"))
+    assert report.notes == (
+        "--neutral first:99 is longer than the recording, 3.00 s: the neutral face is the median "
+        "of all of it.",
+    )
+    _, report = script_of(take, Playback(neutral="first:3"), limits_of("face"))
+    assert not report.notes
+
+
 @given(st.dictionaries(st.sampled_from(ARKIT), st.floats(0.0, 1.0), min_size=1))
 def test_a_face_that_never_moves_rests(held: dict[str, float]) -> None:
-    script, _ = script_of(take_of(**held), Playback(neutral="first:1"), face_limits())
+    script, _ = script_of(take_of(**held), Playback(neutral="first:1"), limits_of("face"))
     assert not any(script.at(1.0).values())
-    script.check(face_limits())
+    script.check(limits_of("face"))
 
 
 @given(
@@ -143,13 +154,13 @@ def test_whatever_is_recorded_can_be_played(
     """Values of a script are within the limits of its controls, whatever the gain."""
     curves = {name: end * wave() for name, end in ends.items()}
     take = take_of(**curves, head_yaw=yaw * wave(), eye_yaw_left=yaw * wave())
-    script, _ = script_of(take, Playback(gains=(f"all={gain}",)), face_limits())
-    script.check(face_limits())
+    script, _ = script_of(take, Playback(gains=(f"all={gain}",)), limits_of("face"))
+    script.check(limits_of("face"))
 
 
 def test_one_frame_is_a_pose() -> None:
     one = Take("MediaPipe", "one.json", np.zeros(1), {"mouthSmileLeft": np.array([0.4])})
-    script, report = script_of(one, Playback(), face_limits())
+    script, report = script_of(one, Playback(), limits_of("face"))
     assert script.poses[0].values == {"mouthSmileLeft": 0.4} and not script.tracks
     assert report.recognised == "MediaPipe, one frame"
 
@@ -168,7 +179,7 @@ def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
         jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU26=wave(),
         head_yaw=90.0 * wave(), head_roll=0.0
     )  # fmt: skip
-    _, report = script_of(take, Playback(), face_limits())
+    _, report = script_of(take, Playback(), limits_of("face"))
     said = {heading: text for heading, text in report.rows}
     assert report.lines[0] == "take.csv: Live Link Face, 181 frames in 3.00 s, 60 a second"
     assert said["used"] == "2 of ARKit's shapes, 1 of the head's angles"

@@ -110,6 +110,14 @@ def test_several_faces(tmp_path: Path) -> None:
         read_take(path, face="2")
 
 
+def test_lists_of_numbers_name_no_faces(tmp_path: Path) -> None:
+    path = tmp_path / "shapes.json"
+    path.write_text(json.dumps({"jawOpen": [0.1, 0.2, 0.3]}), "utf-8")
+    assert len(read_take(path).times) == 3
+    with pytest.raises(UserError, match="names no faces; leave out the face '3'"):
+        read_take(path, face="3")
+
+
 @pytest.mark.parametrize("layout", ["rows", "columns", "data"])
 def test_the_matrix_of_the_head(layout: str, tmp_path: Path) -> None:
     """A head turned 20 degrees to its left, in all layouts of MediaPipe's matrix."""

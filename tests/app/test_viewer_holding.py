@@ -53,6 +53,6 @@ def test_a_pose_survives_a_recording_of_nothing(session: Session) -> None:
     with pytest.raises(UserError, match="nothing was recorded"):
         session.toggle_recording()
     assert session.values["jaw_open"] == 0.6 and session.has_unsaved_pose
-    assert "Ctrl+Z" in (session.seek(2.0) or "")
+    assert "[Undo]" in (session.seek(2.0) or "")
     session.undo()
     assert session.values["jaw_open"] == 0.6

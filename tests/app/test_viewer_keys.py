@@ -184,6 +184,38 @@ def test_keys_are_changed_in_their_overview(viewer: Viewer, tmp_path: Path) -> N
     assert not viewer.session.is_alone("joy") and viewer.settings.keys == {}
 
 
+def test_a_command_without_a_key_is_given_one(viewer: Viewer) -> None:
+    """In the overview, too, which names each command once; nothing else has that key then."""
+    labels = [each.label for each in viewer.commands]
+    assert len(labels) == len({*labels})
+    xdotool(viewer, "key", "F1")
+    click(viewer, "key Auto-key")
+    xdotool(viewer, "key", "j", "Escape", "j")
+    assert viewer.session.is_keying and viewer.settings.keys == {"Auto-key": "J"}
+    xdotool(viewer, "key", "F1")
+    click(viewer, "Usual keys")
+    xdotool(viewer, "key", "Escape", "j")
+    assert viewer.session.is_keying and viewer.settings.keys == {}
+
+
+def test_messages_name_keys_as_they_are_now(
+    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The line at the foot of the picture, whatever key a command was given."""
+    shown: list[str] = []
+    monkeypatch.setattr(imgui, "text_unformatted", shown.append)
+    viewer.session.set("jaw_open", 0.5)
+    viewer.messages.say(viewer.session.seek(0.0) or "")
+    draw_frames(viewer, 1)
+    assert "Jaw open not keyed, so let go; Ctrl+Z brings the pose back" in shown
+    xdotool(viewer, "key", "F1")
+    click(viewer, "key Undo")
+    xdotool(viewer, "key", "shift+j")
+    assert "Jaw open not keyed, so let go; Shift+J brings the pose back" in shown
+    viewer.settings.keys.clear()
+    xdotool(viewer, "key", "Escape")
+
+
 def test_redo_and_size_have_their_usual_keys(viewer: Viewer) -> None:
     """Ctrl+Y does again what Ctrl+Z undid; Ctrl+0 brings all back to its first size."""
     xdotool(viewer, "key", "1", "ctrl+z", "ctrl+y")

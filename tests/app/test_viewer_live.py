@@ -17,6 +17,7 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, State
 from risorius.app.live.sender import Sender
+from risorius.app.recordings.calibration import Calibration
 from risorius.app.scenes import build_scene
 from risorius.app.viewer import Viewer, live_commands
 from risorius.app.viewer.live_commands import LiveCommands
@@ -61,7 +62,7 @@ def clock(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> FrameClock:
 def silent(viewer: Viewer, clock: FrameClock) -> Iterator[None]:
     """Listen to nobody before and after."""
     viewer.live.stop()
-    viewer.live.wanted = Listening("livelink", port=0)
+    viewer.live.wanted, viewer.live._kept = Listening("livelink", port=0), None
     yield
     viewer.live.stop()
 
@@ -204,6 +205,22 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     assert viewer.session.current["mouthSmileRight"] == pytest.approx(0.6, abs=1e-6)
     click(viewer, "listen")
     assert viewer.live.face is None and viewer.session.current == viewer.session.values
+
+
+def test_stopping_keeps_the_neutral_face_and_gains(viewer: Viewer) -> None:
+    """For the same protocol; another one begins anew."""
+    click(viewer, "tab Live")
+    click(viewer, "listen")
+    face = viewer.live.face
+    assert face is not None
+    face.calibration = kept = Calibration({"browDownLeft": 0.3}, {}, 0.5, mirror=True)
+    click(viewer, "listen")
+    click(viewer, "listen")
+    assert viewer.live.face is not None and viewer.live.face.calibration == kept
+    click(viewer, "listen")
+    viewer.live.wanted = Listening("vmc", port=0)
+    click(viewer, "listen")
+    assert viewer.live.face is not None and viewer.live.face.calibration.default_gain == 1.0
 
 
 def test_gains_are_sliders(viewer: Viewer) -> None:

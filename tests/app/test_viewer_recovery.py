@@ -177,6 +177,26 @@ def test_a_recording_is_kept_while_it_goes_on(
     assert len(draft.tracks["jaw_open"].keys) < whole + 10
 
 
+def test_what_is_moved_while_a_recording_is_paused_is_kept(
+    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
+) -> None:
+    """It is a pose then, as after stopping; when the recording goes on, it has that."""
+    session.toggle_recording()
+    session.set("jaw_open", 0.5)
+    session.advance(STEP)
+    session.toggle_playing()
+    session.set("AU12", 0.7)
+    recovery.watch(session)
+    clock.now += QUIET
+    recovery.watch(session)
+    [pose] = (tmp_path / "unsaved").glob("*.pose.toml")
+    assert load_script(pose).at(0.0).items() >= {"AU12": 0.7, "jaw_open": 0.5}.items()
+    session.toggle_playing()
+    session.advance(STEP)
+    recovery.save(session)
+    assert set(stored_work(tmp_path)) == {"recording"}
+
+
 def test_saved_work_is_kept_no_more(
     session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
 ) -> None:

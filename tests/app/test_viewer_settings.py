@@ -227,6 +227,33 @@ def test_no_settings_keep_the_window_shut(path: Path) -> None:
 
 @NEEDS_A_SCREEN[0]
 @NEEDS_A_SCREEN[1]
+def test_a_full_disk_is_told_and_closes_the_window(
+    path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """One line on the terminal; unsaved work is left to the next window, the settings stay."""
+    path.write_text('{"theme": "dark"}')
+    viewer = Viewer(script_for(None, "face"), SIZE, settings_path=path)
+    with viewer:
+        draw_frames(viewer)
+        viewer.session.set("jaw_open", 0.5)
+        viewer.recovery.save(viewer.session)
+
+        def full(*_: object, **__: object) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr(Path, "write_text", full)
+    assert [record.getMessage() for record in caplog.records] == [
+        f"risorius: {path}: cannot be written: No space left on device; "
+        "the next window does not look as this one"
+    ]
+    assert path.read_text() == '{"theme": "dark"}'
+    viewer.recovery.find(viewer.session)
+    assert viewer.recovery.found and viewer.recovery.found.pose
+    viewer.recovery.close()
+
+
+@NEEDS_A_SCREEN[0]
+@NEEDS_A_SCREEN[1]
 def test_a_refiner_that_cannot_be_loaded_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """The package of somebody else is broken: a line says so, and the window goes on."""
 

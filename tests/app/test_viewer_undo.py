@@ -130,7 +130,7 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
     assert session.differing == {"AU4", "jaw_open"} and session.has_unsaved_pose
     assert session.script.at(1.8)["jaw_open"] == pytest.approx(0.5, abs=0.002)
     assert "AU4" not in session.script.tracks
-    assert "Ctrl+Z" in (session.seek(0.0) or "")
+    assert "[Undo]" in (session.seek(0.0) or "")
     session.undo()
     assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
 

@@ -189,6 +189,16 @@ def _nostril_faces(head: Head) -> npt.NDArray[np.bool_]:
     return np.asarray(near[head.faces].all(axis=1))
 
 
+def test_holes_that_meet_in_a_vertex_have_loops() -> None:
+    """Two triangles at a vertex; five by five vertices without two squares at the middle one."""
+    touching = np.array([[0, 1, 2], [0, 3, 4]], dtype=np.int32)
+    assert boundary_loops(touching) == [[0, 1, 2], [0, 3, 4]]
+    corners = [x + 5 * y for y in range(4) for x in range(4) if (x, y) not in ((1, 1), (2, 2))]
+    squares = [[[a, a + 1, a + 6], [a, a + 6, a + 5]] for a in corners]
+    outer, inner = boundary_loops(np.array(squares, dtype=np.int32).reshape(-1, 3))
+    assert len(outer) == 16 and inner == [6, 11, 12, 17, 18, 13, 12, 7]
+
+
 def test_checks_find_faults() -> None:
     """A check that cannot fail protects nobody."""
     points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1.5, 0.5]])
@@ -197,7 +207,6 @@ def test_checks_find_faults() -> None:
     assert checks.component_count(crossing) == 2
     repeated = np.array([[0, 1, 2], [0, 1, 3]], dtype=np.int32)
     assert not checks.is_manifold(repeated)
-    branching = np.array([[0, 1, 2], [0, 3, 4]], dtype=np.int32)
-    with pytest.raises(ValueError, match="branches at vertex 0"):
-        boundary_loops(branching)
+    with pytest.raises(ValueError, match="two faces run from vertex 0 to 1"):
+        boundary_loops(repeated)
     assert not checks.is_mirrored(crossing, np.array([1, 0, 2, 3, 4, 5], dtype=np.int32))

@@ -359,7 +359,7 @@ class DopeSheet:
         session, line = self._session, None
         if drag.doing == "keys" and drag.has_moved:
             lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
-            line = f"{counted(lost, 'key')} replaced; Ctrl+Z brings back" if lost > 0 else None
+            line = f"{counted(lost, 'key')} replaced; [Undo] brings back" if lost > 0 else None
         elif drag.doing in ("keys", "box") and not drag.has_moved:
             if drag.doing == "box":
                 self.selection.places = drag.selected | self._grabbed

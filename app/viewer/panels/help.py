@@ -44,15 +44,16 @@ TIMELINE = (
 # Menus by column, and what the mouse does.
 COLUMNS = (
     ("File", "Edit", "Time"),
-    ("Keys", "Expression", "Live", "Help"),
+    ("Keys", "Expression"),
     ("View", "Landmarks"),
-    ("Mouse", "Timeline"),
+    ("Mouse", "Timeline", "Live", "Help"),
 )
 NARROW_COLUMNS = (
     ("File", "Edit", "Time", "Live", "Help"),
     ("Keys", "View", "Landmarks"),
     ("Mouse", "Timeline", "Expression"),
 )
+NO_KEY = "\u2013"
 ASK = "Click a key to change it."
 WIDE = 63.0  # [em] that the wide ones take
 
@@ -86,7 +87,7 @@ class Help:
                 imgui.same_line(0.0, em(1.5))
             imgui.begin_group()
             for title in titles:
-                keys = [each for each in commands if each.menu == title and each.key]
+                keys = [each for each in commands if each.menu == title and not each.submenu]
                 self._draw_lines(title, keys or others.get(title, ()))
             imgui.end_group()
         place, size = imgui.get_window_pos(), imgui.get_window_size()
@@ -125,7 +126,7 @@ class Help:
             imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
             if isinstance(line, tuple):
                 imgui.text(readable(keys))
-            elif imgui.selectable(f"{keys}##{meaning}", self._asked is line)[0]:
+            elif imgui.selectable(f"{keys or NO_KEY}##{meaning}", self._asked is line)[0]:
                 self._asked, self._line = line, f"{meaning}: press a key for it, or Escape."
             self._gui.remember(f"key {meaning}")
             imgui.pop_style_color()

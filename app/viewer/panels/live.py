@@ -52,8 +52,8 @@ class LivePanel:
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         imgui.begin_child("live", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
-        face = self._live.face
         self._draw_listening()
+        face = self._live.face  # which that may have begun or ended
         self._draw_state(face)
         if face is not None:
             self._draw_buttons(face)

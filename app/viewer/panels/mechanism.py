@@ -14,7 +14,7 @@ from risorius import refine, render
 from risorius.assets.identities import NAMED, person_in_words
 
 from ...anatomy import OPACITY, SIDES
-from ...looks import FIRST_LOOK, LOOKS, STATIC, named, words_of_looks
+from ...looks import FIRST_LOOK, LOOKS, STATIC, THRESHOLDS, named, words_of_looks
 from ...refining import DETAIL, can_detail
 from ...scenes import BUILT_IN, OWN
 from ...vocabulary import readable
@@ -70,8 +70,6 @@ HINTS = {
 # Rows of fields of the display, by their labels.
 FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
 FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
-THRESHOLDS = "threshold_once", "threshold_twice"  # of this criterion alone:
-PAPERS_CRITERION = "normal"
 UNNAMED = 20  # persons that the list has beside those with names
 LABEL_SHARE = 0.45  # of a row
 HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
@@ -145,8 +143,9 @@ class MechanismPanel:
         names = [name for name in refine.available() if name != STATIC]
         put = partial(display.choose_refiner, stage.scene)
         self._choose("Refiner", display.refiner_on(stage.scene), names, put)
+        has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
         for name, default in stage.refiner_options.items():
-            if name not in THRESHOLDS or self._has_thresholds():
+            if name not in THRESHOLDS or has_thresholds:
                 self._draw_option(name, default)
         self._pick("Compare", COMPARISONS)
         if display.compare != "off":
@@ -162,11 +161,6 @@ class MechanismPanel:
         splits = stage.refined.refiner.splits
         once, more = int((splits == 1).sum()), int((splits > 1).sum())
         muted(self._gui, f"{len(splits)} edges: {once} split once, {more} more often")
-
-    def _has_thresholds(self) -> bool:
-        """Whether the criterion is, or has in it, the one that the thresholds are of."""
-        _, told = self._display.refinement_on(self._stage.scene).on(self._stage.scene.name)
-        return PAPERS_CRITERION in str(told.get("criterion", PAPERS_CRITERION)).split("+")
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""

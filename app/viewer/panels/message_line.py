@@ -18,10 +18,11 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), 50.0), em(20)))
     imgui.begin("##message", None, NOTE_FLAGS | imgui.WindowFlags_.no_nav_focus)
     imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))
+    text = gui.with_keys(messages.text)
     if messages.is_error:
-        imgui.text_colored(colour(gui.theme.error), messages.text)
+        imgui.text_colored(colour(gui.theme.error), text)
     else:
-        imgui.text_unformatted(messages.text)
+        imgui.text_unformatted(text)
     imgui.pop_text_wrap_pos()
     is_clicked = imgui.is_window_hovered() and imgui.is_mouse_clicked(0)
     if is_clicked or (imgui.is_key_pressed(imgui.Key.escape) and not gui.has_popup):
