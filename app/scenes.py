@@ -22,9 +22,9 @@ from risorius.assets.identities import Person, recoloured
 
 from .errors import UserError
 from .growing import Growing
-from .keeping import kept, state_of
 from .mirror import parted
 from .mouth import Tongue, shaded_mouth
+from .process_cache import cached, file_state
 
 BUILT_IN, OWN = "built-in", "own"  # what heads are called: that which comes along, and a user's
 CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
@@ -352,7 +352,7 @@ def build_scene(name: str, head: FittedHead | None = None) -> Scene:
     """
     # A scene that is kept holds its head, so that no other can have this identity.
     key = (name, None if head is None else id(head))
-    return kept("scene", key, lambda: _new_scene(name, head))
+    return cached("scene", key, lambda: _new_scene(name, head))
 
 
 def _new_scene(name: str, head: FittedHead | None) -> Scene:
@@ -368,7 +368,8 @@ def _new_scene(name: str, head: FittedHead | None) -> Scene:
 
 def own_head(head: Path, landmarks: Path) -> FittedHead:
     """The user's own head, fitted."""
-    fitted = kept("head", (state_of(head), state_of(landmarks)), lambda: fit_head(head, landmarks))
+    key = file_state(head), file_state(landmarks)
+    fitted = cached("head", key, lambda: fit_head(head, landmarks))
     for note in fitted.notes:
         LOG.warning("risorius: %s: %s", head, note)
     return fitted

@@ -14,7 +14,7 @@ from typing import Any
 from risorius import __version__
 
 from ..files import NoSuchFileError, cannot_be_written, read_text
-from ..keeping import state_of
+from ..process_cache import file_state
 from .listing import LONGEST, Job
 
 
@@ -67,7 +67,7 @@ class Journal:
 
 def made_from(job: Job) -> dict[str, Any]:
     """All that decides what a line gives."""
-    inputs = [list(state_of(path)) for path in job.inputs]
+    inputs = [list(file_state(path)) for path in job.inputs]
     return {
         "line": job.text,
         "folder": str(job.folder),

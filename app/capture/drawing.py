@@ -12,10 +12,10 @@ import numpy as np
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
+from .. import process_cache
 from ..anatomy import Dissection
 from ..cameras import camera_for
 from ..files import Image
-from ..keeping import is_keeping, kept
 from ..looks import Refinement
 from ..motion import play
 from ..passes.files import Labelled, labelled
@@ -90,7 +90,9 @@ class Capture:
 
         # What is kept holds its scene, so that no other can have this identity.
         key = (options.size, options.samples, id(scene))
-        self.surface, self.pipeline = kept("surface", key, opened, lambda made: made[0].close())
+        self.surface, self.pipeline = process_cache.cached(
+            "surface", key, opened, lambda made: made[0].close()
+        )
         self.surface.make_current()
         self.pipeline.bind(refinements)
         self._passes = Passes(self.pipeline) if options.passes else None
@@ -107,7 +109,7 @@ class Capture:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if not is_keeping():
+        if not process_cache.is_enabled():
             self.surface.close()
 
     def draw_image(self) -> Image:

@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from ..errors import UserError
 from ..files import cannot_be_written, save_text, written_atomically
-from ..keeping import kept
+from ..process_cache import cached
 from ..stopping import cleaned_up_if_stopped
 from ..workers import run_all
 from .card import card_of
@@ -106,7 +106,7 @@ def _check_heads(
 def make_samples(batch: Batch) -> int:
     """Make the samples of a batch that are not there; how many bytes they have."""
     request = batch.request
-    studio = kept("studio of a data set", request.output, lambda: Studio(request))
+    studio = cached("studio of a data set", request.output, lambda: Studio(request))
     folder = SetFolder(request.output)
     size = 0
     for index in batch.indices:

@@ -4,8 +4,8 @@
         ...
 
 A process takes one item after the other, so that it pays once for imports, compiled code and what
-it keeps (`app/keeping.py`). One that dies, killed or by a fault in a driver, costs another attempt
-at its item, and nothing else.
+it keeps (`app/process_cache.py`). One that dies, killed or by a fault in a driver, costs another
+attempt at its item, and nothing else.
 
     child.py     a process of ours, started anew, and messages to it and back
     running.py   `run_all`, and what became of an item

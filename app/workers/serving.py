@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+from .. import process_cache
 from ..errors import in_one_line, line_for
-from ..keeping import keep, let_go
 from ..stopping import handle_signals
 from .child import streams
 
@@ -44,7 +44,7 @@ def serve() -> None:
     requests, replies = streams()
     handle_signals()
     faulthandler.enable()  # a fault in a driver tells the log where
-    keep()
+    process_cache.enable()
     inbox: queue.SimpleQueue[Request] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(requests, inbox), daemon=True).start()
     with contextlib.suppress(queue.Empty, BrokenPipeError):
@@ -81,7 +81,7 @@ def _attempt(asked: bytes) -> tuple[Any, str | None]:
         done: Callable[[Any], Any] = work
         return done(item), None
     except Exception as error:
-        let_go()
+        process_cache.clear()
         line = line_for(error)
         if line is None:  # a defect
             traceback.print_exc()

@@ -11,30 +11,30 @@ from typing import TypeVar, cast
 Thing = TypeVar("Thing")
 MOST = 2  # things of one kind; those that were used last
 
-_kept: dict[str, dict[Hashable, tuple[object, Callable[[], object]]]] | None = None
+_cached: dict[str, dict[Hashable, tuple[object, Callable[[], object]]]] | None = None
 
 
-def keep() -> None:
+def enable() -> None:
     """From here on keep what `kept` is asked for."""
-    global _kept
-    _kept = {}
+    global _cached
+    _cached = {}
 
 
-def let_go() -> None:
+def clear() -> None:
     """Close what is kept, and begin anew: after an error nobody knows in what state it is."""
-    for things in (_kept or {}).values():
+    for things in (_cached or {}).values():
         for _, close in things.values():
             with contextlib.suppress(Exception):  # what is broken cannot be closed
                 close()
         things.clear()
 
 
-def is_keeping() -> bool:
+def is_enabled() -> bool:
     """Whether this process keeps things."""
-    return _kept is not None
+    return _cached is not None
 
 
-def kept(
+def cached(
     kind: str,
     key: Hashable,
     make: Callable[[], Thing],
@@ -45,9 +45,9 @@ def kept(
     Whoever takes it brings it into the state that a new one has. close: is called with what gives
     way to others; what is not kept at all is the caller's to close.
     """
-    if _kept is None:
+    if _cached is None:
         return make()
-    things = _kept.setdefault(kind, {})
+    things = _cached.setdefault(kind, {})
     if key not in things:
         while len(things) >= MOST:  # first, so that there is room for the new one
             _, close_it = things.pop(next(iter(things)))
@@ -58,7 +58,7 @@ def kept(
     return cast(Thing, things[key][0])
 
 
-def state_of(path: Path) -> tuple[str, int, int]:
+def file_state(path: Path) -> tuple[str, int, int]:
     """What tells one content of a file from another: its place, size and time.
 
     The size is -1 where there is none.

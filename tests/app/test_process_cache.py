@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from risorius.app import keeping
+from risorius.app import process_cache
 from risorius.app.cli import main
 
 SCRIPT = """
@@ -33,14 +33,14 @@ COMMANDS = {
 
 
 @pytest.fixture
-def kept() -> Iterator[None]:
+def enabled() -> Iterator[None]:
     """This process keeps what it makes, until the test ends."""
-    keeping.keep()
+    process_cache.enable()
     yield
-    keeping._kept = None
+    process_cache._cached = None
 
 
-def test_things_are_made_once_and_the_oldest_goes(kept: None) -> None:
+def test_things_are_made_once_and_the_oldest_goes(enabled: None) -> None:
     """As many as memory is meant for; one that is used again is young again."""
     made: list[int] = []
     closed: list[str] = []
@@ -50,31 +50,33 @@ def test_things_are_made_once_and_the_oldest_goes(kept: None) -> None:
         made.append(key)
         return f"thing {key}"
 
-    for key in (*range(keeping.MOST), 0, keeping.MOST, 0, 1):
-        assert keeping.kept("thing", key, partial(make, key), closed.append) == f"thing {key}"
-    assert made == [*range(keeping.MOST), keeping.MOST, 1]
+    for key in (*range(process_cache.MOST), 0, process_cache.MOST, 0, 1):
+        assert (
+            process_cache.cached("thing", key, partial(make, key), closed.append) == f"thing {key}"
+        )
+    assert made == [*range(process_cache.MOST), process_cache.MOST, 1]
     assert len(closed) == 2 and closed[0] == "thing 1"
-    keeping.let_go()
+    process_cache.clear()
     assert sorted(closed) == sorted(f"thing {key}" for key in made)
-    assert keeping.kept("thing", 0, lambda: "new") == "new"
+    assert process_cache.cached("thing", 0, lambda: "new") == "new"
 
 
 def test_nothing_is_kept_unless_asked_for() -> None:
     """A program that draws one thing pays no memory for the next."""
-    assert keeping.kept("thing", 1, list) is not keeping.kept("thing", 1, list)
+    assert process_cache.cached("thing", 1, list) is not process_cache.cached("thing", 1, list)
 
 
 def test_the_content_of_a_file_is_known_by_its_state(tmp_path: Path) -> None:
     """Another content, another place, or no file at all."""
     file, other = tmp_path / "a", tmp_path / "b"
-    states = [keeping.state_of(file)]
+    states = [process_cache.file_state(file)]
     for text in ("x", "xy"):
         file.write_text(text)
-        states.append(keeping.state_of(file))
+        states.append(process_cache.file_state(file))
     os.utime(file, ns=(1, 1))
     other.write_text("xy")
     os.utime(other, ns=(1, 1))
-    states += [keeping.state_of(file), keeping.state_of(other)]
+    states += [process_cache.file_state(file), process_cache.file_state(other)]
     assert len(set(states)) == len(states)
 
 
@@ -97,11 +99,11 @@ def test_work_before_changes_no_byte(tmp_path: Path, monkeypatch: pytest.MonkeyP
         Path(f"{name}.toml").write_text(SCRIPT.format(first=first, second=second))
     alone = {name: made(Path("alone") / name, COMMANDS[name]) for name in COMMANDS}
     assert all(alone.values())
-    keeping.keep()
+    process_cache.enable()
     try:
         for turn, names in enumerate((list(COMMANDS), list(reversed(COMMANDS)))):
             for name in names:
                 assert made(Path(str(turn)) / name, COMMANDS[name]) == alone[name], name
-        assert keeping._kept
+        assert process_cache._cached
     finally:
-        keeping._kept = None
+        process_cache._cached = None
