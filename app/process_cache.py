@@ -15,7 +15,7 @@ _cached: dict[str, dict[Hashable, tuple[object, Callable[[], object]]]] | None =
 
 
 def enable() -> None:
-    """From here on keep what `kept` is asked for."""
+    """From here on keep what `cached` is asked for."""
     global _cached
     _cached = {}
 
