@@ -41,7 +41,8 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     replace_state(viewer.files, Files(is_native=False))
     viewer.messages.text = ""
     viewer.panel_state.wanted_tab = "Face"
-    xdotool(viewer, "key", "f")
+    viewer.view.fit_scene()
+    draw_frames(viewer)
 
 
 @pytest.fixture(scope="module")

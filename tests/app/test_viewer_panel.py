@@ -50,7 +50,7 @@ def rows_shown(viewer: Viewer) -> set[str]:
 def test_plain_words_find_controls(viewer: Viewer) -> None:
     """What people would say finds expressions, units, shapes and muscles."""
     viewer.settings.zoom = 0.6  # room for all of them at once
-    draw_frames(viewer)
+    draw_frames(viewer, 4)  # until all is in its place
     try:
         for words, found in (
             ("smile", {"joy", "AU12", "mouthSmile", SMILE}),
