@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from risorius.app import keeping
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import Files
@@ -43,6 +44,15 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.panel_state.wanted_tab = "Face"
     viewer.view.fit_scene()
     draw_frames(viewer)
+
+
+@pytest.fixture(scope="module")
+def kept_scenes() -> Iterator[None]:
+    """Commands of a file share scenes and surfaces, as those of a worker do."""
+    with pytest.MonkeyPatch.context() as this_process:
+        this_process.setattr(keeping, "_kept", {})
+        yield
+        keeping.let_go()
 
 
 @pytest.fixture(scope="module")

@@ -20,6 +20,8 @@ from risorius.app.passes.exr import NOTHING, write_exr
 from risorius.app.passes.files import Labelled, save_labelled
 from tests.heads import stranger
 
+pytestmark = pytest.mark.usefixtures("kept_scenes")
+
 ALL = "depth,normal,triangle,splits,tension,segmentation,landmarks"
 CAPTURE = ("capture", "--size", "160x120", "--quiet", "--fps", "10")
 SMILE = """
