@@ -344,6 +344,7 @@ def test_a_script_and_a_pose_exclude_each_other(smile: Path, tmp_path: Path) -> 
     assert "a script and --set exclude each other" in result.stderr
 
 
+@pytest.mark.slow
 def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
     """`--head` and `--landmarks`: another head, in metres and z up, smiles; errors are one line."""
     other = stranger()

@@ -184,6 +184,7 @@ def test_no_input_is_written_over(tmp_path: Path) -> None:
     assert names_in(tmp_path) == ["take.json"] and recording.read_text() == "[]"
 
 
+@pytest.mark.slow
 def test_new_frames_take_the_place_of_old_ones_and_their_passes(tmp_path: Path) -> None:
     """With --overwrite nothing of an earlier film is left, and what is not of one stays."""
     frames = tmp_path / "frames"
