@@ -1,7 +1,7 @@
 # Risorius: two commands on a fresh Debian or Ubuntu.
 #
 #   make demo     set up everything and render the built-in head to out/demo.mp4 and out/demo.png
-#   make test     set up everything, check the code and pass the tests of the first lane
+#   make test     set up everything, check the code and pass the first lane of tests, in five minutes
 #   make setup    only make .venv with everything in it
 #   make check    ruff, mypy and the import rules alone
 #   make docs     build the documentation's site into out/site
@@ -10,7 +10,7 @@
 #
 # Slower ones, before a release:
 #
-#   make test-all         make test, then the second lane: all tests that take long
+#   make test-all         make test, then the second lane: details, and all tests that take long
 #   make test-lowest      pass the tests with the oldest versions that pyproject.toml allows
 #   make test-processors  pass the tests as other processors round
 

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import settings
 
 # No deadlines: a shared machine may stall any example. In continuous integration the examples are
-# the same every time; at a developer's desk hypothesis keeps looking for new ones.
-settings.register_profile("everywhere", deadline=None)
+# the same every time, and more; at a developer's desk hypothesis keeps looking for new ones.
+settings.register_profile("everywhere", deadline=None, max_examples=40)
 settings.register_profile("integration", deadline=None, derandomize=True)
 settings.load_profile("integration" if os.environ.get("CI") else "everywhere")
 

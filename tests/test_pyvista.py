@@ -46,6 +46,7 @@ def plane() -> Any:
     return mesh
 
 
+@pytest.mark.slow
 def test_it_is_found_by_itself() -> None:
     """A program imports pyvista alone; importing the refiner brings no PyVista."""
     code = (

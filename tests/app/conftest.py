@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from risorius.app import process_cache
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.files import Files
@@ -41,7 +42,17 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     replace_state(viewer.files, Files(is_native=False))
     viewer.messages.text = ""
     viewer.panel_state.wanted_tab = "Face"
-    xdotool(viewer, "key", "f")
+    viewer.view.fit_scene()
+    draw_frames(viewer)
+
+
+@pytest.fixture(scope="module")
+def shared_scenes() -> Iterator[None]:
+    """Commands of a file share scenes and surfaces, as those of a worker do."""
+    with pytest.MonkeyPatch.context() as this_process:
+        this_process.setattr(process_cache, "_cached", {})
+        yield
+        process_cache.clear()
 
 
 @pytest.fixture(scope="module")

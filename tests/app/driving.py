@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.window import FRAMES_AFTER_EVENT
 
 NEEDS_A_SCREEN = [
     pytest.mark.window,
@@ -26,7 +27,7 @@ DELIVERY = 0.02  # [s] that the screen may take to hand on what xdotool sent bef
 SIZE = (900, 600)  # of the window that tests share
 
 
-def draw_frames(viewer: Viewer, frames: int = 4) -> None:
+def draw_frames(viewer: Viewer, frames: int = FRAMES_AFTER_EVENT) -> None:
     """Let the window run for a few frames."""
     for _ in range(frames):
         viewer.frame()
@@ -72,9 +73,8 @@ def middle(viewer: Viewer, name: str) -> tuple[int, int]:
 
 def click(viewer: Viewer, name: str, *, times: int = 1) -> None:
     """Click in the middle of an item."""
-    xdotool(viewer, "mousemove", *middle(viewer, name))
-    xdotool(viewer, "click", "--repeat", times, "--delay", 50, 1)
-    draw_frames(viewer)
+    repeated = ("--repeat", times, "--delay", 50) if times > 1 else ()
+    xdotool(viewer, "mousemove", *middle(viewer, name), "click", *repeated, 1)
 
 
 def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1) -> None:

@@ -82,6 +82,7 @@ def test_skin_that_hides_everything_is_drawn_as_ever(studio: Capture) -> None:
     assert np.array_equal(picture(studio, Dissection()), usual)  # and it leaves nothing behind
 
 
+@pytest.mark.slow
 def test_no_skin_is_seen_at_opacity_0_and_one_side_alone_is_opened(studio: Capture) -> None:
     """What skin is like makes no difference then; the side that is not opened stays as it is."""
     posed(studio.scene)  # type: ignore[arg-type]
@@ -93,6 +94,7 @@ def test_no_skin_is_seen_at_opacity_0_and_one_side_alone_is_opened(studio: Captu
     assert shown[:, : middle - 3].mean() < 0.01 < 0.2 < shown[:, middle + 3 :].mean()
 
 
+@pytest.mark.slow
 def test_more_skin_hides_more(studio: Capture) -> None:
     """From 0 to 1 the picture goes evenly to the usual one."""
     posed(studio.scene)  # type: ignore[arg-type]
@@ -113,6 +115,7 @@ def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
         check_surface(part)
 
 
+@pytest.mark.slow
 def test_muscles_swell_and_redden_as_they_contract() -> None:
     """The zygomaticus of a smile is thicker in the middle, and redder, on both sides alike."""
     scene = posed(FaceScene())
@@ -233,6 +236,7 @@ def test_the_whole_side_is_the_usual_picture(
     assert shown[:, :edge].mean() < 0.001 and shown.mean() > 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solids", [("skull",), SOLIDS])
 def test_no_background_shines_through_a_head(studio: Capture, solids: tuple[str, ...]) -> None:
     """Behind a mouth that is open, and in the collar, there is something."""

@@ -18,8 +18,9 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from risorius.__main__ import command
-from risorius.app.scenes import SCENES, FaceScene
 from tests.heads import stranger
+
+pytestmark = pytest.mark.usefixtures("shared_scenes")
 
 SMILE = """
 title = "Smile"
@@ -43,23 +44,6 @@ def smile(tmp_path: Path) -> Path:
     path = tmp_path / "smile.toml"
     path.write_text(SMILE)
     return path
-
-
-@pytest.fixture(scope="module")
-def face() -> FaceScene:
-    """The built-in face."""
-    return FaceScene()
-
-
-@pytest.fixture(autouse=True)
-def ready_face(face: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Commands get the same face, at rest: building one takes longer than most of them."""
-
-    def at_rest() -> FaceScene:
-        face.reset()
-        return face
-
-    monkeypatch.setitem(SCENES, "face", at_rest)
 
 
 def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> None:
@@ -306,20 +290,13 @@ def test_a_script_begins_in_its_first_pose(tmp_path: Path) -> None:
         assert count > (2300 if scene == "face" else 1000)
 
 
-def test_no_opengl_is_one_line(smile: Path) -> None:
+def test_no_opengl_is_one_line(tmp_path: Path) -> None:
     """Without libEGL, capture says what is missing and the command that cures it."""
     environment = {**os.environ, "GLCONTEXT_LINUX_LIBEGL": "libEGL-not-there.so"}
     environment.pop("DISPLAY", None)
+    words = (sys.executable, "-m", "risorius", "capture")
     result = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "risorius",
-            "capture",
-            str(smile),
-            "-o",
-            str(smile.parent / "x.mp4"),
-        ],
+        [*words, "--scene", "plane", "--set", "amplitude", "-o", str(tmp_path / "x.mp4")],
         capture_output=True,
         text=True,
         env=environment,
@@ -329,7 +306,7 @@ def test_no_opengl_is_one_line(smile: Path) -> None:
     assert result.stderr.strip().startswith("risorius: ")
     assert "Cure: unset GLCONTEXT_LINUX_LIBEGL" in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
-    assert list(smile.parent.iterdir()) == [smile]
+    assert not list(tmp_path.iterdir())
 
 
 def test_controls_lists_what_scripts_may_name() -> None:
@@ -388,6 +365,7 @@ def test_a_script_and_a_pose_exclude_each_other(smile: Path, tmp_path: Path) -> 
     assert "a script and --set exclude each other" in result.stderr
 
 
+@pytest.mark.slow
 def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
     """`--head` and `--landmarks`: another head, in metres and z up, smiles; errors are one line."""
     other = stranger()
@@ -407,17 +385,22 @@ def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
 
 def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
     """`--person` and `--light`: other pictures than without, the same ones every time."""
-    seen = set()
-    for words in ((), ("--person", "3"), ("--person", "ada"), ("--light", "side")):
-        twice = []
-        for name in ("a.png", "b.png"):
-            asked = ("--set", "joy", *words, "-o", tmp_path / name, "--size", "96x96", "--quiet")
-            result = risorius("capture", *asked)
-            assert result.exit_code == 0, result.output
-            twice.append(np.asarray(Image.open(tmp_path / name)).tobytes())
-        assert twice[0] == twice[1]
-        seen.add(twice[0])
-    assert len(seen) == 4
+    seen = []
+    for words in ("", "--person 3", "--light side", "--person ada", "--person 3"):
+        asked = (
+            "--set",
+            "joy",
+            *words.split(),
+            "-o",
+            tmp_path / "a.png",
+            "--size",
+            "96x96",
+            "--quiet",
+        )
+        result = risorius("capture", *asked)
+        assert result.exit_code == 0, result.output
+        seen.append(np.asarray(Image.open(tmp_path / "a.png")).tobytes())
+    assert seen[1] == seen[-1] and len(set(seen)) == 4
 
 
 def test_doctor_reports_offscreen_opengl() -> None:

@@ -72,7 +72,7 @@ def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path)
     """Byte for byte in another process, in another order, and when it is drawn once more."""
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     studio = Studio(request)
-    for index in (3, 0, 4, 3, 1):
+    for index in (3, 0, 3):
         studio.shoot(index).save(tmp_path / f"{index:06d}.png")
         for end in ENDS:
             name = f"{index:06d}{end}"
@@ -84,6 +84,7 @@ def test_samples_are_of_different_faces(made: Path, samples: list[dict[str, Any]
     assert len({str(sample["controls"]) for sample in samples}) == COUNT
 
 
+@pytest.mark.slow
 def test_a_set_goes_on_where_it_was_left(made: Path, tmp_path: Path) -> None:
     """Samples without .json, whatever of them is there, are made anew; then all is as at once."""
     folder = tmp_path / "left"
@@ -131,6 +132,7 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
     assert [path.name for path in other.iterdir()] == ["mine.txt"]
 
 
+@pytest.mark.slow
 def test_a_set_without_samples_is_begun_anew(tmp_path: Path) -> None:
     """What was wrong before the first sample can be put right; a file of that name is no set."""
     heads = tmp_path / "heads"
@@ -225,6 +227,7 @@ def test_the_card_tells_what_is_in_the_set(made: Path, samples: list[dict[str, A
     assert "{" not in card
 
 
+@pytest.mark.slow
 def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
     """Of one colour they are that colour wherever no class is."""
     pictures = tmp_path / "pictures"
@@ -244,6 +247,7 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
 
 
+@pytest.mark.slow
 def test_heads_of_a_folder_are_the_persons(tmp_path: Path) -> None:
     """Each with its landmarks; a head without is told."""
     heads = tmp_path / "heads"
@@ -313,6 +317,7 @@ def face() -> FaceScene:
     return FaceScene()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unit", load_table(None).units)
 def test_landmarks_move_further_the_more_of_a_unit(face: FaceScene, unit: str) -> None:
     """What a label says is seen: the farthest landmark goes on with every step, by a tenth."""

@@ -23,7 +23,12 @@ from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 
 TABLE = load_table(None)
-LIMITS = FaceScene().limits
+
+
+@pytest.fixture(scope="module")
+def limits() -> dict[str, tuple[float, float]]:
+    """Those of the face's controls."""
+    return FaceScene().limits
 
 
 def units_of(sample: Sample) -> set[str]:
@@ -34,11 +39,13 @@ def units_of(sample: Sample) -> set[str]:
 
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
-def test_any_sample_is_a_face_that_can_be_made(seed: int, index: int) -> None:
+def test_any_sample_is_a_face_that_can_be_made(
+    limits: dict[str, tuple[float, float]], seed: int, index: int
+) -> None:
     """Controls within their limits, nothing that excludes another, the camera in its ranges."""
     sample = draw(TABLE, seed, index)
     for name, value in sample.controls.items():
-        low, high = LIMITS[name]
+        low, high = limits[name]
         assert low <= value <= high
     units = units_of(sample)
     for pair in itertools.combinations(units, 2):

@@ -12,6 +12,8 @@ from click.testing import CliRunner, Result
 from risorius.__main__ import command
 from risorius.app.export.formats import FORMATS
 
+pytestmark = pytest.mark.usefixtures("shared_scenes")
+
 SCRIPT = 'scene = "cloth"\nduration = 0.2\n[[pose]]\ntime = 0.0\ndrop = 1.0\n'
 FACE = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
 OUTPUTS = {

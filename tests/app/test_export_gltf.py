@@ -362,6 +362,7 @@ def settled(name: str) -> tuple[Any, Any]:
     return simulation.positions.copy(), simulation.bone_transforms()["mandible"]
 
 
+@pytest.mark.slow
 def test_a_rig_has_each_shape_by_its_name(
     rigged: tuple[Player, str | None], rigged_clip: Clip
 ) -> None:
@@ -384,6 +385,7 @@ def test_a_rig_has_each_shape_by_its_name(
     assert not player.target_names("teeth_upper")
 
 
+@pytest.mark.slow
 def test_lips_of_a_rig_close_over_an_open_jaw(rigged: tuple[Player, str | None]) -> None:
     """mouthClose says how much of jawOpen the lips make good, so both together shut the mouth."""
     player, _ = rigged
@@ -395,6 +397,7 @@ def test_lips_of_a_rig_close_over_an_open_jaw(rigged: tuple[Player, str | None])
     assert gaps[1] > gaps[0] + 0.015 and gaps[2] < gaps[0] + 0.003
 
 
+@pytest.mark.slow
 def test_eyes_of_a_rig_turn_about_their_centres(rigged: tuple[Player, str | None]) -> None:
     """The node of an eye stands in its centre, so that an engine may turn it."""
     player, _ = rigged
@@ -403,6 +406,7 @@ def test_eyes_of_a_rig_turn_about_their_centres(rigged: tuple[Player, str | None
         assert np.abs(player.matrix(node, 0)[:3, 3] * 1000.0 - eye.centre).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_a_script_of_shapes_moves_these_alone(
     rigged: tuple[Player, str | None], rigged_clip: Clip
 ) -> None:
@@ -449,6 +453,7 @@ def test_a_rig_keeps_the_tongue_in_the_mouth(tmp_path: Path) -> None:
     assert 1000.0 * farthest(player, clip, "tongue") < 4.0
 
 
+@pytest.mark.slow
 def test_the_command_writes_it(tmp_path: Path) -> None:
     """By its suffix; what is told of the rig goes to the error stream."""
     script, output = tmp_path / "shapes.toml", tmp_path / "out.glb"

@@ -224,6 +224,7 @@ def several(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processes, "worthwhile", lambda *_: count)
 
 
+@pytest.mark.slow
 def test_processes_draw_the_same_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bit for bit, in order, with the triangles of all; also where a refiner remembers frames."""
     script = replace(script_for(None, "plane"), duration=0.5)
@@ -262,6 +263,7 @@ def test_a_still_face_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert len(drawn) == 4
 
 
+@pytest.mark.slow
 def test_what_fails_in_a_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As if it had failed here, and nothing is left."""
     several(2, monkeypatch)
@@ -340,6 +342,7 @@ def test_a_disk_that_fills_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 @linux
 def test_memory_stays_flat() -> None:
     """Some hundred frames take no more memory than the first ones."""

@@ -74,6 +74,7 @@ def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
     assert np.diff(times[changes])[::2].max() < 6.0  # as long as they are away
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32), st.lists(st.floats(0.0, 900.0), min_size=1, max_size=20))
 def test_the_same_seed_and_time_give_the_same_values(seed: int, times: list[float]) -> None:
     """In whatever order they are asked for, and whatever was asked before."""
@@ -90,6 +91,7 @@ def test_seeds_differ() -> None:
     assert first != second
 
 
+@pytest.mark.slow
 @given(st.integers(0, 1000), st.floats(0.0, 3600.0))
 def test_values_stay_within_reach(seed: int, time: float) -> None:
     """All are controls of the face within their limits; but for lids and eyes all are small."""
@@ -176,6 +178,7 @@ def test_both_eyes_meet_the_camera(scene: FaceScene, view: str) -> None:
     scene.reset()
 
 
+@pytest.mark.slow
 def test_a_head_of_ones_own_meets_the_camera(tmp_path: Path) -> None:
     """Elsewhere and of another size, its eyes do as well."""
     scene = FaceScene(fit_head(*stranger().write(tmp_path)))
@@ -288,6 +291,7 @@ def test_only_what_can_be_seen_is_drawn() -> None:
     assert physics.is_at_rest and not physics.has_stepped
 
 
+@pytest.mark.slow
 def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> None:
     """What a script names anywhere is the script's for the whole film; the rest lives beneath."""
     keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))

@@ -86,6 +86,7 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
     assert left == ["old", "old/frame_00000.png"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
     """Its frames go into the same folder as if that was empty; what was left goes the day after."""
@@ -162,8 +163,8 @@ HANGS = r"film.mp4: cannot be written: ffmpeg hangs, it did nothing for 0.8 s; t
         ("ALIVE &\nexit 3", r"film.mp4: cannot be written: ffmpeg: it ended with code 3"),
         ("ALIVE", HANGS),
         ("cat >/dev/null; ALIVE", HANGS),
-        ("exec <&-; ALIVE", HANGS),
-        ("trap '' TERM INT HUP; ALIVE", HANGS),
+        pytest.param("exec <&-; ALIVE", HANGS, marks=pytest.mark.slow),
+        pytest.param("trap '' TERM INT HUP; ALIVE", HANGS, marks=pytest.mark.slow),
         (
             "cat >/dev/null; echo '[mp4 @ 0x55] No space left on device' >&2; exit 1",
             r"film.mp4: cannot be written: ffmpeg: No space left on device",
@@ -187,6 +188,7 @@ def test_a_film_that_ffmpeg_does_not_finish(
     assert lines == (len(alive.read_bytes()) if alive.exists() else 0)
 
 
+@pytest.mark.slow
 def test_an_ffmpeg_that_is_slow_is_waited_for(
     fake_ffmpeg: Callable[[str], Path], old_film: Path
 ) -> None:

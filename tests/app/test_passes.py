@@ -223,6 +223,7 @@ def test_the_refined_surface_goes_through_the_landmarks(studio: Capture) -> None
         assert off.max() < 0.5 and np.median(off) < 1e-3
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(
     side=st.sampled_from([-1.0, 1.0]), yaw=st.floats(82.0, 105.0), expression=st.sampled_from(

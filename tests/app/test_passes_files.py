@@ -20,6 +20,8 @@ from risorius.app.passes.exr import NOTHING, write_exr
 from risorius.app.passes.files import Labelled, save_labelled
 from tests.heads import stranger
 
+pytestmark = pytest.mark.usefixtures("shared_scenes")
+
 ALL = "depth,normal,triangle,splits,tension,segmentation,landmarks"
 CAPTURE = ("capture", "--size", "160x120", "--quiet", "--fps", "10")
 SMILE = """
@@ -182,6 +184,7 @@ def test_no_input_is_written_over(tmp_path: Path) -> None:
     assert names_in(tmp_path) == ["take.json"] and recording.read_text() == "[]"
 
 
+@pytest.mark.slow
 def test_new_frames_take_the_place_of_old_ones_and_their_passes(tmp_path: Path) -> None:
     """With --overwrite nothing of an earlier film is left, and what is not of one stays."""
     frames = tmp_path / "frames"

@@ -12,6 +12,8 @@ from risorius.app.cli import main
 from risorius.app.viewer.panels import mechanism
 from risorius.refine.border import registry
 
+pytestmark = pytest.mark.usefixtures("shared_scenes")
+
 MODULE = '''
 import numpy as np
 

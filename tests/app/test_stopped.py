@@ -108,6 +108,7 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 def test_frames_give_way_whole(tmp_path: Path) -> None:
     """A signal while the frames of an earlier film are replaced: all of the new ones are there."""

@@ -192,6 +192,7 @@ def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
     assert viewer.stage.static.triangle_count == len(viewer.session.scene.faces)
 
 
+@pytest.mark.slow
 def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     """Whatever the second panel offers makes a picture; thresholds act at once."""
     viewer.session.toggle_alone("disgust")
@@ -246,6 +247,7 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     assert not viewer.messages.is_error
 
 
+@pytest.mark.slow
 def test_normals_are_chosen(viewer: Viewer) -> None:
     """Linear, refined, or what suits the scheme; the picture changes, and a look takes it back."""
     viewer.session.toggle_alone("disgust")
@@ -313,6 +315,7 @@ def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.stage.refined.stream.has_wrinkles)
 
 
+@pytest.mark.slow
 def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     """Record a slider, save through the window, open again, replay: the same face."""
     viewer.session.begin_script()
@@ -415,6 +418,7 @@ def test_an_idle_window_rests(viewer: Viewer) -> None:
     assert times == {name: list(column) for name, column in viewer.times.milliseconds.items()}
 
 
+@pytest.mark.slow
 def test_the_window_remembers(tmp_path: Path) -> None:
     """`risorius replay --once` plays and ends; size and looks come back, a broken file does not."""
     script = tmp_path / "short.toml"

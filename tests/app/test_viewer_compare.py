@@ -221,6 +221,7 @@ def test_orthographic_shows_and_finds_what_is_there(viewer: Viewer) -> None:
     assert not viewer.view.camera.is_orthographic
 
 
+@pytest.mark.slow
 def test_light_background_and_tone_are_chosen(viewer: Viewer) -> None:
     """Each changes the picture at once, and none keeps the others."""
     only_open(viewer, "Light and person")
@@ -236,6 +237,7 @@ def test_light_background_and_tone_are_chosen(viewer: Viewer) -> None:
     assert np.abs(viewer.surface.read()[:, 400:] - pages[0]).mean() < 0.1
 
 
+@pytest.mark.slow
 def test_a_person_takes_the_place_and_goes_again(viewer: Viewer) -> None:
     """Script, pose and what can be undone stay; the menu brings the built-in head back."""
     show_controls(viewer, "jaw open")

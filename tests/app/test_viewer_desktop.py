@@ -75,7 +75,7 @@ def place_of(viewer: Viewer) -> tuple[int, int, int, int]:
     return viewer.placement._place()
 
 
-@pytest.mark.parametrize("key", ["F11", "alt+Return"])
+@pytest.mark.parametrize("key", ["F11", pytest.param("alt+Return", marks=pytest.mark.slow)])
 def test_full_screen_and_back(viewer: Viewer, key: str) -> None:
     """All of the screen is the window; left again, it is as large and where it was."""
     before = place_of(viewer)

@@ -75,6 +75,7 @@ def test_a_film_is_what_capture_writes(viewer: Viewer, tmp_path: Path) -> None:
     assert np.abs(ours - told).max() <= 2
 
 
+@pytest.mark.slow
 def test_a_film_shows_what_the_window_shows(viewer: Viewer, tmp_path: Path) -> None:
     """A wipe, colours and overlays that only the window has are in the film, too."""
     display = viewer.settings.display
@@ -90,6 +91,7 @@ def test_a_film_shows_what_the_window_shows(viewer: Viewer, tmp_path: Path) -> N
     assert np.abs(filmed - seen).mean() < 0.5
 
 
+@pytest.mark.slow
 def test_a_part_turns_on_nothing(viewer: Viewer, tmp_path: Path) -> None:
     """A part of the script, without background, while the camera goes round once."""
     xdotool(viewer, "key", "ctrl+e")
@@ -114,6 +116,7 @@ def test_a_part_turns_on_nothing(viewer: Viewer, tmp_path: Path) -> None:
     assert np.allclose(np.diff(np.unwrap(yaws[-4:], period=360.0)), 90.0)
 
 
+@pytest.mark.slow
 def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -> None:
     """What `risorius export` writes, under the name that was typed."""
     xdotool(viewer, "key", "ctrl+e")
@@ -134,6 +137,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -
         assert len(arrays["positions"]) == 7
 
 
+@pytest.mark.slow
 def test_the_window_lives_and_cancel_leaves_nothing(viewer: Viewer, tmp_path: Path) -> None:
     """While a film is made the face answers; cancelled, no file is left, nor a part of one."""
     viewer.settings.export.kind, viewer.settings.export.source = "mp4", "pose"
@@ -214,7 +218,7 @@ def test_the_dialog_waits_while_something_is_asked(viewer: Viewer) -> None:
     viewer.session.set("jaw_open", 0.5)
     xdotool(viewer, "key", "F10")
     viewer.ask_to_close()
-    draw_frames(viewer)
+    draw_frames(viewer, 6)  # until the question is in its place
     assert "question: Back" in viewer.gui.places and "export: Cancel" not in viewer.gui.places
     click(viewer, "question: Back")
     draw_frames(viewer)

@@ -143,6 +143,7 @@ def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) 
     viewer.surface.should_close = viewer.is_leaving = False
 
 
+@pytest.mark.slow
 def test_a_file_opened_while_recording(viewer: Viewer, tmp_path: Path) -> None:
     """A pose becomes part of the recording; a script asks first, a bad file ends nothing."""
     script, pose, bad = (tmp_path / name for name in ("smile.toml", "pose.toml", "bad.toml"))
@@ -239,6 +240,7 @@ def test_of_several_scripts_the_first_is_opened(viewer: Viewer, tmp_path: Path) 
     assert not viewer.messages.is_error
 
 
+@pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path) -> None:
     """The face is another one, the script plays on it; what was unsaved before is still there."""
     before = viewer.session.scene
@@ -299,6 +301,7 @@ def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
     assert viewer.session.scene is before
 
 
+@pytest.mark.slow
 def test_heads_come_and_go_without_leaving_anything(
     viewer: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

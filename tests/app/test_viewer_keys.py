@@ -50,6 +50,7 @@ def typed(words: object) -> tuple[object, ...]:
     return "type", "--delay", 2, "--args", 1, words, "key", "Return"
 
 
+@pytest.mark.slow
 def test_a_number_is_typed_into_a_slow_window(viewer: Viewer) -> None:
     """A double click and the number after it go to the slider, and to nothing else."""
     show_controls(viewer, "jaw open")
@@ -77,6 +78,7 @@ def test_a_pose_is_named_in_a_slow_window(viewer: Viewer) -> None:
     assert not viewer.session.is_playing and not viewer.session.has_unsaved_pose
 
 
+@pytest.mark.slow
 def test_chords_keep_their_modifier(viewer: Viewer) -> None:
     """Ctrl let go with the key, in one frame with it, counts as held."""
     for _ in range(6):
@@ -86,6 +88,7 @@ def test_chords_keep_their_modifier(viewer: Viewer) -> None:
         viewer.session.neutral()
 
 
+@pytest.mark.slow
 def test_tabs_are_clicked_while_a_script_plays(viewer: Viewer) -> None:
     """Mouse there, and pressed at once: the tab comes up, in each of many times."""
     tabs = {title: middle(viewer, f"tab {title}") for title in ("Mechanism", "Live", "Face")}
@@ -155,6 +158,7 @@ def test_the_keyboard_reaches_everything(viewer: Viewer, monkeypatch: pytest.Mon
     assert not viewer.gui.owns_keys
 
 
+@pytest.mark.slow
 def test_keys_are_changed_in_their_overview(viewer: Viewer, tmp_path: Path) -> None:
     """Click a key, press another: what is taken is told; settings keep it; a button undoes it."""
     xdotool(viewer, "key", "F1")

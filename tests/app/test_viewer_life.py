@@ -74,6 +74,7 @@ def test_a_key_switches_it_off_and_on(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) > 0.1)
 
 
+@pytest.mark.slow
 def test_what_is_set_by_hand_stays(viewer: Viewer) -> None:
     """Eyes that the user turned stay turned, and blink; a lid that he lowered stays."""
     viewer.session.set("gaze_horizontal", 0.5)
@@ -85,6 +86,7 @@ def test_what_is_set_by_hand_stays(viewer: Viewer) -> None:
     assert viewer.session.scene.values[f"{LID}_right"] == 0.3
 
 
+@pytest.mark.slow
 def test_a_face_that_somebody_holds_does_not_twitch(viewer: Viewer) -> None:
     """While a slider is dragged the face looks at the user, and that is all."""
     show_controls(viewer, "jaw open")
@@ -134,6 +136,7 @@ def test_it_sleeps_when_nobody_is_there(viewer: Viewer) -> None:
     assert viewer.life.is_on
 
 
+@pytest.mark.slow
 def test_panels_are_not_drawn_for_it(viewer: Viewer) -> None:
     """A face that only lives moves no slider: the panels' last picture stays."""
     assert until(viewer, lambda: viewer.is_left_alone)

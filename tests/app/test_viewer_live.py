@@ -116,7 +116,13 @@ def write_take(file: Path, **channels: float) -> Path:
     return file
 
 
-@pytest.mark.parametrize("kind", list(PROTOCOLS))
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=() if kind == "livelink" else pytest.mark.slow)
+        for kind in PROTOCOLS
+    ],
+)
 def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path, kind: str) -> None:
     """In every protocol the mouth opens; when nothing comes any more it closes and all is idle."""
     face = listen(viewer, kind)
@@ -147,6 +153,7 @@ def test_live_leads_what_it_names_and_sliders_keep_the_rest(viewer: Viewer) -> N
     assert viewer.session.values["jawOpen"] == 0.0
 
 
+@pytest.mark.slow
 def test_a_signal_that_comes_back_is_taken_up_smoothly(viewer: Viewer) -> None:
     """No control jumps by more than a little from one step to the next."""
     face = listen(viewer)
@@ -223,6 +230,7 @@ def test_stopping_keeps_the_neutral_face_and_gains(viewer: Viewer) -> None:
     assert viewer.live.face is not None and viewer.live.face.calibration.default_gain == 1.0
 
 
+@pytest.mark.slow
 def test_gains_are_sliders(viewer: Viewer) -> None:
     """Half the gain is half the smile; blinks and the head have one of their own."""
     face = listen(viewer)
@@ -238,6 +246,7 @@ def test_gains_are_sliders(viewer: Viewer) -> None:
     assert current["eyeBlinkLeft"] == 1.0 and current["head_yaw"] == 0.0
 
 
+@pytest.mark.slow
 def test_a_live_face_is_recorded_into_a_script(viewer: Viewer) -> None:
     """What it did becomes tracks; the script plays it without anybody who sends."""
     face = listen(viewer)
@@ -266,6 +275,7 @@ def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
         assert face.came_at is not None and not viewer.is_idle
 
 
+@pytest.mark.slow
 def test_a_face_that_holds_still_lets_the_window_rest(viewer: Viewer) -> None:
     """The same frame again and again moves nothing; when it ends, that is noticed in time."""
     face = listen(viewer)

@@ -87,6 +87,7 @@ def test_five_points_stand_the_head_up_and_give_the_rest(marking: Marking) -> No
     assert marking.marks.is_complete and not marking.history.can_redo
 
 
+@pytest.mark.slow
 def test_the_other_side_is_mirrored(marking: Marking) -> None:
     """The other side of a group; all other points stay, and one in the middle has no side."""
     mark_first(marking)
@@ -104,6 +105,7 @@ def test_the_other_side_is_mirrored(marking: Marking) -> None:
     assert "middle" in str(marking.mirror())
 
 
+@pytest.mark.slow
 def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path) -> None:
     """null where nothing is marked: no head for `--landmarks`, but marking goes on from it."""
     target = tmp_path / "half.json"
@@ -144,6 +146,7 @@ def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> No
     assert marking.marks.is_complete
 
 
+@pytest.mark.slow
 def test_swapped_sides_are_told_and_can_be_mended(marking: Marking) -> None:
     """The last of the first points brings the line; moving points brings the guess."""
     swapped = true_places()[MIRRORED]
@@ -284,6 +287,7 @@ class TestInTheWindow:
         assert room.view.camera.yaw != camera.yaw and not room.marking.marks.places
         assert until(viewer, lambda: viewer.is_idle)
 
+    @pytest.mark.slow
     def test_marks_are_not_lost_without_a_question(self, viewer: Viewer, mesh: Path) -> None:
         """Leaving and closing ask; a second mesh, too; saving in answer goes on."""
         viewer.session.set("jaw_open", 0.5)
@@ -312,6 +316,7 @@ class TestInTheWindow:
         assert until(viewer, lambda: viewer.room is None)
         assert mesh.with_name("kept.json").exists() and viewer.session.values["jaw_open"] == 0.5
 
+    @pytest.mark.slow
     def test_five_points_that_are_no_face_are_told_and_mended(
         self, viewer: Viewer, mesh: Path
     ) -> None:
@@ -333,6 +338,7 @@ class TestInTheWindow:
         xdotool(viewer, "click", 1)
         assert until(viewer, lambda: marking.marks.is_complete, 20.0)
 
+    @pytest.mark.slow
     def test_marks_that_make_no_head_are_told_and_kept(self, viewer: Viewer, mesh: Path) -> None:
         """Use this head: one line, and the marks are there to be mended."""
         viewer.mark(mesh)
@@ -348,6 +354,7 @@ class TestInTheWindow:
         assert "\n" not in viewer.messages.text and viewer.room is not None
         assert not marking.unsaved and marking.file.exists()
 
+    @pytest.mark.slow
     def test_the_menu_and_half_a_file_begin_marking(self, viewer: Viewer, mesh: Path) -> None:
         """File, Mark a head; and a mesh that is dropped with a landmark file that has gaps."""
         click(viewer, "menu File")
@@ -361,6 +368,7 @@ class TestInTheWindow:
         drop(viewer, mesh, half)
         assert len(self.room(viewer).marking.marks.places) == 5
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("theme", ["light", "dark"])
     def test_everything_is_in_a_small_window(self, viewer: Viewer, mesh: Path, theme: str) -> None:
         """The last button is inside, the guide beside the panel; both themes draw."""

@@ -50,7 +50,7 @@ def rows_shown(viewer: Viewer) -> set[str]:
 def test_plain_words_find_controls(viewer: Viewer) -> None:
     """What people would say finds expressions, units, shapes and muscles."""
     viewer.settings.zoom = 0.6  # room for all of them at once
-    draw_frames(viewer)
+    draw_frames(viewer, 4)  # until all is in its place
     try:
         for words, found in (
             ("smile", {"joy", "AU12", "mouthSmile", SMILE}),
@@ -82,6 +82,7 @@ def test_filters_show_one_kind(viewer: Viewer) -> None:
     assert {"joy", "wink"} <= rows_shown(viewer)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [12.0, WIDTH])
 def test_no_two_rows_read_alike(viewer: Viewer, width: float) -> None:
     """Of every group; and in a narrow panel every name is there, in as many lines as it takes."""
@@ -136,6 +137,7 @@ def test_a_wink_has_two_eyes(viewer: Viewer) -> None:
     assert viewer.session.values["wink"] > 0.4 and not viewer.session.values["wink_right"]
 
 
+@pytest.mark.slow
 def test_a_drag_goes_on_where_both_sides_agree(viewer: Viewer) -> None:
     """A side that is dragged past the other is not joined with it on the way."""
     session, name = viewer.session, f"{SMILE}_right"
@@ -161,6 +163,7 @@ def test_an_expression_is_one_row(viewer: Viewer) -> None:
     assert not any(viewer.session.values.values())
 
 
+@pytest.mark.slow
 def test_pads_move_two_controls_at_once(viewer: Viewer) -> None:
     """Eyes, jaw and head follow the mouse; a double click and Ctrl+Z take it back."""
     session = viewer.session

@@ -107,6 +107,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert np.abs(session.scene.positions - wanted).max() < 0.01
 
 
+@pytest.mark.slow
 def test_a_recording_beside_a_sound_is_in_step_with_it(session: Session, tmp_path: Path) -> None:
     """The script plays meanwhile, and what is heard at a time was recorded at that time."""
     played = replace(session.script, sound=tmp_path / "sound.wav")
@@ -355,6 +356,7 @@ def test_the_page_shows_every_picture_of_the_tour() -> None:
         assert 10_000 < image.stat().st_size < 450_000
 
 
+@pytest.mark.slow
 def test_a_head_that_somebody_brings_has_every_overlay(tmp_path: Path) -> None:
     """Springs and landmarks of a fitted head are lines; test_anatomy.py has the solids."""
     fitted = FaceScene(fit_head(*stranger().write(tmp_path)))

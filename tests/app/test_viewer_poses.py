@@ -31,6 +31,7 @@ def values_of(viewer: Viewer) -> dict[str, float]:
     return {name: value for name, value in viewer.session.values.items() if value}
 
 
+@pytest.mark.slow
 def test_a_picture_is_taken_blended_and_mirrored(viewer: Viewer) -> None:
     """By a click, a drag to the right, and with Shift; Ctrl+Z takes each back in one step."""
     viewer.settings.folds["Pose pictures"] = True

@@ -67,6 +67,7 @@ def test_pictures_have_no_lines_of_a_slider_that_is_pointed_at(viewer: Viewer) -
     clear_search(viewer)
 
 
+@pytest.mark.slow
 def test_lines_are_faint_and_gone_as_a_slider_is_pressed(viewer: Viewer) -> None:
     """Pointing at a slider tints its fibres; while it is dragged the face is free of them."""
     point_at_slider(viewer)

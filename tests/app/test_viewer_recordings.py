@@ -50,6 +50,7 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(
     assert take.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_json_is_a_recording_or_landmarks_by_what_it_holds(viewer: Viewer, tmp_path: Path) -> None:
     """Scores of a tracker are played, on a head that is dropped with them if there is one."""
     scores = [{"categoryName": "jawOpen", "score": 0.5}, {"categoryName": "_neutral", "score": 0}]

@@ -157,6 +157,7 @@ def test_a_long_script_that_changes_all_the_time_is_written(
     assert "script" in stored_work(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_recording_is_kept_while_it_goes_on(
     session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
 ) -> None:
@@ -436,6 +437,7 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
         process.wait()
 
 
+@pytest.mark.slow
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
@@ -511,6 +513,7 @@ def test_work_that_is_given_up_is_not_offered(tmp_path: Path) -> None:
     assert list((tmp_path / "unsaved").iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
 def test_recovering_asks_before_other_work_is_lost(session: Session, tmp_path: Path) -> None:

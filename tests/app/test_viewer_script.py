@@ -50,6 +50,7 @@ def scrub(viewer: Viewer, time: float) -> None:
     press(viewer, (x, middle(viewer, "time")[1]))
 
 
+@pytest.mark.slow
 def test_a_pose_that_was_scrubbed_away_is_told_and_comes_back(viewer: Viewer) -> None:
     """The ruler, and a click on a key: each says in a line what it lets go; Ctrl+Z has it."""
     scrub(viewer, 2.0)
@@ -64,6 +65,7 @@ def test_a_pose_that_was_scrubbed_away_is_told_and_comes_back(viewer: Viewer) ->
         assert viewer.session.values["jaw_open"] == value and viewer.session.time == time
 
 
+@pytest.mark.slow
 def test_what_is_not_keyed_is_keyed_or_let_go_by_a_button(viewer: Viewer) -> None:
     """Both stand by the timeline, and say nothing where nothing differs."""
     scrub(viewer, 2.0)
@@ -94,6 +96,7 @@ def test_auto_key(viewer: Viewer) -> None:
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
 
 
+@pytest.mark.slow
 def test_recording_punches_in(viewer: Viewer) -> None:
     """Ctrl+R begins at the playhead, and replaces what was moved while it ran; Ctrl+Z takes it."""
     before = viewer.session.script
@@ -117,6 +120,7 @@ def test_recording_punches_in(viewer: Viewer) -> None:
     assert viewer.session.script == before
 
 
+@pytest.mark.slow
 def test_keys_are_copied_and_pasted(viewer: Viewer, own: Path, tmp_path: Path) -> None:
     """Ctrl+C and Ctrl+V: at the playhead, and in another script, too."""
     press(viewer, at(viewer, JOY))
@@ -170,6 +174,7 @@ def test_a_name_leaves_the_strip_where_it_is(viewer: Viewer) -> None:
     assert (viewer.timeline.height(), at(viewer, first)) == before
 
 
+@pytest.mark.slow
 def test_the_history_is_a_menu(viewer: Viewer) -> None:
     """Edit names what it undoes, and lists all that was done; a click goes there."""
     for key in ("1", "2", "n"):

@@ -115,6 +115,7 @@ def viewer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
         yield opened
 
 
+@pytest.mark.slow
 def test_the_steps_tick_themselves_off(viewer: Viewer) -> None:
     """Pulling the skin, dragging the line and playing end the guide; Help brings it back."""
     steps = viewer.first_steps

@@ -51,6 +51,7 @@ def opened(viewer: Viewer, calm: None) -> None:
 # Undo while the mouse drags
 
 
+@pytest.mark.slow
 def test_undo_takes_back_a_slider_that_is_held(viewer: Viewer) -> None:
     """Ctrl+Z ends the drag, all of which goes, and can be done again."""
     show_controls(viewer, "jaw open")
@@ -117,7 +118,10 @@ def number_in_ruler(viewer: Viewer, when: float, beside: float) -> tuple[int, in
     return on_screen(viewer, viewer.time_axis.x(when) + beside * em, 0.7 * top + 0.3 * bottom)
 
 
-@pytest.mark.parametrize("beside", [-0.2, 0.0, 0.2])
+@pytest.mark.parametrize(
+    "beside",
+    [pytest.param(-0.2, marks=pytest.mark.slow), pytest.param(0.0, marks=pytest.mark.slow), 0.2],
+)
 def test_a_click_on_a_number_goes_there(viewer: Viewer, beside: float) -> None:
     """Wherever in the number; a drag from there goes to other frames."""
     labelled = [tick.time for tick in viewer.time_axis.ticks(4.2 * imgui.get_font_size())]
@@ -178,6 +182,7 @@ def test_the_hint_of_record_leaves_the_ruler_free(viewer: Viewer) -> None:
 # Keys that were changed
 
 
+@pytest.mark.slow
 def test_hints_name_the_key_that_works(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     """After a change in the overview; the second key went with the first."""
     told = list[str]()

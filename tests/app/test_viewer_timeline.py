@@ -292,18 +292,24 @@ def test_while_recording_keys_stay(viewer: Viewer) -> None:
     assert places_of(before) >= viewer.selection.places
 
 
-@pytest.fixture
-def take(viewer: Viewer, own: Path, tmp_path: Path) -> Script:
-    """A script of half a million keys, opened, with a row for each of its 60 tracks."""
+@pytest.fixture(scope="module")
+def dense(viewer: Viewer, tmp_path_factory: pytest.TempPathFactory) -> Script:
+    """A script of half a million keys in 60 tracks."""
     names = [name for name, (low, _) in viewer.session.controls.limits.items() if low == 0.0][:60]
     times = np.arange(9000) / 15.0
     chance = np.random.default_rng(5)
     tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000).round(3)) for name in names}
-    path = tmp_path / "take.toml"
+    path = tmp_path_factory.mktemp("dense") / "take.toml"
     save_script(path, Script("take", 600.0, "take", tracks=tracks))
-    viewer.session.open(load_script(path))
+    return load_script(path)
+
+
+@pytest.fixture
+def take(viewer: Viewer, own: Path, dense: Script) -> Script:
+    """The dense script, opened, with a row for each of its tracks."""
+    viewer.session.open(dense)
     viewer.settings.folds["Tracks"] = True
-    draw_frames(viewer)
+    draw_frames(viewer, 6)  # until the rows are in their places
     return viewer.session.script
 
 

@@ -61,7 +61,10 @@ def test_nothing_wrinkles_at_rest(scene: FaceScene, wrinkling: Wrinkling) -> Non
     assert on_rows(found.astype(np.float32), SimpleNamespace()) is None  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("name", ["AU1", "AU4", "AU6", "AU17", "AU18"])
+@pytest.mark.parametrize(
+    "name",
+    ["AU4", *(pytest.param(f"AU{unit}", marks=pytest.mark.slow) for unit in (1, 6, 17, 18))],
+)
 def test_amounts_grow_with_the_muscle_and_never_jump(
     scene: FaceScene, wrinkling: Wrinkling, name: str
 ) -> None:

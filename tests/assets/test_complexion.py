@@ -73,6 +73,7 @@ def test_tones_are_in_order(head: Head) -> None:
         assert (pictures[lighter].astype(int) - pictures[darker]).min() >= -1
 
 
+@pytest.mark.slow
 @given(ANGLES)
 @settings(max_examples=12, deadline=None)
 def test_faces_keep_their_features(angle: float) -> None:
@@ -149,6 +150,7 @@ def test_eyes_have_their_colours(head: Head) -> None:
         coloured(person, irises="red")
 
 
+@pytest.mark.slow
 def test_colours_of_a_number(head: Head) -> None:
     """The same ones every time; dark skin goes with brown eyes."""
     person = make_person(sample_identity(0))
@@ -173,6 +175,7 @@ def test_irises_follow_the_shares_where_skin_is_light(angle: float) -> None:
     assert (0.68 < drawn.count("blue") / 400 < 0.82) if angle > 28.0 else set(drawn) == {"brown"}
 
 
+@pytest.mark.slow
 def test_features_do_what_their_names_say(head: Head) -> None:
     """Thin brows show skin, beards darken, lips redden, hair is grey or gone."""
     plain = recoloured(40.0).astype(int)

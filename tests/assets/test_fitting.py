@@ -39,6 +39,7 @@ def simulation(fitted: FittedHead) -> sim.Simulation:
     return sim.create(fitted)
 
 
+@pytest.mark.slow
 def test_files_are_read_and_fitted(other: Stranger, fitted: FittedHead, tmp_path: Path) -> None:
     """Vertex numbers and points give the same head; a bare list will do."""
     mesh, numbers = other.write(tmp_path)
@@ -135,6 +136,7 @@ def test_expressions_keep_a_fitted_mesh_sound(
     assert inverted_triangles(fitted.faces, fitted.vertices, simulation.positions) <= 40
 
 
+@pytest.mark.slow
 def test_other_pieces_and_inside_out_meshes_do_no_harm(other: Stranger) -> None:
     """Eyeballs of the file's own are left away, triangles that face inward are turned."""
     vertices, faces = other.mesh.vertices, other.mesh.faces
@@ -305,6 +307,7 @@ def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator
     assert np.allclose(nearest.weights.sum(axis=1), 1.0)
 
 
+@pytest.mark.slow
 def test_a_bag_behind_the_lips_makes_room() -> None:
     """The built-in mouth comes there; the skin outside, its landmarks and numbers stay."""
     other = stranger()

@@ -45,6 +45,7 @@ def test_other_persons_are_found(seed: int) -> None:
     assert off[:JAW].max() < 25.0
 
 
+@pytest.mark.slow
 def test_unit_axes_and_other_pieces_do_not_matter() -> None:
     """In metres, z up, facing inward, with balls in its eyes: guessed on the skin, not on these."""
     other: Stranger = stranger()
@@ -65,6 +66,7 @@ def test_unit_axes_and_other_pieces_do_not_matter() -> None:
     assert gap.max() < 1e-3 * METRES
 
 
+@pytest.mark.slow
 def test_more_points_make_it_better_and_stay() -> None:
     """What is placed by hand is left alone, and draws its neighbours along."""
     person = make_person(sample_identity(1))

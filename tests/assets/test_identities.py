@@ -36,6 +36,7 @@ NEAR = 0.3  # [mm] of a measure of an uneven face
 EVEN_NEAR = 0.06  # and of an even one
 EVEN = dict.fromkeys(SHAPES, 0.0)
 PERSONS = (0, 5, 10, 1039)  # long and short, and one whose measures contradict each other
+QUICK = 0, 1039
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +45,13 @@ def head() -> Head:
     return assets.load("head")
 
 
-@pytest.fixture(scope="module", params=PERSONS)
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(number, marks=() if number in QUICK else pytest.mark.slow)
+        for number in PERSONS
+    ],
+)
 def person(request: pytest.FixtureRequest) -> Person:
     """Some persons."""
     return make_person(sample_identity(request.param))
@@ -144,6 +151,7 @@ def test_men_and_women_and_ages_differ() -> None:
     assert resting[0] == 0.0 < resting[1] < 1.0
 
 
+@pytest.mark.slow
 def test_named_persons_are_different_people(head: Head) -> None:
     """Of both sexes, in tones and ages far apart, and none has the built-in head's face."""
     people = [person_called(name) for name in NAMED]

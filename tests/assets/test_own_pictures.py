@@ -102,6 +102,7 @@ def test_own_picture_lies_where_the_file_has_it(
     refine.check(refiner, refiner.refine(head.vertices), head.vertices)
 
 
+@pytest.mark.slow
 def test_maps_go_along_to_the_own_layout(other: Stranger, tmp_path: Path) -> None:
     """Lips are lips and furrows furrows wherever the mesh's texture coordinates lie."""
     files = _write_obj(tmp_path, other)
@@ -119,6 +120,7 @@ def test_maps_go_along_to_the_own_layout(other: Stranger, tmp_path: Path) -> Non
         assert len(np.unique(own)) > 5
 
 
+@pytest.mark.slow
 def test_slopes_turn_with_the_layout() -> None:
     """In a layout turned by a quarter and half as large, slopes are turned and doubled."""
     head = assets.load("head")
@@ -202,6 +204,7 @@ def test_huge_pictures_are_refused_before_they_unfold(other: Stranger, tmp_path:
         fit_head(*files)
 
 
+@pytest.mark.slow
 def test_a_missing_library_paints_nothing(other: Stranger, tmp_path: Path) -> None:
     """Many files name one that was never sent along; it is told in one line."""
     files = _write_obj(tmp_path, other)

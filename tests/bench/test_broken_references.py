@@ -32,8 +32,13 @@ def arrays() -> dict[str, Any]:
         ("vertices", np.full((9, 3), np.nan), "vertices must be finite"),
         ("triangles", np.full((9, 3), 10**6), "numbers of them"),
         ("landmarks68", np.arange(3), "landmarks68"),
-        ("jawOpen", np.zeros((3, 3)), "jawOpen in face.npz must be finite displacements"),
-        ("jawOpen", None, "holds none of ARKit's shapes"),
+        pytest.param(
+            "jawOpen",
+            np.zeros((3, 3)),
+            "jawOpen in face.npz must be finite displacements",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param("jawOpen", None, "holds none of ARKit's shapes", marks=pytest.mark.slow),
     ],
 )
 def test_broken_references_are_named(

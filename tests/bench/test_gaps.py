@@ -58,6 +58,7 @@ def test_skin_in_an_eyeball_is_found() -> None:
     assert 1.0 < pushed <= 2.0
 
 
+@pytest.mark.slow
 def test_closed_lids_hide_the_eye_from_every_side() -> None:
     """Nothing shows from the whole front while lids are closed; ajar, they show it from below."""
     head = assets.load("head")

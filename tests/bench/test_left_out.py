@@ -54,6 +54,7 @@ def test_shared_changes_are_mirrored_from_lip_to_lip() -> None:
     assert lower.radii[2] == pytest.approx(was[1].radii[2] + 4.0)
 
 
+@pytest.mark.slow
 def test_muscles_are_exchanged_as_if_built_with_them() -> None:
     """A trial's face is the one that `sim.create` builds from the same rig."""
     head = assets.load("head")

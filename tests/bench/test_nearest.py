@@ -14,13 +14,13 @@ def test_equals_brute_force(name: str) -> None:
     """No point of a dense sampling of the mesh is nearer, and the point found is on the mesh."""
     mesh = meshes.NAMED[name]()
     generator = np.random.default_rng(3)
-    points = generator.uniform(-2.0, 4.0, (300, 3))
+    points = generator.uniform(-2.0, 4.0, (100, 3))
     found = nearest_points(points, mesh.vertices, mesh.faces)
     corners = mesh.vertices[mesh.faces]
     there = np.einsum("ni,nij->nj", found.weights, corners[found.triangle])
     np.testing.assert_allclose(np.linalg.norm(there - points, axis=1), found.distance, atol=1e-12)
     assert (found.weights >= -1e-12).all()
-    weights = generator.dirichlet([0.5, 0.5, 0.5], 2000)
+    weights = generator.dirichlet([0.5, 0.5, 0.5], 1000)
     samples = np.einsum("wi,fij->fwj", weights, corners).reshape(-1, 3)
     sampled = np.linalg.norm(points[:, None] - samples[None], axis=2).min(axis=1)
     assert (found.distance <= sampled + 1e-12).all()

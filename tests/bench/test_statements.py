@@ -16,9 +16,16 @@ from risorius.bench import statements
 from risorius.bench.experiments import EXPERIMENTS, Experiment
 
 COUNTED = [each for each in EXPERIMENTS if each.function.startswith("statements.")]
+QUICK = "table", "criterion"  # no cracks, and splits where the mesh bends; the rest is slow
 
 
-@pytest.mark.parametrize("experiment", COUNTED, ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "experiment",
+    [
+        pytest.param(each, marks=() if each.name in QUICK else pytest.mark.slow, id=each.name)
+        for each in COUNTED
+    ],
+)
 def test_statements_are_met(experiment: Experiment) -> None:
     """As the paper says, on face and plane."""
     result = experiment.run()

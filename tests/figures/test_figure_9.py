@@ -66,6 +66,7 @@ def test_the_truth_is_dense_enough(plane: Waving) -> None:
     assert figure_9.levels_apart(flat, truth) < 1.0 < figure_9.levels_apart(coarse, truth)
 
 
+@pytest.mark.slow
 def test_flat_ridges_are_smoothed_out(plane: Waving) -> None:
     """Flat shaded, refined triangles are nearer to the sine; most of the surface changes."""
     static, refined = (_off(plane, variant, "flat")[0] for variant in (STATIC, REFINED))
@@ -75,12 +76,14 @@ def test_flat_ridges_are_smoothed_out(plane: Waving) -> None:
     assert changed.sum() > 0.3 * (plane.true_image(0.0).mean(axis=2) < 250).sum()
 
 
+@pytest.mark.slow
 def test_interpolated_normals_leave_gouraud_shading_as_it_is(plane: Waving) -> None:
     """The paper's rule moves points, not normals: its shading is no nearer to the sine's."""
     static, refined = (_off(plane, variant, "Gouraud")[0] for variant in (STATIC, REFINED))
     assert refined == pytest.approx(static, rel=0.1)
 
 
+@pytest.mark.slow
 def test_normals_of_the_refined_surface_mend_gouraud_shading(plane: Waving) -> None:
     """The same points with normals of their own are nearer to the sine; the outline is the same."""
     static, linear, own = (
@@ -90,6 +93,7 @@ def test_normals_of_the_refined_surface_mend_gouraud_shading(plane: Waving) -> N
     assert own[1] == pytest.approx(linear[1], rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shading", STYLES)
 def test_curves_are_nearer_in_shade_and_outline(plane: Waving, shading: str) -> None:
     """What interpolates the plane is nearer to the sine than the plane is, in both."""

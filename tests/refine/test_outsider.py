@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius import refine
@@ -108,7 +108,6 @@ def assert_no_crack(
     assert {(min(e), max(e)): 2**split for e, split in splits} == counts
 
 
-@settings(max_examples=100)
 @given(
     mesh=MESHES,
     chosen=options(),

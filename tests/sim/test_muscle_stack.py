@@ -83,6 +83,7 @@ def test_at_rest_what_lies_beneath_changes_nothing(simulation: sim.Simulation, h
     assert moved[0] != moved[1]
 
 
+@pytest.mark.slow
 def test_skin_rides_on_what_it_hangs_on(head: Head) -> None:
     """The relaxed zygomaticus no longer holds back the skin that the buccinator moves."""
     moved = [
@@ -93,6 +94,7 @@ def test_skin_rides_on_what_it_hangs_on(head: Head) -> None:
     assert 1.05 * held < free < 1.3 * held
 
 
+@pytest.mark.slow
 def test_muscles_ride_through_one_another(head: Head) -> None:
     """On a relaxed muscle that is itself carried, a third one is carried too, but no further."""
     simulation = sim.create(stacked(head, {"risorius": [ABOVE], ABOVE: [BENEATH]}))

@@ -143,6 +143,7 @@ def test_a_pose_stays_and_is_only_added_to(simulation: sim.Simulation, head: Hea
     assert undone.short < 0.3 * before
 
 
+@pytest.mark.slow
 def test_few_muscles_are_found_again(
     simulation: sim.Simulation, head: Head, generator: np.random.Generator
 ) -> None:

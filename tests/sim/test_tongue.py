@@ -21,6 +21,7 @@ POSES = (
     {"tongue_up": 1.0, "jaw_open": 0.2}, {"viseme_TH": 1.0}, {"viseme_DD": 1.0},
     {"viseme_nn": 1.0}, {"tongue_out": 1.0},
 )  # fmt: skip
+QUICK = {"tongueOut": 1.0}, {"tongue_out": 0.5, "jaw_open": 0.35}, {"viseme_DD": 1.0}
 
 
 def part(head: Head, name: str) -> Part:
@@ -105,7 +106,11 @@ def test_the_tip_rises_behind_the_upper_teeth(simulation: sim.Simulation, head: 
         assert incisors[:, 2].min() - 8.0 < now[2] < incisors[:, 2].max() - 2.0
 
 
-@pytest.mark.parametrize("pose", POSES, ids=str)
+@pytest.mark.parametrize(
+    "pose",
+    [pytest.param(pose, marks=() if pose in QUICK else pytest.mark.slow) for pose in POSES],
+    ids=str,
+)
 def test_the_tongue_pierces_nothing(
     simulation: sim.Simulation, head: Head, pose: dict[str, float]
 ) -> None:

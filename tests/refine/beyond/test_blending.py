@@ -14,6 +14,10 @@ from tests import meshes
 from tests.refine.cases import Forced, Needed, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
+QUICK_SCHEMES = [
+    "cubic",
+    *(pytest.param(scheme, marks=pytest.mark.slow) for scheme in ("loop", "detail")),
+]
 BOUND = 12.0
 """No point of the surface moves more than this many times the largest motion of the input.
 
@@ -89,7 +93,7 @@ def test_nothing_pops(scheme: str) -> None:
     assert turn < 0.5
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", QUICK_SCHEMES)
 @pytest.mark.parametrize("name", ["seam", "valence 20"])
 def test_nothing_pops_at_seams_and_tips(name: str, scheme: str) -> None:
     """Nor on a small tube with a seam, nor at a tip, where normals turn faster than elsewhere."""
@@ -99,7 +103,7 @@ def test_nothing_pops_at_seams_and_tips(name: str, scheme: str) -> None:
     assert blended < 0.7 * jumps(scheme, False, "normal", mesh)[0]
 
 
-@pytest.mark.parametrize("scheme", ["cubic", "detail"])
+@pytest.mark.parametrize("scheme", QUICK_SCHEMES[::2])
 @pytest.mark.parametrize("criterion", ["curvature", "bulge", "normal+rest"])
 def test_nothing_pops_by_other_criteria(criterion: object, scheme: str) -> None:
     """The same for the other criteria and their maximum."""
@@ -121,7 +125,7 @@ def rough(name: str) -> meshes.Mesh:
     return meshes.double_cone(60)
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", QUICK_SCHEMES)
 @pytest.mark.parametrize(
     "name", ["flipped", "debris", pytest.param("valence 60", marks=pytest.mark.slow)]
 )
@@ -154,7 +158,7 @@ def test_nothing_pops_on_rough_meshes(name: str, scheme: str) -> None:
     assert most(True) < ROUGH_BOUND < most(False)
 
 
-@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+@pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 @pytest.mark.parametrize("name", ["icosahedron", "box", "cone"])
 def test_outlines_do_not_pop(name: str, scheme: str) -> None:
     """A body whose edges all turn by 40 degrees and more rolls before the eye, and nothing jumps.
@@ -194,7 +198,7 @@ def test_outlines_do_not_pop(name: str, scheme: str) -> None:
     assert most(True) < BOUND < most(False)
 
 
-@pytest.mark.parametrize("scheme", ["loop", "cubic"])
+@pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 def test_any_change_of_needs_is_followed(scheme: str) -> None:
     """Whatever three edges need, and which of them appears: no jump in the triangle between them.
 
