@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from . import lips
 from .fields import Points, Values, bump, smooth_step, unit
-from .form import EYE_CENTRE, FOLD
+from .form import EYE_CENTRE, fold_side
 from .noise import noise
 
 SLOTS = 2
@@ -215,15 +215,16 @@ def lower_lid(points: Points, seed: int) -> Crease:
 def smile_lines(points: Points, seed: int) -> Crease:
     """The nasolabial fold and brackets beside the mouth: zygomatici, levators (AU10, AU12)."""
     x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
-    sides, heights = np.array(FOLD[::-1]).T
-    beside = x - np.interp(y, heights, sides)
-    slope = np.interp(y, heights, np.gradient(sides, heights))
+    sides, slope = fold_side(y)
+    beside = x - sides
     lean = 1.0 / np.sqrt(1.0 + slope**2)
     place = lean * beside + line_wander(points, 0.6, 16.0, seed)
-    along = plateau(y, -84.0, -74.0, -41.0, -34.5)
+    along = plateau(y, -88.0, -66.0, -41.0, -34.5)
     crease = bump(place, -0.4, 1.7) * along
-    # Lip side hollow, cheek side full: the cheek hangs over the crease.
-    fold = along * (0.95 * bump(place, 5.5, 4.5) - 1.15 * bump(place, -0.6, 2.6))
+    # Lip side hollow, cheek side full: the cheek hangs over the crease. It is so broad that it has
+    # to end gently, or its end would be a wrinkle of its own.
+    full = plateau(y - 0.5 * place, -92.0, -62.0, -50.0, -34.0)
+    fold = 0.95 * full * bump(place, 5.5, 4.5) - 1.15 * along * bump(place, -0.6, 2.6)
     bracket = bump(place - 0.08 * (y + 66.0), 7.5, 1.4) * plateau(y, -82.0, -70.0, -57.0, -47.0)
     outer = bump(place - 0.12 * (y + 62.0), 14.5, 1.0) * plateau(y, -76.0, -66.0, -54.0, -44.0)
     ragged = np.clip(0.75 + 0.35 * noise(points, 9.0, seed=seed + 3), 0.0, 1.0)
@@ -231,7 +232,7 @@ def smile_lines(points: Points, seed: int) -> Crease:
     across = np.column_stack([lean, -lean * slope, np.zeros_like(x)])
     near = plateau(beside, -16.0, -8.0, 24.0, 34.0) * plateau(y, -98.0, -88.0, -40.0, -33.0)
     cover = smooth_step(40.0, 56.0, z) * plateau(place, -7.0, -4.0, 17.0, 20.0)
-    cover = cover * plateau(y, -87.0, -84.0, -36.0, -32.0)
+    cover = cover * plateau(y, -91.0, -87.0, -36.0, -32.0)
     return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth, fold))
 
 

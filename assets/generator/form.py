@@ -3,7 +3,7 @@
 from functools import cache
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
+from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 from . import lips, nose
 from .fields import (
@@ -149,3 +149,15 @@ def from_below(x: Values, z: Values) -> Points:
     """Where rays along +y meet the underside of the nose, shape (n, 3)."""
     origins = np.stack([x, np.full_like(x, -48.5), z], axis=1)
     return cast(distance, origins, np.tile([0.0, 1.0, 0.0], (len(x), 1)), reach=20.0, step=0.5)
+
+
+def fold_side(heights: Values) -> tuple[Values, Values]:
+    """The nasolabial fold's distance from the middle at heights [mm], and its slope, (n,) each.
+
+    Without a corner: furrows that followed one would show it. Beyond its ends it goes straight on.
+    """
+    sides, known = np.array(FOLD[::-1]).T
+    course = CubicSpline(known, sides)
+    within = np.clip(heights, known[0], known[-1])
+    slopes = course(within, 1)
+    return course(within) + slopes * (heights - within), slopes

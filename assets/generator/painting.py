@@ -13,7 +13,7 @@ from ..model import Head
 from . import lips
 from .brows import brow_cover
 from .fields import Points, Values, bump, smooth_step
-from .form import FOLD
+from .form import fold_side
 from .grain import SEED, blotches, crop, freckles, pores
 from .noise import noise
 from .pigments import MELANIN, OWN, Complexion, reflectance, to_linear, to_screen
@@ -116,8 +116,7 @@ def _corner_of_mouth(points: Points) -> Values:
 
 def _fold_beside_mouth(points: Points) -> Values:
     """A hint of the nasolabial fold, strongest beside the wing of the nose, shape (n,)."""
-    sides, heights = np.array(FOLD[::-1]).T
-    beside = np.abs(points[:, 0]) - np.interp(points[:, 1], heights, sides)
+    beside = np.abs(points[:, 0]) - fold_side(points[:, 1])[0]
     in_front = smooth_step(50.0, 60.0, points[:, 2])
     along = smooth_step(-74.0, -46.0, points[:, 1]) * smooth_step(-33.0, -39.0, points[:, 1])
     return bump(beside, -0.5, 2.6) * along * in_front
