@@ -231,6 +231,7 @@ def smile_lines(points: Points, seed: int) -> Crease:
     depth = 0.35 * crease + ragged * (0.20 * bracket + 0.12 * outer)
     across = np.column_stack([lean, -lean * slope, np.zeros_like(x)])
     near = plateau(beside, -16.0, -8.0, 24.0, 34.0) * plateau(y, -98.0, -88.0, -40.0, -33.0)
+    near = near * smooth_step(4.0, 10.0, x)  # none on the middle, which has no side
     cover = smooth_step(40.0, 56.0, z) * plateau(place, -7.0, -4.0, 17.0, 20.0)
     cover = cover * plateau(y, -91.0, -87.0, -36.0, -32.0)
     return Crease(0, near, across, 1.6, cover, Furrows(depth, -depth, fold))
