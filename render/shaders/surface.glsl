@@ -263,7 +263,7 @@ vec3 front_albedo() {
     vec3 front = surface.colour;
 #elif defined(TEXTURED)
     vec4 painted = texture(albedo_texture, surface.uv);
-    vec3 front = painted.rgb;
+    vec3 front = painted.rgb * painted.rgb;  // square roots of light, see texture.py
     openness = mix(1.0, painted.a, occlusion);
 #else
     vec3 front = albedo;
