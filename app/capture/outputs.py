@@ -14,6 +14,7 @@ import numpy as np
 import PIL.Image
 
 from ..files import (
+    QUICK,
     Image,
     cannot_be_written,
     check_file,
@@ -86,7 +87,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     def write(picture: Path, image: Image, beside: Labelled | None) -> None:
         """Write one frame, in a thread."""
         with cannot_be_written(target):
-            PIL.Image.fromarray(image).save(picture, compress_level=3)
+            PIL.Image.fromarray(image).save(picture, compress_level=QUICK)
             if beside is not None:
                 beside.save(picture)
 
