@@ -14,15 +14,21 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import CameraView, FloatArray
+from .camera_view import CameraView
+from .materials import set_inside
 from .parts import PlacedPart
-from .programs import compile_program
+from .programs import compile_program, write_uniform
 from .render_target import Rectangle, RenderTarget
 from .stream import Share, Stream
+from .style import ColourBy, Shading, Style
 
 TILE = 8  # [pixels] each way
 LARGEST = 16  # tiles: side of the largest squares of which the farthest depth is kept
 MARGIN = 1e-4  # of the range of depths: beyond the rounding of drivers, 0.05 mm on a head
+SLIVER = 0.5 / TILE**2  # [tiles**2], twice the area up to which a triangle may turn to either side
+# By tiles along a side: which power of 2 tiles go into it, at most.
+_LEVELS = np.array([min(max(n, 1), LARGEST).bit_length() - 1 for n in range(2 * LARGEST + 1)])
+INWARD = 0.4  # cosine to the eye from which on, by surface.glsl and a little, only insides show
 _UNIT = 1  # texture unit: the one of the layer
 
 
@@ -35,9 +41,10 @@ class Occluder:
         program = compile_program(gl, "farthest.glsl", f"SAMPLES {target.samples}", f"TILE {TILE}")
         program["depths"] = _UNIT
         self._pass = gl.vertex_array(program, [])
+        self.inside = compile_program(gl, "inside.glsl")
         columns, rows = (-(-pixels // TILE) for pixels in target.size)
         self._tiles = gl.framebuffer([gl.texture((columns, rows), 1, dtype="f4")])
-        self._farthest = np.ones((1, 1, 1))  # level, row, column
+        self._farthest = np.ones((1, 1, 1), np.float32)  # level, row, column
         self._view: CameraView | None = None
         self._layer_number = -1
 
@@ -67,10 +74,16 @@ class Occluder:
         self._gl.scissor = None
         self._gl.enable_only(moderngl.DEPTH_TEST)
         read = np.frombuffer(self._tiles.read(components=1, dtype="f4"), np.float32)
-        tables: list[FloatArray] = [read.reshape(rows, columns).astype(np.float64)]
+        tables = [read.reshape(rows, columns)]
         while 1 << len(tables) <= LARGEST:
             tables.append(_doubled(tables[-1], 1 << (len(tables) - 1)))
         self._farthest = np.stack(tables)
+
+    def prepare_inside(self, view: CameraView, style: Style) -> None:
+        """Let `inside` draw what shows the inner side of skin alone."""
+        write_uniform(self.inside, "model_view", view.world_to_view)
+        write_uniform(self.inside, "projection", view.projection)
+        set_inside(self.inside, style)
 
     def choose_parts(self, placed: Sequence[PlacedPart]) -> None:
         """Choose the faces of parts that are not surely hidden; all at once, which takes less."""
@@ -88,84 +101,122 @@ class Occluder:
             buffers.choose(chosen)
 
     def may_be_seen(
-        self, vertices: npt.NDArray[np.floating], triangles: npt.NDArray[np.integer]
+        self,
+        vertices: npt.NDArray[np.floating],
+        triangles: npt.NDArray[np.integer],
+        *,
+        away: bool = False,
     ) -> npt.NDArray[np.bool_]:
-        """Which triangles (M, 3) of vertices in the world, (V, 3), are not surely hidden, (M,)."""
-        view = self._view
-        assert view is not None
-        matrix = view.world_to_clip
-        left, bottom, width, height = view.viewport
+        """Which triangles (M, 3) of vertices in the world, (V, 3), are not surely hidden, (M,).
+
+        away: of those that turn away from the eye, else to it; none of the others.
+        """
+        assert self._view is not None
+        matrix = self._view.world_to_clip.astype(np.float32)
+        left, bottom, width, height = self._view.viewport
         with np.errstate(all="ignore"):  # what is not finite is not surely hidden
-            clip = vertices @ matrix[:3] + matrix[3]
-            place = (clip[:, :3] / clip[:, 3:]).T
-            place = np.where(clip[:, 3] > 0.0, place, np.nan)
-            # In tiles, a pixel to spare on each side; and depths.
-            x = (left + 0.5 * width * (place[0] + 1.0)) / TILE
-            y = (bottom + 0.5 * height * (place[1] + 1.0)) / TILE
-            a, b, c = triangles.T
-            x, y, z = ((each[a], each[b], each[c]) for each in (x, y, 0.5 * (place[2] + 1.0)))
-            nearest = np.minimum(np.minimum(*z[:2]), z[2])
-            spare = 1.0 / TILE
-            low = [np.minimum(np.minimum(*each[:2]), each[2]) - spare for each in (x, y)]
-            high = [np.maximum(np.maximum(*each[:2]), each[2]) + spare for each in (x, y)]
-            is_known = np.isfinite(nearest + low[0] + low[1])
-            first = [self._tile(each, axis) for axis, each in enumerate(low)]
-            last = [self._tile(each, axis) for axis, each in enumerate(high)]
+            x, y, z, w = np.ascontiguousarray(
+                (vertices.astype(np.float32, copy=False) @ matrix[:3] + matrix[3]).T
+            )
+            inverse = np.where(w > 0.0, 1.0 / w, np.float32(np.nan))
+            # In tiles; and depths.
+            x = (left + 0.5 * width * (x * inverse + 1.0)) / TILE
+            y = (bottom + 0.5 * height * (y * inverse + 1.0)) / TILE
+            z = 0.5 * (z * inverse + 1.0)
+            a, b, c = triangles.T.astype(np.intp)
+            turn = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
+            turned = np.flatnonzero(~((turn if away else -turn) > SLIVER))
+            a, b, c = a[turned], b[turned], c[turned]
+            nearest = np.minimum(np.minimum(z[a], z[b]), z[c])
+            # A pixel to spare on each side.
+            low = [np.minimum(np.minimum(at[a], at[b]), at[c]) - 1.0 / TILE for at in (x, y)]
+            high = [np.maximum(np.maximum(at[a], at[b]), at[c]) + 1.0 / TILE for at in (x, y)]
+            farthest = self._farthest_within(low, high)
+        is_seen = np.zeros(len(triangles), bool)
+        is_seen[turned] = ~np.isfinite(nearest + low[0] + low[1]) | (nearest <= farthest + MARGIN)
+        return is_seen
+
+    def _farthest_within(
+        self, low: list[npt.NDArray[np.float32]], high: list[npt.NDArray[np.float32]]
+    ) -> npt.NDArray[np.float32]:
+        """The farthest depth of all tiles between two places [tiles]; 1 between distant ones."""
+        rows, columns = self._farthest.shape[1:]
+        first, last = (
+            [_clipped(each, count - 1) for each, count in zip(ends, (columns, rows), strict=True)]
+            for ends in (low, high)
+        )
         # Squares as large as fit, one in each corner, hold all tiles that a triangle touches.
         reach = np.maximum(last[0] - first[0], last[1] - first[1]) + 1
-        level = np.minimum(np.frexp(np.maximum(reach, 1))[1] - 1, len(self._farthest) - 1)
+        level = _LEVELS[np.minimum(reach, 2 * LARGEST)]
         side = 1 << level
-        is_known &= reach <= 2 * side
         ends = [np.maximum(last[axis] + 1 - side, first[axis]) for axis in (0, 1)]
-        rows, columns = self._farthest.shape[1:]
         flat = self._farthest.ravel()
         above = [(level * rows + row) * columns for row in (first[1], ends[1])]
         corners = [flat[row + column] for row in above for column in (first[0], ends[0])]
         farthest = np.maximum(np.maximum(*corners[:2]), np.maximum(*corners[2:]))
-        is_seen: npt.NDArray[np.bool_] = ~is_known | (nearest <= farthest + MARGIN)
-        return is_seen
+        return np.where(reach <= 2 * side, farthest, np.float32(1.0))
 
-    def _tile(self, place: npt.NDArray[np.floating], axis: int) -> npt.NDArray[np.int64]:
-        """The number of the tile that holds a place [tiles] along x or y."""
-        last = self._farthest.shape[2 - axis] - 1
-        numbers: npt.NDArray[np.int64] = np.clip(np.nan_to_num(place), 0, last).astype(np.int64)
-        return numbers
+
+def _clipped(place: npt.NDArray[np.float32], last: int) -> npt.NDArray[np.intp]:
+    """The number of the tile that holds a place [tiles], 0 to `last`; any, of what is no number."""
+    return np.fmin(np.fmax(place, 0.0), last).astype(np.intp)
 
 
 def draw_sides(
     gl: moderngl.Context,
     stream: Stream,
     shares: Sequence[tuple[moderngl.Program, Share]],
-    view: CameraView | None,
+    view: CameraView,
+    style: Style,
     occluder: Occluder | None,
 ) -> None:
     """Draw shares of a mesh with software: what turns to the eye goes first.
 
     What turns away is mostly hidden: drawn last, it is not shaded at all, if nothing is
-    multisampled. Else it is left out where that is certain, which needs a view and an occluder.
+    multisampled. Else it is left out where that is certain, which needs an occluder; and what shows
+    nothing but its inner side takes a shorter program.
     """
     gl.enable(moderngl.CULL_FACE)
     gl.cull_face = "back"
     for program, share in shares:
         stream.draw(program, share)
-    is_chosen = False
-    if view is not None and occluder is not None and occluder.target.samples:
-        is_chosen = True
+    is_free = style.colour_by is ColourBy.NONE  # else values go by the order of triangles
+    if is_free and occluder is not None and occluder.target.samples:
         covered = view.covered_pixels(stream.corners)
         occluder.look(view, covered)
         positions = stream.vertices[: stream.vertex_count, :3]
         triangles = stream.triangles[: stream.triangle_count]
-        stream.choose(occluder.may_be_seen(positions, triangles))
+        is_seen = occluder.may_be_seen(positions, triangles, away=True)
+        is_inner = np.zeros_like(is_seen)
+        if style.shading is Shading.PIXEL and not style.wireframe:
+            is_inner = is_seen & _shows_inside(stream, view)
+        stream.choose(is_seen & ~is_inner, is_inner)
+        occluder.prepare_inside(view, style)
         occluder.target.use_layer(view.viewport, covered)
         gl.enable(moderngl.CULL_FACE)
+        # What turns away shows no wrinkles, so the last program does for it.
+        shares = [(shares[-1][0], Share.CHOSEN), (occluder.inside, Share.OTHERS)]
     gl.cull_face = "front"
     for program, share in shares:
-        stream.draw(program, share, chosen=is_chosen)
+        stream.draw(program, share)
     gl.cull_face = "back"
     gl.disable(moderngl.CULL_FACE)
 
 
-def _doubled(farthest: FloatArray, side: int) -> FloatArray:
+def _shows_inside(stream: Stream, view: CameraView) -> npt.NDArray[np.bool_]:
+    """Which triangles turn so far away that they show their inner side alone, (triangle_count,)."""
+    rows = stream.vertices[: stream.vertex_count]
+    with np.errstate(all="ignore"):
+        to_eye, normal = view.camera.eye.astype(np.float32) - rows[:, :3], rows[:, 3:6]
+        facing, *squares = (
+            np.einsum("ij,ij->i", *each)
+            for each in ((to_eye, normal), (to_eye, to_eye), (normal, normal))
+        )
+        is_inner = facing < -INWARD * np.sqrt(squares[0] * squares[1])
+    return is_inner[stream.triangles[: stream.triangle_count]].all(axis=1)
+
+
+def _doubled(farthest: npt.NDArray[np.float32], side: int) -> npt.NDArray[np.float32]:
     """From squares of `side` tiles to squares twice as large, each named by its lowest tile."""
     wider = farthest.copy()
     np.maximum(wider[:, :-side], farthest[:, side:], out=wider[:, :-side])

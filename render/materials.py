@@ -38,6 +38,12 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
     program["sharpness"] = SKIN_SHARPNESS
 
 
+def set_inside(program: moderngl.Program, style: Style) -> None:
+    """How the inner side of skin of this style takes light, for inside.glsl."""
+    program["inner_albedo"], program["to_key"] = linear(style.inside), style.light.to_key
+    program["sky"], program["ground"] = style.light.sky, style.light.ground
+
+
 def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
     set_light(program, light)

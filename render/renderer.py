@@ -150,7 +150,7 @@ class Renderer:
             target = self.surface.target
             if target.samples and (self._occluder is None or self._occluder.target is not target):
                 self._occluder = Occluder(self._gl, target)
-            draw_sides(self._gl, stream, drawn, None if is_coloured else view, self._occluder)
+            draw_sides(self._gl, stream, drawn, view, style, self._occluder)
 
     def cast_shadows(
         self,

@@ -21,6 +21,8 @@ class Share(Enum):
     ALL = "all"  # in their order
     WRINKLED = "wrinkled"  # those with a corner that wrinkles
     SMOOTH = "smooth"  # all others
+    CHOSEN = "chosen"  # those that `choose` was told of first,
+    OTHERS = "others"  # and second
 
 
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
@@ -60,12 +62,10 @@ class Stream:
         self._vertex_buffer = gl.buffer(reserve=self.vertices.nbytes, dynamic=True)
         self.has_wrinkles = False
         self._wrinkle_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
-        self._is_wrinkled: npt.NDArray[np.bool_] | None = None  # triangle by triangle
         self._value_buffer: moderngl.Buffer | None = None
         self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
         self._chosen_buffer: moderngl.Buffer | None = None
         self._ranges: _Ranges = {}
-        self._chosen_ranges: _Ranges = {}
         self._vertex_arrays: dict[
             tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray
         ] = {}
@@ -95,7 +95,6 @@ class Stream:
             )
         self.vertex_count, self.triangle_count = vertex_count, triangle_count
         self.has_wrinkles = wrinkling is not None
-        self._is_wrinkled = None
         self._ranges = {Share.ALL: (0, triangle_count)}
         if vertex_count == 0 or triangle_count == 0:
             return
@@ -117,9 +116,11 @@ class Stream:
                 self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True),
             )
         triangles = self.triangles[: self.triangle_count]
-        self._is_wrinkled = (wrinkling.max(axis=1) > 0.0)[triangles].any(axis=1)
-        parted, ranges = self._parted(np.ones(len(triangles), bool))
-        self._ranges.update(ranges)
+        is_wrinkled = (wrinkling.max(axis=1) > 0.0)[triangles].any(axis=1)
+        parted = np.concatenate([triangles[is_wrinkled], triangles[~is_wrinkled]])
+        count = int(is_wrinkled.sum())
+        self._ranges[Share.WRINKLED] = 0, count
+        self._ranges[Share.SMOOTH] = count, len(triangles) - count
         for buffer, array in zip(self._wrinkle_buffers, (wrinkling, parted), strict=True):
             buffer.orphan()
             buffer.write(np.ascontiguousarray(array))
@@ -142,40 +143,27 @@ class Stream:
         self._value_buffer.orphan()
         self._value_buffer.write(np.ascontiguousarray(values, np.float32))
 
-    def _parted(self, is_chosen: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.uint32], _Ranges]:
-        """Some triangles, those that wrinkle first where amounts were uploaded, and the ranges."""
-        triangles = self.triangles[: self.triangle_count]
-        if self._is_wrinkled is None:
-            return triangles[is_chosen], {Share.ALL: (0, int(is_chosen.sum()))}
-        wrinkled = triangles[self._is_wrinkled & is_chosen]
-        smooth = triangles[~self._is_wrinkled & is_chosen]
-        return np.concatenate([wrinkled, smooth]), {
-            Share.WRINKLED: (0, len(wrinkled)),
-            Share.SMOOTH: (len(wrinkled), len(smooth)),
-        }
-
-    def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
-        """Choose among the uploaded triangles, (triangle_count,), for `draw` of the chosen."""
+    def choose(self, is_chosen: npt.NDArray[np.bool_], is_other: npt.NDArray[np.bool_]) -> None:
+        """Choose among the uploaded triangles, twice (triangle_count,), for `draw`."""
         if self._chosen_buffer is None:
             self._chosen_buffer = self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
-        chosen, self._chosen_ranges = self._parted(is_chosen)
+        triangles = self.triangles[: self.triangle_count]
+        chosen, others = triangles[is_chosen], triangles[is_other]
+        self._ranges[Share.CHOSEN] = 0, len(chosen)
+        self._ranges[Share.OTHERS] = len(chosen), len(others)
         self._chosen_buffer.orphan()
-        if len(chosen):
-            self._chosen_buffer.write(np.ascontiguousarray(chosen))
+        self._chosen_buffer.write(np.concatenate([chosen, others]))
 
-    def draw(
-        self, program: moderngl.Program, share: Share = Share.ALL, *, chosen: bool = False
-    ) -> None:
+    def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
 
         `share`: WRINKLED and SMOOTH need amounts of wrinkling, and give the program in_wrinkling.
-        `chosen`: only of those that were chosen since the upload.
         """
-        first, count = (self._chosen_ranges if chosen else self._ranges).get(share, (0, 0))
+        first, count = self._ranges.get(share, (0, 0))
         if self.vertex_count == 0 or count == 0:
             return
         indices = self._index_buffer
-        if chosen:
+        if share in (Share.CHOSEN, Share.OTHERS):
             assert self._chosen_buffer is not None
             indices = self._chosen_buffer
         elif share is not Share.ALL:

@@ -1,12 +1,15 @@
 """Images over the texture coordinates of the skin: its albedo, and the shape of its wrinkles.
 
 The albedo comes as sRGB and is kept as square roots of linear light, which shaders square: eight
-bits hold either as finely. Software OpenGL reads and blends such bytes as they are, in half the
-time that it takes to decode sRGB texel by texel; and roots blend almost as light does.
+bits hold either as finely. Software OpenGL reads and blends such bytes as they are, in two thirds
+of the time that it takes to decode sRGB texel by texel, and neighbours blend almost as light does.
+The smaller versions are means of light itself: that of black and white is what the eye sees from
+afar, not a darker grey.
 """
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from .style import linear
 from .surface import Image, is_software
@@ -15,7 +18,6 @@ _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
 LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
 WRINKLE_UNIT = 5  # texture unit; 4 belongs to a window's enlargement
 _AROUND_UNIT = 6
-_ROOTS = np.rint(255.0 * np.sqrt(linear(np.arange(256) / 255.0))).astype(np.uint8)  # of sRGB bytes
 _AROUND_LEVEL = 3  # of the smaller versions: a texel there is the mean of 8 x 8
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
@@ -56,7 +58,13 @@ class Texture(_Mipmaps):
             )
         self.redness = _median_redness(albedo)
         alpha = np.full(wanted, 255, np.uint8) if openness is None else openness
-        super().__init__(gl, np.dstack([_ROOTS[albedo], alpha]))
+        texels = np.dstack(
+            [linear(np.arange(256) / 255.0).astype(np.float32)[albedo], alpha / np.float32(255.0)]
+        )
+        super().__init__(gl, _roots(texels))
+        for level in range(1, max(self.size).bit_length()):
+            texels = _halved(texels)
+            self._texture.write(_roots(texels)[::-1].tobytes(), level=level)
         # Drivers without the extension report 0. Software has it, at several times the cost.
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
@@ -108,6 +116,21 @@ class WrinkleMap(_Mipmaps):
         program["wrinkle_map"] = WRINKLE_UNIT
         program["wrinkle_slope"] = self.steepest
         program["wrinkle_strength"] = strength
+
+
+def _roots(values: npt.NDArray[np.float32]) -> Image:
+    """The square roots of values 0..1 as bytes."""
+    return np.rint(255.0 * np.sqrt(values)).astype(np.uint8)
+
+
+def _halved(values: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    """Means of 2 x 2 values; a last row or column without another is left out, unless alone."""
+    for axis in (0, 1):
+        count = values.shape[axis] // 2
+        if count:
+            pairs = np.moveaxis(values, axis, 0)[: 2 * count]
+            values = np.moveaxis(0.5 * (pairs[::2] + pairs[1::2]), 0, axis)
+    return values
 
 
 def _median_redness(image: Image) -> float:

@@ -263,7 +263,8 @@ vec3 front_albedo() {
     vec3 front = surface.colour;
 #elif defined(TEXTURED)
     vec4 painted = texture(albedo_texture, surface.uv);
-    vec3 front = painted.rgb * painted.rgb;  // square roots of light, see texture.py
+    painted *= painted;  // see texture.py
+    vec3 front = painted.rgb;
     openness = mix(1.0, painted.a, occlusion);
 #else
     vec3 front = albedo;
