@@ -295,9 +295,9 @@ float key_lightness() {
     // The mean of 3 x 3 bilinear tests, by four: each stands between two of them, where the test's
     // own blend weighs them (after I. Castaño's "Shadow mapping summary", 2013).
     vec3 place = surface.light_place;
-    float texel = 1.0 / float(textureSize(shadow_map, 0).x);
-    vec2 corner = floor(place.xy / texel + 0.5);
-    vec2 part = place.xy / texel + 0.5 - corner;
+    float size = float(textureSize(shadow_map, 0).x), texel = 1.0 / size;
+    vec2 corner = floor(place.xy * size + 0.5);
+    vec2 part = place.xy * size + 0.5 - corner;
     corner -= 0.5;
     vec2 low_weight = 3.0 - 2.0 * part, high_weight = 1.0 + 2.0 * part;
     vec2 low = (corner + (2.0 - part) / low_weight - 1.0) * texel;
