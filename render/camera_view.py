@@ -42,15 +42,13 @@ class CameraView:
         """The same for views of the same, whoever made them."""
         return self.world_to_clip.tobytes()
 
-    def covered_pixels(
-        self, corners: FloatArray, *, model: FloatArray | None = None, padding: float = 2.0
-    ) -> Rectangle:
+    def covered_pixels(self, corners: FloatArray, padding: float = 2.0) -> Rectangle:
         """The pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
 
-        model: moves the corners into the world, for row vectors. The whole clip where a corner
-        is not finite or lies behind the eye; a width or height of 0 where nothing is seen.
+        The whole clip where a corner is not finite or lies behind the eye; a width or height of 0
+        where nothing is seen.
         """
-        matrix = self.world_to_clip if model is None else model @ self.world_to_clip
+        matrix = self.world_to_clip
         with np.errstate(over="ignore", invalid="ignore"):
             clip = corners @ matrix[:3] + matrix[3]
         if not np.isfinite(clip).all() or clip[:, 3].min() <= 0.0:

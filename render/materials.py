@@ -45,12 +45,12 @@ def set_inside(program: moderngl.Program, style: Style) -> None:
 
 
 def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
-    """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
-    set_light(program, light)
-    if part.bone in HEAD_BONES or hasattr(
-        part, "fibres"
-    ):  # light from behind does not get through a head
-        program["rim_light"] = 0.0, 0.0, 0.0
+    """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights.
+
+    `set_light` comes first; of it, light from behind does not get through a head.
+    """
+    is_in_head = part.bone in HEAD_BONES or hasattr(part, "fibres")
+    program["rim_light"] = (0.0, 0.0, 0.0) if is_in_head else light.rim
     shine = part.shine
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine

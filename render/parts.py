@@ -55,6 +55,8 @@ class PartBuffers:
         self._vertices = gl.buffer(reserve=width * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
         self.hair = getattr(part, "hair", 0.0)
+        # The define of surface.glsl that it is drawn with.
+        self.kind = "HAIR" if self.hair else "RIGID" if self.fibres is None else "FIBRES"
         self.upload()
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)

@@ -20,7 +20,7 @@ from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .materials import COLOUR_DEFINES, set_hair, set_palette, set_part, set_skin
+from .materials import COLOUR_DEFINES, set_hair, set_light, set_palette, set_part, set_skin
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore, PlacedPart
 from .programs import compile_program, write_uniform
@@ -135,7 +135,7 @@ class Renderer:
         for share in shares:
             share_wrinkles = None if share is Share.SMOOTH else wrinkles
             program = self._surface_program(style, texture, share_wrinkles)
-            if not self._set_view(program, view, stream.corners, np.eye(4)):
+            if not self._set_view(program, view, stream.corners):
                 return
             self._set_surface(program, view, style, texture, share_wrinkles)
             drawn.append((program, share))
@@ -196,7 +196,7 @@ class Renderer:
         if not len(rows):
             return
         program = self._surface_program(style, texture, None, "FRINGE")
-        if self._set_view(program, view, stream.corners, np.eye(4)):
+        if self._set_view(program, view, stream.corners):
             self._set_surface(program, view, style, texture, None)
             with blending(self._gl):
                 draw_fringes(self._gl, program, rows)
@@ -265,29 +265,33 @@ class Renderer:
         if shadow is not None and not shadow.is_of(view, self.surface.target.frame_number):
             shadow = None
         placed = self._parts.placed(parts, transforms)
+        corners = [each.corners @ bone[:3, :3].T + bone[:3, 3] for each, bone in placed]
+        if not placed or not self._use_layer(view, np.concatenate(corners)):
+            return
         is_chosen = self._occluder is not None and self._occluder.is_of(view, self.surface.target)
         if is_chosen and self._occluder is not None:
             self._occluder.choose_parts(placed)
         programs = {}
-        for has_fibres in {buffers.fibres is not None for buffers, _ in placed}:
-            defines = ["SHADOWS"] * bool(shadow) + ["FIBRES"] * has_fibres + ["SUNK"] * bool(cut)
-            programs[has_fibres] = self._program("surface.glsl", "PIXEL", "COLOURED", *defines)
-            if cut is not None:
-                set_cut(programs[has_fibres], view, cut, SUNK)
-            if shadow is not None:
-                shadow.set_uniforms(programs[has_fibres], view, _SHADOW_UNIT)
-        for buffers, transform in placed:
-            program = programs[buffers.fibres is not None]
-            if not buffers.hair and self._set_view(program, view, buffers.corners, transform):
-                set_part(program, buffers.part, style.light)
+        for kind in {each.kind for each, _ in placed}:
+            defines = ["SHADOWS"] * bool(shadow) + ["SUNK"] * bool(cut) if kind != "HAIR" else []
+            programs[kind] = self._program("surface.glsl", "PIXEL", "COLOURED", kind, *defines)
+            program = programs[kind]
+            write_uniform(program, "projection", view.projection)
+            set_light(program, style.light)
+            if cut is not None and "cut" in program:
+                set_cut(program, view, cut, SUNK)
+            if shadow is not None and "shadow_map" in program:
+                shadow.set_uniforms(program, view, _SHADOW_UNIT)
+        for buffers, bone in sorted(placed, key=lambda each: each[0].kind == "HAIR"):
+            program = programs[buffers.kind]
+            write_uniform(program, "model_view", bone.T @ view.world_to_view)
+            set_part(program, buffers.part, style.light)
+            if not buffers.hair:
                 buffers.draw(program, chosen=is_chosen)
-        program = self._program("surface.glsl", "PIXEL", "COLOURED", "HAIR")
-        for buffers, transform in placed:
-            if buffers.hair and self._set_view(program, view, buffers.corners, transform):
-                set_hair(program, buffers.hair, view)
-                set_part(program, buffers.part, style.light)
-                with blending(self._gl):
-                    buffers.draw(program, chosen=is_chosen)
+                continue
+            set_hair(program, buffers.hair, view)
+            with blending(self._gl):
+                buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
         self,
@@ -340,13 +344,11 @@ class Renderer:
         if not len(segments):
             return
         width *= self._line_scale
-        covered = view.covered_pixels(box_corners(rows[:, :3]), padding=2.0 + width)
         write_uniform(program, "world_to_clip", view.world_to_clip)
         program["viewport_size"] = view.viewport[2:]
         program["half_width"] = 0.5 * width
-        if covered[2] < 1 or covered[3] < 1:
+        if not self._use_layer(view, box_corners(rows[:, :3]), padding=2.0 + width):
             return
-        self.surface.target.use_layer(view.viewport, covered)
         content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
         lines = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with blending(self._gl):
@@ -382,18 +384,19 @@ class Renderer:
         return self._programs[key]
 
     def _set_view(
-        self,
-        program: moderngl.Program,
-        view: CameraView,
-        corners: npt.NDArray[np.float64],
-        transform: npt.NDArray[np.float64],
+        self, program: moderngl.Program, view: CameraView, corners: npt.NDArray[np.float64]
     ) -> bool:
-        """Set matrices and drawing area for geometry in a box; False where it is not seen."""
-        model = np.asarray(transform, np.float64).T
-        covered = view.covered_pixels(corners, model=model)
+        """Set matrices and drawing area for what is in a box in the world; False if unseen."""
+        write_uniform(program, "model_view", view.world_to_view)
+        write_uniform(program, "projection", view.projection)
+        return self._use_layer(view, corners)
+
+    def _use_layer(
+        self, view: CameraView, corners: npt.NDArray[np.float64], padding: float = 2.0
+    ) -> bool:
+        """Set the drawing area for what the hull of corners holds; False where it is not seen."""
+        covered = view.covered_pixels(corners, padding)
         if covered[2] < 1 or covered[3] < 1:
             return False
         self.surface.target.use_layer(view.viewport, covered)
-        write_uniform(program, "model_view", model @ view.world_to_view)
-        write_uniform(program, "projection", view.projection)
         return True
