@@ -213,7 +213,8 @@ def _shows_inside(stream: Stream, view: CameraView) -> npt.NDArray[np.bool_]:
             for each in ((to_eye, normal), (to_eye, to_eye), (normal, normal))
         )
         is_inner = facing < -INWARD * np.sqrt(squares[0] * squares[1])
-    return is_inner[stream.triangles[: stream.triangle_count]].all(axis=1)
+    shows: npt.NDArray[np.bool_] = is_inner[stream.triangles[: stream.triangle_count]].all(axis=1)
+    return shows
 
 
 def _doubled(farthest: npt.NDArray[np.float32], side: int) -> npt.NDArray[np.float32]:

@@ -8,6 +8,7 @@ Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from typing import Any
 
 import moderngl
@@ -274,8 +275,8 @@ class Renderer:
         programs = {}
         for kind in {each.kind for each, _ in placed}:
             defines = ["SHADOWS"] * bool(shadow) + ["SUNK"] * bool(cut) if kind != "HAIR" else []
-            programs[kind] = self._program("surface.glsl", "PIXEL", "COLOURED", kind, *defines)
-            program = programs[kind]
+            program = self._program("surface.glsl", "PIXEL", "COLOURED", kind, *defines)
+            programs[kind] = program
             write_uniform(program, "projection", view.projection)
             set_light(program, style.light)
             if cut is not None and "cut" in program:
@@ -286,11 +287,9 @@ class Renderer:
             program = programs[buffers.kind]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
             set_part(program, buffers.part, style.light)
-            if not buffers.hair:
-                buffers.draw(program, chosen=is_chosen)
-                continue
-            set_hair(program, buffers.hair, view)
-            with blending(self._gl):
+            if buffers.hair:
+                set_hair(program, buffers.hair, view)
+            with blending(self._gl) if buffers.hair else nullcontext():
                 buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
@@ -396,7 +395,6 @@ class Renderer:
     ) -> bool:
         """Set the drawing area for what the hull of corners holds; False where it is not seen."""
         covered = view.covered_pixels(corners, padding)
-        if covered[2] < 1 or covered[3] < 1:
-            return False
-        self.surface.target.use_layer(view.viewport, covered)
-        return True
+        if is_seen := min(covered[2:]) > 0:
+            self.surface.target.use_layer(view.viewport, covered)
+        return is_seen
