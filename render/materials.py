@@ -41,9 +41,8 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
 def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights."""
     set_light(program, light)
-    if part.bone in HEAD_BONES or hasattr(
-        part, "fibres"
-    ):  # light from behind does not get through a head
+    if part.bone in HEAD_BONES or getattr(part, "fibres", None) is not None:
+        # Light from behind does not get through a head.
         program["rim_light"] = 0.0, 0.0, 0.0
     shine = part.shine
     program["subsurface"] = 0.3
