@@ -61,9 +61,15 @@ def mix(start: Vector, end: Vector, share: Any) -> Vector:
 def unit(v: Vector) -> Vector:
     """Normalise a vector; zero stays zero."""
     squared = dot(v, v)
-    if SHORT < squared < LONG:
+    if is_held(squared):
         return times(ONE / np.sqrt(squared), v)
     return unit_of_extreme(np.float64(v[0]), np.float64(v[1]), np.float64(v[2]))
+
+
+@njit
+def is_held(squared: Any) -> Any:
+    """Whether single precision holds the square of a length; asked without a branch."""
+    return (SHORT < squared) & (squared < LONG)
 
 
 @njit
