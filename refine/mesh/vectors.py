@@ -54,6 +54,8 @@ def times(share: Any, v: Vector) -> Vector:
 @njit
 def mix(start: Vector, end: Vector, share: Any) -> Vector:
     """A share of the way from one vector to another; to the last bit one of them at 0 and at 1."""
+    if share == ONE:  # what is not blended has gone all the way
+        return end
     return plus(times(ONE - share, start), times(share, end))
 
 
