@@ -1,13 +1,13 @@
 """How well the rig foretells a shape that its fit did not see: `risorius bench left-out`.
 
 Shape by shape of a folder of scans (motion.py), a rig is fitted to all the others, and the shape is
-posed with it and scored. Each fit starts from anatomy.toml, where muscles, jaw and lids are as books
-have them and all muscles of a kind are equally strong, and which tells who makes a shape (FACS). All
-numbers of all muscles may change, places too, those of jaw and lids, and the shares of the muscles
-in the shapes that are seen, each against a pull towards its start. What muscles have in common is a
-shared change (muscle_numbers.py): so a muscle that only the left-out shape would show has the place
-of its anatomy and the strength and width of the others. Of the built-in rig stay tissue, muscles
-that none of these shapes uses, and which muscles the row of a seen shape may have.
+posed with it and scored. Each fit starts from anatomy.toml, where muscles, jaw and lids are as
+books have them and all muscles of a kind are equally strong, and which tells who makes a shape
+(FACS). All numbers of all muscles may change, places too, those of jaw and lids, and the shares of
+the muscles in the shapes that are seen, each against a pull towards its start. What muscles have in
+common is a shared change (muscle_numbers.py): so a muscle that only the left-out shape would show
+has the place of its anatomy and the strength and width of the others. Of the built-in rig stay
+tissue, muscles that none of these shapes uses, and which muscles the row of a seen shape may have.
 
 Fitted are positions of rest (statics.py) on a coarse mesh, by Gauss and Newton; scored are
 simulated poses. How far a wrong mixture of muscles is to blame for a miss, the left-out shape tells
@@ -275,8 +275,8 @@ def report(rows: Sequence[Row]) -> str:
     mean = Row("mean", *(float(np.mean([getattr(row, key) for row in rows])) for key in keys))
     lines = [
         "Cosine of simulated to scanned displacement: with the built-in rig, with muscles, jaw and",
-        "lids as anatomy alone has them, with those fitted from there to all other shapes, the same",
-        "in a mixture fitted to the shape itself, and fitted to all.",
+        "lids as anatomy alone has them, with those fitted from there to all other shapes, with",
+        "the same in a mixture fitted to the shape, and with those fitted to all.",
         "",
         *table(columns, [astuple(row) for row in [*rows, mean]]),
     ]

@@ -3,7 +3,8 @@
 A number is told in units of how far it may easily go (SCALES), from where anatomy starts it. What
 muscles have in common is told once: a shared change goes to all fibred muscles at once, to all ends
 in the knot beside the corner of the mouth, or to the upper and the lower part of a muscle of the
-lips, mirrored. So what one muscle teaches of widths and strengths holds for those that no scan shows.
+lips, mirrored. So what one muscle teaches of widths and strengths holds for those that no scan
+shows.
 """
 
 from __future__ import annotations
