@@ -46,6 +46,7 @@ FEW = 0.003  # share of the error that a step must win
 DAMPING = 0.02
 LONGEST = 2.0  # scales that a number goes in one step
 SLIGHT = 0.1  # scales, for derivatives
+PROCESSES = 4  # at most; each takes 1.5 GB
 SETTLE = 30  # frames of 1/60 s until a pose is still enough
 
 
@@ -75,7 +76,7 @@ def measure(directory: str | Path) -> list[Row]:
     """Leave out one shape after the other. Raises ValueError for a folder that is none."""
     face = _face(directory)
     everything = face.fit(face.tasks)
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
+    with ProcessPoolExecutor(min(os.cpu_count() or 1, PROCESSES)) as pool:
         foretold = pool.map(partial(_foretold, directory), face.tasks)
         progress = tqdm(foretold, desc="left out", total=len(face.tasks), leave=False)
         return [

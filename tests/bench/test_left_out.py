@@ -121,5 +121,6 @@ def test_other_shapes_teach_a_muscle(tmp_path: Path) -> None:
     for row in rows.values():
         assert row.rig > 0.9
         assert row.anatomy < row.fitted
-        assert -1.0 <= row.left_out < row.rig
-        assert row.left_out - 0.01 < row.mixed
+    for shape in ("mouthSmileLeft", "mouthFrownLeft"):
+        assert -1.0 <= rows[shape].left_out < rows[shape].rig
+        assert rows[shape].left_out - 0.01 < rows[shape].mixed
