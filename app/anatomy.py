@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from risorius import render
+from risorius.assets.identities import HAIR
 from risorius.assets.skull import build_skull
 from risorius.assets.throat import build_throat
 
@@ -66,7 +67,7 @@ class Solids:
         self._throat = self._throat or build_throat(scene.head, scene.simulation.pivots())
         solid = self._throat + [self._skull[name] for name in names]
         solid += [self._muscles] * ("muscles" in wanted)
-        stay = [part for part in scene.parts if not part.name.startswith(SOFT)]
+        stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
         self.parts = solid + stay + self._soft(dissection)
         self._solid_count = len(solid)
 

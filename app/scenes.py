@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import Person, recoloured
+from risorius.assets.identities import HAIR, Person, recoloured
 
 from .errors import UserError
 from .growing import Growing
@@ -150,11 +150,16 @@ class FaceScene(Scene):
         return self.simulation.positions
 
     @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        hair = [part.vertices for part in self.parts if part.name.startswith(HAIR)]
+        return np.vstack([self.rest_positions, *hair])
+
+    @property
     def framed(self) -> npt.NDArray[np.float64]:
         """The head and the beginning of the neck; what is below may lie beyond the frame."""
         lowest = float(self.rest_positions[self.landmarks[CHIN], 1]) - NECK
-        seen: npt.NDArray[np.float64] = self.rest_positions[self.rest_positions[:, 1] > lowest]
-        return seen
+        extent = self.extent
+        return np.asarray(extent[extent[:, 1] > lowest])
 
     @property
     def values(self) -> Mapping[str, float]:

@@ -1,22 +1,26 @@
 """How well the rig foretells a shape that its fit did not see: `risorius bench left-out`.
 
 Shape by shape of a folder of scans (motion.py), a rig is fitted to all the others, and the shape is
-posed with it and scored. Each fit starts from anatomy.toml, where muscles lie as books of anatomy
-have them and all of a kind are equally strong, and which tells who makes a shape (FACS). All
-numbers of all muscles may change, places too, and the shares of the muscles in the shapes that are
-seen, each against a pull towards its start. What muscles have in common is a shared change
-(muscle_numbers.py): so a muscle that only the left-out shape would show has the place of its
-anatomy and the strength and width of the others. Of the built-in rig stay tissue, jaw, lids,
-muscles that none of these shapes uses, and which muscles the row of a seen shape may have.
+posed with it and scored. Each fit starts from anatomy.toml, where muscles, jaw and lids are as
+books have them and all muscles of a kind are equally strong, and which tells who makes a shape
+(FACS). All numbers of all muscles may change, places too, those of jaw and lids, and the shares of
+the muscles in the shapes that are seen, each against a pull towards its start. What muscles have in
+common is a shared change (muscle_numbers.py): so a muscle that only the left-out shape would show
+has the place of its anatomy and the strength and width of the others. Of the built-in rig stay
+tissue, muscles that none of these shapes uses, and which muscles the row of a seen shape may have.
 
 Fitted are positions of rest (statics.py) on a coarse mesh, by Gauss and Newton; scored are
-simulated poses. Shapes of jaw and lids have no numbers of this kind, and are not asked.
+simulated poses. How far a wrong mixture of muscles is to blame for a miss, the left-out shape tells
+when the shares of its own row, and nothing else, are fitted to it.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import astuple, dataclass, fields
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -24,13 +28,13 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from risorius import sim
-from risorius.sim.rig import LidMuscle, Muscle
 
-from .motion import SIDE, Shape, known_shape
-from .muscle_numbers import Numbers, anatomical, with_muscles
+from .bones_and_lids import framed
+from .motion import SIDE, known_shape
+from .muscle_numbers import Numbers, Parts, anatomical, moved_by, parts_of, with_parts
 from .report import table
 from .scans import Scans, read_coarse_scans
-from .statics import Balance, Pull, Statics, whole
+from .statics import Balance, Pull, Statics
 
 Array = npt.NDArray[np.float64]
 Vector = Array  # changes of numbers, shared ones, and shares
@@ -42,17 +46,19 @@ FEW = 0.003  # share of the error that a step must win
 DAMPING = 0.02
 LONGEST = 2.0  # scales that a number goes in one step
 SLIGHT = 0.1  # scales, for derivatives
+PROCESSES = 4  # at most; each takes 1.5 GB
 SETTLE = 30  # frames of 1/60 s until a pose is still enough
 
 
 @dataclass(frozen=True)
 class Row:
-    """Cosines of one shape with four rigs."""
+    """Cosines of one shape with five rigs."""
 
     shape: str
     rig: float  # as it is
     anatomy: float  # before any fit
     left_out: float  # fitted to the other shapes
+    mixed: float  # the same, but the shares of its muscles are fitted to the shape
     fitted: float  # fitted to all in the same way
 
 
@@ -68,21 +74,38 @@ class _Task:
 
 def measure(directory: str | Path) -> list[Row]:
     """Leave out one shape after the other. Raises ValueError for a folder that is none."""
-    face = _Face(read_coarse_scans(directory))
+    face = _face(directory)
     everything = face.fit(face.tasks)
-    rows = []
-    for name, task in tqdm(face.tasks.items(), desc="left out", leave=False):
-        foretold = face.fit([other for other in face.tasks if other != name]).muscles
-        rows.append(
+    with ProcessPoolExecutor(min(os.cpu_count() or 1, PROCESSES)) as pool:
+        foretold = pool.map(partial(_foretold, directory), face.tasks)
+        progress = tqdm(foretold, desc="left out", total=len(face.tasks), leave=False)
+        return [
             Row(
                 name,
                 face.cosine(face.built_in, task.built_in, task.scanned),
-                face.cosine(face.anatomy.muscles, task.known, task.scanned),
-                face.cosine(foretold, task.known, task.scanned),
-                face.cosine(everything.muscles, everything.rows[name], task.scanned),
+                face.cosine(face.anatomy.parts, task.known, task.scanned),
+                *cosines,
+                face.cosine(everything.parts, everything.rows[name], task.scanned),
             )
-        )
-    return rows
+            for (name, task), cosines in zip(face.tasks.items(), progress, strict=True)
+        ]
+
+
+@lru_cache(1)
+def _face(directory: str | Path) -> _Face:
+    return _Face(read_coarse_scans(directory))
+
+
+def _foretold(directory: str | Path, name: str) -> tuple[float, float]:
+    """Cosines of a shape with a rig fitted to all others: by its row after anatomy, and mixed."""
+    face = _face(directory)
+    task = face.tasks[name]
+    others = face.fit([other for other in face.tasks if other != name])
+    mixed = face.mixed(name, others)
+    return (
+        face.cosine(others.parts, task.known, task.scanned),
+        face.cosine(mixed.parts, mixed.rows[name], task.scanned),
+    )
 
 
 @dataclass(frozen=True)
@@ -90,7 +113,7 @@ class _Point:
     """Where a fit is."""
 
     changes: Vector
-    muscles: Mapping[str, Muscle]
+    parts: Parts
     rows: Mapping[str, Mapping[str, float]]
     balances: Mapping[str, Balance]
     error: float
@@ -101,18 +124,20 @@ class _Face:
 
     def __init__(self, scans: Scans) -> None:
         self._trial = sim.Trial(scans.head)
-        self._statics = Statics(self._trial.anatomy)
-        self.built_in = {muscle.name: muscle for muscle in self._trial.rig.muscles}
-        self.anatomy = anatomical(scans.head.rig)
+        self.built_in, self.anatomy = parts_of(self._trial.rig), anatomical(scans.head.rig)
+        rig = with_parts(self._trial.rig, self.anatomy.parts)
+        self._statics = Statics(framed(self._trial.anatomy, rig))
         self._root = np.sqrt(self._trial.areas)[:, None]
         simulation, self.tasks = self._trial.simulation(self._trial.rig), dict[str, _Task]()
         for name in scans.names:
             shape, row = known_shape(name, simulation), self._row(name)
             if shape and row and not name.lower().endswith(("_r", "right")):
                 standard = self._trial.anatomy.space.vectors_to_standard(scans.field(name))
-                self.tasks[name] = self._task(shape, row, np.asarray(standard))
-        used = {whole(control) for task in self.tasks.values() for control in task.start}
-        self._numbers = Numbers(self.anatomy.muscles, sorted(used))
+                start = dict.fromkeys(shape.values, 0.0) | row
+                self.tasks[name] = _Task(np.asarray(standard), row, start, shape.values)
+        parts, tasks = self.anatomy.parts, self.tasks.values()
+        used = {moved_by(control, parts) for task in tasks for control in task.start}
+        self._numbers = Numbers(parts, sorted(used))
         self._shares = [(name, c) for name, task in self.tasks.items() for c in task.start]
         self._started = np.array([self.tasks[name].start[c] for name, c in self._shares])
         own, shared = self._numbers.sharing.shape
@@ -128,16 +153,11 @@ class _Face:
         row = rows.get(SIDE.sub("", name).lower(), {})
         return {f"{muscle}_left": share for muscle, share in row.items()}
 
-    def _task(self, shape: Shape, known: Mapping[str, float], scanned: Array) -> _Task:
-        """A shape whose row may learn the muscles that the built-in row has, too."""
-        also = [c for c in shape.values if not isinstance(self.built_in[whole(c)], LidMuscle)]
-        return _Task(scanned, known, dict.fromkeys(also, 0.0) | dict(known), shape.values)
-
-    def cosine(
-        self, muscles: Mapping[str, Muscle], values: Mapping[str, float], scanned: Array
-    ) -> float:
+    def cosine(self, parts: Parts, values: Mapping[str, float], scanned: Array) -> float:
         """Pose a rig and compare."""
-        simulation = self._trial.simulation(with_muscles(self._trial.rig, muscles))
+        rig = with_parts(self._trial.rig, parts)
+        self._trial.anatomy = framed(self._trial.anatomy, rig)
+        simulation = self._trial.simulation(rig)
         simulation.set_all(values)
         for _ in range(SETTLE):
             simulation.step(1.0 / 60.0)
@@ -146,18 +166,27 @@ class _Face:
         b = self._root * scanned
         return float((a * b).sum() / max(np.linalg.norm(a) * np.linalg.norm(b), 1e-12))
 
-    def fit(self, names: Iterable[str]) -> _Point:
-        """Fit a rig to some of the shapes, from anatomy on."""
-        seen = list(names)
-        point = self._at(np.zeros(len(self._pulls)), seen)
-        damping, little = DAMPING, 0
+    def mixed(self, name: str, muscles: _Point) -> _Point:
+        """Fit only the shares of one shape's own row."""
+        count = self._numbers.count
+        own = [count + n for n, (of, _) in enumerate(self._shares) if of == name]
+        return self.fit([name], muscles.changes, own)
+
+    def fit(
+        self, names: Iterable[str], start: Vector | None = None, free: Sequence[int] | None = None
+    ) -> _Point:
+        """Fit a rig to some of the shapes, from anatomy on; or only the changes in `free`."""
+        seen, every = list(names), range(len(self._pulls))
+        point = self._at(np.zeros(len(every)) if start is None else start, seen)
+        damping, little, free = DAMPING, 0, every if free is None else free
         for step in range(STEPS):
-            found = self._derivatives(point, seen, first=step == 0)
+            found = self._derivatives(point, seen, first=step == 0 and start is None)
             matrix = np.diag(self._pulls**2) + sum(found[name][0] for name in seen)
             slope = self._pulls**2 * point.changes + sum(found[name][1] for name in seen)
-            better = None
+            matrix, better = matrix[np.ix_(free, free)], None
             while better is None and damping < 100.0:
-                way = np.linalg.solve(matrix + damping * np.eye(len(slope)), -slope)
+                way = np.zeros(len(every))
+                way[free] = np.linalg.solve(matrix + damping * np.eye(len(free)), -slope[free])
                 tried = self._at(point.changes + np.clip(way, -LONGEST, LONGEST), seen)
                 better = tried if tried.error < point.error else None
                 damping = damping / 4.0 if better else damping * 8.0
@@ -174,14 +203,14 @@ class _Face:
         count, changes = self._numbers.count, changes.copy()
         shares = np.clip(self._started + SHARE_SCALE * changes[count:], 0.0, 1.0)
         changes[count:] = (shares - self._started) / SHARE_SCALE
-        muscles = self._numbers.muscles(changes[:count])
+        parts = self._numbers.parts(changes[:count])
         rows: dict[str, dict[str, float]] = {name: {} for name in self.tasks}
         for (name, control), share in zip(self._shares, shares, strict=True):
             rows[name][control] = float(share)
-        balances = {name: self._statics.balance(muscles, rows[name]) for name in seen}
+        balances = {name: self._statics.balance(parts, rows[name]) for name in seen}
         error = float(((self._pulls * changes) ** 2).sum())
         error += sum(float((self._off(name, balances[name]) ** 2).sum()) for name in seen)
-        return _Point(changes, muscles, rows, balances, error)
+        return _Point(changes, parts, rows, balances, error)
 
     def _off(self, name: str, balance: Balance) -> Array:
         """How far a pose is off, against its scan, shape (V, 3)."""
@@ -203,15 +232,16 @@ class _Face:
         """The same of one shape."""
         changes, columns = list[Pull](), list[int]()
         for control, share in point.rows[name].items():
-            muscle = point.muscles[whole(control)]
-            now = self._statics.pull(muscle, control, share)
+            name_of_part = moved_by(control, point.parts)
+            part = point.parts[name_of_part]
+            now = self._statics.pull(part, control, share)
             further = share + 0.05 if share < 0.9 else share - 0.05
-            then = self._statics.pull(muscle, control, further)
+            then = self._statics.pull(part, control, further)
             changes.append(_slope(now, then, (further - share) / SHARE_SCALE))
             columns.append(self._numbers.count + self._shares.index((name, control)))
             for j, number in enumerate(self._numbers.all if share > 0.0 else ()):
-                if number.muscle == muscle.name:
-                    other = number.put(muscle, number.of(muscle) + SLIGHT * number.scale)
+                if number.part == name_of_part:
+                    other = number.put(part, number.of(part) + SLIGHT * number.scale)
                     then = self._statics.pull(other, control, share)
                     changes.append(_slope(now, then, SLIGHT))
                     columns.append(j)
@@ -223,28 +253,31 @@ class _Face:
     def _normal(self, moved: Array, columns: Sequence[int], off: Array) -> tuple[Array, Array]:
         """Matrix and slope for all changes, from derivatives after some, shape (3V, n)."""
         own, count = len(self._numbers.all), len(self._pulls)
-        spread = np.zeros((len(columns), count))
-        spread[np.arange(len(columns)), columns] = 1.0
-        spread[:, own : self._numbers.count] = spread[:, :own] @ self._numbers.sharing
-        matrix: Array = spread.T @ (moved.T @ moved) @ spread
-        slope: Array = spread.T @ (moved.T @ off.ravel())
+        spread = np.zeros((count, len(columns)))
+        spread[columns, np.arange(len(columns))] = 1.0
+        spread[own : self._numbers.count] = self._numbers.sharing.T @ spread[:own]
+        few = np.flatnonzero(spread.any(axis=1))  # most changes are of muscles that do not act
+        spread, matrix, slope = spread[few], np.zeros((count, count)), np.zeros(count)
+        matrix[np.ix_(few, few)] = spread @ (moved.T @ moved) @ spread.T
+        slope[few] = spread @ (moved.T @ off.ravel())
         return matrix, slope
 
 
 def _slope(now: Pull, then: Pull, step: float) -> Pull:
     """How a pull changes for each unit of a step."""
-    more = then.minus(now)
-    return Pull(more.force / step, more.hold / step)
+    more = then.plus(now, -1.0)
+    return Pull(*(each / step for each in more))
 
 
 def report(rows: Sequence[Row]) -> str:
     """The text to print."""
-    columns = "shape:<20|rig:7.3f|anatomy:7.3f|left out:8.3f|fitted:7.3f"
+    columns = "shape:<20|rig:7.3f|anatomy:7.3f|left out:8.3f|mixed:7.3f|fitted:7.3f"
     keys = [each.name for each in fields(Row)][1:]
     mean = Row("mean", *(float(np.mean([getattr(row, key) for row in rows])) for key in keys))
     lines = [
-        "Cosine of simulated to scanned displacement: with the built-in rig, with muscles as",
-        "anatomy alone has them, with those fitted from there to all other shapes, and to all.",
+        "Cosine of simulated to scanned displacement: with the built-in rig, with muscles, jaw and",
+        "lids as anatomy alone has them, with those fitted from there to all other shapes, with",
+        "the same in a mixture fitted to the shape, and with those fitted to all.",
         "",
         *table(columns, [astuple(row) for row in [*rows, mean]]),
     ]

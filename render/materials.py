@@ -49,7 +49,7 @@ def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
 
     `set_light` comes first; of it, light from behind does not get through a head.
     """
-    is_in_head = part.bone in HEAD_BONES or hasattr(part, "fibres")
+    is_in_head = part.bone in HEAD_BONES or getattr(part, "fibres", None) is not None
     program["rim_light"] = (0.0, 0.0, 0.0) if is_in_head else light.rim
     shine = part.shine
     program["subsurface"] = 0.3

@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.assets import Segment
+from risorius.assets.identities import HAIR
 
 from ..pipeline import Pipeline, splits_of_source
 from ..scenes import FaceScene
@@ -108,6 +109,8 @@ class Passes:
 
 def _classes(part: Any) -> Bytes:
     """The class of each triangle of a part."""
+    if part.name.startswith(HAIR):
+        return np.full(len(part.faces), Segment.HAIR, np.uint8)
     by_side = {"eye_right": Segment.RIGHT_EYE, "eye_left": Segment.LEFT_EYE}
     if part.bone == "neck":
         return np.full(len(part.faces), Segment.CLOTHING, np.uint8)

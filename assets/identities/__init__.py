@@ -1,4 +1,4 @@
-"""Other persons than the built-in head: of other shape, other skin, other eyes.
+"""Other persons than the built-in head: of other shape, other skin, other eyes, other hair.
 
     person = make_person(sample_identity(7))        # the shape of a number's person
     person = coloured(person, angle=-20.0, irises="brown")
@@ -18,12 +18,15 @@ from .complexion import (
     recoloured,
     typology_angle,
 )
+from .hair import CUTS, HAIR
 from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
 from .traits import Identity, Sex, sample_identity
 
 __all__ = [
+    "CUTS",
     "DARKEST",
+    "HAIR",
     "LIGHTEST",
     "NAMED",
     "Features",

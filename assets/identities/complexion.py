@@ -32,6 +32,7 @@ from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW, to_li
 from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
+from .hair import CUTS, HAIR, grown
 from .person import Person
 from .traits import Identity, Sex
 
@@ -43,6 +44,8 @@ IRIS_SHARES = {"brown": 0.4, "hazel": 0.15, "green": 0.12, "blue": 0.2, "grey": 
 FAIR_HAIR, GREY_HAIR = (0.58, 0.44, 0.29), (0.54, 0.52, 0.49)  # sRGB
 GREY_BROWS = 0.12  # of how grey hair on the scalp is; lashes are not told from brows
 FAIR_SKIN = 45.0  # ITA above which hair may be fair
+LOCKS_LIGHTER = 1.35  # than painted hair, which no other hair shades
+GROWN = 0.94  # of a scalp, that is covered by long hair
 DETAIL = 9  # [texels] below which relief is told from colour
 AnyHead = TypeVar("AnyHead", bound=FittedHead)
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
@@ -58,7 +61,8 @@ class Features:
 
     brows: their width, as a share of the widest. beard, lips: density of its shadow, and of blood
     in them, beside that of the built-in head. relief: of pores and patches, as a share beside its
-    own. fair, grey: shares of such hair. baldness: how far the hairline has receded [mm].
+    own. fair, grey: shares of such hair. baldness: how far the hairline has receded [mm]. grown:
+    whether hair stands so long that no scalp shines through.
     """
 
     brows: float = 1.0
@@ -68,6 +72,7 @@ class Features:
     fair: float = 0.0
     grey: float = 0.0
     baldness: float = 0.0
+    grown: bool = False
 
 
 PLAIN = Features()
@@ -116,7 +121,7 @@ def recoloured(angle: float, *, blood: float = 1.0, features: Features = PLAIN) 
     tints = _tints()
     melanin = float(np.interp(angle, tints.angles, tints.melanins))
     density, redness, hair = _changes(melanin, blood)
-    hair = hair + features.fair * (to_linear(np.array(FAIR_HAIR)) - hair)
+    hair = _hair_light(hair, features)
     grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features)
@@ -133,16 +138,32 @@ def recoloured(angle: float, *, blood: float = 1.0, features: Features = PLAIN) 
     return _screen_bytes()[steps]
 
 
+def _hair_light(hair: FloatArray, features: Features) -> FloatArray:
+    """Linear light of hair that is not grey; hair: that of the tone, shape (3,)."""
+    return np.asarray(hair + features.fair * (to_linear(np.array(FAIR_HAIR)) - hair))
+
+
+def _hair_colour(angle: float, features: Features) -> FloatArray:
+    """The colour of somebody's hair (sRGB), shape (3,); angle: ITA [deg]."""
+    tints = _tints()
+    melanin = float(np.interp(angle, tints.angles, tints.melanins))
+    hair = _hair_light(_changes(melanin, 1.0)[2], features)
+    return to_screen(LOCKS_LIGHTER * (hair + features.grey * (GREY_LIGHT - hair)))
+
+
 def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
     """How much of hair's colour is left on each texel where brows are thinned, hairlines recede."""
     kept = tints.hair
     if features.brows < 1.0:
         share = np.clip((features.brows + 0.2 - tints.brow) / 0.35, 0.0, 1.0)
-        kept = kept * np.where(tints.brow < 1.6, share, 1.0).astype(np.float32)
+        kept = kept * np.where(tints.brow < 1.99, share, 1.0).astype(np.float32)
     if features.baldness > 0.0:
         behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
         share = np.clip(behind / 14.0, 0.0, 1.0)
         kept = kept * np.where(tints.scalp > 0.01, share, 1.0).astype(np.float32)
+    if features.grown:
+        behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
+        kept = np.maximum(kept, GROWN * np.clip((behind - 3.0) / 8.0, 0.0, 1.0).astype(np.float32))
     return kept
 
 
@@ -168,7 +189,10 @@ def coloured(
     irises: str | None = None,
     features: Features = PLAIN,
 ) -> AnyHead:
-    """A head with skin and eyes of other colours; None leaves them as they are."""
+    """A head with skin and eyes of other colours; None leaves them as they are.
+
+    With a tone, a person gets the hair of its cut, too.
+    """
     skin = head.albedo if angle is None else recoloured(angle, blood=blood, features=features)
     parts = head.parts if irises is None else with_irises(head.parts, irises)
     segments = head.segments
@@ -176,7 +200,18 @@ def coloured(
         tints = _tints()
         is_bald = (segments == Segment.HAIR) & (_kept_hair(tints, features) < 0.5 * tints.hair)
         segments = np.where(is_bald, np.uint8(Segment.SKIN), segments)
+    if isinstance(head, Person) and angle is not None:
+        parts = with_hair(head, parts, _hair_colour(angle, features), features.baldness)
     return replace(head, albedo=skin, parts=parts, segments=segments)
+
+
+def with_hair(
+    person: Person, parts: Sequence[Part], colour: FloatArray, receded: float
+) -> tuple[Part, ...]:
+    """The parts of a person with the hair of its cut; colour: sRGB; receded: see `grown`."""
+    others = [part for part in parts if not part.name.startswith(HAIR)]
+    vertices, faces = person.vertices, person.faces
+    return (*others, *grown(person.identity.cut, vertices, faces, colour, receded=receded))
 
 
 def drawn_irises(
@@ -200,6 +235,7 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         relief=(0.15 if is_man else -0.45) + 0.02 * (years - 30.0),
         fair=fair if angle > FAIR_SKIN else 0.0,
         grey=float(np.clip((years - 46.0 + 16.0 * grey) / 34.0, 0.0, 0.95)),
+        grown=CUTS[identity.cut] is not None,
         baldness=0.9 * max(years - 28.0, 0.0) * bald**2 if is_man else 0.0,
     )
 

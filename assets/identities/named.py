@@ -22,6 +22,7 @@ class _Known:
     age: float
     angle: float
     irises: str
+    cut: str
     scores: Mapping[str, float]
     shapes: Mapping[str, float]
 
@@ -29,18 +30,18 @@ class _Known:
 NAMED: Mapping[str, _Known] = MappingProxyType(
     {
         "ada": _Known(
-            27, Sex.WOMAN, 27.0, 34.0, "hazel",
+            27, Sex.WOMAN, 27.0, 34.0, "hazel", "bob",
             {"go-go": -1.3, "zy-zy": -0.2, "ls-sto": 1.2, "sto-li": 1.4, "al-al": -0.6,
              "ch-ch": -0.2, "n-gn": -0.5, "sn-ls": -0.8},
             {"cheeks": 1.2, "chin width": -1.6, "jaw line": -1.2, "lips": 1.4, "eye slant": 0.8},
         ),
         "kofi": _Known(
-            9, Sex.MAN, 38.0, -38.0, "brown",
+            9, Sex.MAN, 38.0, -38.0, "brown", "cropped",
             {"al-al": 2.2, "ls-sto": 1.8, "sto-li": 2.0, "zy-zy": 0.9, "n-prn": -0.6, "ch-ch": 0.8},
             {"nose bridge": -1.2, "lips": 2.2, "cheekbones": 1.0, "jaw angle": 0.5, "chin": 0.4},
         ),
         "maria": _Known(
-            47, Sex.WOMAN, 66.0, 56.0, "blue",
+            47, Sex.WOMAN, 66.0, 56.0, "blue", "waves",
             {"go-go": 0.2, "zy-zy": 0.5, "n-gn": -0.9, "ls-sto": -0.6, "sto-li": -0.4,
              "al-al": 0.4, "sn-ls": 0.6},
             {"chin": -0.8, "chin width": -0.3, "nose bridge": 0.5, "cheeks": -0.4},
@@ -64,9 +65,8 @@ def person_called(who: int | str) -> Person:
         return replace(made, called=str(who))
     known = NAMED[who]
     drawn = sample_identity(known.seed, sex=known.sex, age=known.age)
-    identity = replace(
-        drawn, scores={**drawn.scores, **known.scores}, shapes={**drawn.shapes, **known.shapes}
-    )
+    scores, shapes = {**drawn.scores, **known.scores}, {**drawn.shapes, **known.shapes}
+    identity = replace(drawn, cut=known.cut, scores=scores, shapes=shapes)
     made = make_person(identity)
     made = in_own_colours(made, known.seed, angle=known.angle, irises=known.irises)
     return replace(made, called=who)

@@ -22,16 +22,18 @@ from ..fitting.head import FittedHead
 from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
 from ..fitting.warp import Similarity
 from ..generator.fields import smooth_step
+from ..generator.form import neck_relief
 from ..generator.regions import HAIRLINE, line_height
 from ..generator.sections import direction_coordinates
 from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
 from ..topology import cross_products, vertex_normals
 from .shaping import Field, Shaper, lids_on_eyes, measures_of
-from .traits import SHAPES, Identity
+from .traits import SHAPES, Identity, Sex
 
 NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the deviations, tried in turn
 MOST_RESTING = 0.65
+NECK_OF_WOMEN = 0.85  # of the relief of the neck, which they have not
 LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
 
 
@@ -94,7 +96,10 @@ def _made(identity: Identity) -> Person:
     eyes = tuple(_eye(known, eye, field, bent) for eye in known.eyes)
     vertices = lids_on_eyes(known, bent, eyes, LID_SHARES)
     normals = vertex_normals(vertices, known.faces)
-    vertices = vertices + identity.hair * _hair(known)[:, None] * normals
+    outward = identity.hair * _hair(known)
+    if identity.sex is Sex.WOMAN:
+        outward -= NECK_OF_WOMEN * _neck(known)
+    vertices = vertices + outward[:, None] * normals
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any():
         raise AssetError("no head has these measures without turning a triangle")
@@ -140,6 +145,11 @@ def _hair(known: Head) -> FloatArray:
     away = cKDTree(known.vertices[ears]).query(known.vertices)[0]
     top = 0.4 + 0.6 * smooth_step(20.0, 95.0, known.vertices[:, 1])
     return top * smooth_step(2.0, 30.0, behind) * smooth_step(6.0, 30.0, away)
+
+
+def _neck(known: Head) -> FloatArray:
+    """How far muscles and larynx stand out of the neck [mm], shape (V,)."""
+    return np.asarray(neck_relief(*direction_coordinates(known.vertices)))
 
 
 def _moves(shapes: Mapping[str, float]) -> dict[int, FloatArray]:

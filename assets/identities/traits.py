@@ -110,6 +110,12 @@ OF_AGE: Mapping[str, float] = MappingProxyType(
     }
 )  # fmt: skip
 HAIR = MappingProxyType({Sex.WOMAN: (7.0, 12.0), Sex.MAN: (2.0, 7.0)})  # [mm]
+CUT_SHARES: Mapping[Sex, Mapping[str, float]] = MappingProxyType(
+    {
+        Sex.WOMAN: {"bob": 0.4, "waves": 0.4, "short": 0.2},
+        Sex.MAN: {"short": 0.6, "cropped": 0.4},
+    }
+)
 AGES = 20.0, 75.0  # [years]
 UNEVENNESS = 0.08  # of a shape's deviation, by which it is more on the left and less on the right
 
@@ -121,6 +127,7 @@ class Identity:
     sex: whose norms `scores` belong to.
     age: [years].
     hair: its height over the scalp [mm].
+    cut: name of its cut (hair/cuts.py).
     scores: for each measure of `NORMS`, deviations from its mean.
     shapes: for each of `SHAPES`, deviations from the built-in head's.
     unevenness: for each of `SHAPES`, by how much it is more on the left and less on the right.
@@ -129,6 +136,7 @@ class Identity:
     sex: Sex
     age: float
     hair: float
+    cut: str
     scores: Mapping[str, float]
     shapes: Mapping[str, float]
     unevenness: Mapping[str, float]
@@ -148,6 +156,7 @@ class Identity:
             self.sex,
             self.age,
             self.hair,
+            self.cut,
             *({key: share * kind[key] for key in kind} for kind in kinds),
         )
 
@@ -195,4 +204,8 @@ def sample_identity(
         shift = side * OF_MEN.get(name, 0.0) + decades * OF_AGE.get(name, 0.0)
         shapes[name] = float(np.clip(0.8 * shapes[name] + shift, -MOST, MOST))
     hair = float(random.uniform(*HAIR[sex]))
-    return Identity(sex, age, hair, scores, shapes, {name: share * sides[name] for name in SHAPES})
+    cuts = CUT_SHARES[sex]
+    cut = str(random.choice(list(cuts), p=list(cuts.values())))
+    return Identity(
+        sex, age, hair, cut, scores, shapes, {name: share * sides[name] for name in SHAPES}
+    )

@@ -83,7 +83,8 @@ class WholeSurface:
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:
         """The mesh of `frame`, as seen from vertex 0, every edge split once; to be placed."""
-        self._frame = self._frame._replace(normals=frame.normals)
+        if frame.normals is not self._frame.normals:
+            self._frame = self._frame._replace(normals=frame.normals)
         see_from_first(frame.positions, self._frame.positions, self._frame.points)
         return self._frame
 

@@ -211,7 +211,7 @@ class BaseRefiner(Refiner):
         accepted = self._accepted
         is_known = vertices is accepted[0] and triangles is accepted[1] and source is accepted[2]
         if is_known and len(vertices) >= vertex_count and len(triangles) >= triangle_count:
-            if all(array.flags.writeable for array in accepted):
+            if vertices.flags.writeable and triangles.flags.writeable and source.flags.writeable:
                 return
         check_lent("vertices", vertices, np.float32, (vertex_count, self.vertex_columns))
         check_lent("triangles", triangles, np.uint32, (triangle_count, 3))

@@ -26,7 +26,7 @@ from ...jit import njit
 from ..border.registry import Registry
 from ..mesh.arrays import Doubles, Flags, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import ONE, add_to_row, cross, difference, dot, row_of
+from ..mesh.vectors import ONE, WIDTH, add_to_row, cross, difference, dot, row_of
 
 THRESHOLD_ONCE = 0.02
 """Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.
@@ -150,6 +150,7 @@ class NormalDrop:
         self._edges = connectivity.edges.view(np.uint32)
         self._rest_dots = np.empty(len(self._edges), dtype=np.float32)
         edge_dots(rest_normals, self._edges, self._rest_dots)
+        self._dots = np.empty_like(self._rest_dots)
         # No direction to compare with at rest (all triangles around are slivers): never split.
         undefined = np.empty(len(rest_positions), dtype=np.bool_)
         find_undefined_normals(connectivity.faces, rest_positions, undefined)
@@ -159,7 +160,7 @@ class NormalDrop:
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
         limits = self.thresholds.once, self.thresholds.twice
-        mark_drops(normals, self._edges, self._rest_dots, limits, splits)
+        mark_drops(normals, self._edges, self._rest_dots, limits, self._dots, splits)
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
@@ -171,6 +172,7 @@ class NormalDrop:
 @njit
 def edge_dots(normals: Floats, edges: Unsigned, dots: Floats) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
+    assert normals.shape[1] == WIDTH and edges.shape[1] == 2
     for e in range(edges.shape[0]):
         dots[e] = dot(row_of(normals, edges[e, 0]), row_of(normals, edges[e, 1]))
 
@@ -181,15 +183,18 @@ def mark_drops(
     edges: Unsigned,
     rest_dots: Floats,
     limits: tuple[np.float32, np.float32],
+    dots: Floats,
     splits: Small,
 ) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
-    `edges`: end points, shape (E, 2); `limits`: the two thresholds.
+    `edges`: end points, shape (E, 2); `limits`: the two thresholds; `dots`: scratch, shape (E,).
+    What is compared lies in a row, so that many edges are compared at once.
     """
     once, twice = limits
+    edge_dots(normals, edges, dots)
     for e in range(edges.shape[0]):
-        drop = rest_dots[e] - dot(row_of(normals, edges[e, 0]), row_of(normals, edges[e, 1]))
+        drop = rest_dots[e] - dots[e]
         splits[e] = np.uint8(drop > once) + np.uint8(drop > twice)
 
 

@@ -12,12 +12,14 @@ first paragraph).
 Everything here goes from the edges that are split, not from the triangles: most are not.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
 from ..border.stream import StreamArrays
-from ..mesh.arrays import Arrays, Floats, Indices, Short, Unsigned
+from ..mesh.arrays import Floats, Indices, Short, Unsigned
 from ..mesh.vectors import WIDTH, row_of, write_row
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
 from .table import CENTRE, Patterns
@@ -43,14 +45,13 @@ def number_points(
     more_sides: Unsigned,
     rim_edges: Unsigned,
     wedge_count: int,
-    frame: Arrays,
+    frame: FrameBuffers,
 ) -> None:
     """List the split edges, give new points their rows, and triangles their configuration.
 
     `split_once` gets every split edge, `split_twice` those split twice. The entries of
     `first_points` for edges that are not split have no meaning. `counts` gets all but centres.
     """
-    frame = FrameBuffers(*frame)
     splits, configurations = frame.splits, frame.configurations
     edge_count, face_count = edge_sides.shape[0], configurations.shape[0] - 1
     once_count = twice_count = 0
@@ -85,6 +86,20 @@ def number_points(
 
 
 @njit
+def numbering(
+    edge_sides: Unsigned,
+    more_sides: Unsigned,
+    rim_edges: Unsigned,
+    wedge_count: int,
+    frame: FrameBuffers,
+) -> Iterator[tuple[int, int]]:
+    """Do `number_points` at each `next`, and give the numbers of output rows and triangles."""
+    while True:
+        number_points(edge_sides, more_sides, rim_edges, wedge_count, frame)
+        yield int(frame.counts[ROWS]), int(frame.counts[TRIANGLES])
+
+
+@njit
 def copy_along_rims(rim_edges: Unsigned, frame: FrameBuffers) -> None:
     """Copy position and normal of new points on texture seams to their other sides."""
     for r in range(frame.growth_once.shape[0], rim_edges.shape[0]):
@@ -116,17 +131,16 @@ def place_rim_attributes(rim_uv: Indices, frame: FrameBuffers, values: Floats) -
 def look_up_triangles(
     corners: Unsigned,
     triangle_rims: Unsigned,
-    frame: Arrays,
-    patterns: Arrays,
+    frame: FrameBuffers,
+    patterns: Patterns,
     table_rows: Short,
-    out: Arrays,
+    out: StreamArrays,
 ) -> None:
     """Write the subtriangles of every triangle by its row in the table (section 4.3).
 
     A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
     quarter points in reverse. Centres are numbered in the order of the triangles that have one.
     """
-    frame, patterns, out = FrameBuffers(*frame), Patterns(*patterns), StreamArrays(*out)
     triangles, source, subtriangles = out.triangles, out.source, patterns.subtriangles
     splits, first_points = frame.splits, frame.first_points
     assert corners.shape[1] == triangle_rims.shape[1] == WIDTH
@@ -156,3 +170,18 @@ def look_up_triangles(
             source[count] = t
             count += one
         points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
+
+
+@njit
+def looking_up(
+    corners: Unsigned,
+    triangle_rims: Unsigned,
+    frame: FrameBuffers,
+    patterns: Patterns,
+    table_rows: Short,
+    out: StreamArrays,
+) -> Iterator[None]:
+    """Do `look_up_triangles` at each `next`."""
+    while True:
+        look_up_triangles(corners, triangle_rims, frame, patterns, table_rows, out)
+        yield

@@ -12,6 +12,7 @@ Differs from the paper: normals of new points are interpolated linearly and then
 deformed mesh is copied once, as a shield against a simulation that runs on meanwhile.
 """
 
+from collections.abc import Iterator
 from typing import Unpack
 
 import numpy as np
@@ -24,8 +25,8 @@ from ..border.stream import StreamArrays
 from ..mesh.arrays import Floats
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
-from .frame import ROWS, TRIANGLES, buffers_for
-from .look_up import copy_along_rims, look_up_triangles, number_points, place_rim_attributes
+from .frame import buffers_for
+from .look_up import copy_along_rims, looking_up, numbering, place_rim_attributes
 from .smoothing import LoopScheme, Scheme
 from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE
 
@@ -59,6 +60,11 @@ class Kahler(BaseRefiner):
         if self.history is not None:
             self._patterns, self._table_rows = self.history.patterns, self.history.states
         self.edge_splits = self._frame.splits[: len(mesh.edges)]
+        sides, more = mesh.edge_sides, mesh.more_sides
+        wedge_count = len(mesh.wedge_vertices)
+        self._numbering = numbering(sides, more, mesh.rim_edges, wedge_count, self._frame)
+        self._out: StreamArrays | None = None
+        self._looking_up: Iterator[None]
         if hasattr(self._criterion, "set_scheme"):
             self._criterion.set_scheme(self._scheme)
         inner = getattr(self._scheme, "scheme", self._scheme)
@@ -86,8 +92,10 @@ class Kahler(BaseRefiner):
         self._mark(view)
         vertex_count, triangle_count = self._number()
         out = self.reserve(stream, vertex_count, triangle_count)
+        if out is not self._out:
+            self._write_to(out)
         self._place(out.vertices)
-        self._look_up(out)
+        self._look_up()
         return vertex_count, triangle_count
 
     def _mark(self, view: View | None) -> None:
@@ -99,29 +107,30 @@ class Kahler(BaseRefiner):
 
     def _number(self) -> tuple[int, int]:
         """Give new points their rows and triangles their row of the table; count both."""
-        mesh, frame = self.connectivity, self._frame
-        wedge_count = len(mesh.wedge_vertices)
-        number_points(mesh.edge_sides, mesh.more_sides, mesh.rim_edges, wedge_count, frame[:])
+        counts = next(self._numbering)
         if self.history is not None:
-            self.history.follow(frame.configurations)
-        return int(frame.counts[ROWS]), int(frame.counts[TRIANGLES])
+            self.history.follow(self._frame.configurations)
+        return counts
+
+    def _write_to(self, out: StreamArrays) -> None:
+        """Hand the arrays of a stream to the passes that write them."""
+        mesh, self._out = self.connectivity, out
+        self._frame = self._frame._replace(rows=out.vertices)
+        self._looking_up = looking_up(
+            mesh.corners, mesh.triangle_rims, self._frame, self._patterns, self._table_rows, out
+        )
 
     def _place(self, rows: Floats) -> None:
         """Write vertices and new points: positions, normals, attributes (section 4.2)."""
-        if rows is not self._frame.rows:
-            self._frame = self._frame._replace(rows=rows)
         self._scheme.place(self._frame)
         if self._values is not None:
             self.write_wedges(rows)
             copy_along_rims(self.connectivity.rim_edges, self._frame)
             place_rim_attributes(self.connectivity.rim_uv, self._frame, self._values.values)
 
-    def _look_up(self, out: StreamArrays) -> None:
+    def _look_up(self) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
-        mesh, frame, patterns = self.connectivity, self._frame[:], self._patterns[:]
-        look_up_triangles(
-            mesh.corners, mesh.triangle_rims, frame, patterns, self._table_rows, out[:]
-        )
+        next(self._looking_up)
 
     def _pass_view(self, view: View | None) -> None:
         """Show the criterion where the eye is, if it wants to know."""

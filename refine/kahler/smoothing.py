@@ -45,14 +45,14 @@ scheme is one small class, bound once to the mesh and called once in every frame
 which edges are split and where in the output their points go.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from ...jit import njit
 from ..border.registry import Registry
-from ..mesh.arrays import Arrays, Doubles, Floats, Small
+from ..mesh.arrays import Doubles, Floats, Small
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.rings import NEAR, Rings, vertex_rings
 from ..mesh.vectors import (
@@ -155,10 +155,14 @@ class LoopScheme:
             np.zeros(connectivity.vertex_count, dtype=np.float32),
             np.zeros((len(connectivity.edges), 3), dtype=np.float32),
         )
+        self._frame: FrameBuffers | None = None
 
     def place(self, frame: FrameBuffers) -> None:
         """Write moved vertices, first level, second level."""
-        place_points(self._around[:], frame[:], self._rings[:], self._first_level[:])
+        if frame is not self._frame:
+            self._frame = frame
+            self._placing = placing(self._around, frame, self._rings, self._first_level)
+        next(self._placing)
 
 
 @njit
@@ -276,11 +280,13 @@ def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -
 
 
 @njit
-def place_points(around: Arrays, frame: Arrays, rings: Arrays, first: Arrays) -> None:
-    """Write moved vertices, the first level and the second."""
-    around, frame = Surroundings(*around), FrameBuffers(*frame)
-    rings, first = Rings(*rings), FirstLevel(*first)
-    grow_vertices(around, frame, first.vertex_growth)
-    place_vertices(frame.points, frame.normals, rings, first.vertex_growth, frame.rows)
-    place_middles(around, frame, first.middles)
-    place_quarters(around, frame, first.middles)
+def placing(
+    around: Surroundings, frame: FrameBuffers, rings: Rings, first: FirstLevel
+) -> Iterator[None]:
+    """Write moved vertices, the first level and the second level at each `next`."""
+    while True:
+        grow_vertices(around, frame, first.vertex_growth)
+        place_vertices(frame.points, frame.normals, rings, first.vertex_growth, frame.rows)
+        place_middles(around, frame, first.middles)
+        place_quarters(around, frame, first.middles)
+        yield

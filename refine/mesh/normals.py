@@ -12,13 +12,17 @@ import numpy as np
 from ...jit import njit
 from .arrays import Doubles, Floats, Unsigned
 from .vectors import (
+    ONE,
     WIDTH,
     ZERO,
     Vector,
     add_to_row,
     between,
     cross,
+    dot,
+    is_held,
     row_of,
+    times,
     unit,
     write_row,
 )
@@ -32,10 +36,24 @@ def cross_product(positions: Doubles, a: np.uint32, b: np.uint32, c: np.uint32) 
 
 @njit
 def normalise(vectors: Floats) -> None:
-    """Bring vectors, shape (V, 3), to length one; those that are zero stay zero."""
+    """Bring vectors, shape (V, 3), to length one; those that are zero stay zero.
+
+    Without a branch the loop takes several at a time. What it leaves as it is, because single
+    precision does not hold its square, comes after it, one by one.
+    """
     assert vectors.shape[1] == WIDTH
+    left_count = 0
     for v in range(vectors.shape[0]):
-        write_row(vectors, v, unit(row_of(vectors, v)))
+        vector = row_of(vectors, v)
+        squared = dot(vector, vector)
+        scale = ONE / np.sqrt(squared if is_held(squared) else ONE)
+        write_row(vectors, v, times(scale, vector))
+        left_count += not is_held(squared)
+    if left_count > 0:
+        for v in range(vectors.shape[0]):
+            vector = row_of(vectors, v)
+            if not is_held(dot(vector, vector)):
+                write_row(vectors, v, unit(vector))
 
 
 @njit

@@ -54,6 +54,8 @@ def times(share: Any, v: Vector) -> Vector:
 @njit
 def mix(start: Vector, end: Vector, share: Any) -> Vector:
     """A share of the way from one vector to another; to the last bit one of them at 0 and at 1."""
+    if share == ONE:  # what is not blended has gone all the way
+        return end
     return plus(times(ONE - share, start), times(share, end))
 
 
@@ -61,9 +63,15 @@ def mix(start: Vector, end: Vector, share: Any) -> Vector:
 def unit(v: Vector) -> Vector:
     """Normalise a vector; zero stays zero."""
     squared = dot(v, v)
-    if SHORT < squared < LONG:
+    if is_held(squared):
         return times(ONE / np.sqrt(squared), v)
     return unit_of_extreme(np.float64(v[0]), np.float64(v[1]), np.float64(v[2]))
+
+
+@njit
+def is_held(squared: Any) -> Any:
+    """Whether single precision holds the square of a length; asked without a branch."""
+    return (SHORT < squared) & (squared < LONG)
 
 
 @njit

@@ -18,6 +18,7 @@ import numpy as np
 import PIL.Image
 import pytest
 from click.testing import CliRunner, Result
+from scipy.ndimage import binary_dilation
 
 from risorius.app.cli import main
 from risorius.app.dataset.folder import UNFINISHED, SetFolder
@@ -26,6 +27,7 @@ from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
 from risorius.app.dataset.table import load_table
 from risorius.app.scenes import FaceScene
+from risorius.assets import Segment
 
 COUNT, SEED, SIZE, PASSES = 5, 11, (80, 64), ("depth", "normal", "segmentation")
 ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
@@ -243,6 +245,10 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
         behind[name] = shot.image
         inner = is_behind[1:-1, 1:-1] & is_behind[2:, 1:-1] & is_behind[:-2, 1:-1]
         inner &= is_behind[1:-1, 2:] & is_behind[1:-1, :-2]
+        # Single locks may be thinner than the pixels that have a class.
+        is_hair = shot.known.images["segmentation"] == Segment.HAIR
+        inner &= ~binary_dilation(is_hair, iterations=6)[1:-1, 1:-1]
+        assert inner.mean() > 0.1
         assert np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max() <= 1
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
 

@@ -119,7 +119,7 @@ def test_persons_are_spread_as_published() -> None:
 def test_each_shape_does_what_its_name_says(head: Head) -> None:
     """A shape moves its points its way, and leaves all measures as they are."""
     mean = Identity(
-        Sex.WOMAN, 30.0, 0.0, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN
+        Sex.WOMAN, 30.0, 0.0, "cropped", dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN
     )
     plain = make_person(mean)
     for name, pushes in SHAPES.items():
@@ -167,7 +167,9 @@ def test_named_persons_are_different_people(head: Head) -> None:
 
 def test_calipers_are_allowed_for() -> None:
     """Widths that were taken with calipers are asked for as a surface has them."""
-    mean = Identity(Sex.MAN, 30.0, 0.0, dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN)
+    mean = Identity(
+        Sex.MAN, 30.0, 0.0, "cropped", dict.fromkeys(NORMS, 0.0), dict.fromkeys(SHAPES, 0.0), EVEN
+    )
     for code, norm in norms_of(Sex.MAN).items():
         assert mean.measures[code] == norm.mean + PRESSED.get(code, 0.0)
 

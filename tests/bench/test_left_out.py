@@ -5,14 +5,16 @@ from __future__ import annotations
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from risorius import assets, sim
+from risorius.bench.bones_and_lids import framed
 from risorius.bench.left_out import measure
-from risorius.bench.muscle_numbers import NATURE, Numbers, anatomical
-from risorius.bench.statics import Pull, Statics
+from risorius.bench.muscle_numbers import NATURE, Numbers, anatomical, parts_of, with_parts
+from risorius.bench.statics import Statics
 from risorius.sim.rig import LinearMuscle, RingMuscle
 from tests.sim.poses import settled_displacement
 
@@ -25,19 +27,21 @@ def test_anatomy_holds_nothing_that_was_fitted() -> None:
     other = {
         name: {key: value for key, value in table.items() if key in NATURE}
         | ({"fibre": table["fibre"][:1]} if "fibre" in table else {})
-        | ({"lid": table["lid"]} if "lid" in table else {})
         for name, table in document["muscle"].items()
     }
     known, bare = anatomical(document), anatomical({"muscle": other})
+    assert known.parts["jaw"] == bare.parts["jaw"]
+    assert known.parts["eyes"] == bare.parts["eyes"]
     for row in known.rows.values():
         for name in row:
-            assert known.muscles[name] == bare.muscles[name]
-            assert name in tomllib.loads(Path("bench/anatomy.toml").read_text())["muscle"]
+            if not name.startswith("jaw_"):
+                assert known.parts[name] == bare.parts[name]
+                assert name in tomllib.loads(Path("bench/anatomy.toml").read_text())["muscle"]
 
 
 def test_shared_changes_are_mirrored_from_lip_to_lip() -> None:
     """What the upper part of a ring learns goes to the lower one, up and down exchanged."""
-    muscles = anatomical(assets.load("head").rig).muscles
+    muscles = anatomical(assets.load("head").rig).parts
     pair = [f"incisivus_labii_{part}oris" for part in ("superi", "inferi")]
     numbers = Numbers(muscles, pair)
     own = len(numbers.all)
@@ -45,7 +49,7 @@ def test_shared_changes_are_mirrored_from_lip_to_lip() -> None:
     for path in (("push", 1), ("radii", 1)):
         first = next(j for j, number in enumerate(numbers.all) if number.path == path)
         changes[own:] += numbers.sharing[first]
-    upper, lower = (numbers.muscles(changes)[name] for name in pair)
+    upper, lower = (numbers.parts(changes)[name] for name in pair)
     was = [muscles[name] for name in pair]
     assert all(isinstance(each, RingMuscle) for each in (upper, lower, *was))
     moved = [n.push[1] - w.push[1] for n, w in zip((upper, lower), was, strict=False)]
@@ -70,7 +74,7 @@ def test_balance_is_where_the_simulation_comes_to_rest() -> None:
     head = assets.load("head")
     trial = sim.Trial(head)
     statics = Statics(trial.anatomy)
-    muscles = {muscle.name: muscle for muscle in trial.rig.muscles}
+    muscles = parts_of(trial.rig)
     balance = statics.balance(muscles, SMILE)
     moved = trial.anatomy.space.vectors_to_standard(settled_displacement(sim.create(head), SMILE))
     cosine = (moved * balance.moved).sum() / np.linalg.norm(moved) / np.linalg.norm(balance.moved)
@@ -80,10 +84,25 @@ def test_balance_is_where_the_simulation_comes_to_rest() -> None:
     assert isinstance(muscle, LinearMuscle)
     other = replace(muscle, contraction=muscle.contraction + 0.01)
     was, now = (statics.pull(m, *next(iter(SMILE.items()))) for m in (muscle, other))
-    change = Pull(now.force - was.force, now.hold - was.hold)
+    change = now.plus(was, -1.0)
     slope = balance.derivatives([change])[:, :, 0]
     further = statics.balance(muscles | {"zygomaticus_major": other}, SMILE).moved - balance.moved
     np.testing.assert_allclose(slope, further, atol=0.02 * np.abs(further).max())
+
+
+@pytest.mark.parametrize("control", ["jaw_open", "orbicularis_oculi_palpebral_upper_left"])
+def test_balance_follows_jaw_and_lids(control: str) -> None:
+    """Other numbers of jaw and lids move a balanced face as they do a simulated one."""
+    head = SimpleNamespace(**vars(assets.load("head")))
+    head.jaw_axis = head.mandible_weight = None  # to be found by the landmarks
+    trial = sim.Trial(head)
+    parts = anatomical(head.rig).parts
+    trial.anatomy = framed(trial.anatomy, with_parts(trial.rig, parts))
+    balance = Statics(trial.anatomy).balance(parts, {control: 1.0})
+    moved = settled_displacement(trial.simulation(trial.rig), {control: 1.0})
+    moved = trial.anatomy.space.vectors_to_standard(moved)
+    cosine = (moved * balance.moved).sum() / np.linalg.norm(moved) / np.linalg.norm(balance.moved)
+    assert cosine > 0.97
 
 
 @pytest.mark.slow
@@ -98,8 +117,10 @@ def test_other_shapes_teach_a_muscle(tmp_path: Path) -> None:
         vertices=head.vertices, triangles=head.faces, landmarks68=head.landmarks, **moved,
     )  # fmt: skip
     rows = {row.shape: row for row in measure(tmp_path)}
-    assert set(rows) == {"mouthSmileLeft", "mouthFrownLeft"}
+    assert set(rows) == {"mouthSmileLeft", "mouthFrownLeft", "jawOpen"}
     for row in rows.values():
         assert row.rig > 0.9
         assert row.anatomy < row.fitted
-        assert -1.0 <= row.left_out < row.rig
+    for shape in ("mouthSmileLeft", "mouthFrownLeft"):
+        assert -1.0 <= rows[shape].left_out < rows[shape].rig
+        assert rows[shape].left_out - 0.01 < rows[shape].mixed

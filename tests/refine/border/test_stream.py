@@ -182,7 +182,7 @@ def test_stream_may_be_the_input() -> None:
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
 def test_nothing_is_allocated(name: str, options: dict[str, int], textured: bool) -> None:
-    """After the first frames, frames take no memory but the few bytes of the views."""
+    """After the first frames, frames take no memory but that of views, and of passes begun anew."""
     tube = meshes.tube(40, 30)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
     refiner = refine.create(name, tube.faces, tube.vertices, **texture, **options)
@@ -201,7 +201,7 @@ def test_nothing_is_allocated(name: str, options: dict[str, int], textured: bool
             refiner.refine(deformed, out=lent)
             taken.append(tracemalloc.get_traced_memory()[1] - before)
     tracemalloc.stop()
-    assert max(taken) < 8192  # positions alone are 30 kB
+    assert max(taken) < 16384  # positions alone are 30 kB
 
 
 @pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64, np.longdouble, ">f8", ">f4"])

@@ -1,0 +1,143 @@
+"""Where locks begin, and how they run: combed from a parting, then falling to the hem.
+
+Lines begin on the scalp and follow a field of directions over the envelope. At the top they go to
+both sides of the parting, or back; where they would hang into the face they go aside; locks from
+higher up lie over lower ones.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...generator.fields import Points, Values, smooth_step, unit
+from ...generator.regions import HAIRLINE, line_height
+from ...generator.sections import direction_coordinates, rays
+from ...model import IndexArray
+from .cuts import Cut
+from .envelope import Envelope
+
+STEP = 4.0  # [mm] of a line
+LEAST = 12.0  # [mm] from a root to the hem
+CANDIDATES = 15  # places for each root
+PARTED = 14.0  # [mm] beside the parting within which locks stand closer
+TO_PARTING = 5.0  # [mm] by which these begin nearer to it
+LIFTED = 60.0  # [mm] from the root, where a lock has come up to its layer
+CURLED = 9.0  # [mm] that ends turn in
+UNEVEN = 7.0  # [mm] by which they end at different heights
+
+
+def roots_of(
+    cut: Cut, vertices: Points, faces: IndexArray, receded: float, random: np.random.Generator
+) -> Points:
+    """Where locks begin: evenly over the scalp, closer where roots are seen."""
+    corners = vertices[faces]
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = np.linalg.norm(np.cross(first, second), axis=1)
+    face = random.choice(len(faces), CANDIDATES * cut.count, p=area / area.sum())
+    share = random.random((2, len(face)))
+    share = np.where(share.sum(axis=0) > 1.0, 1.0 - share, share)[:, :, None]
+    points = corners[face, 0] + share[0] * first[face] + share[1] * second[face]
+
+    angle, height, _ = direction_coordinates(points)
+    around = np.degrees(np.abs(angle))
+    behind = _behind(angle, height) - receded * (around < 70.0)
+    is_ear = (np.abs(around - 95.0) < 14.0) & (height < 12.0)
+    is_haired = (behind > 1.5) & (height > cut.end(angle) + LEAST) & ~is_ear
+    points, behind = points[is_haired], behind[is_haired]
+    angle, height, _ = direction_coordinates(points)
+    at_hairline = smooth_step(14.0, 4.0, behind) * (np.abs(angle) < 1.3)
+    beside = np.abs(points[:, 0] - cut.parting)
+    at_parting = smooth_step(PARTED, 5.0, beside) * smooth_step(70.0, 100.0, height)
+    closer = 1.0 + 3.0 * np.maximum(at_hairline, at_parting * (points[:, 2] > -75.0))
+    # The farthest of all points comes next, until there are enough.
+    chosen, gap = [0], np.linalg.norm(points - points[0], axis=1)
+    while len(chosen) < cut.count:
+        chosen.append(int(np.argmax(gap * closer)))
+        gap = np.minimum(gap, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return np.asarray(points[chosen])
+
+
+def _behind(angle: Values, height: Values) -> Values:
+    """How far places lie behind the usual hairline [mm], shape (n,)."""
+    return height - line_height(HAIRLINE, np.degrees(np.abs(angle)))
+
+
+def layers_of(cut: Cut, roots: Points, random: np.random.Generator) -> Values:
+    """How high over the scalp locks lie, 0 to 1: those from above over others, edges flat."""
+    angle, height, _ = direction_coordinates(roots)
+    layer = 0.9 * smooth_step(-80.0, 120.0, height) + 0.1 * random.random(len(roots))
+    layer *= 0.3 + 0.7 * smooth_step(0.0, 40.0, _behind(angle, height))
+    beside = np.abs(roots[:, 0] - cut.parting)
+    return np.asarray(layer * (0.5 + 0.5 * smooth_step(0.0, 25.0, beside)))
+
+
+def combed(
+    cut: Cut, envelope: Envelope, roots: Points, layer: Values, random: np.random.Generator
+) -> list[Points]:
+    """The line of each lock, from its root to its end, shape (k, 3) with its own k."""
+    count = len(roots)
+    own, uneven = random.normal(0.0, 1.0, count), random.random(count)
+    side = np.where(roots[:, 0] > cut.parting, 1.0, -1.0)
+    longest = cut.longest * (0.8 + 0.2 * uneven)
+    # From the parting on, which would else be as wide as two locks are apart.
+    beside = np.abs(roots[:, 0] - cut.parting)
+    nearer = np.minimum(beside, TO_PARTING) * smooth_step(PARTED, 7.0, beside)
+    at = roots - (nearer * side)[:, None] * [1.0, 0.0, 0.0]
+    is_done, lengths = np.zeros(count, bool), np.zeros(count, int)
+    track = [at]
+    for step in range(1, int(cut.longest / STEP) + 1):
+        at = at + STEP * _way(cut, at, side, own, STEP * step)
+        angle, height, _ = direction_coordinates(at)
+        origin, out = rays(angle, height)
+        hem = cut.end(angle) + UNEVEN * uneven
+        off = (2.0 + cut.volume * layer) * smooth_step(0.0, LIFTED, np.full(count, STEP * step))
+        off -= curl(height - hem, height)
+        at = origin + (envelope.radius(angle, height) + off)[:, None] * out
+        track.append(_waved(cut, at, own, STEP * step))
+        is_done |= (height < hem) | (STEP * step > longest)
+        lengths += ~is_done
+    tracks = np.stack(track, axis=1)
+    return [line[: length + 2] for line, length in zip(tracks, lengths, strict=True)]
+
+
+def _way(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Points:
+    """Unit directions along the head in which hair lies, shape (n, 3)."""
+    angle, height, _ = direction_coordinates(at)
+    _, out = rays(angle, height)
+    across = np.stack([np.cos(angle), np.zeros(len(at)), -np.sin(angle)], axis=1)
+    # On top away from the parting and back, then down.
+    back = -0.3 - 0.5 * smooth_step(20.0, 70.0, at[:, 2])
+    combed = np.stack([side, np.zeros(len(at)), back], axis=1)
+    way = [0.0, -1.0, 0.0] + 1.6 * smooth_step(0.25, 0.95, out[:, 1])[:, None] * combed
+    at_front = cut.brushed * smooth_step(-15.0, 45.0, at[:, 2]) * smooth_step(25.0, 45.0, height)
+    back = np.stack([0.3 * side, np.full(len(at), 0.35), np.full(len(at), -1.0)], axis=1)
+    way += at_front[:, None] * (1.6 * back - way)
+    # Aside, where it would hang into the face.
+    share = smooth_step(-100.0, 30.0, height)
+    opening = np.radians(cut.opening[0] + (cut.opening[1] - cut.opening[0]) * share)
+    within = np.clip((opening + 0.05 * own - np.abs(angle)) / 0.22, 0.0, 2.5)
+    within *= smooth_step(105.0, 75.0, height)
+    aside = np.where(np.abs(angle) < 0.35, side, np.sign(angle))
+    uneven = 0.1 * own * np.sin(0.05 * length + 3.0 * own)
+    way = way + (within * aside + uneven)[:, None] * across
+    way -= (way * out).sum(axis=1)[:, None] * out
+    return unit(way)
+
+
+def _waved(cut: Cut, at: Points, own: Values, length: float) -> Points:
+    """Lines that swing to both sides and in and out; neighbours nearly alike."""
+    far, period = cut.wave
+    angle, height, _ = direction_coordinates(at)
+    _, out = rays(angle, height)
+    across = np.stack([np.cos(angle), np.zeros(len(at)), -np.sin(angle)], axis=1)
+    phase = 2.0 * np.pi * length / period + 2.0 * np.sin(3.0 * angle) + 0.5 * own
+    # An angle means nothing at the crown.
+    swing = far * min(length / LIFTED, 1.0) * smooth_step(140.0, 110.0, height)
+    aside, off = np.sin(phase)[:, None] * across, 0.25 * np.cos(phase)[:, None] * out
+    return np.asarray(at + swing[:, None] * (aside + off))
+
+
+def curl(over_hem: Values, height: Values) -> Values:
+    """How far hair that hangs comes in at its end [mm], shape (n,)."""
+    ended = smooth_step(35.0, 0.0, over_hem) * smooth_step(-40.0, -60.0, height)
+    return np.asarray(CURLED * ended)

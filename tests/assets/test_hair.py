@@ -1,0 +1,144 @@
+"""Hair of persons: it grows on the scalp, lies on the head, and leaves the face free."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.spatial import cKDTree
+
+from risorius.app.anatomy import Dissection, Solids
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.passes.passes import Passes
+from risorius.app.scenes import FaceScene
+from risorius.assets import Segment
+from risorius.assets.identities import (
+    CUTS,
+    HAIR,
+    Person,
+    coloured,
+    make_person,
+    person_called,
+    sample_identity,
+)
+from risorius.assets.identities.hair import grown
+from risorius.assets.model import Part
+from risorius.assets.topology import vertex_normals
+
+COLOUR = np.array([0.3, 0.2, 0.15])
+LONG = ("bob", "waves", "short")
+HANGING = ("bob", "waves")
+
+
+@cache
+def bare(number: int) -> Person:
+    """Somebody without hair."""
+    return make_person(sample_identity(number))
+
+
+@cache
+def hair_of(number: int, cut: str, receded: float = 0.0) -> tuple[Part, ...]:
+    """A cut on somebody's head."""
+    person = bare(number)
+    return grown(cut, person.vertices, person.faces, COLOUR, receded=receded)
+
+
+def points_of(parts: tuple[Part, ...]) -> npt.NDArray[np.float64]:
+    """All vertices [mm]."""
+    return np.vstack([part.vertices for part in parts]).astype(np.float64)
+
+
+@pytest.mark.parametrize("cut", LONG)
+@pytest.mark.parametrize("number", [0, pytest.param(5, marks=pytest.mark.slow)])
+def test_hair_is_a_sound_part(number: int, cut: str) -> None:
+    """Arrays fit each other, and triangles are seen from the side to which normals point."""
+    for part in hair_of(number, cut):
+        assert part.name.startswith(HAIR) and part.bone == "cranium"
+        count = len(part.vertices)
+        assert part.normals.shape == part.colours.shape == (count, 3)
+        assert part.fibres is not None and part.fibres.shape == (count, 2)
+        assert 0 <= part.faces.min() and part.faces.max() < count
+        assert all(np.isfinite(each).all() for each in (part.vertices, part.colours, part.fibres))
+        assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0, atol=1e-5)
+        corners = part.vertices[part.faces].astype(np.float64)
+        facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        agreeing = (facing * part.normals[part.faces].sum(axis=1)).sum(axis=1)
+        assert (agreeing > 0.0).mean() > 0.97  # some bands are turned over at the crown
+
+
+@pytest.mark.parametrize("cut", LONG)
+@pytest.mark.parametrize("number", [0, pytest.param(5, marks=pytest.mark.slow)])
+def test_the_face_is_free(number: int, cut: str) -> None:
+    """No hair hangs before brows, eyes, nose and mouth."""
+    person, points = bare(number), points_of(hair_of(number, cut))
+    face = person.vertices[person.landmarks[17:68]]
+    low, high = face.min(axis=0), face.max(axis=0)
+    is_before = ((points > low) & (points < high + np.array([0.0, 2.0, 60.0]))).all(axis=1)
+    assert not is_before.any()
+
+
+@pytest.mark.parametrize("cut", LONG)
+def test_hair_lies_on_the_head(cut: str) -> None:
+    """It begins on the scalp, and hardly any of it is within the head."""
+    person, locks = bare(0), hair_of(0, cut)[0]
+    look = CUTS[cut]
+    assert look is not None
+    rows = locks.vertices.reshape(look.count, look.look.rows, 3, 3)
+    tree, normals = cKDTree(person.vertices), vertex_normals(person.vertices, person.faces)
+
+    def heights(points: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:
+        """Over the skin, about [mm]."""
+        nearest = tree.query(points)[1]
+        return ((points - person.vertices[nearest]) * normals[nearest]).sum(axis=1)
+
+    assert np.quantile(np.abs(heights(rows[:, 0, 1])), 0.98) < 6.0
+    assert (heights(rows[:, 2:, 1].reshape(-1, 3)) > -1.5).mean() > 0.98
+
+
+def test_cuts_differ_in_length() -> None:
+    """Hair that hangs covers the ears; short hair leaves them free; cropped hair is painted."""
+    ears = bare(0).vertices[[bare(0).anatomy[f"tragion_{side}"] for side in ("left", "right")]]
+    for cut in HANGING:
+        assert points_of(hair_of(0, cut))[:, 1].min() < ears[:, 1].min() - 30.0
+    beside = points_of(hair_of(0, "short"))
+    beside = beside[(np.abs(beside[:, 2] - ears[0, 2]) < 8.0) & (np.abs(beside[:, 0]) > 60.0)]
+    assert beside[:, 1].min() > ears[:, 1].max()
+    assert hair_of(0, "cropped") == ()
+
+
+def test_a_hairline_recedes() -> None:
+    """What has receded begins farther back."""
+    usual, receded = (hair_of(0, "short", by)[0].vertices for by in (0.0, 20.0))
+    assert receded[:, 2].max() < usual[:, 2].max() - 5.0
+
+
+def test_hair_is_the_same_every_time_and_follows_the_tone() -> None:
+    """A person has one hair, in the colour of the tone, however often it is coloured."""
+    ada, again = person_called("ada"), person_called("ada")
+    mine, other = ([p for p in each.parts if p.name.startswith(HAIR)] for each in (ada, again))
+    assert len(mine) == len(other) == 2
+    for one, two in zip(mine, other, strict=True):
+        assert np.array_equal(one.vertices, two.vertices)
+        assert np.array_equal(one.colours, two.colours)
+    darker = coloured(ada, angle=-50.0)
+    hair = [part for part in darker.parts if part.name.startswith(HAIR)]
+    assert len(hair) == 2 and hair[0].colours.mean() < 0.8 * mine[0].colours.mean()
+    assert not [p for p in person_called("kofi").parts if p.name.startswith(HAIR)]
+
+
+def test_hair_is_seen_framed_and_labelled() -> None:
+    """It is in the picture as a whole, has its class, and is away where muscles are shown."""
+    scene = FaceScene(person_called("ada"))
+    top = max(part.vertices[:, 1].max() for part in scene.parts if part.name.startswith(HAIR))
+    assert scene.framed[:, 1].max() >= top
+    options = CaptureOptions(size=(160, 160), passes=("segmentation",))
+    with Capture(scene, options) as capture:
+        capture.draw_image()
+        classes = Passes(capture.pipeline).draw(capture.camera, ("segmentation",))["segmentation"]
+    assert (classes == Segment.HAIR).mean() > 0.08
+    assert (classes[0] == Segment.BACKGROUND).all()
+    solids = Solids(scene)
+    solids.follow(Dissection(("muscles",)))
+    assert solids.parts and not [p for p in solids.parts if getattr(p, "name", "").startswith(HAIR)]
