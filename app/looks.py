@@ -26,7 +26,7 @@ class Look:
 
     refiner: str = "kahler"
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
-    folds: bool = False  # whether wrinkles get triangles and move them, see `wrinkling`
+    raises_wrinkles: bool = False  # whether wrinkles get triangles and move them, see `wrinkling`
 
     def told(self, refiner: str) -> Mapping[str, Any]:
         """What a refiner is told where its defaults do not do; nothing, where this knows none."""
@@ -35,7 +35,9 @@ class Look:
 
 # By `bulge` alone the outlines of crown and chin would stay polygons: edges there are long and turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
-SMOOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}}, folds=True)
+SMOOTH = Look(
+    options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}}, raises_wrinkles=True
+)
 # The hem of a cloth turns in the sheet itself.
 SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
 PAPER = Look()
@@ -90,9 +92,9 @@ class Refinement:
     def _criterion(self, scene: str) -> str:
         return str(self.on(scene)[1].get("criterion", PAPERS_CRITERION))
 
-    def folds(self, scene: str) -> bool:
+    def raises_wrinkles(self, scene: str) -> bool:
         """Whether wrinkles become shape; the mesh as it is has no triangles for it."""
-        return LOOKS[self.look][scene].folds and self.on(scene)[0] != STATIC
+        return LOOKS[self.look][scene].raises_wrinkles and self.on(scene)[0] != STATIC
 
     @property
     def label(self) -> str:

@@ -34,7 +34,7 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
         bound = dict(options)
         chosen = options.get("criterion")
-        if isinstance(chosen, str) and scene.wrinkles and refinement.folds(scene.name):
+        if isinstance(chosen, str) and scene.wrinkles and refinement.raises_wrinkles(scene.name):
             bound["criterion"] = [*chosen.split("+"), FoldCriterion(scene)]
         return refine.create(
             name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **bound

@@ -185,6 +185,6 @@ def wrinkling_of(scene: Scene, renderer: render.Renderer) -> Wrinkling | None:
 
 def relief_of(scene: Scene, refinement: Refinement) -> Relief | None:
     """The shape of the scene's wrinkles; None where it has none, or the look shows none."""
-    if scene.wrinkles is None or not refinement.folds(scene.name):
+    if scene.wrinkles is None or not refinement.raises_wrinkles(scene.name):
         return None
     return Relief(scene.wrinkles)

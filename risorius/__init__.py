@@ -5,4 +5,4 @@
 Four packages that know nothing of each other, and `risorius.app`, which joins them.
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

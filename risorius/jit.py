@@ -10,7 +10,8 @@ file was torn. So here numba compiles, and this file keeps what it made:
     of       kernels of this distribution; those of other programs are compiled in each process
     where    the first of: the folder named by NUMBA_CACHE_DIR, beside the code, the user's cache
     trusted  only a folder that belongs to this user, that nobody else may write, move or replace
-    else     code is compiled in each process anew, and a warning in the log says so once
+    else     code is compiled in each process anew, and a warning in the log says so once; so it is
+             where numba's insides, which this file uses, are not those that it knows
     waiting  processes that start together let one compile, kernel by kernel, and read what it wrote
 
 Results do not depend on how a loop was vectorised: there is no fast-math unless a kernel asks for
@@ -24,6 +25,7 @@ import functools
 import hashlib
 import importlib.util
 import logging
+import operator
 import os
 import pickle
 import platform
@@ -37,9 +39,6 @@ from pathlib import Path
 from typing import Any, TypeVar, overload
 
 import numba
-from numba.core.caching import _Cache
-from numba.core.compiler import CompileResult
-from numba.core.serialize import dumps
 
 try:
     import fcntl
@@ -52,6 +51,13 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 """Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
 PACKAGES = (f"{__package__}.refine", f"{__package__}.sim")
 """Where kernels lie that call one another. Those of other packages may call any of them."""
+INSIDES = (
+    "codegen.CPUCodegen.magic_tuple",
+    "compiler.CompileResult._rebuild",
+    "compiler.CompileResult._reduce",
+    "serialize.dumps",
+)
+"""What keeps code uses of `numba.core`, beside `_cache` of dispatchers; all of it is private."""
 PATIENCE = 30.0
 """Seconds to wait for another process that compiles; the slowest kernel takes a few."""
 PAUSE = 0.02
@@ -85,12 +91,23 @@ def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     # Of other code nobody knows what it depends on; nor what a function has closed over.
     is_ours = function.__module__.partition(".")[0] == __package__ and not function.__closure__
     if is_ours and not getattr(numba.config, "DISABLE_JIT", 0):
-        with suppress(OSError):  # without a source nothing tells when stored code has become old
-            dispatcher._cache = CodeCache(function, repr(sorted(options.items())))
+        if _are_insides_known(dispatcher):
+            with suppress(OSError):  # without a source nothing tells when stored code becomes old
+                dispatcher._cache = CodeCache(function, repr(sorted(options.items())))
+        else:
+            _warn_not_cached(f"numba {numba.__version__} is not known", "install another")
     return dispatcher
 
 
-class CodeCache(_Cache):
+def _are_insides_known(dispatcher: Any) -> bool:
+    try:
+        operator.attrgetter(*INSIDES)(numba.core)
+    except AttributeError:
+        return False
+    return hasattr(dispatcher, "_cache")
+
+
+class CodeCache:
     """The machine code of one kernel on disk, in the form in which numba asks for a cache.
 
     Numba calls it while it holds the lock of its compiler, so one thread at a time.
@@ -126,7 +143,7 @@ class CodeCache(_Cache):
         if folder is None:
             _warn_not_cached("there is no folder that belongs to this user alone")
             return
-        code = dumps(data._reduce())
+        code = numba.core.serialize.dumps(data._reduce())
         content = self._stamp(sig, data.codegen) + hashlib.sha256(code).digest() + code
         try:
             _write(folder / self._file(sig), content)
@@ -147,7 +164,7 @@ class CodeCache(_Cache):
             return None
         if check != hashlib.sha256(code).digest():
             return None
-        return CompileResult._rebuild(target_context, *pickle.loads(code))
+        return numba.core.compiler.CompileResult._rebuild(target_context, *pickle.loads(code))
 
     def _file(self, sig: Any) -> str:
         return f"{self._name}.{hashlib.sha256(str(sig).encode()).hexdigest()[:16]}.code"
@@ -254,12 +271,8 @@ def _write(file: Path, content: bytes) -> None:
 
 
 @functools.cache
-def _warn_not_cached(why: str) -> None:
-    log.warning(
-        "compiled code is not kept (%s), so every start compiles again; "
-        "name a folder of your own in NUMBA_CACHE_DIR",
-        why,
-    )
+def _warn_not_cached(why: str, cure: str = "name a folder of your own in NUMBA_CACHE_DIR") -> None:
+    log.warning("compiled code is not kept (%s), so every start compiles again; %s", why, cure)
 
 
 _lock: Any = None

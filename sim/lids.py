@@ -102,7 +102,7 @@ def place_lids(
     names: of all controls in their order, to find the lid muscles' activations.
     """
     eyes = rig.eyes
-    axes = [_lid_axes(landmarks, ball) for ball in eyeballs]
+    axes = [_up_and_forward(landmarks, ball) for ball in eyeballs]
     parts = [
         _one_eye(eyes, surface, landmarks, ball, *axis)
         for ball, axis in zip(eyeballs, axes, strict=True)
@@ -151,7 +151,7 @@ class _OneEye(NamedTuple):
     along: Array
 
 
-def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
+def _up_and_forward(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
     """Directions up and forward, both across the line from one eye corner to the other."""
     outer, _, _, inner, _, _ = EYE_LANDMARKS[ball.side]
     along = (landmarks[outer] - landmarks[inner]) * ball.side.sign
@@ -162,7 +162,7 @@ def _lid_axes(landmarks: Array, ball: Eyeball) -> tuple[Array, Array]:
     return up, forward
 
 
-class _Frame(NamedTuple):
+class _LidAxes(NamedTuple):
     """Where a point lies about the line from the outer corner of an eye to the inner one."""
 
     centre: Array  # of the eyeball
@@ -189,8 +189,8 @@ def _one_eye(
     outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[ball.side]
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
-    frame = _Frame(ball.centre, up, forward, landmarks[outer], landmarks[inner] - landmarks[outer])
-    column, angle = frame.column(x), frame.angle(x)
+    axes = _LidAxes(ball.centre, up, forward, landmarks[outer], landmarks[inner] - landmarks[outer])
+    column, angle = axes.column(x), axes.angle(x)
     lines = {
         True: landmarks[[outer, upper_outer, upper_inner, inner]],
         False: landmarks[[outer, lower_outer, lower_inner, inner]],
@@ -199,17 +199,17 @@ def _one_eye(
     fronts, depths, weights, folds, near = {}, {}, {}, {}, {}
     for upper, line in lines.items():
         on_lid = side > 0.0 if upper else side < 0.0
-        edge = _front_edge(surface, line, frame)
+        edge = _front_edge(surface, line, axes)
         distance = polyline_distance(x, edge)
         weights[upper] = on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach)
         ends = (eyes.fold_plateau, eyes.fold_reach) if upper else (eyes.lid_plateau, eyes.lid_reach)
         folds[upper] = on_lid * _share(distance, *ends)
         slide = np.where(on_lid, _share(distance, 0.0, SLIDE_REACH * eyes.lid_reach), slide)
         near[upper] = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
-        edge = edge[np.argsort(frame.column(edge), kind="stable")]
+        edge = edge[np.argsort(axes.column(edge), kind="stable")]
         fronts[upper], depths[upper] = (
-            np.interp(where, frame.column(edge), values)
-            for values in (frame.angle(edge), np.linalg.norm(edge - ball.centre, axis=1))
+            np.interp(where, axes.column(edge), values)
+            for values in (axes.angle(edge), np.linalg.norm(edge - ball.centre, axis=1))
         )
     height = np.maximum(fronts[True] - fronts[False], 0.0)
     wide = _smoothed(height)
@@ -220,7 +220,7 @@ def _one_eye(
     opening = weight * exact + (1.0 - weight) * broad
     share = np.where(side > 0.0, eyes.blink_meeting - 1.0, eyes.blink_meeting)
     closing = share * weight * opening
-    arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(frame.axis)
+    arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(axes.axis)
     seam = fronts[False] + eyes.blink_meeting * height  # where closed lids meet
     meeting, rises = (np.interp(c, where, seam) for c in (arrives, column))
     closing += weight * (meeting - rises)
@@ -244,13 +244,13 @@ def _one_eye(
     )  # fmt: skip
 
 
-def _front_edge(surface: Surface, line: Array, frame: _Frame) -> Array:
+def _front_edge(surface: Surface, line: Array, axes: _LidAxes) -> Array:
     """The way along the mesh that keeps to a lid's line of landmarks (4, 3), points (n, 3)."""
     x = surface.positions
-    reaches = np.linalg.norm(line - frame.centre, axis=1)
-    order = np.argsort(frame.column(line))
-    expected = np.interp(frame.column(x), frame.column(line)[order], reaches[order])
-    behind = OFF_EDGE * np.abs(np.linalg.norm(x - frame.centre, axis=1) - expected)
+    reaches = np.linalg.norm(line - axes.centre, axis=1)
+    order = np.argsort(axes.column(line))
+    expected = np.interp(axes.column(x), axes.column(line)[order], reaches[order])
+    behind = OFF_EDGE * np.abs(np.linalg.norm(x - axes.centre, axis=1) - expected)
     edge: Array = x[surface.way_through(surface.nearest(line), behind)]
     return edge
 

@@ -94,7 +94,7 @@ def test_the_citation_is_of_this_version() -> None:
 def test_pages_have_short_lines() -> None:
     """The README has at most 130 lines; prose has at most 120 columns, tables and code aside."""
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 130
-    for page in [README, *(ROOT / "docs").rglob("*.md")]:
+    for page in [README, ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")]:
         prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.S)
         for line in prose.splitlines():
             is_prose = page == README or not line.startswith(("|", "    "))

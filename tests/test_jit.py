@@ -192,6 +192,30 @@ def test_without_a_folder_code_is_compiled_each_time(run: Run, package: Path, ho
     assert "NUMBA_CACHE_DIR" in warned
 
 
+@pytest.mark.parametrize(
+    ("inside", "is_needed"),
+    [
+        ("compiler.CompileResult._rebuild", True),
+        pytest.param("codegen.CPUCodegen.magic_tuple", True, marks=pytest.mark.slow),
+        pytest.param("compiler.CompileResult._reduce", True, marks=pytest.mark.slow),
+        pytest.param("caching._Cache", False, marks=pytest.mark.slow),
+    ],
+)
+def test_numba_of_other_insides(run: Run, package: Path, inside: str, is_needed: bool) -> None:
+    """Where numba has not what keeping code needs, each process compiles, and one line says so."""
+    text = (package / "jit.py").read_text()
+    (package / "jit.py").write_text(
+        text.replace("import numba\n", f"import numba\ndel numba.core.{inside}\n", 1)
+    )
+    if is_needed:
+        warned, result = run()
+        assert warned.startswith("WARNING compiled code is not kept (numba ")
+        assert result == RESULT
+    else:
+        assert run() == [COMPILED, RESULT]
+    assert bool(stored_files(package)) != is_needed
+
+
 @pytest.mark.slow
 def test_full_disk(run: Run, package: Path) -> None:
     """A file that cannot be written whole is not left behind, and one line says why."""
@@ -292,8 +316,9 @@ def test_processes_wait_for_the_one_that_compiles(package: Path, tmp_path: Path)
     """Of several that start together on nothing, one compiles and the others read."""
     told: list[list[str]] = []
     slow = (package / "jit.py").read_text().replace(
-        "        code = dumps(data._reduce())\n",
-        "        time.sleep(1.0)\n        code = dumps(data._reduce())\n        print('MADE')\n",
+        "        code = numba.core.serialize.dumps(data._reduce())\n",
+        "        time.sleep(1.0)\n"
+        "        code = numba.core.serialize.dumps(data._reduce())\n        print('MADE')\n",
     )  # fmt: skip
     (package / "jit.py").write_text(slow)
     threads = [

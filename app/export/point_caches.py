@@ -14,8 +14,8 @@ import numpy as np
 
 from .clip import Clip, Singles
 from .formats import Request
+from .frame_surfaces import METRES, frame_surfaces
 from .sequences import obj_text, write_material
-from .sheets import METRES, sheets
 
 PC2_HEAD = "<12siiffi"  # signature, version, vertices, first frame, frames a sample, samples
 
@@ -41,9 +41,11 @@ def write_mdd(clip: Clip, part: Path, request: Request) -> None:
 def _points(clip: Clip, part: Path, request: Request) -> Singles:
     """All vertices of all frames [m], shape (N, V, 3), and the mesh of the first beside them."""
     points = []
-    for number, frame in enumerate(request.counted(sheets(clip), clip.frame_count)):
+    for number, frame in enumerate(request.counted(frame_surfaces(clip), clip.frame_count)):
         if number == 0:
             material = write_material(clip, part.with_suffix(".mtl"))
             part.with_suffix(".obj").write_text(obj_text(frame, material))
-        points.append(METRES * np.concatenate([sheet.points for sheet in frame]).astype(np.float32))
+        points.append(
+            METRES * np.concatenate([surface.points for surface in frame]).astype(np.float32)
+        )
     return np.stack(points)

@@ -14,7 +14,7 @@ import PIL.Image
 
 from .clip import Clip, Floats, Indices
 from .formats import FRAME, Request
-from .sheets import METRES, Sheet, joined, sheets
+from .frame_surfaces import METRES, FrameSurface, frame_surfaces, joined
 
 VERTEX = np.dtype([("point", "<f4", 3), ("normal", "<f4", 3), ("colour", "u1", 3)])  # of a PLY
 TRIANGLE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
@@ -26,7 +26,7 @@ def write_obj(clip: Clip, folder: Path, request: Request) -> None:
     The mesh that is simulated keeps its V vertices, in their order.
     """
     material = write_material(clip, folder / "frame.mtl")
-    frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+    frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
     for number, frame in enumerate(frames):
         path = folder / f"{FRAME.format(number)}.obj"
         path.write_text(obj_text(frame, material))
@@ -42,26 +42,28 @@ def write_material(clip: Clip, path: Path) -> str:
     return path.name
 
 
-def obj_text(frame: Sequence[Sheet], material: str) -> str:
+def obj_text(frame: Sequence[FrameSurface], material: str) -> str:
     """One OBJ of one object, a group for each surface; material: the MTL that the skin has.
 
     Vertices have colours behind their coordinates, as MeshLab writes and Blender reads them.
     """
     texts = [f"mtllib {material}\n" if material else ""]
     points = coordinates = 1
-    for sheet in frame:
-        texts.append(_rows("v", np.hstack([sheet.points * METRES, sheet.colours])))
-        texts.append(_rows("vn", sheet.normals))
-        uv, face_uv = sheet.uv, sheet.face_uv
+    for surface in frame:
+        texts.append(_rows("v", np.hstack([surface.points * METRES, surface.colours])))
+        texts.append(_rows("vn", surface.normals))
+        uv, face_uv = surface.uv, surface.face_uv
         if uv is None or face_uv is None:  # for readers that expect one at all corners
-            uv, face_uv = np.zeros((1, 2), np.float32), np.zeros_like(sheet.faces)
+            uv, face_uv = np.zeros((1, 2), np.float32), np.zeros_like(surface.faces)
         texts.append(_rows("vt", uv))
-        texts.append(f"g {sheet.name}\n")
+        texts.append(f"g {surface.name}\n")
         if material:
-            texts.append(f"usemtl {'parts' if sheet.uv is None else 'skin'}\n")
-        texts.append(_faces([sheet.faces + points, face_uv + coordinates, sheet.faces + points]))
+            texts.append(f"usemtl {'parts' if surface.uv is None else 'skin'}\n")
+        texts.append(
+            _faces([surface.faces + points, face_uv + coordinates, surface.faces + points])
+        )
         coordinates += len(uv)
-        points += len(sheet.points)
+        points += len(surface.points)
     return "".join(texts)
 
 
@@ -80,19 +82,19 @@ def _faces(corners: Sequence[Indices]) -> str:
 
 def write_ply(clip: Clip, folder: Path, request: Request) -> None:
     """Write a binary PLY of each frame, in metres: all surfaces in one mesh, the skin first."""
-    frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+    frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
     for number, frame in enumerate(frames):
         (folder / f"{FRAME.format(number)}.ply").write_bytes(ply_bytes(frame))
 
 
-def ply_bytes(frame: Sequence[Sheet]) -> bytes:
+def ply_bytes(frame: Sequence[FrameSurface]) -> bytes:
     """One PLY: vertices with normals and colours, which hold what a texture has there."""
-    counts = [len(sheet.points) for sheet in frame]
+    counts = [len(surface.points) for surface in frame]
     vertices = np.empty(sum(counts), VERTEX)
-    vertices["point"] = METRES * np.concatenate([sheet.points for sheet in frame])
-    vertices["normal"] = np.concatenate([sheet.normals for sheet in frame])
-    vertices["colour"] = np.round(255.0 * np.concatenate([sheet.colours for sheet in frame]))
-    corners = joined([sheet.faces for sheet in frame], counts)
+    vertices["point"] = METRES * np.concatenate([surface.points for surface in frame])
+    vertices["normal"] = np.concatenate([surface.normals for surface in frame])
+    vertices["colour"] = np.round(255.0 * np.concatenate([surface.colours for surface in frame]))
+    corners = joined([surface.faces for surface in frame], counts)
     triangles = np.empty(len(corners), TRIANGLE)
     triangles["count"], triangles["corners"] = 3, corners
     floats = "".join(f"property float {name}\n" for name in "x y z nx ny nz".split())

@@ -17,7 +17,7 @@ import numpy as np
 from ..errors import needed
 from .clip import Clip
 from .formats import Request
-from .sheets import Sheet, joined, sheets
+from .frame_surfaces import FrameSurface, frame_surfaces, joined
 
 h5py = needed("h5py", "this needs h5py: pip install 'risorius[export]'")
 
@@ -37,12 +37,12 @@ def write_vtkhdf(clip: Clip, part: Path, request: Request) -> None:
     memory = io.BytesIO()  # HDF5 crashes where a disk is full
     with h5py.File(memory, "w") as file:
         steps = _Steps(file.create_group("VTKHDF"))
-        frames = request.counted(sheets(clip, request.refinement), clip.frame_count)
+        frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
         for number, frame in enumerate(frames):
             if number == 0 or request.refinement is not None:
                 steps.begin_mesh(frame)
-            points = np.concatenate([sheet.points for sheet in frame])
-            normals = np.concatenate([sheet.normals for sheet in frame])
+            points = np.concatenate([surface.points for surface in frame])
+            normals = np.concatenate([surface.normals for surface in frame])
             values = {"Normals": normals}
             if request.refinement is None:
                 values["displacement"] = points - rest
@@ -62,11 +62,11 @@ class _Steps:
         root.attrs["Version"] = VERSION
         root.attrs["Type"] = np.bytes_("PolyData")
 
-    def begin_mesh(self, frame: list[Sheet]) -> None:
+    def begin_mesh(self, frame: list[FrameSurface]) -> None:
         """Add the triangles that this frame has, and those after it until another call."""
-        points = [len(sheet.points) for sheet in frame]
-        triangles = joined([sheet.faces for sheet in frame], points)
-        surfaces = np.repeat(np.arange(len(frame)), [len(sheet.faces) for sheet in frame])
+        points = [len(surface.points) for surface in frame]
+        triangles = joined([surface.faces for surface in frame], points)
+        surfaces = np.repeat(np.arange(len(frame)), [len(surface.faces) for surface in frame])
         counts = {"NumberOfCells": len(triangles), "NumberOfConnectivityIds": triangles.size}
         self._begins = {
             "PartOffsets": len(self._meshes["NumberOfPoints"]),
@@ -78,7 +78,7 @@ class _Steps:
         self._append("Polygons/Connectivity", triangles.ravel().astype(np.int64))
         self._append("Polygons/Offsets", np.arange(0, triangles.size + 1, 3, dtype=np.int64))
         self._append("CellData/surface", surfaces.astype(np.int32))
-        self._append("CellData/source", np.concatenate([sheet.source for sheet in frame]))
+        self._append("CellData/source", np.concatenate([surface.source for surface in frame]))
         self._meshes["NumberOfPoints"].append(sum(points))
         for topology, is_ours in zip(TOPOLOGIES, OURS, strict=True):
             for name, count in counts.items():

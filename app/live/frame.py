@@ -1,6 +1,6 @@
 """What one packet says, in the vocabulary of recordings, and what every parser does with numbers.
 
-A parser is a pure function of a packet: it answers with a `Frame`, or with None for what is no
+A parser is a pure function of a packet: it answers with a `LiveFrame`, or with None for what is no
 packet of its kind. It never raises, whatever it is given: packets come from a network.
 """
 
@@ -18,7 +18,7 @@ LONGEST_SUBJECT = 40  # letters; it is shown in the window
 
 
 @dataclass(frozen=True)
-class Frame:
+class LiveFrame:
     """What a packet says; a channel that it does not name stays as it was.
 
     channels: by the names and in the units of recordings/names.py.

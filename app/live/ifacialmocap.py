@@ -22,7 +22,7 @@ import math
 from collections.abc import Mapping
 
 from ..recordings.names import ARKIT
-from .frame import Frame, put_angle, put_shape, shape_named
+from .frame import LiveFrame, put_angle, put_shape, shape_named
 
 PORT = 49983
 REQUEST = b"iFacialMocap_sahuasouryya9218sauhuiayeta91555dy3719"
@@ -35,7 +35,7 @@ BLOCKS = {
 _NO_FACE = ("trackingStatus-0", "trackingStatus&0")
 
 
-def parse(packet: bytes) -> Frame | None:
+def parse(packet: bytes) -> LiveFrame | None:
     """The frame in a packet, None if it is none; see the head of this file."""
     try:
         text = packet.decode("ascii")
@@ -49,7 +49,7 @@ def parse(packet: bytes) -> Frame | None:
         else:
             _put_written_shape(channels, part)
     has_face = not any(word in text for word in _NO_FACE)
-    return Frame(channels, has_face=has_face) if channels or not has_face else None
+    return LiveFrame(channels, has_face=has_face) if channels or not has_face else None
 
 
 def _put_block(channels: dict[str, float], name: str, numbers: str) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 from ..recordings.calibration import ANGLES, Calibration, gains_of, neutral_now, usual_gains
 from ..recordings.mapping import load_mapping
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
-from .frame import Frame
+from .frame import LiveFrame
 from .protocols import Listening
 from .receiver import Receiver
 
@@ -157,7 +157,7 @@ class LiveFace:
         if self._neutral_until is not None and self._clock() >= self._neutral_until:
             self._end_calibration()
 
-    def _take(self, frame: Frame, at: float) -> None:
+    def _take(self, frame: LiveFrame, at: float) -> None:
         for name, value in frame.channels.items():
             # A channel that several packets of a frame name: the greatest, see vmc.py.
             is_older = name in self._pending and name not in ANGLES

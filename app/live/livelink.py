@@ -19,7 +19,7 @@ import struct
 from collections.abc import Mapping
 
 from ..recordings.names import ARKIT
-from .frame import Frame, put_angle, put_shape, readable_subject
+from .frame import LiveFrame, put_angle, put_shape, readable_subject
 
 PORT = 11111
 VERSION = 6
@@ -36,7 +36,7 @@ OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 _DEVICE = b"risorius"
 
 
-def parse(packet: bytes) -> Frame | None:
+def parse(packet: bytes) -> LiveFrame | None:
     """The frame in a packet, None if it is none; see the head of this file."""
     if packet[:1] != bytes([VERSION]):
         return None
@@ -48,7 +48,7 @@ def parse(packet: bytes) -> Frame | None:
             return None
         name = readable_subject(subject)
         if len(packet) == at or packet[at:] in (b"\0", bytes([COUNT])):
-            return Frame(subject=name, has_face=False)
+            return LiveFrame(subject=name, has_face=False)
         if packet[at] != COUNT or len(packet) != at + 1 + 4 * COUNT:
             return None
         values = struct.unpack_from(f">{COUNT}f", packet, at + 1)
@@ -60,7 +60,7 @@ def parse(packet: bytes) -> Frame | None:
     for angle, value in zip(ANGLES, values[len(ARKIT) :], strict=True):
         if angle is not None:
             put_angle(channels, angle, -math.degrees(value) - OUTWARD.get(angle, 0.0))
-    return Frame(channels, name)
+    return LiveFrame(channels, name)
 
 
 def _text(packet: bytes, at: int) -> tuple[bytes, int]:

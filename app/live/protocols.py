@@ -8,7 +8,7 @@ from pathlib import Path
 
 from . import ifacialmocap, livelink, vmc
 from .addresses import LOOPBACK
-from .frame import Frame
+from .frame import LiveFrame
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Protocol:
 
     title: str
     port: int
-    parse: Callable[[bytes], Frame | None]
+    parse: Callable[[bytes], LiveFrame | None]
     packets: Callable[..., list[bytes]]
     request: bytes = b""
 

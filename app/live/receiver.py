@@ -16,7 +16,7 @@ from collections.abc import Callable
 
 from ..errors import UserError
 from .addresses import ANYWHERE, LOOPBACK, resolved
-from .frame import MOST_BYTES, Frame
+from .frame import MOST_BYTES, LiveFrame
 from .protocols import Listening
 
 MOST_WAITING = 256  # frames or parts of them; of more, the oldest are dropped
@@ -43,7 +43,7 @@ class Receiver:
         Raises UserError where that cannot be.
         """
         self._listening, self._wake, self._clock = listening, wake, clock
-        self._waiting: deque[tuple[float, Frame]] = deque(maxlen=MOST_WAITING)
+        self._waiting: deque[tuple[float, LiveFrame]] = deque(maxlen=MOST_WAITING)
         self.received = self.unusable = 0
         self.has_frame = False
         self._said: dict[str, float] = {}  # the newest value of each channel
@@ -62,7 +62,7 @@ class Receiver:
         """The port that is listened on."""
         return int(self._socket.getsockname()[1])
 
-    def take(self) -> list[tuple[float, Frame]]:
+    def take(self) -> list[tuple[float, LiveFrame]]:
         """What came since the last call, oldest first, each with its time [s of the clock]."""
         self.has_frame = False
         return [self._waiting.popleft() for _ in range(len(self._waiting))]
@@ -99,7 +99,7 @@ class Receiver:
             self._wake_for(frame, at)
         self.received += 1
 
-    def _wake_for(self, frame: Frame, at: float) -> None:
+    def _wake_for(self, frame: LiveFrame, at: float) -> None:
         """Wake who waits, if this makes a frame whole that is worth it."""
         says_new = any(self._said.get(name) != value for name, value in frame.channels.items())
         self._said.update(frame.channels)

@@ -31,7 +31,7 @@ from pythonosc.osc_message import ParseError as MessageError
 from pythonosc.osc_message_builder import OscMessageBuilder
 
 from ..recordings.names import ARKIT
-from .frame import Frame, put_angle, put_shape, shape_named
+from .frame import LiveFrame, put_angle, put_shape, shape_named
 
 PORT = 39539
 VALUE, APPLY, BONE = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply", "/VMC/Ext/Bone/Pos"
@@ -76,7 +76,7 @@ PRESETS: dict[str, dict[str, float]] = {
 """What presets of VRM avatars mean, by their names in small letters: shares of channels."""
 
 
-def parse(packet: bytes) -> Frame | None:
+def parse(packet: bytes) -> LiveFrame | None:
     """What a packet adds to a frame, None if it is none; see the head of this file."""
     channels: dict[str, float] = {}
     bones: dict[str, Quaternion] = {}
@@ -99,7 +99,7 @@ def parse(packet: bytes) -> Frame | None:
     _put_bones(channels, bones)
     if not (has_values or is_applied or bones):
         return None
-    return Frame(channels, is_complete=is_applied or not has_values)
+    return LiveFrame(channels, is_complete=is_applied or not has_values)
 
 
 def _messages(packet: bytes, depth: int) -> Iterator[bytes]:

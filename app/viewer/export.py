@@ -79,7 +79,7 @@ class StagePainter:
 
 
 @dataclass
-class Job:
+class ExportJob:
     """An export that is being made."""
 
     target: Path
@@ -93,7 +93,7 @@ class Exporter:
 
     def __init__(self, session: Session, settings: Settings, stage: Stage, view: View) -> None:
         self._session, self._settings, self._stage, self._view = session, settings, stage, view
-        self.job: Job | None = None
+        self.job: ExportJob | None = None
         self.is_asking = False  # the dialog is open
         self.name = ""
         self.span = (0.0, 0.0)  # [s] that is exported of a script in part
@@ -188,7 +188,7 @@ class Exporter:
             write = partial(export, head=head, frames_per_second=rate, span=span)
             work = partial(write, script, target, chosen, request)
         task = telling.Task(work, round(span[1] * choices.rate) + 1, wake_up)
-        self.job, self.is_asking = Job(target, task), False
+        self.job, self.is_asking = ExportJob(target, task), False
 
     @property
     def has_news(self) -> bool:

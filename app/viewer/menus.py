@@ -165,7 +165,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
 def view_menu(settings: Settings, view: View, placement: Placement, panels: PanelState) -> Menu:
     """How the scene is drawn, and what is around it."""
     command = partial(Command, "View")
-    shown = partial(switch_of, lambda: settings.display, "View")
+    display_switch = partial(switch_of, lambda: settings.display, "View")
     setting = partial(switch_of, lambda: settings, "View")
 
     def toggle_look() -> Message:
@@ -186,22 +186,22 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
     )
     full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
     return (
-        shown("Refine", "R", "is_refined"),
+        display_switch("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_LOOK),
-        shown("Compare: wipe", "D", "compare", "wipe", "off"),
-        shown("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
-        shown("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
-        shown("Wireframe", "W", "wireframe"),
-        shown("Colour by splits", "C", "colours", "splits", "none"),
+        display_switch("Compare: wipe", "D", "compare", "wipe", "off"),
+        display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
+        display_switch("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
+        display_switch("Wireframe", "W", "wireframe"),
+        display_switch("Colour by splits", "C", "colours", "splits", "none"),
         command("Next shading", "S", lambda: settings.display.next_shading()),
-        shown("Texture", "T", "skin", "textured", "plain"),
+        display_switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         setting("Idle life", "A", "is_alive"),
         setting("Curves", "G", "shows_curves"),
         setting("Frame numbers", "", "counts_frames"),
         command("Frame the face", "F", view.fit_scene),
         *views,
-        replace(shown("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
+        replace(display_switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
         command("Hide panels", "H", panels.toggle_hidden, lambda: panels.are_hidden),
         full("Full screen", "F11", toggle_full),
         setting("Dark theme", "F2", "theme", "dark", "light"),

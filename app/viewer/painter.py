@@ -13,7 +13,7 @@ from .settings import Display
 from .view import View
 
 
-class Picture(Protocol):
+class Drawable(Protocol):
     """What can be drawn into the window: a `Stage`, or else."""
 
     surface: render.WindowSurface
@@ -28,7 +28,7 @@ class Picture(Protocol):
 class Painter:
     """Keeps the picture of the scene up to date, as finely as the machine can."""
 
-    def __init__(self, stage: Picture, view: View, messages: Messages) -> None:
+    def __init__(self, stage: Drawable, view: View, messages: Messages) -> None:
         self._stage, self._view, self._messages = stage, view, messages
         self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
         self._calm_for = 0.0  # [s] that the picture has not changed

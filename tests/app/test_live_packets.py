@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pythonosc.osc_packet import OscPacket
 
 from risorius.app.live import PROTOCOLS
-from risorius.app.live.frame import Frame
+from risorius.app.live.frame import LiveFrame
 from risorius.app.live.ifacialmocap import parse as parse_ifacialmocap
 from risorius.app.live.livelink import parse as parse_live_link
 from risorius.app.live.vmc import PRESETS
@@ -32,7 +32,7 @@ GOOD = {
 }
 
 
-def channels_of(frame: Frame | None) -> dict[str, float]:
+def channels_of(frame: LiveFrame | None) -> dict[str, float]:
     """The channels of what must be a frame."""
     assert frame is not None
     return dict(frame.channels)
@@ -280,7 +280,7 @@ def test_an_osc_library_reads_what_we_send() -> None:
     assert messages[-1].address == APPLY
 
 
-def is_sound(frame: Frame | None) -> bool:
+def is_sound(frame: LiveFrame | None) -> bool:
     """Whether there is no frame, or one that may be believed."""
     if frame is None:
         return True

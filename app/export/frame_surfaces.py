@@ -1,4 +1,4 @@
-"""What a clip looks like in one frame: a sheet for each surface, as mesh files hold them."""
+"""What a clip looks like in one frame, surface by surface, as mesh files hold them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GREY = 0.8  # of what has neither colours nor a texture
 
 
 @dataclass(frozen=True)
-class Sheet:
+class FrameSurface:
     """One surface in one frame [mm].
 
     name: that of the surface. points, normals, colours (sRGB 0..1): of vertices, shape (V, 3).
@@ -35,7 +35,9 @@ class Sheet:
     source: Indices
 
 
-def sheets(clip: Clip, refinement: Refinement | None = None) -> Iterator[list[Sheet]]:
+def frame_surfaces(
+    clip: Clip, refinement: Refinement | None = None
+) -> Iterator[list[FrameSurface]]:
     """All surfaces of each frame, the skin first, which is refined where that is asked for."""
     colours = {each.name: _colours(clip, each) for each in clip.surfaces}
     skins = None if refinement is None else _refined(clip, refinement)
@@ -46,10 +48,10 @@ def sheets(clip: Clip, refinement: Refinement | None = None) -> Iterator[list[Sh
         yield rest if skin is None else [skin, *rest]
 
 
-def _plain(surface: Surface, frame: int, colours: Floats) -> Sheet:
+def _plain(surface: Surface, frame: int, colours: Floats) -> FrameSurface:
     """A surface as it is."""
     points = surface.at(frame)
-    return Sheet(
+    return FrameSurface(
         surface.name,
         points,
         vertex_normals(points, surface.faces),
@@ -61,11 +63,11 @@ def _plain(surface: Surface, frame: int, colours: Floats) -> Sheet:
     )
 
 
-def _refined(clip: Clip, refinement: Refinement) -> Iterator[Sheet]:
+def _refined(clip: Clip, refinement: Refinement) -> Iterator[FrameSurface]:
     """The refined skin of each frame, in arrays of its own."""
     for mesh in clip.refined(refinement):
         faces = mesh.triangles.astype(np.int32)
-        yield Sheet(
+        yield FrameSurface(
             clip.skin.name,
             mesh.positions.astype(np.float64),
             mesh.normals.astype(np.float64),
