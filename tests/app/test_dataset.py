@@ -216,6 +216,7 @@ def test_coco_has_every_keypoint(made: Path, samples: list[dict[str, Any]]) -> N
         assert (keypoints[:, 2] == 1 + np.array(sample["landmarks"]["visible"])).all()
         assert found["num_keypoints"] == 70
         assert found["image_id"] == sample["index"]
+        assert found["id"] == sample["index"] + 1  # COCO's evaluation takes 0 as not matched
 
 
 def test_the_card_tells_what_is_in_the_set(made: Path, samples: list[dict[str, Any]]) -> None:
