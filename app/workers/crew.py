@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import threading
@@ -66,6 +67,7 @@ class Crew:
                 reply: serving.Reply = child.receive()
             except DiedError as end:
                 why = str(end)
+                _note(log, f"risorius: the process of attempt {attempt} died of {why}")
                 continue
             return Outcome(index, item, reply.result, reply.error, attempt, reply.seconds)
         error = f"the process that worked on it died {retries + 1} times, at last of {why}"
@@ -88,3 +90,10 @@ class Crew:
             child.process.terminate()
         for child in self._all:
             child.close()
+
+
+def _note(log: Path | None, line: str) -> None:
+    """Add a line to a log; where that cannot be written, the outcome tells enough."""
+    if log is not None:
+        with contextlib.suppress(OSError), log.open("a", encoding="utf-8") as file:
+            file.write(f"{line}\n")
