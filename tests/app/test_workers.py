@@ -87,6 +87,14 @@ def test_what_dies_costs_its_item_an_attempt(tmp_path: Path) -> None:
     assert [each.attempts for each in found] == [1, 2, 1, 2, 1]
 
 
+def test_what_the_dead_had_half_written_goes(tmp_path: Path) -> None:
+    """When its item is done again; not what another process is at."""
+    other = tmp_path / ".risorius-0123456789ab"
+    other.mkdir()
+    outcomes(working.die_before_the_end, [tmp_path / "film"])
+    assert {path.name for path in tmp_path.iterdir()} == {"film", "film.begun", other.name}
+
+
 @pytest.mark.parametrize("retries", [0, 2])
 def test_what_kills_every_process_fails_alone(retries: int, tmp_path: Path) -> None:
     """It is given up after so many attempts, in one line; a fault says in the log where it was."""
