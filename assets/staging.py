@@ -2,7 +2,9 @@
 
 It goes when the work ends. Where the process was killed it stays: the next one that works in the
 same place sweeps it away, if it is ours and old. A folder is ours by its name and by who owns it,
-and old a day after the last change in it: a run that works changes something every few minutes.
+and old a day after the last change in it: a run that works changes something every few minutes. A
+process that takes the place of one that died is told the mark in the names of that one's folders,
+and waits no day.
 """
 
 import contextlib
@@ -18,7 +20,9 @@ from typing import IO, Any
 
 PREFIX = ".risorius-"  # what the names of such folders begin with
 OLD = 86_400.0  # [s] since the last change in a folder that is swept away
-_NAME = re.compile(re.escape(PREFIX) + "[0-9a-f]{12}")
+MARK = "RISORIUS_MARK"  # environment: what names go on with, 12 hexadecimal digits or nothing
+DIED = "RISORIUS_DIED"  # environment: the mark of the one that died
+_NAME = re.compile(re.escape(PREFIX) + "([0-9a-f]{12}){1,2}")
 _swept: set[Path] = set()  # where this process has looked for what others left
 
 
@@ -29,7 +33,7 @@ class StagingFolder:
     """
 
     def __init__(self, parent: Path) -> None:
-        self._folder = parent / f"{PREFIX}{secrets.token_hex(6)}"
+        self._folder = parent / f"{PREFIX}{os.environ.get(MARK, '')}{secrets.token_hex(6)}"
 
     def __enter__(self) -> Path:
         if self._folder.parent not in _swept:  # to look through 100 000 files takes a second
@@ -57,11 +61,15 @@ def is_staging_folder(path: Path) -> bool:
 
 
 def sweep(parent: Path) -> None:
-    """Remove the folders in `parent` that killed processes left more than a day ago."""
+    """Remove the folders in `parent` that killed processes left; see above for which."""
+    died = os.environ.get(DIED)
     with contextlib.suppress(OSError):
         for path in [item for item in parent.iterdir() if item.name.startswith(PREFIX)]:
             with contextlib.suppress(OSError):
-                if is_staging_folder(path) and _last_change(path) < time.time() - OLD:
+                if is_staging_folder(path) and (
+                    (died and path.name.startswith(PREFIX + died))
+                    or _last_change(path) < time.time() - OLD
+                ):
                     shutil.rmtree(path, ignore_errors=True)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, sim
+from risorius.app.dataset.openings import LOWER_EDGES, around, cut_by, opening, to_viewer
 
 Array = npt.NDArray[np.float64]
 Triangles = npt.NDArray[Any]
@@ -26,10 +27,6 @@ VIEWS = tuple(  # the whole front, as far as cameras go round it
     for yaw, pitch in itertools.product(YAWS, PITCHES)
     if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
 )
-LOWER_LIP = (60, 67, 66, 65, 64)  # landmarks of its inner edge, from corner to corner
-SLIT_PLANES = 40  # vertical planes across the mouth that the lines of sight lie in
-SLIT_END = 1.0  # mm beside a mouth corner that are not looked at: lips are joined there
-SLIT_WINDOW = 5.0  # mm from the lower lip in which an opening begins that is the mouth
 MOUTH = 60.0  # mm around the mouth's middle in which skin may cover it
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
 LID_COLUMNS, LID_END = 23, 1.5  # planes across an eye; mm beside its corners not looked at
@@ -54,59 +51,10 @@ def widest_slit(positions: Array, triangles: Triangles, landmarks: Array) -> flo
 
     `landmarks`: where the 68 are now (68, 3).
     """
-    lip = landmarks[list(LOWER_LIP)]
-    near = _around(positions[triangles], (lip[0] + lip[-1]) / 2.0, MOUTH)
+    lip = landmarks[list(LOWER_EDGES["mouth"])]
+    near = around(positions[triangles], (lip[0] + lip[-1]) / 2.0, MOUTH)
     turns = [_turned_by(*view) for view in VIEWS]
-    return max(_slit(near @ turn.T, lip @ turn.T) for turn in turns)
-
-
-def _slit(near: Array, lip: Array) -> float:
-    """Greatest height [mm] of the slit above the lower lip (5, 3), looked at along z."""
-    near = near[_to_viewer(near)]  # what is seen from within covers nothing
-    left, right = sorted(lip[[0, -1], 0])
-    columns = np.linspace(left + SLIT_END, right - SLIT_END, SLIT_PLANES)
-    heights = np.interp(columns, *lip[np.argsort(lip[:, 0]), :2].T)
-    return max(
-        _widest_opening(near, column, height, SLIT_WINDOW)
-        for column, height in zip(columns, heights, strict=True)
-    )
-
-
-def _around(triangles: Array, middle: Array, reach: float) -> Array:
-    """Those of the triangles (n, 3, 3) that lie within `reach` mm of a point."""
-    near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - middle, axis=1) < reach]
-    return near
-
-
-def _widest_opening(triangles: Array, x: float, middle: float, window: float) -> float:
-    """Greatest height of what no triangle covers [mm], looked at along z in the plane at x.
-
-    It begins within `window` of the height `middle`; triangles: corners, shape (n, 3, 3).
-    """
-    is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
-    cut, meets = _cut(triangles[is_crossed], x)
-    low = np.where(meets, cut[:, :, 1], np.inf).min(axis=1)
-    high = np.where(meets, cut[:, :, 1], -np.inf).max(axis=1)
-    order = np.argsort(low)
-    reached = np.maximum.accumulate(high[order])[:-1]
-    open_above = low[order][1:] - reached
-    return float(open_above[np.abs(reached - middle) < window].max(initial=0.0))
-
-
-def _to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
-    """Whether triangles (n, 3, 3) turn their outside to the viewer, shape (n,)."""
-    one, other = (triangles[:, k, :2] - triangles[:, 0, :2] for k in (1, 2))
-    facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
-    return facing
-
-
-def _cut(triangles: Array, x: float) -> tuple[Array, npt.NDArray[np.bool_]]:
-    """Where the plane at x meets the sides of triangles (n, 3, 3): points (n, 3, 3), whether."""
-    end = np.roll(triangles, -1, axis=1)
-    run = end[:, :, 0] - triangles[:, :, 0]
-    share = (x - triangles[:, :, 0]) / np.where(run == 0.0, np.inf, run)
-    points = triangles + share[:, :, None] * (end - triangles)
-    return points, (share >= 0.0) & (share <= 1.0) & (run != 0.0)
+    return max(opening(near @ turn.T, lip @ turn.T) for turn in turns)
 
 
 def _turned_by(yaw: float, pitch: float) -> Array:
@@ -141,7 +89,7 @@ def lid_gaps(
     gaps = {}
     for side, numbers in EYE_CORNERS.items():
         ends, ball = landmarks[list(numbers)], eyeballs[side]
-        near = _around(positions[triangles], ends.mean(axis=0), EYE)
+        near = around(positions[triangles], ends.mean(axis=0), EYE)
         gaps[side] = max(_lid_gap(near @ turn.T, ends @ turn.T, ball @ turn.T) for turn in turns)
     return gaps
 
@@ -151,7 +99,7 @@ def _lid_gap(near: Array, ends: Array, ball: Array) -> float:
 
     What has skin above and below it counts.
     """
-    near = near[_to_viewer(near)]
+    near = near[to_viewer(near)]
     left, right = np.sort(ends[:, 0])
     middle, deepest = ends[:, 1].mean(), ball[:, :, 2].min()
     heights = np.arange(middle - LID_WINDOW, middle + LID_WINDOW, LID_STEP)
@@ -170,7 +118,7 @@ def _front(triangles: Array, x: float, heights: Array) -> Array:
     -inf where there is none at that height.
     """
     is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
-    cut, meets = _cut(triangles[is_crossed], x)
+    cut, meets = cut_by(triangles[is_crossed], x)
     y = np.where(meets, cut[:, :, 1], np.inf)
     ends = np.take_along_axis(cut, np.argsort(y, axis=1)[:, :2, None], axis=1)  # lower, upper
     low, high = ends[:, 0, 1:, None], ends[:, 1, 1:, None]

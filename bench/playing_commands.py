@@ -19,7 +19,7 @@ def bench_take(minutes: float) -> None:
 
 
 @click.command("window")
-@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+@click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
 @click.option(
     "--seconds", type=FiniteRange(0.3, 600.0), default=5.0, show_default=True, help="Of each case."
 )
@@ -43,7 +43,7 @@ def bench_live(seconds: float, window: bool) -> None:
 
 
 @click.command("capture")
-@click.option("--size", type=Size(), default=(1280, 720), show_default="1280x720")
+@click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
 @click.option(
     "--seconds", type=FiniteRange(1.0, 60.0), default=8.0, show_default=True, help="Of the script."
 )

@@ -12,9 +12,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from risorius.app.recordings import read_take
-from risorius.app.recordings.calibration import calibration_for
-from risorius.app.recordings.mapping import load_mapping
+from risorius.app.recordings import calibration_for, load_mapping, read_take
 from risorius.app.scenes import FaceScene
 
 STEP = 1 / 60  # [s]

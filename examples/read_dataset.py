@@ -50,9 +50,10 @@ class Faces:
         return sample
 
     def split(self, share: float = 0.2) -> tuple[list[int], list[int]]:
-        """Numbers for training and for testing; nobody's face is in both."""
+        """Numbers for training and for testing; nobody's face is in both, somebody's in each."""
         persons = sorted({int(row["person_number"]) for row in self.rows})
-        tested = set(persons[: round(share * len(persons))])
+        count = min(max(round(share * len(persons)), 1), len(persons) - 1)  # of one person, none
+        tested = set(persons[:count])
         is_tested = [int(row["person_number"]) in tested for row in self.rows]
         numbers = range(len(self))
         return [k for k in numbers if not is_tested[k]], [k for k in numbers if is_tested[k]]

@@ -119,7 +119,9 @@ class RisoriusAccessor:
         rest : pyvista.PolyData, optional
             The same mesh before it was deformed. Without, this mesh counts as undeformed, and is
             refined where it is coarse.
-        weld, **options
+        weld : bool, default: True
+            As for `refiner`.
+        **options
             As for `refiner`, but that `blend` is False unless it is given.
 
         Examples

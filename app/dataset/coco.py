@@ -76,7 +76,7 @@ def _annotation(sample: dict[str, Any]) -> dict[str, Any]:
         is_inside = 0.0 <= x < width and 0.0 <= y < height
         keypoints += [x, y, 1 + is_visible] if is_inside else [0.0, 0.0, 0]
     return {
-        "id": sample["index"],
+        "id": sample["index"] + 1,  # 0 tells COCO's evaluation that nothing was matched
         "image_id": sample["index"],
         "category_id": 1,
         "iscrowd": 0,

@@ -15,14 +15,9 @@ from risorius import render
 from ..curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..passes.labels import labels_of
 from ..scenes import FaceScene
+from .openings import apertures
 
 DIGITS = 5
-# Pairs of landmarks, above and below, whose distance says how far something is open.
-APERTURES = {
-    "mouth": ((61, 67), (62, 66), (63, 65)),
-    "eye_right": ((37, 41), (38, 40)),
-    "eye_left": ((43, 47), (44, 46)),
-}
 
 
 def labels_of_face(
@@ -33,12 +28,13 @@ def labels_of_face(
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.sums))
     labels = labels_of(scene, camera, size, depth)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
+    positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # as if not turned
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
         "action_units": units,
         "action_units_0_to_5": {name: round(5.0 * value, DIGITS) for name, value in units.items()},
         "arkit": {name: round(float(value[0]), DIGITS) for name, value in arkit.items()},
-        "apertures": apertures(np.array(labels["landmarks"]["points"])),
+        "apertures": apertures(positions, scene.simulation.faces, positions[scene.landmarks]),
         "face_box": np.concatenate([low, high - low]).round(3).tolist(),
         **labels,
     }
@@ -64,14 +60,6 @@ def by_number(unit: str) -> tuple[int, str]:
     """AU2 before AU12, and that before AU12_left."""
     number, _, side = unit.removeprefix("AU").partition("_")
     return int(number), side
-
-
-def apertures(points: Any) -> dict[str, float]:
-    """How far mouth and eyes are open [mm], from landmarks (70, 3)."""
-    return {
-        name: round(float(np.mean([np.linalg.norm(points[a] - points[b]) for a, b in pairs])), 3)
-        for name, pairs in APERTURES.items()
-    }
 
 
 def _in_one_frame(values: Mapping[str, float]) -> dict[str, Any]:

@@ -136,7 +136,7 @@ def _finish(folder: SetFolder, request: Request, count: int, *, coco: bool) -> N
     index, keypoints = folder.path / "index.csv", folder.path / "coco.json"
     with written_atomically(index) as part, cannot_be_written(index):
         counts = write_index(part, samples())
-    save_text(folder.path / "README.md", card_of(request, counts))
+    save_text(folder.path / "README.md", card_of(request, counts, coco=coco))
     if coco:
         with written_atomically(keypoints) as part, cannot_be_written(keypoints):
             write_coco(part, samples, f"{count} faces made by Risorius")

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
+import secrets
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from risorius.assets.staging import DIED, MARK
 
 from . import serving
 from .child import Child, DiedError
@@ -66,6 +70,7 @@ class Crew:
                 reply: serving.Reply = child.receive()
             except DiedError as end:
                 why = str(end)
+                _note(log, f"risorius: the process of attempt {attempt} died of {why}")
                 continue
             return Outcome(index, item, reply.result, reply.error, attempt, reply.seconds)
         error = f"the process that worked on it died {retries + 1} times, at last of {why}"
@@ -75,7 +80,9 @@ class Crew:
         """The process of this thread; a new one where it has none, or that has ended."""
         child: Child | None = getattr(self._own, "child", None)
         if child is None or child.process.poll() is not None:
-            child = self._own.child = Child(serving.__name__, self._environment)
+            marks = {MARK: secrets.token_hex(6), DIED: getattr(self._own, "mark", "")}
+            self._own.mark = marks[MARK]
+            child = self._own.child = Child(serving.__name__, {**self._environment, **marks})
             self._all.append(child)
             if self._is_over:  # told so while it was started
                 child.process.terminate()
@@ -88,3 +95,10 @@ class Crew:
             child.process.terminate()
         for child in self._all:
             child.close()
+
+
+def _note(log: Path | None, line: str) -> None:
+    """Add a line to a log; where that cannot be written, the outcome tells enough."""
+    if log is not None:
+        with contextlib.suppress(OSError), log.open("a", encoding="utf-8") as file:
+            file.write(f"{line}\n")

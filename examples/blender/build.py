@@ -5,6 +5,7 @@
 Wheels are bundled as they come from the package index, for Blender's own Python and numpy.
 """
 
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,6 +16,7 @@ from pathlib import Path
 ADD_ON = Path(__file__).parent / "risorius_refine"
 CHECKOUT = Path(__file__).parents[2]
 PYTHON, NUMPY = "3.11", "numpy==1.26.4"  # of Blender 5.0
+PASSED_OVER = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "out", "*.egg-info")
 WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),
     "windows-x64": ("win_amd64",),
@@ -23,9 +25,15 @@ WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
 
 
 def collect_wheels(platform: str, folder: Path) -> list[Path]:
-    """Put the wheels of risorius, numba and llvmlite into a folder."""
+    """Put the wheels of risorius, numba and llvmlite into a folder.
+
+    That of risorius is built from a copy: a build leaves files in its checkout, and those of an
+    earlier one would get into the wheel.
+    """
+    copy = folder / "checkout"
+    shutil.copytree(CHECKOUT, copy, ignore=PASSED_OVER)
     pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
-    wheels = ["--no-deps", "--wheel-dir", str(folder), str(CHECKOUT)]
+    wheels = ["--no-deps", "--wheel-dir", str(folder), str(copy)]
     subprocess.run([*pip, "wheel", *wheels], check=True)
     tags = [f"--platform={tag}" for tag in WHEELS_FOR[platform]]
     chosen = ["--only-binary=:all:", f"--python-version={PYTHON}", *tags, "--dest", str(folder)]

@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -218,11 +219,16 @@ def test_coco_has_every_keypoint(made: Path, samples: list[dict[str, Any]]) -> N
         assert (keypoints[:, 2] == 1 + np.array(sample["landmarks"]["visible"])).all()
         assert found["num_keypoints"] == 70
         assert found["image_id"] == sample["index"]
+        assert found["id"] == sample["index"] + 1  # COCO's evaluation takes 0 as not matched
 
 
 def test_the_card_tells_what_is_in_the_set(made: Path, samples: list[dict[str, Any]]) -> None:
     card = (made / "README.md").read_text("utf-8")
-    assert f"--count {COUNT} --seed {SEED}" in card
+    (command,) = re.findall(r"^    risorius (.* -o FOLDER)$", card, re.MULTILINE)
+    assert command.startswith(f"dataset --count {COUNT} --seed {SEED}")
+    assert command.endswith("--coco -o FOLDER")
+    for file in ("index.csv", "coco.json", "dataset.json"):
+        assert f"`{file}`" in card
     for unit in ("AU12", "AU25"):
         share = sum(sample["action_units"][unit] >= 0.05 for sample in samples) / COUNT
         assert (f"| {unit} | {share:.1%} |" in card) == (share > 0)

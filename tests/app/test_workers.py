@@ -74,11 +74,25 @@ def test_nothing_to_do() -> None:
 
 
 def test_what_dies_costs_its_item_an_attempt(tmp_path: Path) -> None:
-    """A killed process is replaced, its item done again, and the others have one attempt."""
+    """A killed process is replaced, its item done again, and the others have one attempt.
+
+    The logs of those that died say so.
+    """
     marks = [tmp_path / name for name in ("calm 1", "one", "calm 2", "two", "calm 3")]
-    found = outcomes(working.die_once, marks)
+    logs = [mark.with_suffix(".log") for mark in marks]
+    found = outcomes(working.die_once, marks, logs=logs)
+    died = "risorius: the process of attempt 1 died of SIGKILL\n"
+    assert [log.read_text() for log in logs] == ["", died, "", died, ""]
     assert [each.result for each in found] == [mark.name for mark in marks]
     assert [each.attempts for each in found] == [1, 2, 1, 2, 1]
+
+
+def test_what_the_dead_had_half_written_goes(tmp_path: Path) -> None:
+    """When its item is done again; not what another process is at."""
+    other = tmp_path / ".risorius-0123456789ab"
+    other.mkdir()
+    outcomes(working.die_before_the_end, [tmp_path / "film"])
+    assert {path.name for path in tmp_path.iterdir()} == {"film", "film.begun", other.name}
 
 
 @pytest.mark.parametrize("retries", [0, 2])

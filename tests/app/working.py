@@ -32,6 +32,16 @@ def die_once(mark: Path) -> str:
     return mark.name
 
 
+def die_before_the_end(target: Path) -> None:
+    """Write a file, and die at the first call when it is all but whole."""
+    begun = target.with_name(f"{target.name}.begun")
+    with written_atomically(target) as part:
+        part.write_text("whole")
+        if not begun.exists():
+            begun.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+
+
 def die(name: str) -> str:
     """Die at every call of this name, by a fault."""
     if name == "deadly":

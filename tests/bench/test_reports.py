@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from risorius import assets
 from risorius.bench import motion, simulate, soak, tearing
+from risorius.bench.playing_commands import bench_capture, bench_window
 from risorius.bench.report import table
 
 
@@ -75,3 +77,10 @@ def test_table() -> None:
     lines = table("name:<6|ms:6.2f|n:3d", [("a", 1.0, 2), ("b", None, 30)], empty="-")
     assert lines == ["name       ms   n", "a        1.00   2", "b           -  30"]
     assert table("x:>4", [(None,)], indent="  ") == ["     x", ""]
+
+
+def test_help_tells_sizes_plainly() -> None:
+    """As all commands do, without the brackets of a Python tuple."""
+    for command in (bench_capture, bench_window):
+        told = CliRunner().invoke(command, ["--help"]).output
+        assert "1280x720 unless told." in told and "(1280" not in told

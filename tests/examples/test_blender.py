@@ -90,11 +90,22 @@ def test_renders_files_and_undo(seen: dict[str, Any]) -> None:
     assert not seen["registered"]
 
 
+def left_by_builds() -> dict[Path, int]:
+    """Files in the checkout that setuptools writes, and when it did."""
+    folders = (EXAMPLES.parents[1] / name for name in ("build", "risorius.egg-info"))
+    return {file: file.stat().st_mtime_ns for folder in folders for file in folder.rglob("*")}
+
+
 @pytest.mark.slow
 def test_the_zip_has_all_that_it_needs(tmp_path: Path) -> None:
-    """Built for Linux: the manifest names each wheel that is in it, and Blender accepts it."""
+    """Built for Linux: the manifest names each wheel that is in it, and Blender accepts it.
+
+    Nothing is left in the checkout.
+    """
+    before = left_by_builds()
     build = [sys.executable, str(EXAMPLES / "build.py"), "linux-x64", str(tmp_path)]
     subprocess.run(build, check=True, capture_output=True)
+    assert left_by_builds() == before
     (file,) = tmp_path.iterdir()
     with zipfile.ZipFile(file) as archive:
         manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())

@@ -144,3 +144,11 @@ def test_read_dataset(tmp_path: Path) -> None:
     assert sorted(training + testing) == [0, 1, 2, 3]
     persons = [{faces.rows[k]["person_number"] for k in part} for part in (training, testing)]
     assert persons[0].isdisjoint(persons[1])
+
+
+def test_of_two_persons_one_is_tested(tmp_path: Path) -> None:
+    """Whatever the share is, somebody is in both parts; one alone is trained with."""
+    index = "person_number\n0\n0\n1\n1\n"
+    for rows, split in ((index, ([2, 3], [0, 1])), (index[:-4], ([0, 1], []))):
+        (tmp_path / "index.csv").write_text(rows, encoding="utf-8")
+        assert example("read_dataset").Faces(tmp_path).split() == split

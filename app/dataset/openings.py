@@ -1,0 +1,89 @@
+"""How far mouth and eyes are open, as one sees it: the height of the gap between lips or lids.
+
+Distances between landmarks do not tell it: lips that are pressed on each other roll inward, lids
+that are shut lie on each other, and the landmarks of their edges stay millimetres apart.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from corner to corner
+    "mouth": (60, 67, 66, 65, 64),
+    "eye_right": (36, 41, 40, 39),
+    "eye_left": (42, 47, 46, 45),
+}
+PLANES = 40  # vertical ones across an opening that the lines of sight lie in
+END = 1.0  # mm beside a corner that are not looked at: lips and lids are joined there
+WINDOW = 5.0  # mm from the lower edge in which an opening begins that is the one meant
+REACH = 60.0  # mm around an opening in which skin may cover it
+
+
+def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
+    """How far mouth and eyes are open [mm], seen from straight before the head, along z.
+
+    landmarks: where the 68 are now (68, 3).
+    """
+    found = {}
+    for name, numbers in LOWER_EDGES.items():
+        edge = landmarks[list(numbers)]
+        near = around(positions[triangles], (edge[0] + edge[-1]) / 2.0, REACH)
+        found[name] = round(opening(near, edge), 3)
+    return found
+
+
+def opening(near: Array, edge: Array) -> float:
+    """Greatest height [mm] of the gap above a lower lip or lid (n, 3), looked at along z.
+
+    near: triangles (m, 3, 3) of the skin around.
+    """
+    near = near[to_viewer(near)]  # what is seen from within covers nothing
+    left, right = sorted(edge[[0, -1], 0])
+    columns = np.linspace(left + END, right - END, PLANES)
+    heights = np.interp(columns, *edge[np.argsort(edge[:, 0]), :2].T)
+    return max(
+        _widest_opening(near, column, height)
+        for column, height in zip(columns, heights, strict=True)
+    )
+
+
+def around(triangles: Array, middle: Array, reach: float) -> Array:
+    """Those of the triangles (n, 3, 3) that lie within `reach` mm of a point."""
+    near: Array = triangles[np.linalg.norm(triangles.mean(axis=1) - middle, axis=1) < reach]
+    return near
+
+
+def _widest_opening(triangles: Array, x: float, middle: float) -> float:
+    """Greatest height of what no triangle covers [mm], looked at along z in the plane at x.
+
+    It begins within WINDOW of the height `middle`; triangles: corners, shape (n, 3, 3).
+    """
+    is_crossed = (triangles[:, :, 0].min(axis=1) < x) & (triangles[:, :, 0].max(axis=1) > x)
+    cut, meets = cut_by(triangles[is_crossed], x)
+    low = np.where(meets, cut[:, :, 1], np.inf).min(axis=1)
+    high = np.where(meets, cut[:, :, 1], -np.inf).max(axis=1)
+    order = np.argsort(low)
+    reached = np.maximum.accumulate(high[order])[:-1]
+    open_above = low[order][1:] - reached
+    return float(open_above[np.abs(reached - middle) < WINDOW].max(initial=0.0))
+
+
+def to_viewer(triangles: Array) -> npt.NDArray[np.bool_]:
+    """Whether triangles (n, 3, 3) turn their outside to the viewer, shape (n,)."""
+    one, other = (triangles[:, k, :2] - triangles[:, 0, :2] for k in (1, 2))
+    facing: npt.NDArray[np.bool_] = one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]
+    return facing
+
+
+def cut_by(triangles: Array, x: float) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """Where the plane at x meets the sides of triangles (n, 3, 3): points (n, 3, 3), whether."""
+    end = np.roll(triangles, -1, axis=1)
+    run = end[:, :, 0] - triangles[:, :, 0]
+    share = (x - triangles[:, :, 0]) / np.where(run == 0.0, np.inf, run)
+    points = triangles + share[:, :, None] * (end - triangles)
+    return points, (share >= 0.0) & (share <= 1.0) & (run != 0.0)
