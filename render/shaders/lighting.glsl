@@ -11,13 +11,13 @@ uniform vec3 sky;
 uniform vec3 ground;
 const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
 // How far each colour of light travels in skin: red past the terminator, blue hardly.
-const vec3 SCATTER = vec3(0.25, 0.155, 0.115);
+const vec3 SCATTER = vec3(0.235, 0.16, 0.122);
 // The same within the edge of a cast shadow, and what comes back from lit skin nearby, of the key.
-const vec3 BLEED = vec3(0.40, 0.10, 0.03);
+const vec3 BLEED = vec3(0.30, 0.10, 0.04);
 const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);
 const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // of what folds take away
 const float OCCLUDED_KEY = 0.35;  // how much folds take of the key: an area light, not a point
-const vec3 WARMTH = vec3(1.14, 0.97, 0.88);  // of the ambient light, from skin nearby
+const vec3 WARMTH = vec3(1.25, 0.955, 0.82);  // of the ambient light, from skin nearby
 
 struct Lit {
     vec3 key;       // of the key light, straight: times albedo and lightness
