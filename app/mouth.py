@@ -16,7 +16,7 @@ from risorius.assets.topology import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
 LIT, DARK = 2.0, 34.0  # [mm] behind the front teeth, where it begins to get dark and no darker
-DIMMED = 0.15  # of the colour (sRGB) that is lost there
+DIMMED, DIMMED_TEETH = 0.15, 0.45  # of the colour (sRGB) that is lost there; molars are hidden
 
 Floats = npt.NDArray[np.float32]
 
@@ -66,15 +66,18 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
             return Tongue.of(part, float(front))
         if not part.name.startswith(IN_MOUTH):
             return part
-        return replace(part, colours=_shaded(part.vertices, part.colours, front))
+        lost = DIMMED_TEETH if part.name.startswith("teeth") else DIMMED
+        return replace(part, colours=_shaded(part.vertices, part.colours, front, lost))
 
     return tuple(shaded(part) for part in parts)
 
 
-def _shaded(points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float) -> Floats:
-    """Colours (n, 3) as they are seen behind the front teeth."""
+def _shaded(
+    points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, lost: float = DIMMED
+) -> Floats:
+    """Colours (n, 3) as they are seen behind the front teeth; lost: of them, at the very back."""
     share = np.clip((front - points[:, 2] - LIT) / (DARK - LIT), 0.0, 1.0)
-    light = 1.0 - DIMMED * share * share * (3.0 - 2.0 * share)
+    light = 1.0 - lost * share * share * (3.0 - 2.0 * share)
     return (colours * light[:, None]).astype(np.float32)
 
 

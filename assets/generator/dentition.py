@@ -16,7 +16,7 @@ from .solids import Solid, grid_faces, joined, mix
 
 AROUND = 12
 LEVELS = (0.0, 0.4, 0.75, 0.93, 1.0)  # rings of a crown, from the gum to the edge
-STATIONS = 57  # of the gums along the arch; chosen: four to a tooth
+STATIONS = 81  # of the gums along the arch; chosen: almost six to a tooth
 EDGE_COLOUR, NECK_COLOUR = (0.955, 0.94, 0.90), (0.94, 0.885, 0.80)
 FISSURE_COLOUR = (0.70, 0.60, 0.46)
 GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (
@@ -119,7 +119,7 @@ def _along(arch: Arch) -> tuple[Values, Points]:
 
 def _crown(tooth: Tooth) -> tuple[Points, npt.NDArray[np.float64]]:
     """Vertices of one crown: x along the arch, y from the edge (0) to the gum, z outward."""
-    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    angle = 2.0 * np.pi * (np.arange(AROUND) + 0.5) / AROUND  # so that cusps get a vertex each
     cosine, sine = np.cos(angle), np.sin(angle)
     rows, shades = [], []
     for level in LEVELS:

@@ -21,7 +21,7 @@ import numpy.typing as npt
 from ..subdivision import quarter
 from ..topology import Faces, cross_products, edge_faces, edge_key, vertex_normals
 from .fields import Points, Values, gradient, project, unit
-from .form import distance
+from .form import broad_distance as distance
 from .intersections import self_intersections
 from .skin import SkinMesh
 

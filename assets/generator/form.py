@@ -32,6 +32,7 @@ FOLD = (
 FOLD_DEPTH = (0.3, 0.8, 1.0, 1.0, 0.8, 0.5, 0.3, 0.1)  # along it, as a share
 # The sternomastoid, from behind the jaw down to the pit of the throat: height [mm], angle [deg].
 NECK_MUSCLE = ((-170, 24), (-156, 33), (-140, 47), (-122, 66), (-104, 84), (-86, 96), (-70, 103))
+STRIP = 12.4  # [mm] half of what a vertex of the neck stands for: edges have 15 to 32 mm there
 RELIEF_BEHIND, RELIEF_IN_FRONT = 40.0, 56.0  # [mm] z: small forms are drawn on the face alone
 FOLD_SIDE = tuple((x + 8.5, y - 1.0) for x, y in FOLD)
 
@@ -92,19 +93,28 @@ def _strokes(table: tuple[Stroke, ...], scale: float, across: Values, up: Values
     return total
 
 
-def neck_relief(angle: Values, height: Values, radius: Values) -> Values:
-    """The muscle that turns the head, the hollow in front of it, and the larynx [mm]."""
+def neck_relief(angle: Values, height: Values, radius: Values, strip: float = 0.0) -> Values:
+    """The muscle that turns the head, the hollow in front of it, and the larynx [mm].
+
+    strip: half the width [mm] over which all that is averaged.
+    """
+
+    def across(values: Values, centre: float, width: float) -> Values:
+        """A bell, as wide as it is and averaged over the strip."""
+        wide = float(np.hypot(width, strip))
+        return width / wide * bump(values, centre, wide)
+
     heights, degrees = np.array(NECK_MUSCLE).T
     behind = radius * (np.abs(angle) - np.radians(np.interp(height, heights, degrees)))
     from_middle = radius * np.abs(angle)
-    muscle = 4.4 * bump(behind, 0.0, 8.5) - 2.0 * bump(behind, -14.0, 9.0)
+    muscle = 4.4 * across(behind, 0.0, 8.5) - 2.0 * across(behind, -14.0, 9.0)
     larynx = bump(height, -143.0, 8.0) + 0.6 * smooth_step(-143.0, -152.0, height)
-    throat = 2.4 * larynx * bump(from_middle, 0.0, 8.0) * smooth_step(-128.0, -140.0, height)
+    throat = 2.4 * larynx * across(from_middle, 0.0, 8.0) * smooth_step(-128.0, -140.0, height)
     along = smooth_step(-84.0, -112.0, height) * smooth_step(-166.0, -138.0, height)
     return muscle * along + throat
 
 
-def head_distance(points: Points) -> Values:
+def head_distance(points: Points, strip: float = 0.0) -> Values:
     """Plain head with relief and lips, without nose and lids [mm], shape (n,)."""
     angle, height, radius = direction_coordinates(points)
     x, y = np.abs(points[:, 0]), points[:, 1]
@@ -113,7 +123,7 @@ def head_distance(points: Points) -> Values:
     in_front = smooth_step(RELIEF_BEHIND, RELIEF_IN_FRONT, points[:, 2])
     surface = surface + in_front * (front.ev(x, y) + lips.displacement(x, y))
     surface = surface + beside.ev(np.degrees(np.abs(angle)), height)
-    surface = surface + neck_relief(angle, height, surface)
+    surface = surface + neck_relief(angle, height, surface, strip)
     result: Values = (radius - surface) * RADIAL_SLOPE
     return result
 
@@ -125,11 +135,27 @@ def lid_distance(points: Points) -> Values:
     return ellipsoid(half, centre, LID_RADII)
 
 
-def distance(points: Points) -> Values:
+def distance(points: Points, strip: float = 0.0) -> Values:
     """The whole face [mm], negative inside, shape (n,)."""
-    result = smooth_minimum(head_distance(points), nose.distance(points), nose.fillet(points))
+    head = head_distance(points, strip)
+    result = smooth_minimum(head, nose.distance(points), nose.fillet(points))
     result = smooth_minimum(result, lid_distance(points), LID_FILLET)
     return smooth_maximum(result, -nose.nostril_dish(points), 2.5)
+
+
+def broad_distance(points: Points) -> Values:
+    """The whole face with what a coarse neck can show: a cord that a single vertex meets is a knob.
+
+    The mesh is laid out on the form as it is, and lifted onto this one.
+    """
+    return distance(points, STRIP)
+
+
+def broadened(points: Points) -> Points:
+    """Points of the form, lifted as far as the broad one is from it, shape (n, 3)."""
+    lift = (head_distance(points) - head_distance(points, STRIP)) / RADIAL_SLOPE
+    angle, height, _ = direction_coordinates(points)
+    return points + lift[:, None] * rays(angle, height)[1]
 
 
 def from_axis(angle: Values, height: Values) -> Points:

@@ -32,6 +32,8 @@ ROOT_DEPTH = 0.25  # [mm] of roots below the skin
 UPPER_ENDS, LOWER_ENDS = (0.16, 0.985), (0.30, 0.975)  # of the lid, between which lashes stand
 UPPER_COLOUR, LOWER_COLOUR = (0.12, 0.085, 0.068), (0.25, 0.175, 0.14)  # these are finer
 WET_COLUMNS, WET_WIDTH, WET_ROWS = 19, 0.45, 3  # [mm] of the wet edge on the lid
+WET_ENDS = (0.19, 0.95)  # of the lid: beyond them it leaves the eyeball
+WIDE = 0.6  # of the greatest width: where it is less, the wet edge draws back to the lid
 WET_LIGHT, WET_DARK = (0.86, 0.74, 0.71), (0.78, 0.55, 0.51)  # on the eyeball, and on the lid
 SEED = 7
 
@@ -127,19 +129,22 @@ def lashes() -> Solid:
 def wet_edges() -> Solid:
     """The tears along both lower lids; each vertex moves with the skin where it is itself."""
     inner, outer = _edges(upper=False)
-    place = np.linspace(0.1, 0.95, WET_COLUMNS)
+    place = np.linspace(*WET_ENDS, WET_COLUMNS)
     width: Values = np.sin(np.pi * np.linspace(0.01, 0.99, WET_COLUMNS)) ** 0.8
     on_lid = inner(place) + WET_WIDTH * width[:, None] * unit(outer(place) - inner(place))
     up = unit(np.cross(inner(place, 1), inner(place) - EYE_CENTRE))
     up *= np.sign(up[:, 1:2])
     above = inner(place) + 0.7 * WET_WIDTH * width[:, None] * up
     on_ball = EYE_CENTRE + (EYE_RADIUS - 0.05) * unit(above - EYE_CENTRE)
+    # At its ends it lies on the lid alone: on other heads the ball is not where it is here.
+    reaching = smooth_step(0.0, WIDE, width)
+    on_ball = inner(place) + reaching[:, None] * (on_ball - inner(place))
     shares = np.repeat(np.linspace(0.0, 1.0, WET_ROWS), WET_COLUMNS)
     share = shares.reshape(WET_ROWS, WET_COLUMNS, 1)
     hollow = 0.88 * share * (1.0 - share)
     flat = (1.0 - share) * on_lid + share * on_ball
     vertices = ((1.0 - hollow) * flat + hollow * inner(place)).reshape(-1, 3)
     faces = grid_faces(WET_ROWS, WET_COLUMNS)
-    colours = mix(WET_DARK, WET_LIGHT, smooth_step(0.0, 1.0, shares))
+    colours = mix(WET_DARK, WET_LIGHT, smooth_step(0.0, 1.0, shares) * np.tile(reaching, WET_ROWS))
     left = Solid(vertices, faces, colours, np.arange(len(vertices), dtype=np.int32))
     return joined([left.mirrored(), left])

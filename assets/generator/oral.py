@@ -9,7 +9,7 @@ jaw; behind the corners only its inner side is drawn, so that it cannot come bef
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from .ambient import in_mouth_light
+from .ambient import REDDENING, in_mouth_light
 from .fields import Points, smooth_step
 from .solids import Solid, grid_faces, joined, mix, welded
 
@@ -28,6 +28,7 @@ LINING = (
     (24, 85.5, -60, -73),
 )  # fmt: skip
 LINING_COLUMNS, LINING_ROWS = 17, 6
+COVERED = 0.5  # chosen: of the light, what teeth and lips keep from the lining beside them
 
 
 def _outline(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -54,7 +55,9 @@ def _lining() -> Solid:
         height = whole[:, 2] + (whole[:, 3] - whole[:, 2]) * level
         rows.append(np.column_stack([whole[:, 0] * bulge, height, whole[:, 1]]))
     wall = np.vstack(rows)
-    return Solid(wall, grid_faces(LINING_ROWS, len(whole))[:, ::-1], _lit(wall, CHEEK))
+    covered = 1.0 - COVERED * smooth_step(10.0, 30.0, np.abs(wall[:, 0]))
+    colours = _lit(wall, CHEEK) * covered[:, None] ** np.array(REDDENING)
+    return Solid(wall, grid_faces(LINING_ROWS, len(whole))[:, ::-1], colours)
 
 
 def upper_cavity() -> Solid:

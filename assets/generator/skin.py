@@ -24,6 +24,7 @@ from .ear_rows import COLUMNS as EAR_COLUMNS
 from .ear_rows import ear_root, ear_rows, face_count, floor_faces, merged_columns
 from .eye_rows import eye_rows
 from .fields import Points
+from .form import broadened
 from .infill import Domain, throw_darts, triangulate, wanted_length
 from .mouth_rows import mouth_rows
 from .nostril_rows import nostril_cap, nostril_ring
@@ -136,7 +137,7 @@ def build_half(*, scale: float = SCALE, seed: int = SEED, target: int = TARGET_H
     remesh(mesh, scale=scale, target_faces=target - row_faces)
     rings = {"rim": rim, "alar_crease": crease, "nasolabial_fold": fold}
     rings |= {f"neck_{n}": row for n, row in enumerate(neck)}
-    half = SkinMesh(mesh.vertices, mesh.faces, names, rings)
+    half = SkinMesh(broadened(mesh.vertices), mesh.faces, names, rings)
     _hang_rows(half, "eye", eye, eye_outer, closed=True)
     _hang_rows(half, "mouth", mouth, mouth_outer, closed=False)
     _close_nostril(half, nostril)
