@@ -22,7 +22,7 @@ from ..fitting.head import FittedHead
 from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
 from ..fitting.warp import Similarity
 from ..generator.fields import smooth_step
-from ..generator.form import neck_relief
+from ..generator.form import STRIP, neck_relief
 from ..generator.regions import HAIRLINE, line_height
 from ..generator.sections import direction_coordinates
 from ..loading import load
@@ -149,7 +149,7 @@ def _hair(known: Head) -> FloatArray:
 
 def _neck(known: Head) -> FloatArray:
     """How far muscles and larynx stand out of the neck [mm], shape (V,)."""
-    return np.asarray(neck_relief(*direction_coordinates(known.vertices)))
+    return np.asarray(neck_relief(*direction_coordinates(known.vertices), strip=STRIP))
 
 
 def _moves(shapes: Mapping[str, float]) -> dict[int, FloatArray]:
