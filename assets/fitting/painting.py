@@ -27,7 +27,8 @@ EARS = (Segment.RIGHT_EAR, Segment.LEFT_EAR)
 TRUSTED_WITHIN = 6.0  # [mm] from a foot: the trust in it falls to half
 FACING = 0.3  # least cosine between the normals of a vertex and of its foot
 COMPETING, APART = 24, 2.0  # feet, and [mm]: so near to each other while vertices are farther
-HOLD = 4.0  # of a trusted foot, against one neighbour
+HOLD = 12.0  # of a trusted foot, against one neighbour
+CLOSEST = 0.05  # [mm] between neighbours: closer ones hold each other no more
 PRECISE, MOST_ROUNDS = 1e-5, 1000  # of what holds; rounds in which it is solved
 LEAST = 1e-6  # trust, so that every vertex finds a colour
 BLOCK, BLURS, NEAR = 8, (12.0, 5.0, 2.0, 1.0), 0.1  # [texels], [blocks], share of what is seen
@@ -61,8 +62,11 @@ def spread_uv(
     count = len(vertices)
     sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
     links = np.unique(np.sort(sides, axis=1), axis=0)
-    ones = np.ones(len(links))
-    linked = sparse.coo_array((ones, links.T), shape=(count, count))
+    # The nearer, the stiffer: else even steps over uneven edges, and slopes in the picture jump.
+    lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
+    stiffness = 1.0 / np.maximum(lengths, CLOSEST)
+    stiffness /= stiffness.mean()
+    linked = sparse.coo_array((stiffness, links.T), shape=(count, count))
     linked = linked + linked.T
     degree = linked.sum(axis=0)
     system = (sparse.diags_array(degree + hold) - linked).tocsr()
