@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..model import Eye, FloatArray, IndexArray, Part, SingleArray
+from ..model import Eye, FloatArray, IndexArray, Part
 from ..topology import boundary_loops, quads_between, vertex_normals
 
 FLESH = "eye_corners"  # the part that collars belong to: they have its colour
@@ -47,7 +47,7 @@ def _edge_around(eye: Eye, vertices: FloatArray, faces: IndexArray) -> list[int]
     return next((loop for loop in loops if away[loop].max() < reach), [])
 
 
-def _collar(eye: Eye, edge: FloatArray) -> tuple[SingleArray, IndexArray]:
+def _collar(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
     """Vertices (ROWS n, 3), row by row, and faces that are seen from the front.
 
     edge: where the skin ends, shape (n, 3), in the direction of its faces. From each of its points
@@ -67,10 +67,10 @@ def _collar(eye: Eye, edge: FloatArray) -> tuple[SingleArray, IndexArray]:
     rows = np.arange(ROWS * len(edge)).reshape(ROWS, -1)
     a, b, c, d = np.array(quads_between(rows.tolist(), closed=True), np.int32).T
     faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
-    return points.astype(np.float32), faces
+    return points, faces
 
 
-def _joined(part: Part, collars: Sequence[tuple[SingleArray, IndexArray]]) -> Part:
+def _joined(part: Part, collars: Sequence[tuple[FloatArray, IndexArray]]) -> Part:
     """A part with collars of its colour, which darken backward."""
     colour = part.colours.mean(axis=0)
     for points, faces in collars:
@@ -78,7 +78,7 @@ def _joined(part: Part, collars: Sequence[tuple[SingleArray, IndexArray]]) -> Pa
         part = replace(
             part,
             faces=np.concatenate([part.faces, faces + np.int32(len(part.vertices))]),
-            vertices=np.concatenate([part.vertices, points]),
+            vertices=np.concatenate([part.vertices, points], dtype=np.float32),
             normals=np.concatenate([part.normals, vertex_normals(points, faces)], dtype=np.float32),
             colours=np.concatenate([part.colours, light[:, None] * colour], dtype=np.float32),
         )
