@@ -39,6 +39,7 @@ from ..model import (
 from ..topology import vertex_normals
 from ..user_files import named
 from .coarser import coarser
+from .collars import with_collars
 from .landmark_file import COUNT, nearest_vertices, read_landmarks
 from .landmark_order import check_counting, check_lips, groups_in_disorder
 from .layouts import Layout, drawn_over, maps_in, own_picture
@@ -137,6 +138,7 @@ def fit(
     weight = nearest.interpolate(known.mandible_weight)
     fitted = FittedSkin(skin.vertices, normals, target, weight)
     eyes = place_eyes(known, fitted)
+    parts = with_collars(place_parts(known, fitted, warp, eyes), skin.vertices, skin.faces, eyes)
     uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
     across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
     painted = _painted(mesh, whole, skin, Layout(uv, skin.faces), known)
@@ -148,7 +150,7 @@ def fit(
         eyes=eyes,
         parts=tuple(
             part
-            for part in place_parts(known, fitted, warp, eyes)
+            for part in parts
             # Landmarks do not say exactly enough where a lid ends for lashes and tears.
             if part.bone != NECK and part.roots is None
         ),

@@ -27,7 +27,8 @@ EARS = (Segment.RIGHT_EAR, Segment.LEFT_EAR)
 TRUSTED_WITHIN = 6.0  # [mm] from a foot: the trust in it falls to half
 FACING = 0.3  # least cosine between the normals of a vertex and of its foot
 COMPETING, APART = 24, 2.0  # feet, and [mm]: so near to each other while vertices are farther
-HOLD = 4.0  # of a trusted foot, against one neighbour
+HOLD = 4.0, 12.0  # times trust, where it is little and where it is full; against one neighbour
+CLOSEST = 0.05  # [mm] between neighbours: closer ones hold each other no more
 PRECISE, MOST_ROUNDS = 1e-5, 1000  # of what holds; rounds in which it is solved
 LEAST = 1e-6  # trust, so that every vertex finds a colour
 BLOCK, BLURS, NEAR = 8, (12.0, 5.0, 2.0, 1.0), 0.1  # [texels], [blocks], share of what is seen
@@ -56,15 +57,18 @@ def spread_uv(
     # A neck or shoulders below those of the built-in head all find its rim.
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
     on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
-    trust[_is_behind_others(feet, away, vertices) & (on_rim < 0.99)] = 0.0
-    hold = HOLD * np.maximum(trust, LEAST)
     count = len(vertices)
     sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
     links = np.unique(np.sort(sides, axis=1), axis=0)
-    ones = np.ones(len(links))
-    linked = sparse.coo_array((ones, links.T), shape=(count, count))
+    trust[is_behind_others(feet, vertices, links) & (on_rim < 0.99)] = 0.0
+    # The nearer, the stiffer: else even steps over uneven edges, and slopes in the picture jump.
+    lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
+    stiffness = 1.0 / np.maximum(lengths, CLOSEST)
+    linked = sparse.coo_array((stiffness, links.T), shape=(count, count))
     linked = linked + linked.T
     degree = linked.sum(axis=0)
+    neighbour = degree / np.maximum(np.bincount(links.ravel(), minlength=count), 1)
+    hold = neighbour * (HOLD[0] + (HOLD[1] - HOLD[0]) * trust) * np.maximum(trust, LEAST)
     system = (sparse.diags_array(degree + hold) - linked).tocsr()
     start = nearest.interpolate(known.uv)
     scale = sparse.diags_array(1.0 / (degree + hold))
@@ -75,11 +79,21 @@ def spread_uv(
     return np.stack(columns, axis=1).astype(np.float32)
 
 
-def _is_behind_others(feet: FloatArray, away: FloatArray, vertices: FloatArray) -> BoolArray:
-    """Whether another part of the skin lies over the same place, and nearer to it, shape (V,)."""
-    distance, beside = cKDTree(feet).query(feet, k=min(COMPETING, len(feet)))
-    is_other = np.linalg.norm(vertices[beside] - vertices[:, None], axis=2) > distance + APART
-    is_nearer = away[beside] < away[:, None] - 0.5 * APART
+def is_behind_others(
+    feet: FloatArray, vertices: FloatArray, links: npt.NDArray[np.int64]
+) -> BoolArray:
+    """Whether another part of the skin lies over the same place, and nearer to it, shape (V,).
+
+    links: edges, shape (E, 2). The middles of long ones count as vertices do: those of a coarse
+    skin alone are too far from each other to tell a nostril from the nose around it.
+    """
+    lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
+    long = links[lengths > APART]
+    all_feet, places = (np.vstack([each, each[long].mean(axis=1)]) for each in (feet, vertices))
+    away = np.linalg.norm(all_feet - places, axis=1)
+    distance, beside = cKDTree(all_feet).query(feet, k=min(COMPETING, len(all_feet)))
+    is_other = np.linalg.norm(places[beside] - vertices[:, None], axis=2) > distance + APART
+    is_nearer = away[beside] < away[: len(feet), None] - 0.5 * APART
     is_behind: BoolArray = (is_other & (distance < APART) & is_nearer).any(axis=1)
     return is_behind
 

@@ -13,8 +13,10 @@ import trimesh
 from risorius import assets, sim
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
+from risorius.assets.fitting.painting import is_behind_others
 from risorius.assets.fitting.warp import Similarity, Warp, nearest_on
 from risorius.assets.meshes import Mesh
+from risorius.assets.topology import edge_faces
 from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
@@ -100,6 +102,34 @@ def test_depth_and_texture_come_from_the_same_place(fitted: FittedHead) -> None:
     assert np.abs(fitted.bone_depth[:count] - known.bone_depth).mean() < 0.5
     face = known.landmarks[17:]
     assert np.abs(fitted.uv[face] - known.uv[face]).max() < 0.01
+
+
+def test_texture_runs_evenly_beside_the_mouth(fitted: FittedHead) -> None:
+    """Neighbouring triangles have nearly the same slopes in the picture: furrows do not break."""
+    corners, uv = fitted.vertices[fitted.faces], fitted.uv.astype(np.float64)[fitted.faces]
+    slopes = np.linalg.pinv(corners[:, 1:] - corners[:, :1]) @ (uv[:, 1:] - uv[:, :1])
+    mouth = fitted.vertices[fitted.landmarks[[48, 54]]]
+    away = np.linalg.norm(corners.mean(axis=1)[:, None] - mouth, axis=2).min(axis=1)
+    beside = [pair for pair in edge_faces(fitted.faces).values() if len(pair) == 2]
+    pairs = np.array([pair for pair in beside if away[pair].max() < 20.0])
+    step = np.linalg.norm(slopes[pairs[:, 0]] - slopes[pairs[:, 1]], axis=(1, 2))
+    size = np.linalg.norm(slopes[pairs], axis=(2, 3)).mean(axis=1)
+    assert np.percentile(step / size, 80) < 0.24
+
+
+def test_the_inside_of_a_coarse_nostril_is_no_nose() -> None:
+    """Skin behind other skin finds no place in the picture, however wide the triangles are."""
+    rows, columns = np.divmod(np.arange(64), 8)
+    near = np.stack([3.4 * rows, 3.4 * columns, np.full(64, 1.0)], axis=1)
+    far = near + np.array([1.7, 1.7, 7.0])
+    across, along = np.arange(64)[columns < 7], np.arange(56)
+    sides = np.concatenate([np.stack([across, across + 1], 1), np.stack([along, along + 8], 1)])
+    skin = np.vstack([near, far])
+    is_behind = is_behind_others(
+        skin * [1.0, 1.0, 0.0], skin, np.vstack([sides, sides + 64]).astype(np.int64)
+    )
+    assert not is_behind[:64].any()
+    assert is_behind[64:].reshape(8, 8)[:-1, :-1].all()
 
 
 def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulation) -> None:

@@ -1,0 +1,80 @@
+"""The eyes of a head that somebody brings: nobody looks past the ball into the empty head."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import assets
+from risorius.assets.fitting import FittedHead, fit
+from risorius.assets.meshes import Mesh
+from risorius.assets.topology import boundary_loops, cross_products
+from tests.heads import shape
+
+Array = npt.NDArray[np.float64]
+NEAR = 25.0  # [mm] around an eye: its own parts
+SIDES, RINGS = 3, 30  # lines of sight beside each vertex of the edge, and from the middle to it
+
+
+@pytest.fixture(scope="module")
+def fitted() -> FittedHead:
+    """A head whose lids end where they touch the eyeball, as scans do."""
+    head = assets.load("head")
+    deepest = np.concatenate([head.rings["eye_0_left"], head.rings["eye_0_right"]])
+    faces = head.faces[~np.isin(head.faces, deepest).any(axis=1)]
+    return fit(Mesh(shape(head.vertices), faces), head.landmarks)
+
+
+def _across(edge: Array) -> Array:
+    """Where lines of sight go through a hole with this edge (n, 3), seen along z; shape (m, 2)."""
+    middle = edge.mean(axis=0)
+    first, second = (each - middle for each in (edge, np.roll(edge, 1, axis=0)))
+    enters = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0.0  # faces the viewer
+    share = np.linspace(0.0, 1.0, SIDES, endpoint=False)[:, None, None]
+    toward = np.linspace(0.0, 0.99, RINGS)[:, None, None]
+    rim = ((1.0 - share) * first[enters] + share * second[enters]).reshape(-1, 3)
+    points: Array = (middle + toward * rim).reshape(-1, 3)[:, :2]
+    return points
+
+
+def _meets(points: Array, triangles: Array) -> npt.NDArray[np.bool_]:
+    """Where lines along z meet a triangle (m, 3, 3) that faces the viewer, shape (n,)."""
+    a, b, c = (triangles[:, corner, :2] for corner in range(3))
+    u, v = b - a, c - a
+    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    a, u, v, area = (each[area > 0.0] for each in (a, u, v, area))
+    to = points[:, None] - a
+    of_b = (to[..., 0] * v[:, 1] - to[..., 1] * v[:, 0]) / area
+    of_c = (u[:, 0] * to[..., 1] - u[:, 1] * to[..., 0]) / area
+    met: npt.NDArray[np.bool_] = (
+        (of_b >= -1e-6) & (of_c >= -1e-6) & (of_b + of_c <= 1.0 + 1e-6)
+    ).any(axis=1)
+    return met
+
+
+@pytest.mark.parametrize("yaw", [-50.0, -40.0, -25.0, 0.0, 25.0, 40.0, 50.0])
+def test_nothing_is_seen_behind_an_eye(fitted: FittedHead, yaw: float) -> None:
+    """Every line of sight that goes in between the lids ends on the ball, or on flesh."""
+    across, ahead = np.cos(np.radians(yaw)), np.sin(np.radians(yaw))
+    view = np.array([[across, 0.0, ahead], [0.0, 1.0, 0.0], [-ahead, 0.0, across]])
+    parts = np.concatenate([part.vertices.astype(np.float64)[part.faces] for part in fitted.parts])
+    loops = [fitted.vertices[loop] for loop in boundary_loops(fitted.faces)]
+    for eye in fitted.eyes:
+        edge = min(loops, key=lambda loop: np.linalg.norm(loop - eye.centre, axis=1).max())
+        near = parts[np.linalg.norm(parts.mean(axis=1) - eye.centre, axis=1) < NEAR]
+        assert _meets(_across(edge @ view.T), near @ view.T).all()
+
+
+def test_the_flesh_of_the_eyes_is_well_formed(fitted: FittedHead) -> None:
+    """Unit normals that agree with the faces; each eye's collar reaches behind the ball."""
+    flesh = next(part for part in fitted.parts if part.name == "eye_corners")
+    assert flesh.faces.max() < len(flesh.vertices) == len(flesh.colours)
+    assert flesh.vertices.dtype == flesh.normals.dtype == flesh.colours.dtype == np.float32
+    assert np.allclose(np.linalg.norm(flesh.normals, axis=1), 1.0, atol=1e-4)
+    cross = cross_products(flesh.vertices.astype(np.float64), flesh.faces)
+    assert ((cross * flesh.normals[flesh.faces].sum(axis=1)).sum(axis=1) > 0.0).mean() > 0.98
+    for eye in fitted.eyes:
+        to = flesh.vertices - eye.centre
+        is_behind = (to[:, 2] < -2.0) & (np.linalg.norm(to, axis=1) < eye.radius)
+        assert is_behind.sum() >= 20
