@@ -134,6 +134,8 @@ def recoloured(angle: float, *, blood: float = 1.0, features: Features = PLAIN) 
         bare = tints.light[..., channel] * np.exp(-lost) + skin[channel] * (tints.hair - kept)
         own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
         light[..., channel] = bare + own * kept
+        if features.grown:
+            light[..., channel] += _grown_over(tints, features) * (own - light[..., channel])
     steps = (np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)).astype(np.int16)
     return _screen_bytes()[steps]
 
@@ -161,10 +163,14 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
         behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
         share = np.clip(behind / 14.0, 0.0, 1.0)
         kept = kept * np.where(tints.scalp > 0.01, share, 1.0).astype(np.float32)
-    if features.grown:
-        behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
-        kept = np.maximum(kept, GROWN * np.clip((behind - 3.0) / 8.0, 0.0, 1.0).astype(np.float32))
     return kept
+
+
+def _grown_over(tints: _Tints, features: Features) -> SingleArray:
+    """How much long hair covers each texel of the scalp."""
+    behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
+    covered = GROWN * np.clip((behind - 3.0) / 8.0, 0.0, 1.0)
+    return np.asarray(covered, dtype=np.float32)
 
 
 def with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
