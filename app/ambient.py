@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+import scipy
 
 from risorius import assets, sim
 from risorius.assets.fitting.coarser import coarser
@@ -108,7 +108,9 @@ def _looked_through(positions: Points, faces: Triangles) -> tuple[npt.NDArray[np
     if len(faces) <= MOST_SEEN:
         return np.arange(len(positions)), faces
     points, triangles = coarser(positions, faces, MOST_SEEN)
-    numbers, seen = np.unique(cKDTree(positions).query(points)[1], return_inverse=True)
+    numbers, seen = np.unique(
+        scipy.spatial.cKDTree(positions).query(points)[1], return_inverse=True
+    )
     triangles = seen[triangles].astype(np.int32)
     is_sound = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     return numbers, np.ascontiguousarray(triangles[is_sound])

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import lsq_linear
+import scipy
 
 from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, share_of_whole
 
@@ -109,7 +109,7 @@ def _fitted(shares: Floats, highest: Floats, frames: Floats) -> Floats:
     values = np.zeros((len(frames), len(shares)))
     for row, frame in zip(values, frames, strict=True):
         wanted = np.concatenate([frame, np.zeros(len(rays))])
-        lengths = lsq_linear(matrix, wanted, (0.0, reach), method="bvls").x
+        lengths = scipy.optimize.lsq_linear(matrix, wanted, (0.0, reach), method="bvls").x
         for ray, length in zip(rays, lengths, strict=True):
             for control in ray:  # the weakest first: a jaw drops (AU26) before it stretches (AU27)
                 strength = float(np.linalg.norm(shares[control]))

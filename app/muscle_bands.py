@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+import scipy
 
 from . import muscle_forms as shape
 from .near_skin import Floats, Numbers, Skin
@@ -301,7 +301,7 @@ class Muscles:
 
 def _bound(points: Floats, x: Floats) -> _Bound:
     """Places (n, 3) carried by the vertices near them."""
-    distance, vertex = cKDTree(x).query(points, k=5)
+    distance, vertex = scipy.spatial.cKDTree(x).query(points, k=5)
     weight = 1.0 / (distance + distance.mean()) ** 2
     weight /= weight.sum(axis=1, keepdims=True)
     carried = _Bound(vertex, weight, np.zeros_like(points))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+import scipy
 
 from risorius.assets.topology import vertex_normals
 from risorius.jit import njit
@@ -23,7 +23,7 @@ class Skin:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
         self.x, self._bone, self._middle = x, bone, middle
         self.normals = vertex_normals(x, faces)
-        self._tree = cKDTree(x)
+        self._tree = scipy.spatial.cKDTree(x)
 
     def near(self, points: Floats) -> Numbers:
         """The vertices near points (..., 3), NEIGHBOURS of each."""

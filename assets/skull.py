@@ -15,9 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage
-from scipy.interpolate import CubicSpline
-from scipy.spatial import cKDTree
+import scipy
 
 from .generator.fields import smooth_maximum, smooth_minimum
 from .model import Part
@@ -91,7 +89,7 @@ def build_skull(
         for part in head.parts:  # bone holds the teeth as gums do
             if part.name.startswith("gums") and part.bone == name:
                 shape = smooth_minimum(shape, _around(field, (part.vertices - origin) / scale), 3.0)
-        shape = ndimage.gaussian_filter(shape, 0.55)
+        shape = scipy.ndimage.gaussian_filter(shape, 0.55)
         points, faces = _mesh(shape)
         normals = _sampled(np.gradient(shape), points)
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
@@ -160,11 +158,14 @@ def _outer_form(
     at = (low + step * np.stack(coarse, axis=-1)).reshape(-1, 3)
     # The form through points below the skin.
     points = (x - depth * normals)[is_used]
-    distance, near = cKDTree(points).query(at, k=NEIGHBOURS, workers=-1)
+    distance, near = scipy.spatial.cKDTree(points).query(at, k=NEIGHBOURS, workers=-1)
     weight = np.exp(-((distance / np.maximum(0.6 * distance[:, -1:], least)) ** 2)) + 1e-12
     off = ((at[:, None] - points[near]) * normals[is_used][near]).sum(axis=2)
     known = ((weight * off).sum(axis=1) / weight.sum(axis=1)).reshape(counts)
-    finer = [CubicSpline(np.arange(n), np.eye(n))(at) for n, at in zip(counts, fine, strict=True)]
+    finer = [
+        scipy.interpolate.CubicSpline(np.arange(n), np.eye(n))(at)
+        for n, at in zip(counts, fine, strict=True)
+    ]
     form = np.einsum("ai,bj,ck,ijk->abc", *finer, known, optimize=True)
     axes = [
         (lowest + step * each).astype(np.float32) for lowest, each in zip(low, fine, strict=True)
@@ -272,7 +273,9 @@ def _around(field: _Field, points: Floats) -> Field:
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
     result = np.full_like(field.outside, 20.0)
     places = np.moveaxis(field.places[(slice(None), *box)], 0, -1)
-    result[box] = cKDTree(points).query(places, distance_upper_bound=20.0, workers=-1)[0] - 0.8
+    result[box] = (
+        scipy.spatial.cKDTree(points).query(places, distance_upper_bound=20.0, workers=-1)[0] - 0.8
+    )
     near: Field = np.minimum(result, np.float32(20.0))
     return near
 
@@ -301,7 +304,7 @@ def _without(a: Field, b: Field, round_: float) -> Field:
 def _sampled(fields: Any, points: Floats) -> Floats:
     """Fields at places [cells], shape (n, len(fields))."""
     return np.stack(
-        [ndimage.map_coordinates(each, points.T, order=1, mode="nearest") for each in fields],
+        [scipy.ndimage.map_coordinates(each, points.T, order=1, mode="nearest") for each in fields],
         axis=1,
     )
 

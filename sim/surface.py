@@ -15,10 +15,10 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse import linalg as sparse_linalg
-from scipy.spatial import cKDTree
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -49,9 +49,9 @@ class Surface:
         return len(self.positions)
 
     @cached_property
-    def tree(self) -> cKDTree:
+    def tree(self) -> scipy.spatial.cKDTree:
         """For finding the vertices near a point."""
-        return cKDTree(self.positions)
+        return scipy.spatial.cKDTree(self.positions)
 
     def nearest(self, points: Array) -> Indices:
         """Number of the vertex nearest to each point (n, 3)."""

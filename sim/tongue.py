@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from . import checked
 from .coordinates import FaceSpace
@@ -122,7 +122,7 @@ class Tongue:
         # Its root is drawn long, its tip keeps its shape.
         place, rest = np.linspace(0.0, 1.0, SAMPLES), _length(self.spine)
         way = tip - rest * place - (tip - rest) * place**2
-        on_path: Array = PchipInterpolator(lengths, path)(way)
+        on_path: Array = scipy.interpolate.PchipInterpolator(lengths, path)(way)
         return on_path
 
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import eigh
+import scipy
 
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
@@ -107,7 +107,9 @@ def _components(rows: Floats | Singles) -> tuple[Floats, Floats]:
         products += part.T @ part
     least = max(LEAST_SQUARE * np.trace(products), NOTHING**2)
     # Transposed, since what LAPACK overwrites is stored by columns; else it is copied.
-    squares, vectors = eigh(products.T, overwrite_a=True, subset_by_value=(least, np.inf))
+    squares, vectors = scipy.linalg.eigh(
+        products.T, overwrite_a=True, subset_by_value=(least, np.inf)
+    )
     vectors, lengths = vectors[:, ::-1], np.sqrt(squares[::-1])
     others = np.empty((len(tall), len(lengths)))
     for some in parts_of(len(tall)):

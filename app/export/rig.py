@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.optimize import lsq_linear
+import scipy
 
 from risorius.assets.topology import vertex_normals
 
@@ -84,7 +84,7 @@ def fit(surfaces: Iterable[tuple[Floats, Floats, bool]]) -> Floats:
     # The same problem with as few rows as there are targets, by the square root of the products.
     root = np.linalg.cholesky(total + restraint * np.eye(len(total)))
     rows = np.linalg.solve(root, np.sum(wanted, axis=0).T).T
-    found = [lsq_linear(root.T, row, (0.0, 1.0), method="bvls").x for row in rows]
+    found = [scipy.optimize.lsq_linear(root.T, row, (0.0, 1.0), method="bvls").x for row in rows]
     return np.asarray(np.clip(found, 0.0, 1.0))  # it may leave its bounds by a rounding error
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from ..scenes import FaceScene
 from .clip import Clip
@@ -72,7 +72,9 @@ class Skeleton:
         translations = METRES * local[:, :3, 3]
         if np.abs(translations - shift).max() > STILL:
             self._animation.add(node, "translation", translations)
-        rotations = Rotation.from_matrix(local[:, :3, :3]).as_quat(canonical=True)
+        rotations = scipy.spatial.transform.Rotation.from_matrix(local[:, :3, :3]).as_quat(
+            canonical=True
+        )
         if np.abs(rotations[:, :3]).max() > STILL:
             # q and -q turn alike, but not what lies between two keyframes.
             is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+import scipy
 
 from ..errors import AssetError
 from ..loading import load
@@ -99,7 +99,7 @@ def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> I
     The skin is what most of the points lie on: eyeballs, teeth and hair are left away.
     """
     middles = vertices[faces].mean(axis=1)
-    under = cKDTree(middles).query(given)[1]
+    under = scipy.spatial.cKDTree(middles).query(given)[1]
     piece = pieces_of(faces, len(vertices))[faces[:, 0]]
     is_skin = piece == np.bincount(piece[under]).argmax()
     if cross_products(vertices, faces[under[is_skin[under]]])[:, 2].sum() < 0.0:
@@ -111,7 +111,7 @@ def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> I
 
 def _around_landmarks(head: Head) -> IndexArray:
     """Some vertices near the landmarks of a head, but those themselves."""
-    near = cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < NEAR
+    near = scipy.spatial.cKDTree(head.vertices[head.landmarks]).query(head.vertices)[0] < NEAR
     near[head.landmarks] = False
     every = np.flatnonzero(near).astype(np.int32)
     return every[:: max(len(every) // MOST_POINTS, 1)]

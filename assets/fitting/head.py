@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from ..errors import AssetError
 from ..files import Image
@@ -224,7 +224,7 @@ def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
             f"its {len(skin.faces)} triangles cannot be simplified; reduce it to {MOST_SIMULATED} "
             "in a modelling program"
         )
-    nearest = cKDTree(skin.vertices).query(vertices)[1]
+    nearest = scipy.spatial.cKDTree(skin.vertices).query(vertices)[1]
     numbers = nearest_vertices(landmarks, vertices, faces)
     return SkinPiece(vertices, faces, numbers, skin.file_vertices[nearest], np.arange(0))
 

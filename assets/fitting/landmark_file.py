@@ -18,7 +18,7 @@ from reprlib import repr as shortened
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
@@ -200,12 +200,16 @@ def nearest_vertices(points: FloatArray, vertices: FloatArray, faces: IndexArray
     to the nearest vertex that is nearer, along the skin, to the outside of its own lip.
     """
     used = np.unique(faces)
-    numbers: IndexArray = used[cKDTree(vertices[used]).query(points)[1]].astype(np.int32)
+    numbers: IndexArray = used[scipy.spatial.cKDTree(vertices[used]).query(points)[1]].astype(
+        np.int32
+    )
     to_upper, to_lower = (
         path_lengths(vertices, faces, numbers[list(lip)]).min(axis=0) for lip in OUTER_LIPS
     )
     for lip, is_own in zip(INNER_LIPS, (to_upper < to_lower, to_lower < to_upper), strict=True):
         own = np.flatnonzero(is_own)
         if len(own):
-            numbers[list(lip)] = own[cKDTree(vertices[own]).query(points[list(lip)])[1]]
+            numbers[list(lip)] = own[
+                scipy.spatial.cKDTree(vertices[own]).query(points[list(lip)])[1]
+            ]
     return numbers

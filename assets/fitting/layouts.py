@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage
+import scipy
 
 from ..errors import AssetError
 from ..files import Image
@@ -100,7 +100,7 @@ def _between_texels(steps: npt.NDArray[np.int8], uv: FloatArray) -> FloatArray:
     height, width = steps.shape[:2]
     at = (uv * [width, -height] + [-0.5, height - 0.5]).T[::-1]
     layers = np.moveaxis(steps.astype(np.float64), -1, 0)
-    found = [ndimage.map_coordinates(each, at, order=1, mode="nearest") for each in layers]
+    found = [scipy.ndimage.map_coordinates(each, at, order=1, mode="nearest") for each in layers]
     return np.stack(found, axis=1).round()
 
 

@@ -11,9 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import least_squares
-from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
+import scipy
 
 from ..model import Eye, FloatArray, Head, Part
 from .warp import Deformation, Similarity
@@ -72,7 +70,7 @@ def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
         scale = _extent(target) / _extent(source)
         centre = target.mean(axis=0) + scale * (eye.centre - source.mean(axis=0))
         scale = float(np.sqrt(scale))
-        near = cKDTree(target).query(fitted.vertices)[0] < LID_DEPTH
+        near = scipy.spatial.cKDTree(target).query(fitted.vertices)[0] < LID_DEPTH
         skin = np.vstack([target, fitted.vertices[near]])
         centre, radius = _behind_lids(centre, scale * eye.radius, target.mean(axis=0), skin)
         centre[2] += _way_forward(centre, radius + LID_CLEARANCE, skin)
@@ -104,7 +102,9 @@ def _behind_lids(
         aside = STRAIGHT * (values[:2] - centre[:2])
         return np.concatenate([np.where(gaps < 0.0, SUNK * gaps, gaps), aside, [ROUND * values[3]]])
 
-    found = least_squares(off, np.append(centre, 0.0), loss="soft_l1", f_scale=TOUCHING).x
+    found = scipy.optimize.least_squares(
+        off, np.append(centre, 0.0), loss="soft_l1", f_scale=TOUCHING
+    ).x
     return found[:3], radius * float(np.exp(found[3]))
 
 
@@ -150,7 +150,7 @@ def _mouth_of(known: Head, fitted: FittedSkin, warp: Deformation) -> Similarity:
     mouth = Similarity.between(stiff, warp.points(stiff))
     placed = mouth.points(np.vstack(found)) if found else np.zeros((0, 3))
     skin = fitted.vertices[fitted.normals[:, 2] > FACING]
-    distance, beside = cKDTree(skin[:, :2]).query(placed[:, :2], k=TEETH_CLEARANCE[1])
+    distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(placed[:, :2], k=TEETH_CLEARANCE[1])
     depth = (
         np.where(distance < TEETH_CLEARANCE[0], skin[beside, 2], np.inf).min(axis=1) - STIFF_DEPTH
     )
@@ -198,7 +198,12 @@ def _opening(known: Head, fitted: FittedSkin, warp: Deformation) -> FloatArray:
     seen = []
     for share in JAW_SHARES:
         angle = share * np.radians(float(jaw.get("opening_deg", 20.0)))
-        turned = Rotation.from_rotvec(angle * weight[:, None] * hinge).apply(skin - right) + right
+        turned = (
+            scipy.spatial.transform.Rotation.from_rotvec(angle * weight[:, None] * hinge).apply(
+                skin - right
+            )
+            + right
+        )
         glide = share * np.array(jaw.get("opening_glide", (0.0, 0.0, 0.0)))
         seen.append(turned + weight[:, None] * glide)
     return np.vstack(seen)
@@ -206,7 +211,7 @@ def _opening(known: Head, fitted: FittedSkin, warp: Deformation) -> FloatArray:
 
 def _behind_skin(points: FloatArray, skin: FloatArray) -> FloatArray:
     """Points pushed back until they lie behind all skin that is seen in front of them."""
-    distance, beside = cKDTree(skin[:, :2]).query(points[:, :2], k=AROUND)
+    distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(points[:, :2], k=AROUND)
     depth = np.where(distance < BESIDE, skin[beside, 2], np.inf).min(axis=1) - WALL_DEPTH
     pushed = points.copy()
     pushed[:, 2] = np.minimum(points[:, 2], depth)

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage, sparse
+import scipy
+from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse.linalg import cg
-from scipy.spatial import cKDTree
 
 from ..files import Image
 from ..model import FloatArray, Head, IndexArray, Segment, SingleArray
@@ -91,7 +91,7 @@ def is_behind_others(
     long = links[lengths > APART]
     all_feet, places = (np.vstack([each, each[long].mean(axis=1)]) for each in (feet, vertices))
     away = np.linalg.norm(all_feet - places, axis=1)
-    distance, beside = cKDTree(all_feet).query(feet, k=min(COMPETING, len(all_feet)))
+    distance, beside = scipy.spatial.cKDTree(all_feet).query(feet, k=min(COMPETING, len(all_feet)))
     is_other = np.linalg.norm(places[beside] - vertices[:, None], axis=2) > distance + APART
     is_nearer = away[beside] < away[: len(feet), None] - 0.5 * APART
     is_behind: BoolArray = (is_other & (distance < APART) & is_nearer).any(axis=1)
@@ -128,7 +128,9 @@ def plain_picture(known: Head) -> Image:
     places = known.uv[known.faces[_foldedness(known)[known.faces].all(axis=1)]]
     for corners in places * [width, -height] + [0.0, height]:
         PIL.ImageDraw.Draw(drawn).polygon([tuple(corner) for corner in corners], fill=255)
-    is_folded = ndimage.binary_dilation(is_folded | (np.asarray(drawn) > 0), iterations=MARGIN)
+    is_folded = scipy.ndimage.binary_dilation(
+        is_folded | (np.asarray(drawn) > 0), iterations=MARGIN
+    )
     # Coarse blocks will do: what fills a hole is smooth.
     rows, columns = height // BLOCK, width // BLOCK
     inside = slice(0, rows * BLOCK), slice(0, columns * BLOCK)
@@ -140,11 +142,13 @@ def plain_picture(known: Head) -> Image:
     filled = np.zeros_like(seen)
     for blur in BLURS:  # from far around to close by
         size = (blur, blur, 0.0)
-        weight = ndimage.gaussian_filter(share, size)
+        weight = scipy.ndimage.gaussian_filter(share, size)
         is_near = weight[..., 0] > NEAR
-        filled[is_near] = (ndimage.gaussian_filter(seen, size) / np.maximum(weight, NEAR))[is_near]
+        filled[is_near] = (scipy.ndimage.gaussian_filter(seen, size) / np.maximum(weight, NEAR))[
+            is_near
+        ]
     smooth = PIL.Image.fromarray(np.round(filled).astype(np.uint8)).resize((width, height))
-    over = ndimage.gaussian_filter(is_folded.astype(np.float32), 0.5 * MARGIN)[..., None]
+    over = scipy.ndimage.gaussian_filter(is_folded.astype(np.float32), 0.5 * MARGIN)[..., None]
     picture: Image = np.round(over * np.asarray(smooth) + (1.0 - over) * known.albedo).astype(
         np.uint8
     )

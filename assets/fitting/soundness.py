@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 from scipy import sparse
 from scipy.sparse import csgraph
-from scipy.spatial import cKDTree
 
 from ..errors import AssetError
 from ..model import FloatArray, IndexArray
@@ -145,7 +145,7 @@ def without_bag(skin: SkinPiece) -> SkinPiece:
     deepest = skin.vertices[is_behind, 2].min(initial=np.inf)
     if deepest > skin.vertices[is_edge, 2].mean() - BAG:
         return skin
-    is_behind &= cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > LIP_RIM
+    is_behind &= scipy.spatial.cKDTree(skin.vertices[is_edge]).query(skin.vertices)[0] > LIP_RIM
     left = np.flatnonzero(~is_behind[skin.faces].any(axis=1))
     part = skin_of(skin.vertices, skin.faces[left], skin.landmarks)
     return replace(

@@ -16,7 +16,7 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+import scipy
 
 from ..model import FloatArray, IndexArray
 from ..topology import cross_products
@@ -145,7 +145,11 @@ def nearest_on(
     directions = cross_products(vertices, faces)
     directions /= np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-12)
     count = min(CANDIDATES, len(faces))
-    near = cKDTree(corners.mean(axis=1)).query(points, k=count)[1].reshape(len(points), count)
+    near = (
+        scipy.spatial.cKDTree(corners.mean(axis=1))
+        .query(points, k=count)[1]
+        .reshape(len(points), count)
+    )
     best = np.full(len(points), np.inf)
     chosen = np.zeros(len(points), dtype=np.int64)
     weights = np.zeros((len(points), 3))

@@ -11,9 +11,9 @@ slit of the mouth is a real gap in the mesh, so nothing leaks across it.
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
-from scipy.spatial import cKDTree
 
 from ..topology import cross_products, edge_faces
 from .fields import Points, Values
@@ -93,7 +93,7 @@ def _interpolate(skin: SkinMesh, seeds: dict[int, float]) -> Values:
 
 
 def _nearest(skin: SkinMesh, points: Points) -> npt.NDArray[np.int64]:
-    return np.asarray(cKDTree(skin.vertices).query(points)[1])
+    return np.asarray(scipy.spatial.cKDTree(skin.vertices).query(points)[1])
 
 
 def bone_depth(skin: SkinMesh) -> Values:

@@ -4,11 +4,12 @@ At the inner end hairs stand up; along the brow the lower ones lean up and outwa
 down and outward, so that they meet on its spine; at the tail all follow it.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.spatial import cKDTree
+import scipy
 
 from .fields import Points, Values, project, smooth_step
 from .form import distance, from_front
@@ -42,10 +43,10 @@ class Hair:
     lightness: float
 
 
-def _spine() -> CubicSpline:
+def _spine() -> scipy.interpolate.CubicSpline:
     control = np.array(SPINE)
     steps = np.linalg.norm(np.diff(control, axis=0), axis=1)
-    return CubicSpline(np.r_[0.0, np.cumsum(steps)] / steps.sum(), control)
+    return scipy.interpolate.CubicSpline(np.r_[0.0, np.cumsum(steps)] / steps.sum(), control)
 
 
 def hairs(side: int = 1) -> list[Hair]:
@@ -108,9 +109,11 @@ def brow_cover(points: Points, grain: float, side: int) -> tuple[Values, Values,
     strokes = hairs(side)
     cover, lightness, shade = np.zeros((3, len(points)))
     roots = np.array([hair.line[0] for hair in strokes])
-    near = np.flatnonzero(cKDTree(roots).query(points, distance_upper_bound=REACH)[0] < REACH)
+    near = np.flatnonzero(
+        scipy.spatial.cKDTree(roots).query(points, distance_upper_bound=REACH)[0] < REACH
+    )
     surface = project(distance, points[near], rounds=2)
-    tree = cKDTree(surface)
+    tree = scipy.spatial.cKDTree(surface)
     for hair in strokes:
         centre, radius = hair.line[STEPS // 2], np.linalg.norm(hair.line[-1] - hair.line[0])
         beside = np.array(tree.query_ball_point(centre, 0.55 * radius + 0.6), dtype=np.int64)
@@ -131,7 +134,7 @@ def across_brow(points: Points) -> Values:
     """How far from the spine of the brow, 1 at its edge, more at both ends, shape (n,)."""
     dense = np.linspace(0.0, 1.0, 200)
     line = _spine()(dense)
-    index = cKDTree(line).query(points[:, :2])[1]
+    index = scipy.spatial.cKDTree(line).query(points[:, :2])[1]
     along = dense[index]
     rise = points[:, 1] - line[index, 1]
     height = np.where(rise > 0, np.interp(along, ALONG, ABOVE), np.interp(along, ALONG, BELOW))

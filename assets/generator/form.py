@@ -1,9 +1,11 @@
 """The whole face as one implicit surface: plain head, relief, lips, nose and lids."""
 
+from __future__ import annotations
+
 from functools import cache
 
 import numpy as np
-from scipy.interpolate import CubicSpline, RectBivariateSpline
+import scipy
 
 from . import lips, nose
 from .fields import (
@@ -64,17 +66,21 @@ ARC = 1.3  # [mm] of the surface per degree
 
 
 @cache
-def _relief() -> tuple[RectBivariateSpline, RectBivariateSpline]:
+def _relief() -> tuple[
+    scipy.interpolate.RectBivariateSpline, scipy.interpolate.RectBivariateSpline
+]:
     """What the strokes add in front and beside [mm], sampled on grids: quicker to look up."""
     return _drawn(IN_FRONT, 90.0, 1.0), _drawn(BESIDE, 180.0, ARC)
 
 
-def _drawn(table: tuple[Stroke, ...], farthest: float, scale: float) -> RectBivariateSpline:
+def _drawn(
+    table: tuple[Stroke, ...], farthest: float, scale: float
+) -> scipy.interpolate.RectBivariateSpline:
     """The strokes of a table up to `farthest` across; scale: [mm] for each unit across."""
     across, up = np.arange(-6.0, farthest + 6.0), np.arange(-180.0, 160.0)
     grid = np.meshgrid(across, up, indexing="ij")
     samples = _strokes(table, scale, grid[0].ravel(), grid[1].ravel())
-    return RectBivariateSpline(across, up, samples.reshape(grid[0].shape))
+    return scipy.interpolate.RectBivariateSpline(across, up, samples.reshape(grid[0].shape))
 
 
 def _strokes(table: tuple[Stroke, ...], scale: float, across: Values, up: Values) -> Values:
@@ -183,7 +189,7 @@ def fold_side(heights: Values) -> tuple[Values, Values]:
     Without a corner: furrows that followed one would show it. Beyond its ends it goes straight on.
     """
     sides, known = np.array(FOLD[::-1]).T
-    course = CubicSpline(known, sides)
+    course = scipy.interpolate.CubicSpline(known, sides)
     within = np.clip(heights, known[0], known[-1])
     slopes = course(within, 1)
     return course(within) + slopes * (heights - within), slopes

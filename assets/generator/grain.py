@@ -7,7 +7,7 @@ lattice of noise that does shows as a weave on a brow that faces forward.
 """
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from .fields import Points, Values, bump, smooth_step, unit
 from .noise import noise
@@ -57,7 +57,7 @@ def _holes(points: Points) -> list[Values]:
     centres = points[random.choice(len(points), count, replace=False)]
     radii = PORE_RADII[0] + np.ptp(PORE_RADII) * random.uniform(0.0, 1.0, count) ** 2
     depths = random.uniform(0.35, 1.0, count)
-    tree = cKDTree(centres)
+    tree = scipy.spatial.cKDTree(centres)
     found = []
     for way in (0.0 * LIFT, LIFT):
         away, nearest = tree.query(points + way, distance_upper_bound=2.0 * PORE_RADII[1])
@@ -93,7 +93,7 @@ def freckles(texels: Texels, points: Points, seed: int) -> Values:
     centres = points[random.choice(len(points), FRECKLES, replace=False, p=likely / likely.sum())]
     radii = random.uniform(*FRECKLE_RADII, FRECKLES)
     strengths = 0.03 + 0.2 * random.uniform(0.0, 1.0, FRECKLES) ** 2
-    tree = cKDTree(points)
+    tree = scipy.spatial.cKDTree(points)
     total = np.zeros(len(points))
     for centre, radius, strength in zip(centres, radii, strengths, strict=True):
         near = np.array(tree.query_ball_point(centre, 2.0 * radius), dtype=np.int64)

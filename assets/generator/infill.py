@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import Delaunay, cKDTree
+import scipy
 
 from ..topology import Edge, Faces, cross_products, edge_faces, edge_key
 from .fields import Points, Values, smooth_step, unit
@@ -133,9 +133,9 @@ def throw_darts(domain: Domain, *, scale: float, seed: int) -> Points:
     points = _candidates(random)
     points = points[domain.contains(layout(points))]
     length = wanted_length(points) * scale
-    clear = cKDTree(domain.points).query(points)[0] > ROW_RADIUS * length
+    clear = scipy.spatial.cKDTree(domain.points).query(points)[0] > ROW_RADIUS * length
     points, length = points[clear], length[clear]
-    tree = cKDTree(points)
+    tree = scipy.spatial.cKDTree(points)
     alive = np.ones(len(points), dtype=bool)
     chosen = []
     for index in random.permutation(len(points)):
@@ -153,7 +153,7 @@ def triangulate(domain: Domain, darts: Points) -> tuple[Points, Faces]:
     """
     points = np.vstack([domain.points, darts])
     flat = layout(points)
-    faces = Delaunay(flat).simplices.astype(np.int32)
+    faces = scipy.spatial.Delaunay(flat).simplices.astype(np.int32)
     faces = _counter_clockwise(flat, faces)
     faces = _recover_edges(flat, faces, domain.locked_edges())
     return points, faces[domain.contains(flat[faces].mean(axis=1))]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+import scipy
 
 from ..topology import Faces
 from .fields import Points
@@ -36,7 +36,7 @@ def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
     radius = np.linalg.norm(corner - centre[:, None], axis=2).max(axis=1)
     size = np.floor(np.log2(np.maximum(radius, 1e-6)))
     classes = [np.flatnonzero(size == value) for value in np.unique(size)]
-    trees = [cKDTree(centre[members]) for members in classes]
+    trees = [scipy.spatial.cKDTree(centre[members]) for members in classes]
     found = []
     for i, members in enumerate(classes):
         for j in range(i + 1):

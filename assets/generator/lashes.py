@@ -9,10 +9,12 @@ the longest alone are that long. Fewer and thicker than in life, as they cling t
 neighbours lean toward each other, and between such tufts there is a gap.
 """
 
+from __future__ import annotations
+
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from .eye_rows import COLUMNS, eye_rows
 from .fields import Points, Values, smooth_step, unit
@@ -38,13 +40,15 @@ WET_LIGHT, WET_DARK = (0.86, 0.74, 0.71), (0.78, 0.55, 0.51)  # on the eyeball, 
 SEED = 7
 
 
-def _edges(*, upper: bool) -> tuple[CubicSpline, CubicSpline]:
+def _edges(*, upper: bool) -> tuple[scipy.interpolate.CubicSpline, scipy.interpolate.CubicSpline]:
     """Inner and outer edge of a lid's margin over 0 (inner corner) to 1 (outer corner)."""
     half = COLUMNS // 2
     columns = np.arange(half + 1) if upper else -np.arange(half + 1) % COLUMNS
     place = np.linspace(0.0, 1.0, half + 1)
     _, inner, outer, *_ = eye_rows()
-    return CubicSpline(place, inner[columns]), CubicSpline(place, outer[columns])
+    return scipy.interpolate.CubicSpline(place, inner[columns]), scipy.interpolate.CubicSpline(
+        place, outer[columns]
+    )
 
 
 def _row_of_lashes(count: int, longest: float, *, upper: bool) -> Solid:
@@ -75,8 +79,8 @@ def _tufts(places: Values, random: np.random.Generator) -> Values:
 
 
 def _lash(
-    inner: CubicSpline, outer: CubicSpline, place: float, size: tuple[float, float],
-    random: np.random.Generator, *, upper: bool,
+    inner: scipy.interpolate.CubicSpline, outer: scipy.interpolate.CubicSpline, place: float,
+    size: tuple[float, float], random: np.random.Generator, *, upper: bool,
 ) -> Points:  # fmt: skip
     """The middle line of a lash, shape (4, 3); size: its length [mm] and lean to the side."""
     length, lean = size

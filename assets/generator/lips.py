@@ -5,7 +5,7 @@ lip of s = 0 at the line between the lips .. 1 at the border of the red.
 """
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from .fields import Values, bump
 
@@ -13,13 +13,13 @@ HALF_WIDTH = 25.5  # [mm] mid-plane to corner; chosen within one deviation of ad
 SEAM_HEIGHT = -66.0  # [mm]
 
 # (s, outward displacement [mm]): the lip rolls in at s = 0, crests, and ends in a slight ledge.
-_UPPER = PchipInterpolator(
-    [0, 0.08, 0.25, 0.5, 0.78, 1, 1.25, 1.7, 2.3, 2.9],
-    [1.0, 1.8, 2.8, 3.4, 3.4, 3.0, 2.25, 1.1, 0.25, 0],
+UPPER = (
+    (0, 0.08, 0.25, 0.5, 0.78, 1, 1.25, 1.7, 2.3, 2.9),
+    (1.0, 1.8, 2.8, 3.4, 3.4, 3.0, 2.25, 1.1, 0.25, 0),
 )
-_LOWER = PchipInterpolator(
-    [0, 0.08, 0.2, 0.4, 0.62, 0.82, 1, 1.3, 1.75, 2.3, 2.9],
-    [1.0, 2.0, 3.0, 3.9, 4.2, 3.9, 3.2, 2.2, 1.0, 0.25, 0],
+LOWER = (
+    (0, 0.08, 0.2, 0.4, 0.62, 0.82, 1, 1.3, 1.75, 2.3, 2.9),
+    (1.0, 2.0, 3.0, 3.9, 4.2, 3.9, 3.2, 2.2, 1.0, 0.25, 0),
 )
 
 
@@ -52,7 +52,7 @@ def displacement(x: Values, y: Values) -> Values:
     seam = seam_height(x)
     above = (y - seam) / np.maximum(upper_border(x) - seam, 0.6)
     below = (seam - y) / np.maximum(seam - lower_border(x), 0.6)
-    upper = _UPPER(np.clip(above, 0.0, 2.9))
-    lower = _LOWER(np.clip(below, 0.0, 2.9))
-    displaced = np.where(y >= seam, upper * inside**1.3, lower * inside**1.9)
+    upper, lower = (scipy.interpolate.PchipInterpolator(*table) for table in (UPPER, LOWER))
+    rolled = upper(np.clip(above, 0.0, 2.9)), lower(np.clip(below, 0.0, 2.9))
+    displaced = np.where(y >= seam, rolled[0] * inside**1.3, rolled[1] * inside**1.9)
     return np.asarray(displaced, dtype=np.float64)

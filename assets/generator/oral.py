@@ -7,7 +7,7 @@ jaw; behind the corners only its inner side is drawn, so that it cannot come bef
 """
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from .ambient import REDDENING, in_mouth_light
 from .fields import Points, smooth_step
@@ -46,7 +46,7 @@ def _lining() -> Solid:
     """The inner side of both cheeks and of the throat."""
     table = np.array(LINING, dtype=np.float64)
     steps = np.linalg.norm(np.diff(table[:, :2], axis=0), axis=1)
-    curve = PchipInterpolator(np.r_[0.0, np.cumsum(steps)], table)
+    curve = scipy.interpolate.PchipInterpolator(np.r_[0.0, np.cumsum(steps)], table)
     left = curve(np.linspace(0.0, steps.sum(), LINING_COLUMNS))
     whole = np.vstack([left[:0:-1] * [-1.0, 1.0, 1.0, 1.0], left])
     rows = []

@@ -1,7 +1,7 @@
 """The free border of the skin and the lines in the mid-plane: where the mesh of one half ends."""
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from .fields import Points
 from .form import from_axis
@@ -20,7 +20,9 @@ def rim_curve() -> Points:
     control = np.array(RIM, dtype=np.float64)
     spacing = np.hypot(np.diff(control[:, 0]), np.diff(control[:, 1]))
     parameter = np.r_[0.0, np.cumsum(spacing)]
-    spline = CubicSpline(parameter, control, bc_type=((1, (-1.0, 0.0)), (1, (-1.0, 0.0))))
+    spline = scipy.interpolate.CubicSpline(
+        parameter, control, bc_type=((1, (-1.0, 0.0)), (1, (-1.0, 0.0)))
+    )
     samples = spline(np.linspace(0.0, parameter[-1], DENSE))
     curve = from_axis(np.radians(samples[:, 0]), samples[:, 1])
     curve[[0, -1], 0] = 0.0

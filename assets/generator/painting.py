@@ -6,7 +6,7 @@ the brows are not.
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import distance_transform_edt
+import scipy
 
 from ..files import Image
 from ..model import Head
@@ -62,7 +62,7 @@ def laid_over(colours: Points, covers: list[Cover]) -> Points:
 
 def _padded(image: Points, is_painted: npt.NDArray[np.bool_]) -> Points:
     """The edge of the skin goes on outside: filters and small mipmaps must find no border."""
-    away, nearest = distance_transform_edt(~is_painted, return_indices=True)
+    away, nearest = scipy.ndimage.distance_transform_edt(~is_painted, return_indices=True)
     around = image[is_painted].mean(axis=0)
     share = smooth_step(PADDING, 0.5 * PADDING, away)[:, :, None]
     return np.asarray(around + (image[nearest[0], nearest[1]] - around) * share)

@@ -4,8 +4,7 @@ Everything is a function of the place on the left half; the right half is its mi
 """
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.spatial import cKDTree
+import scipy
 
 from . import lips
 from .fields import Points, Values, bump, smooth_step
@@ -126,8 +125,12 @@ def tan(texels: Texels) -> Values:
 def alar_groove(points: Points) -> Values:
     """How deep in the groove around the wing of the nose points lie, 0 to 1, shape (n,)."""
     ends = np.arange(len(ALAR_GROOVE))
-    table = CubicSpline(ends, np.array(ALAR_GROOVE))(np.linspace(0.0, ends[-1], 160))
-    away, nearest = cKDTree(table[:, :3]).query(np.abs(points) * [1, 0, 0] + points * [0, 1, 1])
+    table = scipy.interpolate.CubicSpline(ends, np.array(ALAR_GROOVE))(
+        np.linspace(0.0, ends[-1], 160)
+    )
+    away, nearest = scipy.spatial.cKDTree(table[:, :3]).query(
+        np.abs(points) * [1, 0, 0] + points * [0, 1, 1]
+    )
     return np.asarray(table[nearest, 3] * np.exp(-((away / 1.8) ** 2)), dtype=np.float64)
 
 

@@ -7,10 +7,12 @@ is, are curves over the height. Under the line of the jaw it falls away, onto a 
 The numbers are placed by eye toward adult means of well-known distances (see `assets.norms`).
 """
 
+from __future__ import annotations
+
 from functools import cache
 
 import numpy as np
-from scipy.interpolate import BSpline, RectBivariateSpline, make_smoothing_spline
+import scipy
 
 from .fields import Points, Values, smooth_maximum, smooth_step
 
@@ -84,12 +86,12 @@ def rays(angle: Values, height: Values) -> tuple[Points, Points]:
     return origins, directions
 
 
-def _curve(heights: Values, values: Values) -> BSpline:
+def _curve(heights: Values, values: Values) -> scipy.interpolate.BSpline:
     order = np.argsort(heights)
-    return make_smoothing_spline(heights[order], values[order], lam=SMOOTHING)
+    return scipy.interpolate.make_smoothing_spline(heights[order], values[order], lam=SMOOTHING)
 
 
-def _outline(table: Table, axis: int) -> BSpline:
+def _outline(table: Table, axis: int) -> scipy.interpolate.BSpline:
     """The radius over the height along a line in one direction from the axis."""
     points = np.zeros((len(table), 3))
     points[:, 2] = AXIS_Z
@@ -101,7 +103,7 @@ def _outline(table: Table, axis: int) -> BSpline:
 
 
 @cache
-def _curves() -> tuple[BSpline, ...]:
+def _curves() -> tuple[scipy.interpolate.BSpline, ...]:
     """Front, side and back of the head, its squareness, the jaw line, and three of the neck."""
     tables = [np.array(table, dtype=np.float64).T for table in (SQUARENESS, JAW_LINE, NECK)]
     squareness, jaw, neck = tables
@@ -127,12 +129,12 @@ def base_radius(angle: Values, height: Values) -> Values:
 
 
 @cache
-def _gridded() -> RectBivariateSpline:
+def _gridded() -> scipy.interpolate.RectBivariateSpline:
     """The radius sampled on a grid: ten times faster to look up."""
     angles, heights = np.linspace(-0.3, np.pi + 0.3, 181), np.linspace(-175.0, TOP, 326)
     grid = np.meshgrid(angles, heights, indexing="ij")
     samples = _radius(grid[0].ravel(), grid[1].ravel())
-    return RectBivariateSpline(angles, heights, samples.reshape(grid[0].shape))
+    return scipy.interpolate.RectBivariateSpline(angles, heights, samples.reshape(grid[0].shape))
 
 
 def _radius(angle: Values, height: Values) -> Values:

@@ -7,7 +7,7 @@ lower edge of the jaw, as outlines in photographs have it, and behind the ears a
 """
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
+import scipy
 
 from ..files import Image
 from ..model import Head, Segment
@@ -37,7 +37,7 @@ def paint_segments(head: Head, size: int) -> Image:
     image[texels.rows, texels.columns] = left
     image[texels.rows, size - 1 - texels.columns] = right
     # Outside the skin its border goes on: whoever looks up the nearest texel finds skin.
-    _, nearest = distance_transform_edt(image == 0, return_indices=True)
+    _, nearest = scipy.ndimage.distance_transform_edt(image == 0, return_indices=True)
     painted: Image = image[nearest[0], nearest[1]]
     return painted
 

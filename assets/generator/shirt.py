@@ -6,7 +6,7 @@ shoulders of its own.
 """
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from .fields import Points, Values
 from .noise import noise
@@ -52,7 +52,9 @@ def _collar(angle: Values) -> list[Points]:
 def _body(angle: Values) -> list[Points]:
     """Rows from the seam of the collar over the shoulders to the closed lower end."""
     lines = [
-        PchipInterpolator(np.linspace(0.0, 1.0, len(line)), np.array(line, dtype=np.float64))
+        scipy.interpolate.PchipInterpolator(
+            np.linspace(0.0, 1.0, len(line)), np.array(line, dtype=np.float64)
+        )
         for line in (FRONT, SIDE, BACK)
     ]
     across = np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** ROUNDNESS

@@ -10,7 +10,7 @@ amounts of wrinkling it follows.
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import gaussian_filter
+import scipy
 
 from ..model import HIGHEST_FOLD, Head, Wrinkles
 from .creases import SLOTS, creases
@@ -59,7 +59,9 @@ def paint_wrinkles(head: Head, size: int) -> Wrinkles:
 
 def _relief(height: Values, slot: Values, size: int) -> npt.NDArray[np.int8]:
     """What triangles can show of the height [mm] that follows either slot, (size, size) each."""
-    smooth = np.clip(gaussian_filter(height, FINEST * size / SCALE) / HIGHEST_FOLD, -1.0, 1.0)
+    smooth = np.clip(
+        scipy.ndimage.gaussian_filter(height, FINEST * size / SCALE) / HIGHEST_FOLD, -1.0, 1.0
+    )
     both = np.stack([smooth * (1.0 - slot), smooth * slot], axis=-1)
     return np.rint(127.0 * both[::COARSER, ::COARSER]).astype(np.int8)
 

@@ -21,7 +21,7 @@ from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import uniform_filter
+import scipy
 
 from ..errors import AssetError
 from ..files import Image, read_arrays_of
@@ -309,7 +309,7 @@ def _tints() -> _Tints:
         density, redness, _ = _changes(float(melanin), 1.0)
         tones.append(skin * np.exp(-weights[0] * density - weights[1] * redness))
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3))
-    detail = (lightness - uniform_filter(lightness, DETAIL)) * (hair < 0.02)
+    detail = (lightness - scipy.ndimage.uniform_filter(lightness, DETAIL)) * (hair < 0.02)
     return _Tints(
         bare,
         **soft,

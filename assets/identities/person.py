@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from ..errors import AssetError
 from ..files import Image
@@ -142,7 +142,7 @@ def _hair(known: Head) -> FloatArray:
     angle, height, _ = direction_coordinates(known.vertices)
     behind = height - line_height(HAIRLINE, np.degrees(np.abs(angle)))
     ears = np.concatenate([known.rings[f"ear_0_{side}"] for side in ("left", "right")])
-    away = cKDTree(known.vertices[ears]).query(known.vertices)[0]
+    away = scipy.spatial.cKDTree(known.vertices[ears]).query(known.vertices)[0]
     top = 0.4 + 0.6 * smooth_step(20.0, 95.0, known.vertices[:, 1])
     return top * smooth_step(2.0, 30.0, behind) * smooth_step(6.0, 30.0, away)
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+import scipy
 
 from risorius.assets.errors import AssetError
 from risorius.assets.fitting.guess import guess, placing, skin_around
@@ -70,7 +70,7 @@ class Marking:
         if float((self._normals * off).sum()) < 0.0:  # it faces inward throughout
             self.faces = np.ascontiguousarray(self.faces[:, ::-1])
             self._normals = -self._normals
-        self._nearest = cKDTree(self.positions)
+        self._nearest = scipy.spatial.cKDTree(self.positions)
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
         """The first time: upright, looking ahead, as large as a head; AssetError for no face's."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, maximum_filter
+import scipy
 
 from ...generator.fields import Points, Values
 from ...generator.sections import TOP, direction_coordinates
@@ -28,14 +28,14 @@ class Envelope:
             known = np.flatnonzero(around)
             if len(known):
                 around[:] = np.interp(ANGLES, ANGLES[known], around[known], period=2.0 * np.pi)
-        reach = maximum_filter(reach, (5, 3), mode=("nearest", "wrap"))
+        reach = scipy.ndimage.maximum_filter(reach, (5, 3), mode=("nearest", "wrap"))
         # What stands out, an ear, is a slope to hair: it lies on it, and hangs from it.
         step, hanging = HEIGHTS[1] - HEIGHTS[0], np.flatnonzero(HEIGHTS < HANGING)
         for k in hanging[1:]:
             reach[k] = np.maximum(reach[k], reach[k - 1] - step * RISE)
         for k in hanging[::-1]:
             reach[k] = np.maximum(reach[k], reach[k + 1] - step * FALL)
-        self._reach = gaussian_filter(reach, (2.5, 2.0), mode=("nearest", "wrap"))
+        self._reach = scipy.ndimage.gaussian_filter(reach, (2.5, 2.0), mode=("nearest", "wrap"))
 
     def radius(self, angle: Values, height: Values) -> Values:
         """From the axis of the head [mm], shape (n,)."""

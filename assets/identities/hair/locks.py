@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy
 
 from ...generator.fields import Points, Values, unit
 from ...generator.sections import direction_coordinates, rays
@@ -77,7 +77,9 @@ def _resampled(line: Points, place: Values) -> Points:
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-6))])
     degree = min(3, len(line) - 1)
-    return np.asarray(make_interp_spline(along, line, k=degree)(place * along[-1]))
+    return np.asarray(
+        scipy.interpolate.make_interp_spline(along, line, k=degree)(place * along[-1])
+    )
 
 
 def _frames(middle: Points, turn: Values) -> tuple[Points, Points]:
