@@ -102,13 +102,11 @@ def combed(
 
 def _way(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Points:
     """Unit directions along the head in which hair lies, shape (n, 3)."""
-    angle, height, _ = direction_coordinates(at)
-    _, out = rays(angle, height)
-    across = np.stack([np.cos(angle), np.zeros(len(at)), -np.sin(angle)], axis=1)
+    angle, height, out, across = _around(at)
     # On top away from the parting and back, then down.
-    back = -0.3 - 0.5 * smooth_step(20.0, 70.0, at[:, 2])
-    combed = np.stack([side, np.zeros(len(at)), back], axis=1)
-    way = [0.0, -1.0, 0.0] + 1.6 * smooth_step(0.25, 0.95, out[:, 1])[:, None] * combed
+    behind = -0.3 - 0.5 * smooth_step(20.0, 70.0, at[:, 2])
+    parted = np.stack([side, np.zeros(len(at)), behind], axis=1)
+    way = [0.0, -1.0, 0.0] + 1.6 * smooth_step(0.25, 0.95, out[:, 1])[:, None] * parted
     at_front = cut.brushed * smooth_step(-15.0, 45.0, at[:, 2]) * smooth_step(25.0, 45.0, height)
     back = np.stack([0.3 * side, np.full(len(at), 0.35), np.full(len(at), -1.0)], axis=1)
     way += at_front[:, None] * (1.6 * back - way)
@@ -124,12 +122,17 @@ def _way(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Poin
     return unit(way)
 
 
+def _around(at: Points) -> tuple[Values, Values, Points, Points]:
+    """Angle and height of places, and the directions out of the head and around it there."""
+    angle, height, _ = direction_coordinates(at)
+    across = np.stack([np.cos(angle), np.zeros(len(at)), -np.sin(angle)], axis=1)
+    return angle, height, rays(angle, height)[1], across
+
+
 def _waved(cut: Cut, at: Points, own: Values, length: float) -> Points:
     """Lines that swing to both sides and in and out; neighbours nearly alike."""
     far, period = cut.wave
-    angle, height, _ = direction_coordinates(at)
-    _, out = rays(angle, height)
-    across = np.stack([np.cos(angle), np.zeros(len(at)), -np.sin(angle)], axis=1)
+    angle, height, out, across = _around(at)
     phase = 2.0 * np.pi * length / period + 2.0 * np.sin(3.0 * angle) + 0.5 * own
     # An angle means nothing at the crown.
     swing = far * min(length / LIFTED, 1.0) * smooth_step(140.0, 110.0, height)
