@@ -128,6 +128,11 @@ class Solids:
         """
         bones = self._scene.bone_transforms()
         if not dissection.is_on(self._scene):
+            hair = [
+                part for part in self._scene.parts if getattr(part, "name", "").startswith(HAIR)
+            ]
+            if hair and style.shadows:
+                renderer.cast_shadows(hair, bones, camera, style, stream=stream, **where)
             renderer.draw_mesh(stream, camera, style, **skin, **where)
             # After the mesh: the skin throws its shadow on eyes and teeth.
             renderer.draw_parts(self._scene.parts, bones, camera, style, **where)

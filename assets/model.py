@@ -85,8 +85,8 @@ class Part:
     roots: for a part that grows from the skin and moves with it, for each vertex the one whose
         place on the skin it keeps to, shape (n,), int32; None for all others.
     hair: half the thickness of the hairs that the part consists of [mm]; 0 where it is none.
-    fibres: place of each vertex across and along the strands with which it is striped [mm], shape
-        (n, 2), float32; None for all but locks of hair.
+    strands: place of each vertex across and along the strands with which it is striped [mm], and
+        a unit vector along them, shape (n, 5), float32; None for all but locks of hair.
     """
 
     name: str
@@ -98,7 +98,7 @@ class Part:
     shine: float
     roots: IndexArray | None = None
     hair: float = 0.0
-    fibres: SingleArray | None = None
+    strands: SingleArray | None = None
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,29 @@ COLOUR_DEFINES: dict[ColourBy, tuple[str, ...]] = {
 }
 
 
+def skin_shader(style: Style, has_texture: bool, has_wrinkles: bool) -> list[str]:
+    """The file and the defines of the program of a mesh."""
+    return [
+        "surface.glsl",
+        style.shading.name,
+        *(["WIREFRAME"] if style.wireframe else []),
+        *COLOUR_DEFINES[style.colour_by],
+        *(["TEXTURED"] if has_texture else []),
+        *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
+        *(["SHADOWS"] if style.shadows else []),
+        *(["WRINKLES"] if has_wrinkles else []),
+    ]
+
+
+def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
+    """The file and the defines of the program of parts of a kind, see `PartBuffers`."""
+    shadows = ["SHADOWS"] * (has_shadow and kind != "HAIR")
+    if kind == "LOCKS":
+        return ["locks.glsl", *shadows]
+    sunk = ["SUNK"] * (is_cut and kind != "HAIR")
+    return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
+
+
 def set_skin(program: moderngl.Program, style: Style) -> None:
     """How skin of this style takes light."""
     set_light(program, style.light)
@@ -44,24 +67,24 @@ def set_inside(program: moderngl.Program, style: Style) -> None:
     program["sky"], program["ground"] = style.light.sky, style.light.ground
 
 
-def set_part(program: moderngl.Program, part: Part, light: Light) -> None:
+def set_part(program: moderngl.Program, part: Part, light: Light, view: CameraView) -> None:
     """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights.
 
     `set_light` comes first; of it, light from behind does not get through a head.
     """
+    shine = part.shine
+    if getattr(part, "strands", None) is not None:
+        program["gloss"] = 2.0 * shine
+        return
     is_in_head = part.bone in HEAD_BONES or getattr(part, "fibres", None) is not None
     program["rim_light"] = (0.0, 0.0, 0.0) if is_in_head else light.rim
-    shine = part.shine
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
     program["sharpness"] = 20.0 * 40.0**shine
-
-
-def set_hair(program: moderngl.Program, thickness: float, view: CameraView) -> None:
-    """How thin hairs are, half of it, and how thin they may be drawn at distance 1."""
-    _, _, width, height = view.viewport
-    program["half_hair"] = thickness
-    program["least_half"] = 0.5 * HAIR_PIXELS / view.camera.focal(width / height, height)
+    if thickness := getattr(part, "hair", 0.0):  # half of it, and what it is at least at distance 1
+        _, _, width, height = view.viewport
+        program["half_hair"] = thickness
+        program["least_half"] = 0.5 * HAIR_PIXELS / view.camera.focal(width / height, height)
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:

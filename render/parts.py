@@ -10,6 +10,12 @@ import numpy.typing as npt
 from .camera_view import box_corners
 from .style import linear
 
+# What is striped: by which attribute of a part, and its kind, layout and attributes in OpenGL.
+STRIPED = {
+    "fibres": ("FIBRES", "2f", "in_fibre"),
+    "strands": ("LOCKS", "2f 3f", "in_strand", "in_along"),
+}
+
 
 class Part(Protocol):
     """What is read of a part.
@@ -19,7 +25,8 @@ class Part(Protocol):
     faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
         drawn. colours: sRGB 0..1, shape (n, 3), float32.
     bone: whose transform moves it. shine: 0 dull, 1 wet. Hairs have `hair`, half their thickness,
-        too; muscles `fibres`, the place of each vertex across and along them [mm], (n, 2).
+        too; muscles `fibres`, the place of each vertex across and along them [mm], (n, 2); locks of
+        hair `strands`: the same, and a unit vector along them, (n, 5).
     """
 
     @property
@@ -50,13 +57,18 @@ class PartBuffers:
                 f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
             )
         self._gl = gl
-        self.fibres = getattr(part, "fibres", None)
-        width = 36 if self.fibres is None else 44
-        self._vertices = gl.buffer(reserve=width * len(part.vertices))
-        self._uploaded: npt.NDArray[np.float32] | None = None
         self.hair = getattr(part, "hair", 0.0)
-        # The define of surface.glsl that it is drawn with.
-        self.kind = "HAIR" if self.hair else "RIGID" if self.fibres is None else "FIBRES"
+        # What it is drawn with: a define of surface.glsl, or LOCKS for locks.glsl.
+        self.kind = "HAIR" if self.hair else "RIGID"
+        self._more: npt.NDArray[np.float32] | None = None  # attributes that others have not
+        self._layout: tuple[str, ...] = ("3f 3f 3f", "in_position", "in_normal", "in_colour")
+        for name, (kind, layout, *attributes) in STRIPED.items():
+            if (more := getattr(part, name, None)) is not None:
+                self.kind, self._more = kind, more
+                self._layout = (f"{self._layout[0]} {layout}", *self._layout[1:], *attributes)
+        columns = 9 if self._more is None else 9 + np.shape(self._more)[1]
+        self._vertices = gl.buffer(reserve=4 * columns * len(part.vertices))
+        self._uploaded: npt.NDArray[np.float32] | None = None
         self.upload()
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)
@@ -74,7 +86,7 @@ class PartBuffers:
                 vertices,
                 part.normals,
                 linear(part.colours),
-                *([] if self.fibres is None else [self.fibres]),
+                *([] if self._more is None else [self._more]),
             ]
         ).astype(np.float32)
         self._vertices.write(rows.tobytes())
@@ -99,18 +111,7 @@ class PartBuffers:
         if (program, indices) not in self._arrays:
             self._arrays[program, indices] = self._gl.vertex_array(
                 program,
-                [
-                    (self._vertices, "3f 3f 3f", "in_position", "in_normal", "in_colour")
-                    if self.fibres is None
-                    else (
-                        self._vertices,
-                        "3f 3f 3f 2f",
-                        "in_position",
-                        "in_normal",
-                        "in_colour",
-                        "in_fibre",
-                    )
-                ],
+                [(self._vertices, *self._layout)],
                 index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # not every program has a use for colours

@@ -21,12 +21,12 @@ from .camera_view import CameraView, box_corners
 from .geometry import checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .materials import COLOUR_DEFINES, set_hair, set_light, set_palette, set_part, set_skin
+from .materials import part_shader, set_light, set_palette, set_part, set_skin, skin_shader
 from .outline import draw_fringes, fringes
-from .parts import Part, PartStore, PlacedPart
+from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .render_target import scaled
-from .shadow import ShadowMap
+from .shadow import DEEP, OFFSET, ShadowMap, Thrower
 from .stream import Share, Stream
 from .style import Colour, ColourBy, Shading, Style
 from .surface import Image, Surface
@@ -50,6 +50,7 @@ class Renderer:
         self._values: moderngl.Texture | None = None
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
+        self._shadow_of: Stream | None = None  # a mesh whose shadow is there before it is drawn
         self._geometry_buffer: GeometryBuffer | None = None
         self._occluder: Occluder | None = None
 
@@ -123,14 +124,14 @@ class Renderer:
             )
         if not (style.shows_wrinkles and stream.has_wrinkles):
             wrinkles = None
-        if not style.textured:
-            texture = None
+        texture = texture if style.textured else None
         is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         view = self._camera_view(camera, viewport, clip)
         if is_coloured:
             self._values = value_texture(self._gl, checked_values(values, stream.triangle_count))
-        if style.shadows:
-            self._cast(stream, view, style)
+        if style.shadows and self._shadow_of is not stream:
+            self._cast([stream], view, style)
+        self._shadow_of = None
         shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
         drawn = []
         for share in shares:
@@ -160,17 +161,23 @@ class Renderer:
         camera: OrbitCamera,
         style: Style,
         *,
+        stream: Stream | None = None,
         viewport: Viewport | None = None,
         clip: Viewport | None = None,
     ) -> None:
-        """Let parts, not the skin, throw the shadow on parts that are drawn next."""
-        view = self._camera_view(camera, viewport, clip)
-        self._cast(self._parts.placed(parts, transforms), view, style)
+        """Let parts, not the skin, throw the shadow on parts that are drawn next.
 
-    def _cast(self, thrower: Stream | list[PlacedPart], view: CameraView, style: Style) -> None:
+        stream: a mesh that is drawn next; it throws the shadow, too, and takes that of the parts.
+        """
+        view = self._camera_view(camera, viewport, clip)
+        mesh = [] if stream is None else [stream]
+        self._cast([*mesh, *self._parts.placed(parts, transforms)], view, style)
+        self._shadow_of = stream
+
+    def _cast(self, throwers: Sequence[Thrower], view: CameraView, style: Style) -> None:
         if self._shadow is None:
             self._shadow = ShadowMap(self._gl)
-        self._shadow.draw(thrower, view, self.surface.target.frame_number, style.light.to_key)
+        self._shadow.draw(throwers, view, self.surface.target.frame_number, style.light.to_key)
 
     def draw_outline(
         self,
@@ -205,17 +212,8 @@ class Renderer:
     def _surface_program(
         self, style: Style, texture: Texture | None, wrinkles: WrinkleMap | None, *more: str
     ) -> moderngl.Program:
-        return self._program(
-            "surface.glsl",
-            style.shading.name,
-            *(["WIREFRAME"] if style.wireframe else []),
-            *COLOUR_DEFINES[style.colour_by],
-            *(["TEXTURED"] if texture is not None else []),
-            *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
-            *(["SHADOWS"] if style.shadows else []),
-            *(["WRINKLES"] if wrinkles is not None else []),
-            *more,
-        )
+        has_wrinkles, has_texture = wrinkles is not None, texture is not None
+        return self._program(*skin_shader(style, has_texture, has_wrinkles), *more)
 
     def _set_surface(
         self,
@@ -274,21 +272,19 @@ class Renderer:
             self._occluder.choose_parts(placed)
         programs = {}
         for kind in {each.kind for each, _ in placed}:
-            defines = ["SHADOWS"] * bool(shadow) + ["SUNK"] * bool(cut) if kind != "HAIR" else []
-            program = self._program("surface.glsl", "PIXEL", "COLOURED", kind, *defines)
+            program = self._program(*part_shader(kind, shadow is not None, cut is not None))
             programs[kind] = program
             write_uniform(program, "projection", view.projection)
             set_light(program, style.light)
             if cut is not None and "cut" in program:
                 set_cut(program, view, cut, SUNK)
             if shadow is not None and "shadow_map" in program:
-                shadow.set_uniforms(program, view, _SHADOW_UNIT)
+                offset = DEEP if kind == "LOCKS" else OFFSET
+                shadow.set_uniforms(program, view, _SHADOW_UNIT, offset)
         for buffers, bone in sorted(placed, key=lambda each: each[0].kind == "HAIR"):
             program = programs[buffers.kind]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
-            set_part(program, buffers.part, style.light)
-            if buffers.hair:
-                set_hair(program, buffers.hair, view)
+            set_part(program, buffers.part, style.light, view)
             with blending(self._gl) if buffers.hair else nullcontext():
                 buffers.draw(program, chosen=is_chosen)
 

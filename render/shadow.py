@@ -1,6 +1,6 @@
-"""The shadow that the skin throws in the key light: on itself, on eyes, on teeth.
+"""The shadow that skin and hair throw in the key light: on skin, on eyes, on teeth.
 
-A depth map of the skin, taken from the key light, which hangs on the camera. Of both sides: skin is
+A depth map, taken from the key light, which hangs on the camera. Of both sides of the skin: it is
 thin, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
 scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
 coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
@@ -8,7 +8,7 @@ Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of
 Reeves et al. 1987.
 """
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import moderngl
 import numpy as np
@@ -24,8 +24,10 @@ RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade withi
 REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
 TEXEL = 2.0 * REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
+DEEP = 0.06  # the same for locks of hair, 9 mm: they lie over each other, and all are lit
 STEEP = 0.999  # of a light's height, from which on it has no direction sideways
 
+Thrower = Stream | PlacedPart
 FloatArray = npt.NDArray[np.float64]
 
 # -1..1 -> 0..1 in x, y and z, for row vectors.
@@ -48,12 +50,12 @@ class ShadowMap:
 
     def draw(
         self,
-        thrower: Stream | Iterable[PlacedPart],
+        throwers: Sequence[Thrower],
         view: CameraView,
         frame_number: int,
         to_key: Vector,
     ) -> None:
-        """Take the depth map of what a stream uploaded, or of parts, in the frame of that number.
+        """Take the depth map of what streams uploaded, and of parts, in the frame of that number.
 
         to_key: unit vector toward the key light, in view space.
         """
@@ -64,23 +66,23 @@ class ShadowMap:
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
-        if isinstance(thrower, Stream):
-            thrower.draw(self._program)
-        else:
-            for buffers, transform in thrower:
-                write_uniform(self._program, "light_matrix", transform.T @ to_light)
-                buffers.draw(self._program)
+        for thrower in throwers:
+            transform = np.eye(4) if isinstance(thrower, Stream) else thrower[1]
+            write_uniform(self._program, "light_matrix", transform.T @ to_light)
+            (thrower if isinstance(thrower, Stream) else thrower[0]).draw(self._program)
         self._drawn_for = frame_number, view.fingerprint
 
     def is_of(self, view: CameraView, frame_number: int) -> bool:
         """Whether it was last drawn for this view, in the frame of that number."""
         return self._drawn_for == (frame_number, view.fingerprint)
 
-    def set_uniforms(self, program: moderngl.Program, view: CameraView, unit: int) -> None:
-        """Let a program look up the shadow, through a texture unit."""
+    def set_uniforms(
+        self, program: moderngl.Program, view: CameraView, unit: int, offset: float = OFFSET
+    ) -> None:
+        """Let a program look up the shadow, through a texture unit; offset: see `OFFSET`."""
         radius = view.camera.scene_radius
         write_uniform(program, "shadow_matrix", self._view_to_light(view) @ _TO_TEXTURE)
-        program["shadow_offset"] = OFFSET * radius
+        program["shadow_offset"] = offset * radius
         program["shadow_reach"] = 2.0 * TEXEL * radius  # of the look-up, to each side
         self._depth.use(unit)
         program["shadow_map"] = unit

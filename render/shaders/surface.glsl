@@ -234,7 +234,7 @@ uniform vec3 split_palette[6];
 uniform vec4 ramp[5];  // colour, and how much of it
 #endif
 #if defined(SHADOWS)
-uniform sampler2DShadow shadow_map;
+#include "shadowed.glsl"
 #endif
 #if defined(WRINKLES)
 #include "wrinkles.glsl"
@@ -287,29 +287,6 @@ vec3 front_albedo() {
     if (value > 0) front = mix(front, split_palette[min(value, 6) - 1], STRENGTH);
 #endif
     return front;
-}
-
-// 1 where the key light reaches, 0 in its shadow.
-float key_lightness() {
-#if defined(SHADOWS)
-    // The mean of 3 x 3 bilinear tests, by four: each stands between two of them, where the test's
-    // own blend weighs them (after I. Castaño's "Shadow mapping summary", 2013).
-    vec3 place = surface.light_place;
-    float size = float(textureSize(shadow_map, 0).x), texel = 1.0 / size;
-    vec2 corner = floor(place.xy * size + 0.5);
-    vec2 part = place.xy * size + 0.5 - corner;
-    corner -= 0.5;
-    vec2 low_weight = 3.0 - 2.0 * part, high_weight = 1.0 + 2.0 * part;
-    vec2 low = (corner + (2.0 - part) / low_weight - 1.0) * texel;
-    vec2 high = (corner + part / high_weight + 1.0) * texel;
-    float lower = low_weight.x * texture(shadow_map, vec3(low, place.z))
-        + high_weight.x * texture(shadow_map, vec3(high.x, low.y, place.z));
-    float upper = low_weight.x * texture(shadow_map, vec3(low.x, high.y, place.z))
-        + high_weight.x * texture(shadow_map, vec3(high, place.z));
-    return (low_weight.y * lower + high_weight.y * upper) / 16.0;
-#else
-    return 1.0;
-#endif
 }
 
 #if !defined(GOURAUD)
@@ -367,7 +344,11 @@ void main() {
 #if defined(FIBRES)
     front *= strand.tone;
 #endif
-    float lightness = key_lightness();
+#if defined(SHADOWS)
+    float lightness = key_lightness(surface.light_place);
+#else
+    float lightness = 1.0;
+#endif
 #if defined(COLOURED)
     // Lids and lips are thin, and what they shade is small: light of a large lamp gets around them.
     lightness = mix(0.6, 1.0, lightness);

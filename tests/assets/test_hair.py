@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.ndimage import binary_dilation
 from scipy.spatial import cKDTree
 
 from risorius.app.anatomy import Dissection, Solids
@@ -14,6 +15,8 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
+from risorius.assets.generator.sections import direction_coordinates
+from risorius.assets.generator.solids import grid_faces
 from risorius.assets.identities import (
     CUTS,
     HAIR,
@@ -58,9 +61,9 @@ def test_hair_is_a_sound_part(number: int, cut: str) -> None:
         assert part.name.startswith(HAIR) and part.bone == "cranium"
         count = len(part.vertices)
         assert part.normals.shape == part.colours.shape == (count, 3)
-        assert part.fibres is not None and part.fibres.shape == (count, 2)
+        assert part.strands is not None and part.strands.shape == (count, 5)
         assert 0 <= part.faces.min() and part.faces.max() < count
-        assert all(np.isfinite(each).all() for each in (part.vertices, part.colours, part.fibres))
+        assert all(np.isfinite(each).all() for each in (part.vertices, part.colours, part.strands))
         assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0, atol=1e-5)
         corners = part.vertices[part.faces].astype(np.float64)
         facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -142,3 +145,52 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     solids = Solids(scene)
     solids.follow(Dissection(("muscles",)))
     assert solids.parts and not [p for p in solids.parts if getattr(p, "name", "").startswith(HAIR)]
+
+
+def test_hair_throws_its_shadow_on_skin(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The cheek beside a bob toward the key light is darker for it; the other one, and hair, not.
+
+    Locks do not stripe each other.
+    """
+    with Capture(
+        FaceScene(person_called("ada")),
+        CaptureOptions(size=(240, 296), camera="0,0,0.9", passes=("segmentation",)),
+    ) as capture:
+        within = capture.draw_image().astype(float)
+        classes = Passes(capture.pipeline).draw(capture.camera, ("segmentation",))["segmentation"]
+        monkeypatch.setattr(capture.pipeline.renderer, "cast_shadows", lambda *_, **__: None)
+        without = capture.draw_image().astype(float)
+    darker = (without - within).mean(axis=2)
+    is_hair = classes == Segment.HAIR
+    is_skin = classes == Segment.SKIN
+    beside = is_skin & binary_dilation(is_hair, iterations=3)
+    beside[:100] = beside[180:] = False  # from the brows to the chin
+    toward, away = darker[:, :120][beside[:, :120]], darker[:, 120:][beside[:, 120:]]
+    assert (toward > 12.0).mean() > 0.4 and toward.mean() > 12.0
+    assert np.abs(away).mean() < 1.0
+    assert np.abs(darker[is_skin & ~binary_dilation(is_hair, iterations=20)]).mean() < 0.5
+    assert np.abs(darker[is_hair]).mean() < 2.0
+
+
+@pytest.mark.parametrize("cut", LONG)
+def test_what_is_left_out_of_locks_is_covered(cut: str) -> None:
+    """Straight from outside, nothing lies over the head where all locks would, and less is left."""
+    look, (locks, lining) = CUTS[cut], hair_of(0, cut)
+    assert look is not None
+    whole = 4 * look.count * (look.look.rows - 1)
+    assert 0.2 * whole < len(locks.faces) < 0.75 * whole
+    every = grid_faces(look.look.rows, 3)
+    every = (every + np.arange(look.count)[:, None, None] * 3 * look.look.rows).reshape(-1, 3)
+
+    def outermost(faces: npt.NDArray[np.int32]) -> dict[tuple[float, float], float]:
+        """How far out the middles of faces reach, over places."""
+        middles = [locks.vertices[faces].mean(axis=1), lining.vertices[lining.faces].mean(axis=1)]
+        angle, height, radius = direction_coordinates(np.vstack(middles).astype(np.float64))
+        found: dict[tuple[float, float], float] = {}
+        for *place, far in zip(np.round(8.0 * angle), np.round(height / 8.0), radius, strict=True):
+            found[tuple(place)] = max(found.get(tuple(place), 0.0), float(far))
+        return found
+
+    kept, all_of_them = outermost(locks.faces), outermost(every)
+    off = [far - kept.get(place, 0.0) for place, far in all_of_them.items()]
+    assert np.quantile(off, 0.95) < 1.0

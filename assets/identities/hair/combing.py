@@ -8,6 +8,7 @@ higher up lie over lower ones.
 from __future__ import annotations
 
 import numpy as np
+import scipy
 
 from ...generator.fields import Points, Values, smooth_step, unit
 from ...generator.regions import HAIRLINE, line_height
@@ -19,11 +20,18 @@ from .envelope import Envelope
 STEP = 4.0  # [mm] of a line
 LEAST = 12.0  # [mm] from a root to the hem
 CANDIDATES = 15  # places for each root
-PARTED = 14.0  # [mm] beside the parting within which locks stand closer
-TO_PARTING = 5.0  # [mm] by which these begin nearer to it
+PARTED = 1.0  # [mm] beside the parting, where a row of locks begins
+BARE = 7.0  # [mm] beside it where no other begins
+IN_ROW = 5.0  # [mm] from one of these to the next
+PARTED_TO = -35.0  # [mm] z of its end behind
+TOGETHER = -75.0, -15.0  # [mm] z between which hair from both its sides comes together
+ON_TOP = 60.0  # [mm] height above which a lock stays on its side of the parting
+ROOTED = 1.0  # [mm] that they lie over the envelope at their roots
+OVER_SKIN = 4.0  # [mm] that they are over the triangles of the skin there, at most
 LIFTED = 60.0  # [mm] from the root, where a lock has come up to its layer
 CURLED = 9.0  # [mm] that ends turn in
-UNEVEN = 7.0  # [mm] by which they end at different heights
+AT_EARS = 0.8  # [mm] that an ear stands out where hair ends above it
+UNEVEN = 4.0  # [mm] by which they end at different heights
 
 
 def roots_of(
@@ -45,16 +53,30 @@ def roots_of(
     is_haired = (behind > 1.5) & (height > cut.end(angle) + LEAST) & ~is_ear
     points, behind = points[is_haired], behind[is_haired]
     angle, height, _ = direction_coordinates(points)
-    at_hairline = smooth_step(14.0, 4.0, behind) * (np.abs(angle) < 1.3)
-    beside = np.abs(points[:, 0] - cut.parting)
-    at_parting = smooth_step(PARTED, 5.0, beside) * smooth_step(70.0, 100.0, height)
-    closer = 1.0 + 3.0 * np.maximum(at_hairline, at_parting * (points[:, 2] > -75.0))
-    # The farthest of all points comes next, until there are enough.
-    chosen, gap = [0], np.linalg.norm(points - points[0], axis=1)
-    while len(chosen) < cut.count:
+    closer = 1.0 + 3.0 * smooth_step(14.0, 4.0, behind) * (np.abs(angle) < 1.3)
+    # The parting first, then always the farthest of all points, until there are enough.
+    parted = _along_parting(cut, points[height > ON_TOP])
+    points, closer = (each[near_parting(cut, points, BARE) == 0.0] for each in (points, closer))
+    chosen: list[int] = []
+    gap = scipy.spatial.cKDTree(parted).query(points)[0]
+    while len(chosen) < cut.count - len(parted):
         chosen.append(int(np.argmax(gap * closer)))
         gap = np.minimum(gap, np.linalg.norm(points - points[chosen[-1]], axis=1))
-    return np.asarray(points[chosen])
+    return np.vstack([parted, points[chosen]])
+
+
+def _along_parting(cut: Cut, points: Points) -> Points:
+    """Roots in two rows among points on top of the head, one on each side of the parting."""
+    near = points[np.abs(points[:, 0] - cut.parting) < IN_ROW]
+    ahead = np.arange(max(near[:, 2].min(), PARTED_TO), near[:, 2].max(), IN_ROW)
+    order = np.argsort(near[:, 2])
+    height = np.interp(ahead, near[order, 2], near[order, 1])
+    return np.vstack(
+        [
+            np.stack([np.full(len(ahead), cut.parting + aside), height, ahead], axis=1)
+            for aside in (-PARTED, PARTED)
+        ]
+    )
 
 
 def _behind(angle: Values, height: Values) -> Values:
@@ -67,8 +89,13 @@ def layers_of(cut: Cut, roots: Points, random: np.random.Generator) -> Values:
     angle, height, _ = direction_coordinates(roots)
     layer = 0.9 * smooth_step(-80.0, 120.0, height) + 0.1 * random.random(len(roots))
     layer *= 0.3 + 0.7 * smooth_step(0.0, 40.0, _behind(angle, height))
-    beside = np.abs(roots[:, 0] - cut.parting)
-    return np.asarray(layer * (0.5 + 0.5 * smooth_step(0.0, 25.0, beside)))
+    return np.asarray(layer * (1.0 - 0.5 * near_parting(cut, roots, 25.0)))
+
+
+def near_parting(cut: Cut, points: Points, width: float) -> Values:
+    """1 at the parting, and where it ends behind; 0 from so far on [mm]."""
+    behind = np.maximum(PARTED_TO - points[:, 2], 0.0)
+    return smooth_step(width, 0.0, np.hypot(points[:, 0] - cut.parting, behind))
 
 
 def combed(
@@ -79,33 +106,35 @@ def combed(
     own, uneven = random.normal(0.0, 1.0, count), random.random(count)
     side = np.where(roots[:, 0] > cut.parting, 1.0, -1.0)
     longest = cut.longest * (0.8 + 0.2 * uneven)
-    # From the parting on, which would else be as wide as two locks are apart.
-    beside = np.abs(roots[:, 0] - cut.parting)
-    nearer = np.minimum(beside, TO_PARTING) * smooth_step(PARTED, 7.0, beside)
-    at = roots - (nearer * side)[:, None] * [1.0, 0.0, 0.0]
+    angle, height, radius = direction_coordinates(roots)
+    origin, out = rays(angle, height)
+    over = np.minimum(envelope.radius(angle, height) + ROOTED - radius, OVER_SKIN)
+    at = origin + (radius + over)[:, None] * out
     is_done, lengths = np.zeros(count, bool), np.zeros(count, int)
     track = [at]
     for step in range(1, int(cut.longest / STEP) + 1):
-        at = at + STEP * _way(cut, at, side, own, STEP * step)
+        at = at + STEP * way_of(cut, at, side, own, STEP * step)
         angle, height, _ = direction_coordinates(at)
         origin, out = rays(angle, height)
         hem = cut.end(angle) + UNEVEN * uneven
-        off = (2.0 + cut.volume * layer) * smooth_step(0.0, LIFTED, np.full(count, STEP * step))
-        off -= curl(height - hem, height)
+        off = ROOTED + cut.volume * layer * smooth_step(0.0, LIFTED, np.full(count, STEP * step))
+        off -= cut.hangs * curl(height - hem, height)
         at = origin + (envelope.radius(angle, height) + off)[:, None] * out
         track.append(_waved(cut, at, own, STEP * step))
         is_done |= (height < hem) | (STEP * step > longest)
+        is_done |= envelope.ears(angle, height) > AT_EARS
         lengths += ~is_done
     tracks = np.stack(track, axis=1)
     return [line[: length + 2] for line, length in zip(tracks, lengths, strict=True)]
 
 
-def _way(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Points:
+def way_of(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Points:
     """Unit directions along the head in which hair lies, shape (n, 3)."""
     angle, height, out, across = _around(at)
     # On top away from the parting and back, then down.
     behind = -0.3 - 0.5 * smooth_step(20.0, 70.0, at[:, 2])
-    parted = np.stack([side, np.zeros(len(at)), behind], axis=1)
+    aside = side * smooth_step(*TOGETHER, at[:, 2])
+    parted = np.stack([aside, np.zeros(len(at)), behind], axis=1)
     way = [0.0, -1.0, 0.0] + 1.6 * smooth_step(0.25, 0.95, out[:, 1])[:, None] * parted
     at_front = cut.brushed * smooth_step(-15.0, 45.0, at[:, 2]) * smooth_step(25.0, 45.0, height)
     back = np.stack([0.3 * side, np.full(len(at), 0.35), np.full(len(at), -1.0)], axis=1)
@@ -115,7 +144,7 @@ def _way(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Poin
     opening = np.radians(cut.opening[0] + (cut.opening[1] - cut.opening[0]) * share)
     within = np.clip((opening + 0.05 * own - np.abs(angle)) / 0.22, 0.0, 2.5)
     within *= smooth_step(105.0, 75.0, height)
-    aside = np.where(np.abs(angle) < 0.35, side, np.sign(angle))
+    aside = np.where((np.abs(angle) < 0.35) | (height > ON_TOP), side, np.sign(angle))
     uneven = 0.1 * own * np.sin(0.05 * length + 3.0 * own)
     way = way + (within * aside + uneven)[:, None] * across
     way -= (way * out).sum(axis=1)[:, None] * out

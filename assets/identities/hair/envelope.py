@@ -8,10 +8,15 @@ import scipy
 from ...generator.fields import Points, Values
 from ...generator.sections import TOP, direction_coordinates
 from ...model import IndexArray
+from ...topology import vertex_normals
 
 RISE, FALL = 0.26, 0.16  # how fast hair comes out above ears, and in again below [mm for each mm]
 HANGING = 60.0  # [mm] height below which it does
+EARS = 15  # directions: what is narrower, and stands out, is an ear
+EAR = np.radians((98.0, 17.0))  # where it is, and how far to each side
+EAR_TOP = 45.0  # [mm]
 STEPS = 6  # points on an edge of a triangle
+BULGE = 0.75  # of what the planes of its corners would make of it, as in the source
 ANGLES = np.radians(np.arange(-180.0, 180.0, 3.0))
 HEIGHTS = np.arange(-175.0, TOP, 2.5)
 
@@ -19,7 +24,8 @@ HEIGHTS = np.arange(-175.0, TOP, 2.5)
 class Envelope:
     """How far head and ears reach, over angle and height, and what hangs from them."""
 
-    def __init__(self, vertices: Points, faces: IndexArray) -> None:
+    def __init__(self, vertices: Points, faces: IndexArray, *, over_ears: bool) -> None:
+        """over_ears: whether hair lies on ears and hangs from them, else it ends above them."""
         angle, height, radius = direction_coordinates(_close(vertices, faces))
         row, column = (np.rint(place).astype(int) for place in _places(angle, height))
         reach = np.zeros((len(HEIGHTS), len(ANGLES)))
@@ -29,8 +35,15 @@ class Envelope:
             if len(known):
                 around[:] = np.interp(ANGLES, ANGLES[known], around[known], period=2.0 * np.pi)
         reach = scipy.ndimage.maximum_filter(reach, (5, 3), mode=("nearest", "wrap"))
+        self._ears = np.zeros_like(reach)
+        if not over_ears:
+            without = scipy.ndimage.grey_opening(reach, (1, EARS), mode=("nearest", "wrap"))
+            is_beside = np.abs(np.abs(ANGLES) - EAR[0]) < EAR[1]
+            without = np.where(is_beside & (HEIGHTS[:, None] < EAR_TOP), without, reach)
+            reach, self._ears = without, reach - without
         # What stands out, an ear, is a slope to hair: it lies on it, and hangs from it.
-        step, hanging = HEIGHTS[1] - HEIGHTS[0], np.flatnonzero(HEIGHTS < HANGING)
+        step = HEIGHTS[1] - HEIGHTS[0]
+        hanging = np.flatnonzero(HEIGHTS < HANGING) if over_ears else np.zeros(0, int)
         for k in hanging[1:]:
             reach[k] = np.maximum(reach[k], reach[k - 1] - step * RISE)
         for k in hanging[::-1]:
@@ -39,24 +52,41 @@ class Envelope:
 
     def radius(self, angle: Values, height: Values) -> Values:
         """From the axis of the head [mm], shape (n,)."""
-        row, column = _places(angle, height)
-        top, left = np.minimum(row.astype(int), len(HEIGHTS) - 2), np.floor(column).astype(int)
-        down, right = row - top, column - left
-        left, beside = left % len(ANGLES), (left + 1) % len(ANGLES)
-        reach, below = self._reach[top], self._reach[top + 1]
-        rows = np.arange(len(row))
-        low = (1.0 - right) * reach[rows, left] + right * reach[rows, beside]
-        high = (1.0 - right) * below[rows, left] + right * below[rows, beside]
-        return np.asarray((1.0 - down) * low + down * high)
+        return _between(self._reach, angle, height)
+
+    def ears(self, angle: Values, height: Values) -> Values:
+        """How far ears stand out that hair is not over [mm], shape (n,)."""
+        return _between(self._ears, angle, height)
+
+
+def _between(grid: Values, angle: Values, height: Values) -> Values:
+    """A grid's values at places, shape (n,)."""
+    row, column = _places(angle, height)
+    top, left = np.minimum(row.astype(int), len(HEIGHTS) - 2), np.floor(column).astype(int)
+    down, right = row - top, column - left
+    left, beside = left % len(ANGLES), (left + 1) % len(ANGLES)
+    reach, below = grid[top], grid[top + 1]
+    rows = np.arange(len(row))
+    low = (1.0 - right) * reach[rows, left] + right * reach[rows, beside]
+    high = (1.0 - right) * below[rows, left] + right * below[rows, beside]
+    return np.asarray((1.0 - down) * low + down * high)
 
 
 def _close(vertices: Points, faces: IndexArray) -> Points:
-    """Points all over a surface, some millimetres apart."""
+    """Points all over a surface, some millimetres apart, bulging out between its corners.
+
+    On the scalp, where triangles are large, skin that was refined stands 2 mm above them.
+    Source: Boubekeur, Alexa 2008, "Phong tessellation".
+    """
     whole = range(STEPS + 1)
     shares = (
         np.array([(i, j, STEPS - i - j) for i in whole for j in whole[: STEPS + 1 - i]]) / STEPS
     )
-    return np.asarray(np.einsum("kc,fcx->fkx", shares, vertices[faces]).reshape(-1, 3))
+    corners, normals = vertices[faces][:, None], vertex_normals(vertices, faces)[faces][:, None]
+    flat = np.einsum("kc,fcx->fkx", shares, vertices[faces])[:, :, None]
+    above = ((flat - corners) * normals).sum(axis=3, keepdims=True)  # the planes of the corners
+    bulge = -(shares[:, :, None] * above * normals).sum(axis=2)
+    return np.asarray((flat[:, :, 0] + BULGE * bulge).reshape(-1, 3))
 
 
 def _places(angle: Values, height: Values) -> tuple[Values, Values]:

@@ -12,12 +12,14 @@ from ...generator.sections import direction_coordinates, rays
 from ...generator.solids import grid_faces
 
 # The cross-section: place across it, how far it bulges out, and its normal, across and out.
-SECTION = np.array([(-1.0, 0.0, -0.5, 0.85), (0.0, 1.0, 0.0, 1.0), (1.0, 0.0, 0.5, 0.85)])
-DEPTH = 0.13  # of a lock, by its width
+# Edges go down: seen from its side a lock is no line, and has no gap below it.
+SECTION = np.array([(-1.0, -0.8, -0.4, 0.9), (0.0, 1.0, 0.0, 1.0), (1.0, -0.8, 0.4, 0.9)])
+CLOSER = 1.25  # power of shares of the length: more rows near the root, where locks bend most
+DEPTH = 0.18  # of a lock, by its width
 TURN = 0.1  # [rad] by which locks are twisted
 SHADES = (0.82, 1.05, 0.82)  # of colour over the section
 UNEVEN = 0.06  # by which locks differ in colour
-UNDER = 0.2  # by how much what lies under others is darker
+UNDER = 0.3  # by how much what lies under others is darker
 GRAIN = 400.0  # [mm] of the striation's pattern from which each lock takes its own
 
 
@@ -32,12 +34,12 @@ class Look(NamedTuple):
 def locks_along(
     lines: list[Points], layer: Values, look: Look, colour: Values, random: np.random.Generator
 ) -> dict[str, Any]:
-    """The arrays of a `Part`: vertices, normals, faces, colours, fibres.
+    """The arrays of a `Part`: vertices, normals, faces, colours, strands.
 
     lines: of the locks, each (k, 3) [mm] with a k of its own. layer: 0 for the lowest, 1 for the
     uppermost. colour: the mean of all (sRGB).
     """
-    count, place = len(lines), np.linspace(0.0, 1.0, look.rows)
+    count, place = len(lines), np.linspace(0.0, 1.0, look.rows) ** CLOSER
     middle = np.array([_resampled(line, place) for line in lines])
     across, out = _frames(middle, random.normal(0.0, TURN, count))
     steps = np.linalg.norm(np.diff(middle, axis=1, prepend=middle[:, :1]), axis=2)
@@ -45,30 +47,31 @@ def locks_along(
     width = random.uniform(*look.widths, count)[:, None] * np.interp(
         place, [0.0, 0.15, 0.65, 0.9, 1.0], [0.8, 0.95, 1.0, 0.5 + 0.5 * look.end, look.end]
     )
-    half, depth = 0.5 * width[:, :, None, None], DEPTH * width[:, :, None, None]
+    half = 0.5 * width[:, :, None, None]
+    depth = DEPTH * (width * np.interp(place, [0.0, 0.2], [0.3, 1.0]))[:, :, None, None]
     aside, bulge, normal_aside, normal_out = SECTION.T[:, :, None]
     across, out = across[:, :, None], out[:, :, None]
     vertices = middle[:, :, None] + half * aside * across + depth * bulge * out
     normals = unit((normal_aside * across + normal_out * out).reshape(-1, 3))
     start = random.uniform(0.0, GRAIN, (count, 1, 1, 2))
     widest = 0.5 * width.max(axis=1)[:, None, None]
-    fibres = start + np.stack(
+    strands = start + np.stack(
         np.broadcast_arrays(widest * SECTION[:, 0], along[:, :, None]), axis=-1
     )
     tone = random.normal(1.0, UNEVEN, count) * (1.0 - UNDER * (1.0 - layer))
-    tones = tone[:, None] * np.interp(place, [0.0, 0.25, 1.0], [0.75, 1.0, 1.08])
+    tones = tone[:, None] * np.interp(place, [0.0, 0.25, 1.0], [0.7, 1.0, 1.08])
     tones = tones[:, :, None] * np.array(SHADES)
     tones /= tones.mean()
     faces = grid_faces(look.rows, len(SECTION))
     faces = faces + (np.arange(count) * look.rows * len(SECTION))[:, None, None]
-    # The uppermost first: what they hide is not shaded then.
-    faces = faces[np.argsort(-layer, kind="stable")]
+    along_strands = np.broadcast_to(_ahead(middle)[:, :, None], vertices.shape)
+    strands = np.concatenate([strands, along_strands], axis=-1)
     return {
         "vertices": vertices.reshape(-1, 3).astype(np.float32),
         "normals": normals.astype(np.float32),
         "faces": faces.reshape(-1, 3).astype(np.int32),
         "colours": np.clip(tones.reshape(-1, 1) * colour, 0.0, 1.0).astype(np.float32),
-        "fibres": fibres.reshape(-1, 2).astype(np.float32),
+        "strands": strands.reshape(-1, 5).astype(np.float32),
     }
 
 
@@ -82,9 +85,14 @@ def _resampled(line: Points, place: Values) -> Points:
     )
 
 
+def _ahead(middle: Points) -> Points:
+    """Unit vectors along the locks, shape (n, rows, 3)."""
+    return unit(np.gradient(middle, axis=1).reshape(-1, 3)).reshape(middle.shape)
+
+
 def _frames(middle: Points, turn: Values) -> tuple[Points, Points]:
     """Unit vectors across the locks and out of the head, shape (n, rows, 3) each."""
-    ahead = unit(np.gradient(middle, axis=1).reshape(-1, 3)).reshape(middle.shape)
+    ahead = _ahead(middle)
     angle, height, _ = direction_coordinates(middle.reshape(-1, 3))
     away = rays(angle, height)[1].reshape(middle.shape)
     across = unit(np.cross(ahead, away).reshape(-1, 3)).reshape(middle.shape)

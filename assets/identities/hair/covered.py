@@ -1,0 +1,48 @@
+"""Which faces of locks are never seen: what lies under the outermost locks is left out.
+
+Software OpenGL shades all that lies behind one place, and locks lie six deep on a head. Hair is
+rigid, so it is known beforehand what covers what. Places are looked at straight from outside, in
+cells of angle and height.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...generator.sections import direction_coordinates
+from .cuts import Cut
+from .locks import SECTION
+
+CELL = 1.5, 2.0  # size of a cell: angle [deg], height [mm]
+SAMPLES = 5  # places along an edge of a face
+CLOSE = 0.6  # [mm] below what is uppermost, as which a place still counts as uncovered
+LEAST = 0.12  # of a face's places, that have to be uncovered
+CLOSE_BESIDE = 3.0  # the same beside the face:
+BESIDE, BELOW = 12.0, 60.0  # so far from its edges [deg], below this height [mm]
+
+
+def is_seen(cut: Cut, locks: Mapping[str, Any], lining: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
+    """Which faces of locks are not covered by others, or the lining; arrays of two `Part`."""
+    first = len(locks["vertices"])
+    vertices = np.vstack([locks["vertices"], lining["vertices"]]).astype(np.float64)
+    faces = np.vstack([locks["faces"], lining["faces"] + first])
+    whole = range(SAMPLES + 1)
+    shares = [(i, j, SAMPLES - i - j) for i in whole for j in whole[: SAMPLES + 1 - i]]
+    points = np.einsum("kc,fcx->fkx", np.array(shares) / SAMPLES, vertices[faces])
+    angle, height, radius = direction_coordinates(points.reshape(-1, 3))
+    column, row = np.floor(np.degrees(angle) / CELL[0]), np.floor(height / CELL[1])
+    cell = np.unique(row * 1000.0 + column, return_inverse=True)[1]
+    uppermost = np.zeros(int(cell.max()) + 1)
+    np.maximum.at(uppermost, cell, radius)
+    # Beside the face one looks in under the uppermost.
+    is_beside = np.degrees(np.abs(angle)) < cut.opening[0] + BESIDE
+    close = np.where(is_beside & (height < BELOW) & cut.hangs, CLOSE_BESIDE, CLOSE)
+    is_open = (radius > uppermost[cell] - close).reshape(len(faces), -1)
+    kept = is_open.mean(axis=1)[: len(locks["faces"])] > LEAST
+    # All of a lock between two of its rows, or nothing: else it has jagged edges.
+    piece = locks["faces"].min(axis=1) // len(SECTION)
+    return np.asarray(np.bincount(piece, kept)[piece] > 0)
