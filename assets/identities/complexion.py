@@ -32,7 +32,8 @@ from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW, to_li
 from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
-from .hair import CUTS, HAIR, grown
+from ..topology import vertex_normals
+from .hair import CUTS, HAIR, grown, shaded
 from .person import Person
 from .traits import Identity, Sex
 
@@ -209,6 +210,7 @@ def coloured(
         segments = np.where(is_bald, np.uint8(Segment.SKIN), segments)
     if isinstance(head, Person) and angle is not None:
         parts = with_hair(head, parts, _hair_colour(angle, features), features.baldness)
+        head = replace(head, openness=_openness(head, parts))
     return replace(head, albedo=skin, parts=parts, segments=segments)
 
 
@@ -219,6 +221,17 @@ def with_hair(
     others = [part for part in parts if not part.name.startswith(HAIR)]
     vertices, faces = person.vertices, person.faces
     return (*others, *grown(person.identity.cut, vertices, faces, colour, receded=receded))
+
+
+def _openness(person: Person, parts: Sequence[Part]) -> Image:
+    """How open the skin of a person is to light from all around, with the hair that it has."""
+    hair = [part for part in parts if part.name.startswith(HAIR)]
+    openness = load("head").openness
+    if not hair:
+        return openness
+    normals = vertex_normals(person.vertices, person.faces)
+    places = person.uv[person.face_uv].astype(np.float64)
+    return shaded(openness, hair, person.vertices, normals, person.faces, places)
 
 
 def drawn_irises(

@@ -43,7 +43,8 @@ class Person(FittedHead):
 
     mandible_weight, jaw_axis, anatomy, mirror: as of `Head`. `mirror` is that of the built-in head
         where left and right differ, too.
-    openness: how open the skin is to light from all around, that of the built-in head.
+    openness: how open the skin is to light from all around, that of the built-in head but for
+        what hair takes away.
     identity: what it was made from.
     called: its number or name, "" for none.
     in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].

@@ -194,3 +194,23 @@ def test_what_is_left_out_of_locks_is_covered(cut: str) -> None:
     kept, all_of_them = outermost(locks.faces), outermost(every)
     off = [far - kept.get(place, 0.0) for place, far in all_of_them.items()]
     assert np.quantile(off, 0.95) < 1.0
+
+
+def test_skin_near_hair_gets_less_light_from_all_around() -> None:
+    """Under hair little is left of it, beside hair some is missing, the nose has all it had."""
+    ada = person_called("ada")
+    height, width = ada.openness.shape
+    missing = (bare(0).openness.astype(float) - ada.openness) / 255.0
+    assert bare(0).openness.shape == (height, width) and missing.min() >= 0.0
+    uv = np.zeros((len(ada.vertices), 2))
+    uv[ada.faces] = ada.uv[ada.face_uv]
+
+    def missing_at(vertex: int) -> float:
+        """How much the hair takes away at a vertex."""
+        u, v = uv[vertex]
+        return float(missing[int((1.0 - v) * height), int(u * width)])
+
+    assert missing_at(int(ada.landmarks[30])) < 0.02
+    assert missing_at(ada.anatomy["temple_left"]) > 0.3
+    assert 0.02 < missing_at(ada.anatomy["trichion"])
+    assert np.array_equal(person_called("kofi").openness, bare(0).openness)

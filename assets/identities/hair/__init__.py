@@ -8,6 +8,7 @@ combing   the line of each lock, from its root to the hem
 locks     flat bands along these lines
 lining    what is under them
 covered   which of their faces are never seen
+shade     how much light from all around it takes away from the skin
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ from .cuts import CUTS
 from .envelope import Envelope
 from .lining import lining_of
 from .locks import locks_along
+from .shade import shaded
 
-__all__ = ["CUTS", "HAIR", "grown"]
+__all__ = ["CUTS", "HAIR", "grown", "shaded"]
 
 HAIR = "hair"  # how the names of its parts begin
 SHINE = 0.25

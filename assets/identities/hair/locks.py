@@ -45,7 +45,7 @@ def locks_along(
     steps = np.linalg.norm(np.diff(middle, axis=1, prepend=middle[:, :1]), axis=2)
     along = np.cumsum(steps, axis=1)
     width = random.uniform(*look.widths, count)[:, None] * np.interp(
-        place, [0.0, 0.15, 0.65, 0.9, 1.0], [0.8, 0.95, 1.0, 0.5 + 0.5 * look.end, look.end]
+        place, [0.0, 0.12, 0.65, 0.9, 1.0], [0.5, 0.95, 1.0, 0.5 + 0.5 * look.end, look.end]
     )
     half = 0.5 * width[:, :, None, None]
     depth = DEPTH * (width * np.interp(place, [0.0, 0.2], [0.3, 1.0]))[:, :, None, None]
