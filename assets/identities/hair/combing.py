@@ -30,7 +30,6 @@ ROOTED = 1.0  # [mm] that they lie over the envelope at their roots
 OVER_SKIN = 4.0  # [mm] that they are over the triangles of the skin there, at most
 LIFTED = 60.0  # [mm] from the root, where a lock has come up to its layer
 CURLED = 9.0  # [mm] that ends turn in
-AT_EARS = 0.8  # [mm] that an ear stands out where hair ends above it
 UNEVEN = 4.0  # [mm] by which they end at different heights
 
 
@@ -68,7 +67,8 @@ def roots_of(
 def _along_parting(cut: Cut, points: Points) -> Points:
     """Roots in two rows among points on top of the head, one on each side of the parting."""
     near = points[np.abs(points[:, 0] - cut.parting) < IN_ROW]
-    ahead = np.arange(max(near[:, 2].min(), PARTED_TO), near[:, 2].max(), IN_ROW)
+    first, last = max(near[:, 2].min(), PARTED_TO), near[:, 2].max()
+    ahead = np.linspace(first, last, max(round((last - first) / IN_ROW), 1) + 1)
     order = np.argsort(near[:, 2])
     height = np.interp(ahead, near[order, 2], near[order, 1])
     return np.vstack(
@@ -122,7 +122,6 @@ def combed(
         at = origin + (envelope.radius(angle, height) + off)[:, None] * out
         track.append(_waved(cut, at, own, STEP * step))
         is_done |= (height < hem) | (STEP * step > longest)
-        is_done |= envelope.ears(angle, height) > AT_EARS
         lengths += ~is_done
     tracks = np.stack(track, axis=1)
     return [line[: length + 2] for line, length in zip(tracks, lengths, strict=True)]

@@ -12,9 +12,6 @@ from ...topology import vertex_normals
 
 RISE, FALL = 0.26, 0.16  # how fast hair comes out above ears, and in again below [mm for each mm]
 HANGING = 60.0  # [mm] height below which it does
-EARS = 15  # directions: what is narrower, and stands out, is an ear
-EAR = np.radians((98.0, 17.0))  # where it is, and how far to each side
-EAR_TOP = 45.0  # [mm]
 STEPS = 6  # points on an edge of a triangle
 BULGE = 0.75  # of what the planes of its corners would make of it, as in the source
 ANGLES = np.radians(np.arange(-180.0, 180.0, 3.0))
@@ -25,7 +22,7 @@ class Envelope:
     """How far head and ears reach, over angle and height, and what hangs from them."""
 
     def __init__(self, vertices: Points, faces: IndexArray, *, over_ears: bool) -> None:
-        """over_ears: whether hair lies on ears and hangs from them, else it ends above them."""
+        """over_ears: whether hair hangs from what stands out, else it lies close all over."""
         angle, height, radius = direction_coordinates(_close(vertices, faces))
         row, column = (np.rint(place).astype(int) for place in _places(angle, height))
         reach = np.zeros((len(HEIGHTS), len(ANGLES)))
@@ -35,12 +32,6 @@ class Envelope:
             if len(known):
                 around[:] = np.interp(ANGLES, ANGLES[known], around[known], period=2.0 * np.pi)
         reach = scipy.ndimage.maximum_filter(reach, (5, 3), mode=("nearest", "wrap"))
-        self._ears = np.zeros_like(reach)
-        if not over_ears:
-            without = scipy.ndimage.grey_opening(reach, (1, EARS), mode=("nearest", "wrap"))
-            is_beside = np.abs(np.abs(ANGLES) - EAR[0]) < EAR[1]
-            without = np.where(is_beside & (HEIGHTS[:, None] < EAR_TOP), without, reach)
-            reach, self._ears = without, reach - without
         # What stands out, an ear, is a slope to hair: it lies on it, and hangs from it.
         step = HEIGHTS[1] - HEIGHTS[0]
         hanging = np.flatnonzero(HEIGHTS < HANGING) if over_ears else np.zeros(0, int)
@@ -53,10 +44,6 @@ class Envelope:
     def radius(self, angle: Values, height: Values) -> Values:
         """From the axis of the head [mm], shape (n,)."""
         return _between(self._reach, angle, height)
-
-    def ears(self, angle: Values, height: Values) -> Values:
-        """How far ears stand out that hair is not over [mm], shape (n,)."""
-        return _between(self._ears, angle, height)
 
 
 def _between(grid: Values, angle: Values, height: Values) -> Values:

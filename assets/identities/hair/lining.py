@@ -21,10 +21,10 @@ HANGING = 55.0  # [mm] height of the upper edge of what hangs
 ROWS, COLUMNS = 10, 48  # of either grid
 ENDED = 5.0  # [mm] over the hem, where it ends
 OPENED = 2.0  # [deg] behind the edges of the locks beside the face
-IN_FRONT = 9.0  # [mm] behind the hairline, where the cap begins
+IN_FRONT = 4.0  # [mm] behind the hairline, where the cap begins
 # Of the locks' volume, that lies within them; short ones do not come up to it.
 CAP, CURTAIN, SHORT = 0.65, 0.85, 0.3
-SUNK = 1.0  # [mm] below the envelope, where no hair lies over the cap
+LEAST = 1.0  # [mm] over the envelope, where no hair lies over the cap: at the parting
 WIDE = 85.0  # [mm] the radius by which its strands are as wide everywhere
 SHADES = 0.85, 0.5  # of its colour, outside and inside
 
@@ -64,7 +64,7 @@ def _cap(cut: Cut, envelope: Envelope, receded: float) -> Piece:
     parted = near_parting(cut, origin + on_head[:, None] * out, 55.0)
     covered = smooth_step(0.0, 40.0, height - hairline) * (1.0 - parted)
     volume = (CAP if cut.hangs else SHORT) * cut.volume
-    points = origin + (on_head - SUNK + (SUNK + volume) * covered)[:, None] * out
+    points = origin + (on_head + LEAST + (volume - LEAST) * covered)[:, None] * out
     side = np.where(points[:, 0] > cut.parting, 1.0, -1.0)
     along = way_of(cut, points, side, np.zeros(len(points)), 0.0)
     across = (points * np.cross(along, out)).sum(axis=1)

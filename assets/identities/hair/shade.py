@@ -54,7 +54,8 @@ def shaded(
     finer = Pictures.fromarray(painted.astype(np.float32)).resize(
         (width, height), Pictures.Resampling.BICUBIC
     )
-    return np.round(openness * np.clip(np.asarray(finer), 0.0, 1.0)).astype(np.uint8)
+    shade = np.clip(np.asarray(finer, dtype=np.float32), 0.0, 1.0)
+    return np.asarray(np.round(openness * shade), dtype=np.uint8)
 
 
 def _open(hair: Sequence[Part], vertices: Points, normals: Points) -> Values:
