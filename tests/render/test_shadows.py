@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, SignedImage, at, draw_image, facing, joined, sphere, square
+from .scenes import (
+    PLAIN,
+    Ball,
+    Shape,
+    SignedImage,
+    at,
+    draw_image,
+    facing,
+    joined,
+    lent,
+    sphere,
+    square,
+)
 
 
 def test_shadow_of_the_key_light(surface: render.Surface) -> None:
@@ -73,3 +86,47 @@ def test_convex_things_do_not_shadow_themselves(
     without = draw_image(surface, sphere(2), style)
     within = draw_image(surface, sphere(2), replace(style, shadows=True))
     assert np.abs(within - without).max() < 25 and np.abs(within - without).mean() < 0.7
+
+
+@pytest.mark.parametrize("shadows", [True, False])
+def test_locks_throw_shadows_on_a_mesh_but_not_on_themselves(
+    surface: render.Surface, shadows: bool
+) -> None:
+    """A ball of hair before a wall darkens it to its lower right, once it is told to, and a frame.
+
+    The ball keeps its colours: what is only a little nearer to the light does not shade it.
+    """
+    style = replace(PLAIN, albedo=render.CLAY, shadows=shadows)
+    renderer = render.Renderer(surface)
+    wall = lent(renderer, square())
+    before_wall = np.eye(4)
+    before_wall[2, 3] = 30.0
+    frames = []
+    for is_cast in (True, False):
+        surface.begin()
+        renderer.draw_background(style)
+        if is_cast and shadows:
+            renderer.cast_shadows(
+                [HairBall()], {"cranium": before_wall}, facing(), style, stream=wall
+            )
+        renderer.draw_mesh(wall, facing(), style)
+        renderer.draw_parts([HairBall()], {"cranium": before_wall}, facing(), style)
+        surface.end()
+        frames.append(surface.read().astype(np.int32))
+    within, without = frames
+    is_darker = at(within, 30.0, -33.0).sum() < 0.8 * at(without, 30.0, -33.0).sum()
+    assert is_darker == shadows
+    assert np.abs(at(within, -4.0, 4.0) - at(without, -4.0, 4.0)).max() < 12
+
+
+@dataclass(frozen=True, eq=False)
+class HairBall(Ball):
+    """A ball whose strands run down."""
+
+    @property
+    def strands(self) -> npt.NDArray[np.float32]:
+        """Across and along [mm], and a unit vector along, shape (n, 5)."""
+        normals = self.normals.astype(np.float64)
+        down = np.array([0.0, -1.0, 0.0]) + normals[:, 1:2] * normals
+        down /= np.maximum(np.linalg.norm(down, axis=1, keepdims=True), 1e-6)
+        return np.hstack([self.vertices[:, :2], down]).astype(np.float32)

@@ -29,6 +29,8 @@ ON_TOP = 60.0  # [mm] height above which a lock stays on its side of the parting
 ROOTED = 1.0  # [mm] that they lie over the envelope at their roots
 OVER_SKIN = 4.0  # [mm] that they are over the triangles of the skin there, at most
 LIFTED = 60.0  # [mm] from the root, where a lock has come up to its layer
+FLAT, EDGED = 0.8, 25.0  # how much closer they lie at the hairline, and from how far behind it [mm]
+BROWS = 30.0, 55.0  # heights above which they do [mm]
 CURLED = 9.0  # [mm] that ends turn in
 UNEVEN = 4.0  # [mm] by which they end at different heights
 
@@ -117,7 +119,11 @@ def combed(
         angle, height, _ = direction_coordinates(at)
         origin, out = rays(angle, height)
         hem = cut.end(angle) + UNEVEN * uneven
-        off = ROOTED + cut.volume * layer * smooth_step(0.0, LIFTED, np.full(count, STEP * step))
+        at_hairline = smooth_step(*BROWS, height) * smooth_step(EDGED, 0.0, _behind(angle, height))
+        flat = 1.0 - FLAT * at_hairline
+        off = ROOTED + flat * cut.volume * layer * smooth_step(
+            0.0, LIFTED, np.full(count, STEP * step)
+        )
         off -= cut.hangs * curl(height - hem, height)
         at = origin + (envelope.radius(angle, height) + off)[:, None] * out
         track.append(_waved(cut, at, own, STEP * step))

@@ -64,6 +64,8 @@ def locks_along(
     tones /= tones.mean()
     faces = grid_faces(look.rows, len(SECTION))
     faces = faces + (np.arange(count) * look.rows * len(SECTION))[:, None, None]
+    # The uppermost first: where nothing is multisampled, what they hide is not shaded then.
+    faces = faces[np.argsort(-layer, kind="stable")]
     along_strands = np.broadcast_to(_ahead(middle)[:, :, None], vertices.shape)
     strands = np.concatenate([strands, along_strands], axis=-1)
     return {
