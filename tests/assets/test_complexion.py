@@ -20,6 +20,7 @@ from risorius.assets.identities import (
     Features,
     coloured,
     drawn_irises,
+    features_of,
     in_own_colours,
     make_person,
     own_angle,
@@ -194,6 +195,21 @@ def test_features_do_what_their_names_say(head: Head) -> None:
     assert changed(baldness=20.0)[Segment.HAIR - 1].mean() > 8.0
     bald = coloured(make_person(sample_identity(1)), angle=40.0, features=Features(baldness=20.0))
     assert (bald.segments == Segment.HAIR).sum() < (head.segments == Segment.HAIR).sum()
+
+
+def test_hair_turns_grey_as_in_the_survey() -> None:
+    """From 45 to 65 years a quarter of it is, with dark skin less; the young have none."""
+
+    def grey(angle: float, years: tuple[float, float]) -> float:
+        """The mean share of people of ages, all alike but for chance."""
+        random = np.random.default_rng(2)
+        ages = random.uniform(*years, 300)
+        drawn = [sample_identity(1, age=float(age)) for age in ages]
+        return float(np.mean([features_of(each, angle, random).grey for each in drawn]))
+
+    assert 0.2 < grey(50.0, (45.0, 65.0)) < 0.34
+    assert grey(-40.0, (45.0, 65.0)) < 0.6 * grey(50.0, (45.0, 65.0))
+    assert grey(50.0, (20.0, 30.0)) == 0.0 and grey(50.0, (72.0, 75.0)) > 0.7
 
 
 def test_own_angle_is_very_light() -> None:
