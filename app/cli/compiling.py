@@ -67,7 +67,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     from risorius import refine
 
     from ..ambient import openness
-    from ..muscle_bands import Muscles
+    from ..anatomy.muscle_bands import Muscles
     from ..scenes import ClothScene, FaceScene, PlaneScene
     from ..script import thinned
 

@@ -17,8 +17,8 @@ from risorius.assets.identities import HAIR
 from risorius.assets.skull import build_skull
 from risorius.assets.throat import build_throat
 
+from ..scenes import Scene
 from .muscle_bands import Muscles
-from .scenes import Scene
 
 SOLIDS = ("muscles", "skull")
 SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's, whose skin is translucent
