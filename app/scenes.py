@@ -20,9 +20,9 @@ from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import HAIR, Person, recoloured
 
+from .controls.mirror import parted
 from .errors import UserError
 from .growing import Growing
-from .mirror import parted
 from .mouth import Tongue, shaded_mouth
 from .process_cache import cached, file_state
 

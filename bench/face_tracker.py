@@ -20,9 +20,9 @@ from types import TracebackType
 
 import numpy as np
 
+from risorius.app.controls.mirror import twin_of
 from risorius.app.errors import UserError
 from risorius.app.files import Image
-from risorius.app.mirror import twin_of
 
 Scores = dict[str, float]
 

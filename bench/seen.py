@@ -25,9 +25,9 @@ import numpy.typing as npt
 
 from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.controls.mirror import parted, twin_of
 from risorius.app.errors import UserError
 from risorius.app.files import save_png
-from risorius.app.mirror import parted, twin_of
 from risorius.app.motion import SETTLING
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene, Scene

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
-from risorius.app.mirror import mirrored as on_the_other_side
+from risorius.app.controls.mirror import mirrored as on_the_other_side
 
 Array = npt.NDArray[np.float64]
 

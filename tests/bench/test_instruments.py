@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
-from risorius.app import mirror
+from risorius.app.controls import mirror
 from risorius.bench import soak, tearing
 from risorius.bench.timing import WARMING, interleaved, paired
 

@@ -13,7 +13,7 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ...mirror import mirrored
+from ...controls.mirror import mirrored
 from ...poses import Poses, Values
 from ..gui import LEFT, Gui, em, ink_of, wake_up
 from ..messages import Messages
