@@ -66,9 +66,9 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     """Everything that compiles kernels of its own, by name."""
     from risorius import refine
 
-    from ..ambient import openness
     from ..anatomy.muscle_bands import Muscles
     from ..scenes import ClothScene, FaceScene, PlaneScene
+    from ..scenes.ambient import openness
     from ..script import thinned
 
     face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()

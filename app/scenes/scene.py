@@ -20,11 +20,11 @@ from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import HAIR, Person, recoloured
 
-from .controls.mirror import parted
-from .errors import UserError
+from ..controls.mirror import parted
+from ..errors import UserError
+from ..process_cache import cached, file_state
 from .growing import Growing
 from .mouth import Tongue, shaded_mouth
-from .process_cache import cached, file_state
 
 BUILT_IN, OWN = "built-in", "own"  # what heads are called: that which comes along, and a user's
 CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows

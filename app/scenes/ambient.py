@@ -1,7 +1,7 @@
 """How open the skin is to light from all around: ambient occlusion, baked once for a head.
 
-That of the built-in head is shipped: `python -m risorius.app.ambient [FILE]` bakes it anew, after
-`python -m risorius.assets.build`. A head of one's own is baked when it is loaded.
+That of the built-in head is shipped: `python -m risorius.app.scenes.ambient [FILE]` bakes it anew,
+after `python -m risorius.assets.build`. A head of one's own is baked when it is loaded.
 
 From each vertex rays go out over its normal, more of them the closer they are to it, as light that
 comes from everywhere counts. What a ray meets within REACH takes its part of the light away, less
@@ -32,9 +32,9 @@ from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.topology import vertex_normals
 from risorius.jit import njit
 
-from .errors import told_in_one_line
-from .files import cannot_be_written, check_file, written_atomically
-from .stopping import handle_signals
+from ..errors import told_in_one_line
+from ..files import cannot_be_written, check_file, written_atomically
+from ..stopping import handle_signals
 
 REACH = 45.0  # [mm] beyond which nothing shades
 MOST_SEEN = 6000  # triangles that rays are cast at: more would take seconds, and look the same
@@ -256,7 +256,7 @@ def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
 def main(arguments: Sequence[str]) -> None:
     """Bake the light on a head made by `assets.build` into the file beside its data file."""
     parser = argparse.ArgumentParser(
-        prog="python -m risorius.app.ambient", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.app.scenes.ambient", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
     head = load_head(parser.parse_args(arguments).file)
