@@ -17,7 +17,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 from risorius.assets.plane import CELL, COLUMNS, ROWS, make_grid
 

@@ -15,7 +15,7 @@ from dataclasses import astuple, dataclass
 from typing import Any
 
 from risorius import assets, refine, sim
-from risorius.app.looks import FIRST_LOOK, LOOKS
+from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 
 from .lines_of_sight import eyeballs_of, lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
 from .report import table

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import SupportsFloat
 
-from risorius.app.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 from risorius.assets.plane import CELL, COLUMNS, ROWS
 from risorius.refine.kahler import criterion, smoothing

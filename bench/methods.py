@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
-from risorius.app.looks import FIRST_LOOK, LOOKS
+from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 from risorius.refine.kahler.criterion import Thresholds
 
 from .loop_limit import LoopLimit

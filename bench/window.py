@@ -16,8 +16,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from risorius import render
-from risorius.app.looks import FIRST_LOOK, PAPERS_LOOK
 from risorius.app.performances import script_for
+from risorius.app.refining.looks import FIRST_LOOK, PAPERS_LOOK
 from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES

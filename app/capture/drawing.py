@@ -16,11 +16,11 @@ from .. import process_cache
 from ..anatomy import Dissection
 from ..cameras import camera_for
 from ..files import Image
-from ..looks import Refinement
 from ..motion import play
 from ..passes.files import Labelled, labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
+from ..refining.looks import Refinement
 from ..scenes import Scene
 from ..script import Script
 from .captions import SPLITS_BAR, captioned, labels

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from ..looks import LOOKS, PAPERS_LOOK, Refinement
+from ..refining.looks import LOOKS, PAPERS_LOOK, Refinement
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -118,7 +118,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
 def _refine(scene: Scene, refinement: Refinement) -> None:
     from risorius import refine
 
-    from ..refining import refiner_for
+    from ..refining.refiners import refiner_for
 
     view = refine.View(scene.focus + np.array([0.0, 0.0, 400.0]))
     refiner_for(scene, refinement).refine(scene.positions, view=view)

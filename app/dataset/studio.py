@@ -19,11 +19,11 @@ from risorius import render
 
 from ..files import Image
 from ..idle import looking_at
-from ..looks import Refinement
 from ..motion import SETTLING
 from ..passes.files import Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline
+from ..refining.looks import Refinement
 from ..scenes import FaceScene
 from .cameras import camera_of
 from .folder import name_of

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from ..controls.vocabulary import readable
-from ..looks import FIRST_LOOK, PAPERS_LOOK
+from ..refining.looks import FIRST_LOOK, PAPERS_LOOK
 from ..script.easing import EASINGS
 from .command import Command
 from .export import Exporter

@@ -12,7 +12,7 @@ from risorius.assets.fitting import FittedHead
 
 from ..controls.vocabulary import readable
 from ..errors import UserError
-from ..refining import refiner_for
+from ..refining.refiners import refiner_for
 from ..scenes import BUILT_IN, Scene, build_scene
 from ..script import Script
 from . import menus

@@ -9,8 +9,8 @@ from risorius import refine
 from risorius.app.cameras import whole_scene
 from risorius.app.cli.options import SCENE_NAMES
 from risorius.app.errors import UserError
-from risorius.app.looks import LOOKS, Refinement
-from risorius.app.refining import refiner_for
+from risorius.app.refining.looks import LOOKS, Refinement
+from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import SCENES, ClothScene, FaceScene, PlaneScene, clamped
 from risorius.bench.lines_of_sight import meshes_of, widest_slit
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from risorius import refine
-from risorius.app.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene, Scene
 from risorius.bench import statements
 from risorius.bench.experiments import EXPERIMENTS, Experiment

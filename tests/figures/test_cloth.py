@@ -12,7 +12,7 @@ import pytest
 from risorius import assets, refine, sim
 from risorius.app.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.looks import FIRST_LOOK, LOOKS
+from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 from risorius.app.scenes import ClothScene
 from risorius.assets.cloth import CELL, CELLS
 from risorius.assets.plane import make_grid

@@ -15,8 +15,8 @@ from risorius.assets.identities import NAMED, person_in_words
 
 from ...anatomy import OPACITY, SIDES
 from ...controls.vocabulary import readable
-from ...looks import FIRST_LOOK, LOOKS, STATIC, THRESHOLDS, named, words_of_looks
-from ...refining import DETAIL, can_detail
+from ...refining.looks import FIRST_LOOK, LOOKS, STATIC, THRESHOLDS, named, words_of_looks
+from ...refining.refiners import DETAIL, can_detail
 from ...scenes import BUILT_IN, OWN
 from ..colours import COLOURS
 from ..file_drop import FileDrop

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from risorius import refine
 
-from .errors import UserError
+from ..errors import UserError
+from ..scenes import Scene
 from .looks import LOOKS, STATIC, Refinement, named
-from .scenes import Scene
 from .wrinkling import FoldCriterion
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from .errors import UserError
+from ..errors import UserError
 
 STATIC = "none"  # the refiner that leaves the mesh as it is
 CHANGED = ", changed"  # after the name of what has options over its own

@@ -23,8 +23,8 @@ from risorius import assets, refine, render
 from risorius.assets.model import HIGHEST_FOLD
 from risorius.assets.topology import vertex_normals
 
+from ..scenes import Scene
 from .looks import Refinement
-from .scenes import Scene
 
 Amounts = npt.NDArray[np.float32]
 
