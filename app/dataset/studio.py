@@ -18,8 +18,8 @@ import PIL.Image
 from risorius import render
 
 from ..files import Image
-from ..idle import looking_at
 from ..motion import SETTLING
+from ..motion.idle import looking_at
 from ..passes.files import Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..errors import UserError
+from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..playback import LEAD
 from ..recordings.conversion import lead_of
 from ..recordings.names import ARKIT

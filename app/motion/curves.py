@@ -18,8 +18,8 @@ import scipy
 
 from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, share_of_whole
 
-from .errors import UserError
-from .scenes import FaceScene, Scene
+from ..errors import UserError
+from ..scenes import FaceScene, Scene
 
 Floats = npt.NDArray[np.float64]
 

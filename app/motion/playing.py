@@ -11,10 +11,10 @@ from tqdm import tqdm
 
 from risorius.assets.fitting import FittedHead
 
+from ..scenes import Scene, build_scene
+from ..script import Script
+from ..stopping import cleaned_up_if_stopped
 from .idle import Idle
-from .scenes import Scene, build_scene
-from .script import Script
-from .stopping import cleaned_up_if_stopped
 
 
 @dataclass

@@ -15,8 +15,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from ..scenes import FaceScene, Scene
 from .life import EYE_RANGE, HEAD_RANGES, Life, Values
-from .scenes import FaceScene, Scene
 
 EYES_ALONE = 10.0  # [degrees] off straight ahead that are left to the eyes
 SHARE_OF_HEAD = 0.5  # of what lies beyond
