@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
-from risorius.app.cameras import camera_for
+from risorius.app.capture.cameras import camera_for
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 

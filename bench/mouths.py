@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine, render
-from risorius.app.cameras import camera_for
+from risorius.app.capture.cameras import camera_for
 from risorius.app.scenes import FaceScene
 
 from .canvas import Canvas, Drawing

@@ -23,8 +23,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.cameras import camera_for
 from risorius.app.controls.mirror import parted, twin_of
 from risorius.app.errors import UserError
 from risorius.app.files import save_png

@@ -22,10 +22,10 @@ import numpy.typing as npt
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.errors import UserError
 from risorius.app.files import save_png
-from risorius.app.playback import Playback
 from risorius.app.recordings import read_take
 from risorius.app.recordings.calibration import calibration_for
 from risorius.app.recordings.conversion import script_of
+from risorius.app.recordings.playback import Playback
 from risorius.app.scenes import FaceScene
 
 from .face_tracker import FaceTracker, Scores, in_mirror, mean_of

@@ -17,10 +17,10 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.app.performances import limits_of
-from risorius.app.playback import Playback
 from risorius.app.recordings import read_take
 from risorius.app.recordings.conversion import script_of
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.playback import Playback
 
 from .report import table
 

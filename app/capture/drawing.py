@@ -14,7 +14,6 @@ from risorius.assets.fitting import FittedHead
 
 from .. import process_cache
 from ..anatomy import Dissection
-from ..cameras import camera_for
 from ..files import Image
 from ..motion import play
 from ..passes.files import Labelled, labelled
@@ -23,6 +22,7 @@ from ..pipeline import Pipeline, side_by_side
 from ..refining.looks import Refinement
 from ..scenes import Scene
 from ..script import Script
+from .cameras import camera_for
 from .captions import SPLITS_BAR, captioned, labels
 from .transparency import straight
 

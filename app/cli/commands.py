@@ -14,7 +14,7 @@ import click
 
 from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS
-from ..playback import Playback
+from ..recordings.playback import Playback
 from ..refining.looks import STATIC, Refinement
 from .batch import batch
 from .dataset import dataset

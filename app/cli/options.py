@@ -12,7 +12,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..playback import LEAD, Playback
+from ..recordings.playback import LEAD, Playback
 from ..refining.looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from .dissecting import DISSECTING, DISSECTION_OPTIONS
 from .parameters import BackgroundName, FiniteRange, PersonName, Size, looks_from, refiners_from

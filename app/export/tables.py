@@ -14,9 +14,9 @@ import numpy as np
 
 from ..errors import UserError
 from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
-from ..playback import LEAD
 from ..recordings.conversion import lead_of
 from ..recordings.names import ARKIT
+from ..recordings.playback import LEAD
 from .clip import Clip, Floats
 from .formats import Request
 

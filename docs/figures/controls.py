@@ -13,8 +13,8 @@ from functools import partial
 import numpy as np
 
 from risorius import render
-from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene, Scene

@@ -16,8 +16,8 @@ from imgui_bundle import imgui
 
 from risorius import assets, render
 from risorius.app.anatomy import Dissection
-from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene

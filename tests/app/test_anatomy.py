@@ -17,8 +17,8 @@ from risorius import render
 from risorius.__main__ import command
 from risorius.app.anatomy import SOLIDS, Dissection, Solids
 from risorius.app.anatomy.muscle_bands import AROUND, ROWS, Muscles
-from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.cameras import camera_for
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger

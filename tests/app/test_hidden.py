@@ -38,7 +38,7 @@ def test_no_pixel_changes(
 
     Nor does one where what shows its inner side alone takes the program of all skin.
     """
-    from risorius.app.cameras import camera_for
+    from risorius.app.capture.cameras import camera_for
 
     known = studio.scene.limits
     studio.scene.reset()

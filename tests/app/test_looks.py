@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
-from risorius.app.cameras import whole_scene
+from risorius.app.capture.cameras import whole_scene
 from risorius.app.errors import UserError
 from risorius.app.pipeline import Pipeline
 from risorius.app.refining.looks import FIRST_LOOK, LOOKS, Look, Refinement, named

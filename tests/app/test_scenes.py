@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import refine
-from risorius.app.cameras import whole_scene
+from risorius.app.capture.cameras import whole_scene
 from risorius.app.cli.options import SCENE_NAMES
 from risorius.app.errors import UserError
 from risorius.app.refining.looks import LOOKS, Refinement

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from risorius import assets, refine, sim
-from risorius.app.cameras import camera_for
+from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 from risorius.app.scenes import ClothScene

@@ -12,12 +12,12 @@ from pathlib import Path
 
 from risorius import render
 
-from .capture import Capture, CaptureOptions
-from .controls.vocabulary import title_of
-from .errors import UserError
-from .files import Image
-from .scenes import FaceScene, Scene
-from .script import is_pose, load_script, pose_script, save_script
+from ..capture import Capture, CaptureOptions
+from ..controls.vocabulary import title_of
+from ..errors import UserError
+from ..files import Image
+from ..scenes import FaceScene, Scene
+from ..script import is_pose, load_script, pose_script, save_script
 
 SIZE = (150, 150)  # [pixels] of a picture
 VIEW = "0,0,1.7"  # the camera

@@ -1,4 +1,4 @@
-"""What is said of how a recording is played; recordings/ does it."""
+"""What is said of how a recording is played; conversion.py does it."""
 
 from __future__ import annotations
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from risorius import render
 
-from .errors import UserError
-from .scenes import Scene
+from ..errors import UserError
+from ..scenes import Scene
 
 DEFAULT_VIEW = "front"  # the face looks at whoever looks at it
 
