@@ -42,7 +42,7 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     for name in (
         "risorius.app.capture.Capture.play",
-        "risorius.bench.figure_9.draw",
+        "risorius.bench.reproduce.figure_9.draw",
         "risorius.bench.refine.measure",
     ):
         monkeypatch.setattr(name, work)

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from risorius.bench.claims import Claim, Finding, Measured, Verdict
-from risorius.bench.experiments import EXPERIMENTS
-from risorius.bench.table1 import WAYS, Row
+from risorius.bench.reproduce.claims import Claim, Finding, Measured, Verdict
+from risorius.bench.reproduce.experiments import EXPERIMENTS
+from risorius.bench.reproduce.table1 import WAYS, Row
 
 
 def claim(name: str) -> Claim:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from risorius.bench import figure_10
-from risorius.bench.figure_10 import Cell, Shot, difference
-from risorius.bench.mouths import MOUTH, Variant, wrong_pixels
+from risorius.bench.reproduce import figure_10
+from risorius.bench.reproduce.figure_10 import Cell, Shot, difference
+from risorius.bench.reproduce.mouths import MOUTH, Variant, wrong_pixels
 
 pytestmark = pytest.mark.slow  # every test looks at the same pictures
 

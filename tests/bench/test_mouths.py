@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from risorius.bench.mouths import BACKGROUND, MOUTH, SKIN, wrong_pixels
+from risorius.bench.reproduce.mouths import BACKGROUND, MOUTH, SKIN, wrong_pixels
 
 
 def test_wrong_pixels_by_hand() -> None:

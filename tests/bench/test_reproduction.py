@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from risorius.__main__ import command
-from risorius.bench import experiments, reproduction
-from risorius.bench.claims import Claim, Measured, Outcome
-from risorius.bench.experiments import EXPERIMENTS, Experiment
+from risorius.bench.reproduce import experiments, reproduction
+from risorius.bench.reproduce.claims import Claim, Measured, Outcome
+from risorius.bench.reproduce.experiments import EXPERIMENTS, Experiment
 
 MADE: dict[str, Outcome] = {
     "good": Outcome({"lines": 0}, {"good": np.full((8, 8, 3), 200, np.uint8)}, renderer="softpipe"),

@@ -12,8 +12,8 @@ import pytest
 from risorius import refine
 from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene, Scene
-from risorius.bench import statements
-from risorius.bench.experiments import EXPERIMENTS, Experiment
+from risorius.bench.reproduce import statements
+from risorius.bench.reproduce.experiments import EXPERIMENTS, Experiment
 
 COUNTED = [each for each in EXPERIMENTS if each.function.startswith("statements.")]
 QUICK = "table", "criterion"  # no cracks, and splits where the mesh bends; the rest is slow

@@ -7,8 +7,8 @@ import pytest
 
 from risorius import refine
 from risorius.assets.plane import make_grid
-from risorius.bench import figure_8, folds
-from risorius.bench.figure_8 import POSES, Pose
+from risorius.bench.reproduce import figure_8, folds
+from risorius.bench.reproduce.figure_8 import POSES, Pose
 
 
 def test_a_rolled_sheet_folds_along_its_axis() -> None:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from risorius.bench import figure_9
 from risorius.bench.canvas import Canvas
-from risorius.bench.figure_9 import PHASES, SHADINGS, VARIANTS, Variant, Waving
+from risorius.bench.reproduce import figure_9
+from risorius.bench.reproduce.figure_9 import PHASES, SHADINGS, VARIANTS, Variant, Waving
 
 STATIC, REFINED, OWN_NORMALS, CUBIC = VARIANTS
 STYLES = dict(SHADINGS)

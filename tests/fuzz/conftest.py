@@ -16,21 +16,21 @@ from .sandbox import furnish
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "risorius.bench.figure_claims.figure_8_outcome",
-    "risorius.bench.figure_claims.figure_9_outcome",
-    "risorius.bench.figure_claims.figure_10_outcome",
+    "risorius.bench.reproduce.figure_claims.figure_8_outcome",
+    "risorius.bench.reproduce.figure_claims.figure_9_outcome",
+    "risorius.bench.reproduce.figure_claims.figure_10_outcome",
     "risorius.app.viewer.opening.Opening",
-    "risorius.bench.frame_rate.measure",
+    "risorius.bench.reproduce.frame_rate.measure",
     "risorius.bench.gaps.measure",
     "risorius.bench.meshes.measure",
     "risorius.bench.motion.measure",
-    "risorius.bench.figure_coherence.coherence",
+    "risorius.bench.reproduce.figure_coherence.coherence",
     "risorius.bench.quality.measure",
     "risorius.bench.refine.measure",
-    "risorius.bench.reproduction.reproduce",
+    "risorius.bench.reproduce.reproduction.reproduce",
     "risorius.bench.simulate.measure",
     "risorius.bench.soak.measure",
-    "risorius.bench.table1.measure",
+    "risorius.bench.reproduce.table1.measure",
     "risorius.bench.tearing.measure",
     "risorius.bench.window.report",
 )

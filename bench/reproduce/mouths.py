@@ -19,8 +19,8 @@ from risorius import assets, refine, render
 from risorius.app.capture.cameras import camera_for
 from risorius.app.scenes import FaceScene
 
-from .canvas import Canvas, Drawing
-from .subjects import SETTLE, Points, fine_simulation, settled_positions
+from ..canvas import Canvas, Drawing
+from ..subjects import SETTLE, Points, fine_simulation, settled_positions
 
 Kinds = npt.NDArray[np.uint8]
 

@@ -23,9 +23,9 @@ from risorius.app.capture.cameras import camera_for
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 
-from .canvas import Canvas, Drawing
+from ..canvas import Canvas, Drawing
+from ..report import driver, table
 from .claims import Measured, Outcome
-from .report import driver, table
 from .table1 import GOURAUD, SIZE, papers_refiner
 
 FRAME_SECONDS = 1.0 / 60.0

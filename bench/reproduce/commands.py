@@ -84,7 +84,7 @@ for _each in EXPERIMENTS:
 
 def _say(result: Result) -> None:
     """Print what an experiment has to say."""
-    from .report import table
+    from ..report import table
 
     outcome = result.outcome
     if outcome.renderer:

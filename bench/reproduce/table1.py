@@ -29,10 +29,10 @@ from risorius.app.performances import script_for
 from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 
-from .canvas import Canvas, Drawing
+from ..canvas import Canvas, Drawing
+from ..report import driver, table
+from ..timing import paired
 from .claims import Measured, Outcome
-from .report import driver, table
-from .timing import paired
 
 Points = npt.NDArray[np.float64]
 

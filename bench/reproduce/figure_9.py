@@ -21,7 +21,7 @@ from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 from risorius.assets.plane import CELL, COLUMNS, ROWS, make_grid
 
-from .canvas import Canvas, Drawing, image_table
+from ..canvas import Canvas, Drawing, image_table
 from .figure_coherence import FLAT, FRAME_SECONDS, GOURAUD
 from .mouths import Variant
 

@@ -17,8 +17,8 @@ from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import Scene, build_scene
 
+from ..canvas import Canvas, Drawing, image_table
 from . import folds
-from .canvas import Canvas, Drawing, image_table
 from .figure_coherence import FLAT, GOURAUD
 
 WIRE = replace(FLAT, wireframe=True, wire_opacity=0.55)

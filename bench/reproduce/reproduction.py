@@ -17,11 +17,11 @@ from pathlib import Path
 from risorius import __version__
 from risorius.app.files import check_file, save_png, save_text
 
+from ..report import processor
 from .claims import Finding
 from .experiments import EXPERIMENTS, Result
 from .inferred import INFERRED
 from .page import page
-from .report import processor
 
 PAGE, RESULTS = "index.html", "results.json"
 PAPER = "doi 10.1007/s00371-002-0185-8"

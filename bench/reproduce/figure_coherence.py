@@ -17,7 +17,7 @@ from risorius.app.files import Image
 from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 
-from .canvas import Canvas, Drawing, image_table
+from ..canvas import Canvas, Drawing, image_table
 from .claims import Outcome
 from .turned_lines import Line, inner_lines, point_rows, turned
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from risorius import refine
 
+from ..canvas import Canvas
 from . import figure_8, figure_9, figure_10, folds
-from .canvas import Canvas
 from .claims import Outcome
 from .mouths import wrong_pixels
 
