@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from .playing_commands import COMMANDS as PLAYING
-from .refinement_commands import COMMANDS as REFINEMENT
+from .refinement.commands import COMMANDS as REFINEMENT
 from .simulation_commands import COMMANDS as SIMULATION
 
 

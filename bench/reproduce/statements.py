@@ -19,7 +19,7 @@ from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import CONFIGURATIONS
 
-from ..methods import Everywhere
+from ..refinement.methods import Everywhere
 from .claims import Measured, Outcome
 from .table1 import papers_refiner
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 
 from risorius import refine
-from risorius.bench.flicker import PLACES, at_places, largest_jump
+from risorius.bench.refinement.flicker import PLACES, at_places, largest_jump
 from tests import meshes
 
 VIEW = refine.View((0.0, 0.0, 10.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from risorius.bench.loop_limit import LoopLimit, ordered_rings, vertex_masks
+from risorius.bench.refinement.loop_limit import LoopLimit, ordered_rings, vertex_masks
 from tests import meshes
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from risorius.bench.patches import phong_triangles, pn_triangles
+from risorius.bench.refinement.patches import phong_triangles, pn_triangles
 from tests import meshes
 
 PATCHES = pytest.mark.parametrize("patches", [pn_triangles, phong_triangles])

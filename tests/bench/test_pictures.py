@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius.bench.pictures import SIZE, Mesh, PictureError, Pictures, shaded
+from risorius.bench.refinement.pictures import SIZE, Mesh, PictureError, Pictures, shaded
 from risorius.bench.subjects import PosePair, Subject
 from tests import meshes
 

@@ -9,8 +9,9 @@ import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.bench import methods, quality, subjects
-from risorius.bench.quality_report import STATIC_KEY, text
+from risorius.bench import subjects
+from risorius.bench.refinement import methods, quality
+from risorius.bench.refinement.quality_report import STATIC_KEY, text
 from risorius.bench.subjects import PosePair, Subject
 
 Points = npt.NDArray[np.float64]

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from risorius.bench import refine
-from risorius.bench.peers import peers_for
-from risorius.bench.sparse_loop import sparse_loop
-from risorius.bench.waving_meshes import waving_mesh
+from risorius.bench.refinement import refine
+from risorius.bench.refinement.peers import peers_for
+from risorius.bench.refinement.sparse_loop import sparse_loop
+from risorius.bench.refinement.waving_meshes import waving_mesh
 from risorius.refine import connect, create
 
 

@@ -6,8 +6,8 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
+from ..report import processor, table
 from .refine import Report, Row
-from .report import processor, table
 
 
 def text(report: Report) -> str:

@@ -28,10 +28,10 @@ from risorius import refine
 from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 from risorius.refine.kahler.criterion import Thresholds
 
+from ..subjects import Points, Subject
 from .loop_limit import LoopLimit
 from .patches import phong_triangles, pn_triangles
 from .pictures import Mesh, shaded
-from .subjects import Points, Subject
 
 Narrow = npt.NDArray[np.float32]
 

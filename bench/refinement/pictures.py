@@ -20,7 +20,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.assets.topology import vertex_normals
 
-from .subjects import Subject
+from ..subjects import Subject
 
 Array = npt.NDArray[np.float64]
 Mesh = Any

@@ -20,11 +20,11 @@ import numpy as np
 
 from risorius.assets.topology import vertex_normals
 
+from ..nearest import nearest_points
+from ..subjects import Points, PosePair, Subject
 from .flicker import largest_jump
 from .methods import SCHEMES, Key, Method, methods_for
-from .nearest import nearest_points
 from .pictures import Mesh, Pictures
-from .subjects import Points, PosePair, Subject
 
 BUDGETS = (2.0,)
 """Triangles of a refined mesh over those of the coarse one, that is compared."""

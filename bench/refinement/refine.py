@@ -23,10 +23,10 @@ import numpy.typing as npt
 
 from risorius import assets, refine, sim
 
+from ..subjects import settled_positions
+from ..timing import interleaved
 from .peers import peers_for
 from .starts import Starts, measure_starts
-from .subjects import settled_positions
-from .timing import interleaved
 from .waving_meshes import Load, waving_mesh
 
 Points = npt.NDArray[np.float64]

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..report import table
+from ..subjects import Subject
 from .methods import AS_SET, EVERYWHERE, STATIC, Key
 from .quality import Score, means
-from .report import table
-from .subjects import Subject
 
 STATIC_KEY: Key = (STATIC, "", 1.0)
 LEGEND = """\

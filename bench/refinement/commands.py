@@ -16,10 +16,10 @@ import click
 from risorius.app.cli.parameters import FiniteRange
 from risorius.app.errors import UserError, in_one_line
 
-from .command_line import FOLDER, json_option, json_writer, say_progress, told
+from ..command_line import FOLDER, json_option, json_writer, say_progress, told
 
 if TYPE_CHECKING:
-    from .subjects import Subject
+    from ..subjects import Subject
 
 MESHES = ("face", "2k", "20k", "200k", "1M")
 
@@ -90,7 +90,7 @@ def _subjects(reference: Path | None, finer: str, expressions: Collection[str]) 
     """Whom to measure in these expressions, or in all; UserError where there is nobody."""
     from risorius import assets
 
-    from . import subjects
+    from .. import subjects
 
     found: list[Subject] = []
     if reference is not None:
