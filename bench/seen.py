@@ -35,7 +35,7 @@ from risorius.assets.fitting import FittedHead
 
 from .face_tracker import FaceTracker, Scores, in_mirror, mean_of
 from .report import table
-from .scans import read_scans
+from .scans.reading import read_scans
 
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from risorius.bench import motion
+from risorius.bench.scans import motion
 from tests.heads import Stranger, stranger
 
 

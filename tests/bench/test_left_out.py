@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
-from risorius.bench.bones_and_lids import framed
-from risorius.bench.left_out import measure
-from risorius.bench.muscle_numbers import NATURE, Numbers, anatomical, parts_of, with_parts
-from risorius.bench.statics import Statics
+from risorius.bench.scans.bones_and_lids import framed
+from risorius.bench.scans.left_out import measure
+from risorius.bench.scans.muscle_numbers import NATURE, Numbers, anatomical, parts_of, with_parts
+from risorius.bench.scans.statics import Statics
 from risorius.sim.rig import LinearMuscle, RingMuscle
 from tests.sim.poses import settled_displacement
 
@@ -36,7 +36,7 @@ def test_anatomy_holds_nothing_that_was_fitted() -> None:
         for name in row:
             if not name.startswith("jaw_"):
                 assert known.parts[name] == bare.parts[name]
-                assert name in tomllib.loads(Path("bench/anatomy.toml").read_text())["muscle"]
+                assert name in tomllib.loads(Path("bench/scans/anatomy.toml").read_text())["muscle"]
 
 
 def test_shared_changes_are_mirrored_from_lip_to_lip() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
-from risorius.bench.motion import Row, measure
+from risorius.bench.scans.motion import Row, measure
 from tests.heads import METRES, SHIFT, TURN, shape
 from tests.sim.poses import settled_displacement
 

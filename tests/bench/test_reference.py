@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from risorius.__main__ import command
-from risorius.bench import reference
+from risorius.bench.scans import reference
 
 pytest.importorskip("vtkmodules", reason="decimation needs VTK, the extra 'peers'")
 

@@ -23,7 +23,7 @@ LONG_WORK = (
     "risorius.bench.reproduce.frame_rate.measure",
     "risorius.bench.gaps.measure",
     "risorius.bench.refinement.meshes.measure",
-    "risorius.bench.motion.measure",
+    "risorius.bench.scans.motion.measure",
     "risorius.bench.reproduce.figure_coherence.coherence",
     "risorius.bench.refinement.quality.measure",
     "risorius.bench.refinement.refine.measure",

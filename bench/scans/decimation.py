@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from risorius.app.errors import UserError
 
-from .nearest import nearest_points
+from ..nearest import nearest_points
 
 BORDER_WEIGHT = 10.0
 """How much a border counts: eyes and mouth keep their outlines. With more, the rest gets worse."""

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.meshes import Mesh
 
-from .subjects import COARSE, DENSE, PERSONS, read_arrays
+from ..subjects import COARSE, DENSE, PERSONS, read_arrays
 
 NOT_SHAPES = ("vertices", "triangles", "landmarks68")
 

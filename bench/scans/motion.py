@@ -1,6 +1,6 @@
 """How well the muscles move skin: simulated against scanned displacement, shape by shape.
 
-Takes a folder of scans (scans.py), fits the rig to that head as to anybody's, by its 68 landmarks
+Takes a folder of scans (reading.py), fits the rig to that head as to anybody's, by its 68 landmarks
 (assets/fitting), and compares the fields, weighted by area. A field has the name of one of ARKit's
 shapes in any spelling, and is compared with that row of the head's controls at 1. One side of a
 shape that has no sides ("cheekPuff_L") is made by the muscles of that side.
@@ -33,9 +33,9 @@ from risorius.sim.coordinates import FaceSpace
 from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
-from .report import table
-from .scans import Scans, read_scans
-from .subjects import settled_positions
+from ..report import table
+from ..subjects import settled_positions
+from .reading import Scans, read_scans
 
 Array = npt.NDArray[np.float64]
 

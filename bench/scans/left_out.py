@@ -29,11 +29,11 @@ from tqdm import tqdm
 
 from risorius import sim
 
+from ..report import table
 from .bones_and_lids import framed
 from .motion import SIDE, known_shape
 from .muscle_numbers import Numbers, Parts, anatomical, moved_by, parts_of, with_parts
-from .report import table
-from .scans import Scans, read_coarse_scans
+from .reading import Scans, read_coarse_scans
 from .statics import Balance, Pull, Statics
 
 Array = npt.NDArray[np.float64]

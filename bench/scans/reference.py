@@ -29,8 +29,8 @@ from risorius.app.files import cannot_be_written, check_file, written_atomically
 from risorius.assets.fitting.landmark_file import read_landmarks
 from risorius.assets.wavefront import read_obj
 
+from ..subjects import COARSE, DENSE
 from .decimation import decimated
-from .subjects import COARSE, DENSE
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
