@@ -6,7 +6,7 @@ import click
 
 from .playing_commands import COMMANDS as PLAYING
 from .refinement.commands import COMMANDS as REFINEMENT
-from .simulation_commands import COMMANDS as SIMULATION
+from .simulation.commands import COMMANDS as SIMULATION
 
 
 @click.group()

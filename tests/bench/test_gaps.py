@@ -7,8 +7,8 @@ from dataclasses import asdict
 import pytest
 
 from risorius import assets, sim
-from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, PoseGaps, measure, report, worst
-from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps, sunk_in_eyeballs
+from risorius.bench.simulation.gaps import LIDS_MOST, LIPS_MOST, PoseGaps, measure, report, worst
+from risorius.bench.simulation.lines_of_sight import eyeballs_of, lid_gaps, sunk_in_eyeballs
 from risorius.bench.subjects import settled_positions
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from risorius import assets, sim
 from risorius.app.controls import mirror
-from risorius.bench import soak, tearing
+from risorius.bench.simulation import soak, tearing
 from risorius.bench.timing import WARMING, interleaved, paired
 
 

@@ -16,8 +16,8 @@ from click.testing import CliRunner, Result
 
 from risorius.__main__ import command
 from risorius.app.recordings.names import ARKIT
-from risorius.bench import seen, seen_take
-from risorius.bench.face_tracker import FaceTracker, Scores, in_mirror, mean_of
+from risorius.bench.simulation import seen, seen_take
+from risorius.bench.simulation.face_tracker import FaceTracker, Scores, in_mirror, mean_of
 
 MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
 needs_model = pytest.mark.skipif(

@@ -28,8 +28,8 @@ from risorius.app.recordings.conversion import script_of
 from risorius.app.recordings.playback import Playback
 from risorius.app.scenes import FaceScene
 
+from ..report import table
 from .face_tracker import FaceTracker, Scores, in_mirror, mean_of
-from .report import table
 from .seen import SIZE, bases
 
 Array = npt.NDArray[np.float64]

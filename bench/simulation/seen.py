@@ -33,9 +33,9 @@ from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene, Scene
 from risorius.assets.fitting import FittedHead
 
+from ..report import table
+from ..scans.reading import read_scans
 from .face_tracker import FaceTracker, Scores, in_mirror, mean_of
-from .report import table
-from .scans.reading import read_scans
 
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face

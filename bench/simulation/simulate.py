@@ -22,8 +22,8 @@ import numpy as np
 
 from risorius import assets, sim
 
-from .report import processor, table
-from .timing import interleaved
+from ..report import processor, table
+from ..timing import interleaved
 
 FRAME = 1.0 / 60.0
 SIZES = (1_000, 10_000, 100_000)  # vertices of the plain meshes

@@ -13,7 +13,7 @@ import click
 from risorius.app.cli.parameters import FiniteRange
 from risorius.app.errors import UserError, in_one_line
 
-from .command_line import FILE, FOLDER, PATH, json_option, json_writer, told
+from ..command_line import FILE, FOLDER, PATH, json_option, json_writer, told
 
 
 @click.command("simulate")
@@ -34,7 +34,7 @@ def bench_simulate(rounds: int) -> None:
 )
 def bench_motion(reference: Path) -> None:
     """Compare simulated with scanned skin motion, shape by shape."""
-    from .scans import motion
+    from ..scans import motion
 
     with told("--reference: "):
         click.echo(motion.report(*motion.measure(reference)))
@@ -44,7 +44,7 @@ def bench_motion(reference: Path) -> None:
 @click.option("--reference", type=FOLDER, required=True, help="A folder as `motion` takes it.")
 def bench_left_out(reference: Path) -> None:
     """Fit muscles from anatomy to all scanned shapes but one, in turn. Takes ten minutes."""
-    from .scans import left_out
+    from ..scans import left_out
 
     with told("--reference: "):
         click.echo(left_out.report(left_out.measure(reference)))
@@ -120,7 +120,7 @@ def bench_tearing(mixtures: int) -> None:
 )
 def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> None:
     """Make the folder that --reference takes from CHECKOUT, a checkout of ICT-FaceKit."""
-    from .scans import reference
+    from ..scans import reference
 
     for line in reference.make(checkout, folder, landmarks):
         click.echo(in_one_line(line))

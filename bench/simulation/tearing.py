@@ -15,8 +15,8 @@ import numpy.typing as npt
 from risorius import assets, sim
 from risorius.assets.topology import cross_products
 
-from .report import table
-from .subjects import settled_positions
+from ..report import table
+from ..subjects import settled_positions
 
 Array = npt.NDArray[np.float64]
 

@@ -17,9 +17,9 @@ from typing import Any
 from risorius import assets, refine, sim
 from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 
+from ..report import table
+from ..subjects import settled_positions
 from .lines_of_sight import eyeballs_of, lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
-from .report import table
-from .subjects import settled_positions
 
 SETTLE = 45  # frames of 1/60 s until a pose is still
 UNITS = "Action units"
