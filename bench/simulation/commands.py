@@ -1,6 +1,6 @@
-"""Commands of `risorius bench` that measure the simulated face, and what they compare it with.
+"""Commands of `risorius bench` that measure the simulated face.
 
-`simulate`, `motion`, `left-out`, `seen`, `gaps`, `soak`, `tearing`, `reference`.
+`simulate`, `seen`, `gaps`, `soak`, `tearing`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from risorius.app.cli.parameters import FiniteRange
-from risorius.app.errors import UserError, in_one_line
+from risorius.app.errors import UserError
 
 from ..command_line import FILE, FOLDER, PATH, json_option, json_writer, told
 
@@ -23,31 +23,6 @@ def bench_simulate(rounds: int) -> None:
     from . import simulate
 
     click.echo(simulate.report(simulate.measure(rounds=rounds), rounds))
-
-
-@click.command("motion")
-@click.option(
-    "--reference",
-    type=FOLDER,
-    required=True,
-    help="a folder with face.npz: vertices, triangles, landmarks68, displacement fields",
-)
-def bench_motion(reference: Path) -> None:
-    """Compare simulated with scanned skin motion, shape by shape."""
-    from ..scans import motion
-
-    with told("--reference: "):
-        click.echo(motion.report(*motion.measure(reference)))
-
-
-@click.command("left-out")
-@click.option("--reference", type=FOLDER, required=True, help="A folder as `motion` takes it.")
-def bench_left_out(reference: Path) -> None:
-    """Fit muscles from anatomy to all scanned shapes but one, in turn. Takes ten minutes."""
-    from ..scans import left_out
-
-    with told("--reference: "):
-        click.echo(left_out.report(left_out.measure(reference)))
 
 
 @click.command("seen")
@@ -112,27 +87,4 @@ def bench_tearing(mixtures: int) -> None:
     click.echo(tearing.report(tearing.measure(mixtures=mixtures), mixtures))
 
 
-@click.command("reference")
-@click.argument("checkout", type=FOLDER)
-@click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
-@click.option(
-    "--landmarks", type=PATH, help="The 68 landmarks, where CHECKOUT's README does not name them."
-)
-def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> None:
-    """Make the folder that --reference takes from CHECKOUT, a checkout of ICT-FaceKit."""
-    from ..scans import reference
-
-    for line in reference.make(checkout, folder, landmarks):
-        click.echo(in_one_line(line))
-
-
-COMMANDS = (
-    bench_simulate,
-    bench_motion,
-    bench_left_out,
-    bench_seen,
-    bench_gaps,
-    bench_soak,
-    bench_tearing,
-    bench_reference,
-)
+COMMANDS = (bench_simulate, bench_seen, bench_gaps, bench_soak, bench_tearing)

@@ -156,8 +156,8 @@ def measure(
 ) -> Report:
     """Show every shape of the built-in head to the tracker.
 
-    pictures: a folder for all that it is shown. reference: a folder of scans, see motion.py; raises
-    ValueError, naming the file, if that is broken.
+    pictures: a folder for all that it is shown. reference: a folder of scans, see scans/motion.py;
+    raises ValueError, naming the file, if that is broken.
     """
     scanned = {} if reference is None else _scanned(tracker, reference, pictures)
     with Sitting(tracker, FaceScene(), pictures) as sitting:

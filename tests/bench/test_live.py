@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from risorius.app.live import PROTOCOLS
-from risorius.bench import live
+from risorius.bench.playing import live
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from risorius import assets
-from risorius.bench.playing_commands import bench_capture, bench_window
+from risorius.bench.playing.commands import bench_capture, bench_window
 from risorius.bench.report import table
 from risorius.bench.scans import motion
 from risorius.bench.simulation import simulate, soak, tearing

@@ -9,7 +9,7 @@ import pytest
 from risorius.app.performances import read_performance
 from risorius.app.recordings import read_take
 from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
-from risorius.bench import takes
+from risorius.bench.playing import takes
 
 
 def test_the_made_up_recording_is_read_whole(tmp_path: Path) -> None:

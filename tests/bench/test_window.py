@@ -7,7 +7,7 @@ import os
 import pytest
 
 from risorius.app.viewer.level_of_detail import LEVELS
-from risorius.bench import window
+from risorius.bench.playing import window
 
 pytestmark = [
     pytest.mark.window,

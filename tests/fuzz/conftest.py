@@ -32,7 +32,7 @@ LONG_WORK = (
     "risorius.bench.simulation.soak.measure",
     "risorius.bench.reproduce.table1.measure",
     "risorius.bench.simulation.tearing.measure",
-    "risorius.bench.window.report",
+    "risorius.bench.playing.window.report",
 )
 
 

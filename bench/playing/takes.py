@@ -22,7 +22,7 @@ from risorius.app.recordings.conversion import script_of
 from risorius.app.recordings.names import ARKIT
 from risorius.app.recordings.playback import Playback
 
-from .report import table
+from ..report import table
 
 RATE = 60  # frames a second
 ROUNDS = 3

@@ -26,7 +26,7 @@ from risorius.app.performances import script_for
 from risorius.app.refining.looks import STATIC, Refinement
 from risorius.app.script import Script
 
-from .report import processor, table
+from ..report import processor, table
 
 ROUNDS = 3
 WARM_UP = 5  # frames that are not counted

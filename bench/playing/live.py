@@ -25,8 +25,8 @@ from risorius.app.viewer.physics import STEP, Life, Physics
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.settings import Display
 
+from ..report import processor, table, verdict
 from .live_sender import DEGREES, RATE, SETTLING, sending
-from .report import processor, table, verdict
 
 PROMISED = 8.0  # [ms] median on a quiet machine
 ROUNDS = 3  # of all protocols in turn

@@ -25,7 +25,7 @@ from risorius.app.viewer.level_of_detail import LEVELS, LevelOfDetail
 from risorius.app.viewer.panel_cache import REFRESH
 from risorius.app.viewer.settings import Display
 
-from .report import processor, table
+from ..report import processor, table
 
 PROMISED = 20.0  # frames a second at 1280x720 with software OpenGL on 2 cores
 WARM_UP = 1.0  # [s]
