@@ -25,8 +25,7 @@ from risorius import refine, render
 from risorius.app.capture.captions import LANCZOS, font
 from risorius.app.files import Image
 
-from ..canvas import Canvas
-from ..figures import without_noise
+from ..canvas import Canvas, without_noise
 from .mouths import MOUTH, Mouths, Variant, wrong_pixels
 
 VARIANTS = (

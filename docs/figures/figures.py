@@ -48,11 +48,6 @@ def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
         save_png(folder / f"{name}.png", figure(), is_small=True)
 
 
-def without_noise(image: Image) -> Image:
-    """A picture without the last bit of its colours: noise, for a quarter of the bytes."""
-    return image // 2 * 2
-
-
 def run(main: Callable[[Sequence[str]], None]) -> None:
     """Run a program by the rules of the command: mistakes are one line, signals are heard."""
     handle_signals()
