@@ -4,10 +4,10 @@ Shape by shape of a folder of scans (motion.py), a rig is fitted to all the othe
 posed with it and scored. Each fit starts from anatomy.toml, where muscles, jaw and lids are as
 books have them and all muscles of a kind are equally strong, and which tells who makes a shape
 (FACS). All numbers of all muscles may change, places too, those of jaw and lids, and the shares of
-the muscles in the shapes that are seen, each against a pull towards its start. What muscles have in
-common is a shared change (muscle_numbers.py): so a muscle that only the left-out shape would show
-has the place of its anatomy and the strength and width of the others. Of the built-in rig stay
-tissue, muscles that none of these shapes uses, and which muscles the row of a seen shape may have.
+the muscles in the shapes that are seen, each tied to its start. What muscles have in common is a
+shared change (muscle_numbers.py): so a muscle that only the left-out shape would show has the place
+of its anatomy and the strength and width of the others. Of the built-in rig stay tissue, muscles
+that none of these shapes uses, and which muscles the row of a seen shape may have.
 
 Fitted are positions of rest (statics.py) on a coarse mesh, by Gauss and Newton; scored are
 simulated poses. How far a wrong mixture of muscles is to blame for a miss, the left-out shape tells
@@ -34,12 +34,12 @@ from .bones_and_lids import framed
 from .motion import SIDE, known_shape
 from .muscle_numbers import Numbers, Parts, anatomical, moved_by, parts_of, with_parts
 from .reading import Scans, read_coarse_scans
-from .statics import Balance, Pull, Statics
+from .statics import Balance, Effect, Statics
 
 Array = npt.NDArray[np.float64]
 Vector = Array  # changes of numbers, shared ones, and shares
 
-OWN_PULL, SHARED_PULL, SHARE_PULL = 0.1, 0.02, 0.03  # to the start against a whole scan
+OWN_TIE, SHARED_TIE, SHARE_TIE = 0.1, 0.02, 0.03  # to the start against a whole scan
 SHARE_SCALE = 0.3  # how far a share may easily go
 STEPS = 6  # of Gauss and Newton at most
 FEW = 0.003  # share of the error that a step must win
@@ -141,8 +141,8 @@ class _Face:
         self._shares = [(name, c) for name, task in self.tasks.items() for c in task.start]
         self._started = np.array([self.tasks[name].start[c] for name, c in self._shares])
         own, shared = self._numbers.sharing.shape
-        pulls = (OWN_PULL, SHARED_PULL, SHARE_PULL)
-        self._pulls = np.repeat(pulls, (own, shared, len(self._shares)))
+        ties = (OWN_TIE, SHARED_TIE, SHARE_TIE)
+        self._ties = np.repeat(ties, (own, shared, len(self._shares)))
         self._first: dict[str, tuple[Array, Array]] = {}
 
     def _row(self, name: str) -> dict[str, float]:
@@ -176,13 +176,13 @@ class _Face:
         self, names: Iterable[str], start: Vector | None = None, free: Sequence[int] | None = None
     ) -> _Point:
         """Fit a rig to some of the shapes, from anatomy on; or only the changes in `free`."""
-        seen, every = list(names), range(len(self._pulls))
+        seen, every = list(names), range(len(self._ties))
         point = self._at(np.zeros(len(every)) if start is None else start, seen)
         damping, little, free = DAMPING, 0, every if free is None else free
         for step in range(STEPS):
             found = self._derivatives(point, seen, first=step == 0 and start is None)
-            matrix = np.diag(self._pulls**2) + sum(found[name][0] for name in seen)
-            slope = self._pulls**2 * point.changes + sum(found[name][1] for name in seen)
+            matrix = np.diag(self._ties**2) + sum(found[name][0] for name in seen)
+            slope = self._ties**2 * point.changes + sum(found[name][1] for name in seen)
             matrix, better = matrix[np.ix_(free, free)], None
             while better is None and damping < 100.0:
                 way = np.zeros(len(every))
@@ -208,7 +208,7 @@ class _Face:
         for (name, control), share in zip(self._shares, shares, strict=True):
             rows[name][control] = float(share)
         balances = {name: self._statics.balance(parts, rows[name]) for name in seen}
-        error = float(((self._pulls * changes) ** 2).sum())
+        error = float(((self._ties * changes) ** 2).sum())
         error += sum(float((self._off(name, balances[name]) ** 2).sum()) for name in seen)
         return _Point(changes, parts, rows, balances, error)
 
@@ -230,19 +230,19 @@ class _Face:
 
     def _of_shape(self, point: _Point, name: str) -> tuple[Array, Array]:
         """The same of one shape."""
-        changes, columns = list[Pull](), list[int]()
+        changes, columns = list[Effect](), list[int]()
         for control, share in point.rows[name].items():
             name_of_part = moved_by(control, point.parts)
             part = point.parts[name_of_part]
-            now = self._statics.pull(part, control, share)
+            now = self._statics.effect(part, control, share)
             further = share + 0.05 if share < 0.9 else share - 0.05
-            then = self._statics.pull(part, control, further)
+            then = self._statics.effect(part, control, further)
             changes.append(_slope(now, then, (further - share) / SHARE_SCALE))
             columns.append(self._numbers.count + self._shares.index((name, control)))
             for j, number in enumerate(self._numbers.all if share > 0.0 else ()):
                 if number.part == name_of_part:
                     other = number.put(part, number.of(part) + SLIGHT * number.scale)
-                    then = self._statics.pull(other, control, share)
+                    then = self._statics.effect(other, control, share)
                     changes.append(_slope(now, then, SLIGHT))
                     columns.append(j)
         balance = point.balances[name]
@@ -252,7 +252,7 @@ class _Face:
 
     def _normal(self, moved: Array, columns: Sequence[int], off: Array) -> tuple[Array, Array]:
         """Matrix and slope for all changes, from derivatives after some, shape (3V, n)."""
-        own, count = len(self._numbers.all), len(self._pulls)
+        own, count = len(self._numbers.all), len(self._ties)
         spread = np.zeros((count, len(columns)))
         spread[columns, np.arange(len(columns))] = 1.0
         spread[own : self._numbers.count] = self._numbers.sharing.T @ spread[:own]
@@ -263,10 +263,10 @@ class _Face:
         return matrix, slope
 
 
-def _slope(now: Pull, then: Pull, step: float) -> Pull:
-    """How a pull changes for each unit of a step."""
+def _slope(now: Effect, then: Effect, step: float) -> Effect:
+    """How an effect changes for each unit of a step."""
     more = then.plus(now, -1.0)
-    return Pull(*(each / step for each in more))
+    return Effect(*(each / step for each in more))
 
 
 def report(rows: Sequence[Row]) -> str:

@@ -42,31 +42,31 @@ from .muscle_numbers import Part, Parts, moved_by
 
 Array = npt.NDArray[np.float64]
 
-CACHED = 4096  # muscles and pulls that are remembered; a fit asks for each many times
+CACHED = 4096  # muscles and effects that are remembered; a fit asks for each many times
 
 
-class Pull(NamedTuple):
+class Effect(NamedTuple):
     """What muscles, bones and lids do to the skin."""
 
     force: Array  # (V, 3)
     hold: Array  # (V,) stiffness that they add
     carried: Array  # (V, 3) mm that bones and lids carry the skin's anchors by
 
-    def plus(self, other: Pull, share: float = 1.0) -> Pull:
+    def plus(self, other: Effect, share: float = 1.0) -> Effect:
         """Both at once."""
-        return Pull(*(own + share * its for own, its in zip(self, other, strict=True)))
+        return Effect(*(own + share * its for own, its in zip(self, other, strict=True)))
 
 
 class Balance(NamedTuple):
     """A pose in balance."""
 
     moved: Array  # (V, 3) mm
-    total: Pull
+    total: Effect
     following: Any  # stiffness of all that follows bones and lids
     factors: Any  # of the stiffness matrix
 
-    def derivatives(self, changes: list[Pull]) -> Array:
-        """How the skin moves for small changes of the pull, shape (V, 3, n)."""
+    def derivatives(self, changes: list[Effect]) -> Array:
+        """How the skin moves for small changes of the effect, shape (V, 3, n)."""
         own = self.total.carried - self.moved
         loads = [each.force + each.hold[:, None] * own for each in changes]
         loaded = np.stack([load.ravel() for load in loads], axis=1)
@@ -89,7 +89,7 @@ class Statics:
         self._seal = _seal_of(anatomy)
         self._framed = lru_cache(CACHED)(self._frame)
         self._attached = lru_cache(CACHED)(self._attach)
-        self._pulled = lru_cache(CACHED)(self._pull)
+        self._known_effect = lru_cache(CACHED)(self._effect_of)
 
     def balance(self, parts: Parts, values: Mapping[str, float]) -> Balance:
         """Let the skin come to rest under some controls, all other muscles relaxed."""
@@ -103,7 +103,7 @@ class Statics:
                 total = total._replace(hold=total.hold + muscle.tone * tone * hold)
         for control, value in values.items():
             part = parts[moved_by(control, parts)]
-            total = total.plus(self.pull(part, control, value))
+            total = total.plus(self.effect(part, control, value))
             if control == "jaw_open":
                 seal *= max(1.0 - value / SEAL_BROKEN_BY_JAW, 0.0)
             if isinstance(part, Muscle):
@@ -118,7 +118,7 @@ class Statics:
         load = total.force.ravel() + following @ total.carried.ravel()
         return Balance(factors.solve(load).reshape(-1, 3), total, following, factors)
 
-    def pull(self, part: Part, control: str, value: float) -> Pull:
+    def effect(self, part: Part, control: str, value: float) -> Effect:
         """What a part does at a value of its control, on the sides that it is for."""
         total = self._nothing()
         if not isinstance(part, Muscle):
@@ -126,12 +126,12 @@ class Statics:
             return total._replace(hold=moved.hold, carried=moved.by)
         activation = value ** (self._anatomy.rig.tissue.drive_power * part.drive)
         for side in _controlled(part, control):
-            total = total.plus(self._pulled(part, side, activation))
+            total = total.plus(self._known_effect(part, side, activation))
         return total
 
-    def _nothing(self) -> Pull:
+    def _nothing(self) -> Effect:
         none = np.zeros((self._anatomy.surface.vertex_count, 3))
-        return Pull(none, none[:, 0].copy(), none)
+        return Effect(none, none[:, 0].copy(), none)
 
     def _frame(self, part: Jaw | Eyes) -> Anatomy:
         """The face with another jaw or other lids."""
@@ -155,7 +155,7 @@ class Statics:
         steady: Array = np.sum([each.steady for each in holds], axis=0)
         return muscle.stiffness * self._strength * weight, steady, strands
 
-    def _pull(self, muscle: Muscle, side: Side, activation: float) -> Pull:
+    def _effect_of(self, muscle: Muscle, side: Side, activation: float) -> Effect:
         """What a muscle does on one side."""
         hold, steady, strands = self._attached(muscle, side)
         passive = self._anatomy.rig.tissue.passive * muscle.tone

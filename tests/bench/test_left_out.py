@@ -83,7 +83,7 @@ def test_balance_is_where_the_simulation_comes_to_rest() -> None:
     muscle = muscles["zygomaticus_major"]
     assert isinstance(muscle, LinearMuscle)
     other = replace(muscle, contraction=muscle.contraction + 0.01)
-    was, now = (statics.pull(m, *next(iter(SMILE.items()))) for m in (muscle, other))
+    was, now = (statics.effect(m, *next(iter(SMILE.items()))) for m in (muscle, other))
     change = now.plus(was, -1.0)
     slope = balance.derivatives([change])[:, :, 0]
     further = statics.balance(muscles | {"zygomaticus_major": other}, SMILE).moved - balance.moved
