@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from risorius import refine
 from risorius.__main__ import command
 from risorius.bench.refinement.meshes import METHODS, NOISE, refined
-from tests.bench.cracks import cracks
+from tests.bench.refinement.cracks import cracks
 from tests.meshes import NAMED, Mesh, double_cone, fan, irregular, tube, wrinkled
 
 FRAMES = len(METHODS) * len(NOISE)
