@@ -19,7 +19,7 @@ import numpy as np
 from ...jit import njit
 from ..border.rows import place_unmoved
 from ..kahler.frame import ONCE, FrameBuffers
-from ..kahler.smoothing import write_mean_normal
+from ..kahler.smoothing import Scheme, write_mean_normal
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.vectors import HALF, ZERO, mix, plus, row_of, times, write_row
@@ -30,7 +30,7 @@ NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
 """Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
 
 
-class CurveScheme:
+class CurveScheme(Scheme):
     """A scheme whose original vertices stay and whose edges are curves; fill in `prepare`."""
 
     interpolates = True

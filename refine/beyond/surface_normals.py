@@ -101,40 +101,37 @@ class WholeSurface:
         measure_edges(self._mesh, self.rows, self.normals, bulges, turns)
 
 
-class RefinedNormals:
+class RefinedNormals(Scheme):
     """A scheme, with the normals of the surface that it makes."""
 
     def __init__(self, scheme: Scheme) -> None:
         """`scheme`: says where points go."""
-        self.scheme = scheme
+        self.parts = (scheme,)
         self.interpolates = scheme.interpolates
-        self._prepares = hasattr(scheme, "prepare")
-        self._corrects = hasattr(scheme, "place_centres")
+        self._scheme = scheme
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Bind the scheme, and make room for its surface."""
-        self.scheme.bind(connectivity, rest_positions, rest_normals)
+        self._scheme.bind(connectivity, rest_positions, rest_normals)
         self._mesh = connectivity
         self._surface = WholeSurface(connectivity, rest_positions)
 
     def prepare(self, frame: FrameBuffers) -> None:
         """Find the surface of this frame where every edge is split once, and its normals."""
-        if self._prepares:
-            self.scheme.prepare(frame)  # type: ignore[attr-defined]
-        self.scheme.place(self._surface.split(frame))
+        self._scheme.prepare(frame)
+        self._scheme.place(self._surface.split(frame))
         self._surface.find_normals()
 
     def place(self, frame: FrameBuffers) -> None:
         """Write points where the scheme has them, with the normals of its surface."""
-        self.scheme.place(frame)
+        self._scheme.place(frame)
         turn_normals(self._mesh, frame, self._surface.normals)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Let the scheme correct the middles of triangles, and turn their normals."""
-        if self._corrects:
-            self.scheme.place_centres(frame)  # type: ignore[attr-defined]
+        self._scheme.place_centres(frame)
         turn_centres(self._mesh, frame, self._surface.rows)
 
     def measure(self, bulges: Floats, turns: Floats) -> None:

@@ -341,7 +341,10 @@ def test_frames_can_be_kept() -> None:
         ({"threshold_twice": True}, "got .*True"),
         ({"blend": "no"}, "blend must be True or False, got 'no'"),
         ({"coherent": "no"}, "coherent must be True or False, got 'no'"),
-        ({"criterion": refine.Curvature}, "criterion must be a name, an object .*Curvature"),
+        (
+            {"criterion": refine.Curvature},
+            "a name, a refine.Criterion, .*Curvature",
+        ),
         ({"scheme": LoopScheme}, "scheme must be one of .*LoopScheme"),
     ],
 )
