@@ -61,13 +61,12 @@ from ..kahler.table import (
 )
 from ..mesh.arrays import Floats, Small
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import HALF, ONE, ZERO, row_of, unit, write_row
+from ..mesh.vectors import HALF, ONE, QUARTER, THIRD, ZERO, row_of, unit, write_row
 
 RAMP = np.float32(0.25)
 """Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
 only half grown cost as much as whole ones."""
-THIRD, TWO_THIRDS = np.float32(1 / 3), np.float32(2 / 3)
-QUARTER, FOUR_NINTHS = np.float32(1 / 4), np.float32(4 / 9)
+TWO_THIRDS, FOUR_NINTHS = np.float32(2 / 3), np.float32(4 / 9)
 
 
 def fan(splits: tuple[int, int, int]) -> list[Triangle]:

@@ -22,10 +22,8 @@ from ..kahler.frame import ONCE, FrameBuffers
 from ..kahler.smoothing import write_mean_normal
 from ..mesh.arrays import Floats
 from ..mesh.connectivity import Surroundings
-from ..mesh.vectors import HALF, mix, plus, row_of, times, write_row
+from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, mix, plus, row_of, times, write_row
 
-QUARTER = np.float32(0.25)
-THREE_QUARTERS = np.float32(0.75)
 NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
 """Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
 

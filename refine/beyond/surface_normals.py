@@ -26,6 +26,7 @@ import numpy as np
 
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers, buffers_for, split_everywhere
+from ..kahler.look_up import SIDE_BITS
 from ..kahler.smoothing import Scheme, write_mean_normal
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
@@ -33,6 +34,7 @@ from ..mesh.normals import normalise
 from ..mesh.vectors import (
     HALF,
     ONE,
+    THIRD,
     ZERO,
     Vector,
     add_to_row,
@@ -48,7 +50,6 @@ from ..mesh.vectors import (
     write_row,
 )
 
-THIRD = np.float32(1 / 3)
 FULL_CENTRE = np.float32(0.511)
 """How far the middle of a triangle follows the bulges of its edges: 4/9 (blending.py), and 15 %
 more: curves between these points stand out farther. Chosen: normals are nearer to a dense head."""
@@ -59,8 +60,6 @@ STEADY = np.float32(0.02)
 """Share of the mean of the ends' normals, in squared lengths of the edge, that is added to a normal
 in the middle. Chosen: where an edge is folded until nothing is left across it, this decides. More
 looks softer in deep folds and is farther from dense faces: 0.3 costs five points of thirty."""
-SIDE_BITS = np.uint32(2)
-"""A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 
 
 class WholeSurface:

@@ -20,13 +20,10 @@ from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
 from ..border.stream import StreamArrays
 from ..mesh.arrays import Floats, Indices, Short, Unsigned
-from ..mesh.vectors import WIDTH, row_of, write_row
+from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, WIDTH, row_of, write_row
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
 from .table import CENTRE, Patterns
 
-QUARTER = np.float32(0.25)
-HALF = np.float32(0.5)
-THREE_QUARTERS = np.float32(0.75)
 SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
