@@ -102,7 +102,7 @@ class Relief:
         np.divide(turned, length, out=mesh.normals, where=length > 0.0)
 
 
-class FoldCriterion:
+class FoldCriterion(refine.Criterion):
     """Splits edges over which the relief, as far as it shows, bends away from the straight line."""
 
     def __init__(self, scene: Scene) -> None:
@@ -127,17 +127,6 @@ class FoldCriterion:
         self._folding = np.flatnonzero(once.sum(axis=1) > LEAST_BEND)  # no other is ever split
         self._edges = connectivity.edges[self._folding]
         self._once, self._twice = once[self._folding], twice[self._folding]
-
-    def mark(
-        self,
-        positions: npt.NDArray[np.float64],
-        normals: Amounts,
-        splits: npt.NDArray[np.uint8],
-    ) -> None:
-        """Write the number of splits of every edge into `splits`, shape (E,)."""
-        need = np.empty(len(splits), np.float32)
-        self.measure(positions, normals, need)
-        splits[:] = (need > 0.0).astype(np.uint8) + (need > 1.0)
 
     def measure(self, positions: npt.NDArray[np.float64], normals: Amounts, need: Amounts) -> None:
         """Write the need of every edge, shape (E,): above 0 one split, above 1 two."""

@@ -130,22 +130,15 @@ def _whole(
     }
 
 
-class Everywhere:
+class Everywhere(refine.Criterion):
     """The criterion that splits every edge once or twice."""
 
     def __init__(self, splits: int) -> None:
         self._splits = splits
 
-    def bind(self, connectivity: object, rest: object, rest_normals: object) -> None:
-        """Need nothing of the mesh."""
-
     def measure(self, positions: object, normals: object, need: Narrow) -> None:
         """Write needs at which all points have grown."""
         need[:] = self._splits
-
-    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
-        """Write the same for every edge."""
-        splits[:] = self._splits
 
 
 class _Sliding:

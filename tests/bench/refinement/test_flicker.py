@@ -19,14 +19,11 @@ def shifted(points: Points, by: float) -> Points:
     return points + np.array([by, 0.0, 0.0])
 
 
-class Switching:
+class Switching(refine.Criterion):
     """A criterion that splits every edge twice in every other frame."""
 
     def __init__(self) -> None:
         self.is_on = False
-
-    def bind(self, connectivity: object, rest: object, rest_normals: object) -> None:
-        """Need nothing of the mesh."""
 
     def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
         """Write 2 or 0 for every edge."""

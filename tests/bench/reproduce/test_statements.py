@@ -69,14 +69,11 @@ def test_points_inside_and_memory_are_seen(waving: pytest.MonkeyPatch) -> None:
     assert measured(waving, "overview", coherent=True)[remember] > 0
 
 
-class AllOfThem:
+class AllOfThem(refine.Criterion):
     """A criterion that splits every edge as often as it is told."""
 
     def __init__(self, times: int) -> None:
         self.times = times
-
-    def bind(self, connectivity: object, rest: object, rest_normals: object) -> None:
-        """Need nothing of the mesh."""
 
     def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
         """Split all."""
