@@ -43,6 +43,7 @@ DEPTH = 1.6  # power of what is left; chosen by eye: folds are told from afar, a
 REVEALED = 0.8  # most light that comes to what only a moving face shows
 STEEP, LONG = 0.15, 8.0  # change along an edge, and its length [mm]: beyond them its middle counts
 START = 0.4  # [mm] above the skin, lest it shade itself
+THIN = 5.0  # [mm] a ray may leave what is thinner: at the root of an ear it begins within the ear
 REVEALING = ("yawn", "jaw_open")  # the first of these that a head knows opens mouth and shuts eyes
 SETTLED = 60  # steps of 1/60 s
 MARGIN = 3.0  # [texels] painted beyond a triangle, for texels between patches
@@ -208,6 +209,7 @@ def _nearest(ray: Values, near: Values, count: int) -> float:
         c = (x * qx + y * qy + z * qz) * part
         distance = (wx * qx + wy * qy + wz * qz) * part
         is_met = (b >= zero) & (c >= zero) & (b + c <= one) & (distance > zero)
+        is_met &= (size > zero) | (distance > np.float32(THIN))
         if is_met and distance < nearest:
             nearest = distance
     return float(nearest)
