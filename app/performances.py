@@ -11,9 +11,9 @@ from importlib.resources import files
 from pathlib import Path
 
 from .errors import UserError
-from .playback import Playback
 from .recordings import is_recording, read_take
 from .recordings.conversion import script_of
+from .recordings.playback import Playback
 from .recordings.report import Report
 from .recordings.text import read_beginning
 from .scenes import SCENES

@@ -19,10 +19,10 @@ import numpy.typing as npt
 from risorius import refine, render
 
 from .anatomy import Dissection, Solids
-from .looks import Refinement
-from .refining import refiner_for
+from .refining.looks import Refinement
+from .refining.refiners import refiner_for
+from .refining.wrinkling import Amounts, Relief, on_rows, relief_of, wrinkling_of
 from .scenes import Scene
-from .wrinkling import Amounts, Relief, on_rows, relief_of, wrinkling_of
 
 TEXTURED_COLUMNS = 8  # position, normal, u v
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner

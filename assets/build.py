@@ -5,8 +5,8 @@ the last digits, other versions of scipy may order a triangulation differently; 
 are therefore part of the package, and a test compares them with a fresh build.
 
 The light on the skin takes the simulation, which nothing here may import:
-`python -m risorius.app.ambient` bakes it for the head that is made here, and until then it is baked
-wherever the head is shown.
+`python -m risorius.app.scenes.ambient` bakes it for the head that is made here, and until then it
+is baked wherever the head is shown.
 """
 
 import argparse

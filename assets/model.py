@@ -199,7 +199,7 @@ class Head:
     tints_file: maps with which that image takes on another tone.
     wrinkles_file: the map of its wrinkles.
     segments_file: the map of what is nose, lip, neck, ...
-    openness_file: how open it is to light from all around; app/ambient.py makes it.
+    openness_file: how open it is to light from all around; app/scenes/ambient.py makes it.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up; () where there
@@ -277,7 +277,7 @@ class Head:
         Texel by texel that of `albedo`. Raises AssetError when the file is missing, broken or that
         of another head.
         """
-        names, program = ("openness",), "app.ambient"
+        names, program = ("openness",), "app.scenes.ambient"
         file = self.openness_file
         return read_arrays_of(self.fingerprint, file, names, program=program)["openness"]
 

@@ -1,1 +1,1 @@
-"""Benchmarks: each module measures one part and returns rows of numbers; printing is for app/."""
+"""Benchmarks: each room measures one thing and makes numbers and text; its commands print them."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import click
 
-from .playing_commands import COMMANDS as PLAYING
-from .refinement_commands import COMMANDS as REFINEMENT
-from .simulation_commands import COMMANDS as SIMULATION
+from .playing.commands import COMMANDS as PLAYING
+from .refinement.commands import COMMANDS as REFINEMENT
+from .scans.commands import COMMANDS as SCANS
+from .simulation.commands import COMMANDS as SIMULATION
 
 
 @click.group()
@@ -14,5 +15,5 @@ def bench() -> None:
     """Measure: each command prints figures and how they were taken."""
 
 
-for _each in (*REFINEMENT, *SIMULATION, *PLAYING):
+for _each in (*REFINEMENT, *SIMULATION, *SCANS, *PLAYING):
     bench.add_command(_each)

@@ -15,8 +15,8 @@ refined mesh breaks.
 `kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
 turns, `attributes` what rides along. Schemes, criteria and refiners of somebody else join by name:
-`register_scheme`, `register_criterion`, `register`, or an entry point; `BaseRefiner` is to derive
-from.
+`register_scheme`, `register_criterion`, `register`, or an entry point; `Scheme`, `Criterion` and
+`BaseRefiner` are to derive from.
 
 One room for each subject; each may import from those above it, and jit.py, which compiles it all:
 
@@ -53,7 +53,6 @@ from .kahler.criterion import (
     THRESHOLD_ONCE,
     THRESHOLD_TWICE,
     Criterion,
-    Measured,
     NormalDrop,
     criteria,
     register_criterion,
@@ -85,7 +84,6 @@ __all__ = [
     "Kahler",
     "Loop",
     "Maximum",
-    "Measured",
     "NormalDrop",
     "Order",
     "Origins",

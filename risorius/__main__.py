@@ -14,7 +14,7 @@ def command() -> click.Group:
     """Return the whole command."""
     from risorius.app.cli import main
     from risorius.bench.commands import bench
-    from risorius.bench.reproduce_commands import reproduce
+    from risorius.bench.reproduce.commands import reproduce
 
     main.add_command(bench)
     main.add_command(reproduce)

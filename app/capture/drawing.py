@@ -14,15 +14,15 @@ from risorius.assets.fitting import FittedHead
 
 from .. import process_cache
 from ..anatomy import Dissection
-from ..cameras import camera_for
 from ..files import Image
-from ..looks import Refinement
 from ..motion import play
 from ..passes.files import Labelled, labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
+from ..refining.looks import Refinement
 from ..scenes import Scene
 from ..script import Script
+from .cameras import camera_for
 from .captions import SPLITS_BAR, captioned, labels
 from .transparency import straight
 

@@ -14,8 +14,8 @@ import click
 
 from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS
-from ..looks import STATIC, Refinement
-from ..playback import Playback
+from ..recordings.playback import Playback
+from ..refining.looks import STATIC, Refinement
 from .batch import batch
 from .dataset import dataset
 from .dissecting import dissection_of
@@ -77,7 +77,7 @@ def capture(
     from ..capture.formats import HEARD
     from ..files import check_apart
     from ..passes.files import beside
-    from ..refining import parse_comparison
+    from ..refining.refiners import parse_comparison
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from ..looks import LOOKS, PAPERS_LOOK, Refinement
+from ..refining.looks import LOOKS, PAPERS_LOOK, Refinement
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -66,9 +66,9 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     """Everything that compiles kernels of its own, by name."""
     from risorius import refine
 
-    from ..ambient import openness
-    from ..muscle_bands import Muscles
+    from ..anatomy.muscle_bands import Muscles
     from ..scenes import ClothScene, FaceScene, PlaneScene
+    from ..scenes.ambient import openness
     from ..script import thinned
 
     face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()
@@ -118,7 +118,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
 def _refine(scene: Scene, refinement: Refinement) -> None:
     from risorius import refine
 
-    from ..refining import refiner_for
+    from ..refining.refiners import refiner_for
 
     view = refine.View(scene.focus + np.array([0.0, 0.0, 400.0]))
     refiner_for(scene, refinement).refine(scene.positions, view=view)

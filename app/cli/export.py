@@ -10,7 +10,7 @@ import click
 from ..errors import in_one_line
 from ..export.formats import RIGS, Request, check_request, format_for, names
 from ..export.formats import export as write
-from ..playback import Playback
+from ..recordings.playback import Playback
 from .options import PATH, SCENE_NAMES, Subject, packed, told, with_playback, with_subject
 from .parameters import FiniteRange
 

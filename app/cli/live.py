@@ -9,7 +9,7 @@ from click.core import ParameterSource
 
 from ..errors import UserError
 from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
-from ..playback import Playback
+from ..recordings.playback import Playback
 from .options import packed
 
 

@@ -12,8 +12,8 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..looks import FIRST_LOOK, LOOKS, STATIC, Refinement
-from ..playback import LEAD, Playback
+from ..recordings.playback import LEAD, Playback
+from ..refining.looks import FIRST_LOOK, LOOKS, STATIC, Refinement
 from .dissecting import DISSECTING, DISSECTION_OPTIONS
 from .parameters import BackgroundName, FiniteRange, PersonName, Size, looks_from, refiners_from
 
@@ -90,7 +90,7 @@ class Subject:
 
     def refinement(self) -> Refinement:
         """How the mesh is refined; UserError where there is no such refiner."""
-        from ..refining import parse_options
+        from ..refining.refiners import parse_options
 
         options = parse_options(self.refiner, self.refiner_settings)
         return Refinement(self.look, self.refiner, options)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..looks import LOOKS
+from ..refining.looks import LOOKS
 
 if TYPE_CHECKING:
     from risorius import render

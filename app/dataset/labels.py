@@ -12,7 +12,7 @@ import numpy as np
 
 from risorius import render
 
-from ..curves import ACTION_UNITS, ARKIT_SHAPES, solved
+from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..passes.labels import labels_of
 from ..scenes import FaceScene
 from .openings import apertures

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..life import EYE_RANGE, HEAD_RANGES
+from ..motion.life import EYE_RANGE, HEAD_RANGES
 from .table import BLINK, LETTERS, SampleTable, Shares, paired_units
 
 MOST_UNITS = 7  # of a mixture

@@ -18,12 +18,12 @@ import PIL.Image
 from risorius import render
 
 from ..files import Image
-from ..idle import looking_at
-from ..looks import Refinement
 from ..motion import SETTLING
+from ..motion.idle import looking_at
 from ..passes.files import Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline
+from ..refining.looks import Refinement
 from ..scenes import FaceScene
 from .cameras import camera_of
 from .folder import name_of

@@ -16,12 +16,12 @@ import numpy.typing as npt
 from risorius import refine
 
 from ..errors import UserError
-from ..looks import Refinement
 from ..motion import play, scene_of
-from ..refining import refiner_for
+from ..refining.looks import Refinement
+from ..refining.refiners import refiner_for
+from ..refining.wrinkling import Compression, on_rows, relief_of
 from ..scenes import FaceScene, Scene
 from ..script import Script
-from ..wrinkling import Compression, on_rows, relief_of
 
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]

@@ -25,7 +25,7 @@ from ..stopping import cleaned_up_if_stopped
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
 
-    from ..looks import Refinement
+    from ..refining.looks import Refinement
     from ..script import Script
     from .clip import Clip
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from risorius.assets.topology import vertex_normals
 
-from ..looks import Refinement
+from ..refining.looks import Refinement
 from .clip import Clip, Floats, Indices, Singles, Surface
 
 METRES = 0.001  # a millimetre; programs for animation take bare numbers for metres

@@ -15,9 +15,9 @@ import scipy
 from risorius.assets.topology import vertex_normals
 
 from ..errors import UserError
-from ..growing import Growing
 from ..motion import SETTLING
 from ..scenes import FaceScene
+from ..scenes.growing import Growing
 from .clip import Clip, Surface
 from .formats import RIGS
 from .morphs import Floats

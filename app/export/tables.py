@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..errors import UserError
-from ..playback import LEAD
+from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..recordings.conversion import lead_of
 from ..recordings.names import ARKIT
+from ..recordings.playback import LEAD
 from .clip import Clip, Floats
 from .formats import Request
 

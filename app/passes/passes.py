@@ -24,8 +24,8 @@ from risorius.assets import Segment
 from risorius.assets.identities import HAIR
 
 from ..pipeline import Pipeline, splits_of_source
+from ..refining.wrinkling import on_rows
 from ..scenes import FaceScene
-from ..wrinkling import on_rows
 
 IMAGES = ("depth", "normal", "triangle", "splits", "tension", "segmentation")
 OF_FACES = ("segmentation", "landmarks")  # what other scenes have not

@@ -19,8 +19,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from ..controls.mirror import TURNED, twin_of
 from ..errors import UserError
-from ..mirror import TURNED, twin_of
 from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 from .spelling import angle_of, shape_of
 from .take import Array, Take

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import in_one_line
-from ..playback import LEAD, Playback
 from ..script import POSE_SECONDS, TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
 from .calibration import calibration_for, note_of_neutral
 from .mapping import load_mapping
+from .playback import LEAD, Playback
 from .report import Report, report_of
 from .smoothing import smoothed
 from .take import Array, Take

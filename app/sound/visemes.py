@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..playback import LEAD
+from ..recordings.playback import LEAD
 from ..script import Script, rounded, thinned
 from .speech import Phone
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from ..controls.mirror import OPPOSITE, parted, twin_of
+from ..controls.vocabulary import is_found, readable, title_of
 from ..errors import counted
-from ..mirror import OPPOSITE, parted, twin_of
-from ..vocabulary import is_found, readable, title_of
 
 
 @dataclass(frozen=True)

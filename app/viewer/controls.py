@@ -9,9 +9,9 @@ import numpy as np
 
 from risorius.sim.layers import BOTH_SIDES
 
-from ..mirror import twin_of
+from ..controls.mirror import twin_of
+from ..controls.vocabulary import filters
 from ..scenes import Scene, clamped
-from ..vocabulary import filters
 
 RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
 RANDOM_STRENGTH = 0.8  # most of their range

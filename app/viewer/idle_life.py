@@ -6,8 +6,8 @@ moves, nothing is recorded, saved or undone. That it begins and ends softly is l
 
 from __future__ import annotations
 
-from ..idle import Idle
-from ..life import Values
+from ..motion.idle import Idle
+from ..motion.life import Values
 from ..scenes import FaceScene
 from .session import Session
 from .settings import Settings

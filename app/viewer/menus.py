@@ -10,9 +10,9 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ..looks import FIRST_LOOK, PAPERS_LOOK
+from ..controls.vocabulary import readable
+from ..refining.looks import FIRST_LOOK, PAPERS_LOOK
 from ..script.easing import EASINGS
-from ..vocabulary import readable
 from .command import Command
 from .export import Exporter
 from .file_drop import FileDrop

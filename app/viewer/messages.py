@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..controls.vocabulary import sentence
 from ..errors import UserError
-from ..vocabulary import sentence
 
 SECONDS = 6.0  # for which a message stays
 LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing

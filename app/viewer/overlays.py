@@ -60,7 +60,7 @@ def landmark_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.Orbi
 
 OverlayMaker = Callable[[Any, npt.NDArray[np.int32], render.OrbitCamera], Lines]
 LINES: dict[str, OverlayMaker] = {"springs": spring_lines, "landmarks": landmark_lines}
-OVERLAYS = ("muscles", "springs", "skull", "landmarks")  # lines, and SOLIDS of anatomy.py
+OVERLAYS = ("muscles", "springs", "skull", "landmarks")  # lines, and SOLIDS of anatomy
 
 
 def overlays_of(scene: Scene) -> tuple[str, ...]:

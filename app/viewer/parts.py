@@ -10,11 +10,11 @@ from pathlib import Path
 from risorius import refine
 from risorius.assets.fitting import FittedHead
 
+from ..controls.vocabulary import readable
 from ..errors import UserError
-from ..refining import refiner_for
+from ..refining.refiners import refiner_for
 from ..scenes import BUILT_IN, Scene, build_scene
 from ..script import Script
-from ..vocabulary import readable
 from . import menus
 from .command import Command, set_keys
 from .export import Exporter

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ..controls.mirror import copied, mirrored, twin_of
+from ..controls.vocabulary import readable
 from ..errors import UserError, counted
-from ..mirror import copied, mirrored, twin_of
 from ..motion import SETTLING
 from ..scenes import Scene
 from ..script import Pose, Script, is_pose, keyframes, pose_script, rounded, save_script
 from ..script.recorder import Recorder
-from ..vocabulary import readable
 from .control_rows import change_of
 from .controls import Controls
 from .document import Document

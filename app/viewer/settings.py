@@ -21,8 +21,8 @@ from risorius import render
 from ..anatomy import OPACITY, SIDES, SOLIDS, Dissection
 from ..errors import UserError, in_one_line
 from ..files import NoSuchFileError, read_text, save_text
-from ..looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
-from ..refining import refiner_for
+from ..refining.looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
+from ..refining.refiners import refiner_for
 from ..scenes import Scene
 from . import setting_rules as rules
 from .colours import COLOURS

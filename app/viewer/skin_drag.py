@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from risorius import sim
 
+from ..controls.mirror import OPPOSITE, TURNED, parted, twin_of
+from ..controls.vocabulary import called
 from ..errors import counted
-from ..mirror import OPPOSITE, TURNED, parted, twin_of
-from ..vocabulary import called
 from .messages import Message
 from .picking import muscle_at
 from .session import Session

@@ -12,9 +12,9 @@ from risorius import render
 
 from ..capture.captions import SPLITS_BAR, Label, captioned, labels
 from ..files import Image
-from ..looks import STATIC, Refinement
 from ..pipeline import DrawnMesh, Pipeline, Viewport
-from ..refining import open_choices, options_of
+from ..refining.looks import STATIC, Refinement
+from ..refining.refiners import open_choices, options_of
 from ..scenes import Scene
 from .colours import COLOURS, Amounts
 from .frame_times import FrameTimes

@@ -9,10 +9,10 @@ from functools import partial
 
 import numpy as np
 
+from ..controls.vocabulary import readable
 from ..script import EASING_NAMES, Channel, Pose, Script
 from ..script.keyframes import POSES, places_of
 from ..script.places import Places
-from ..vocabulary import readable
 
 TRACKS, ALL = "Tracks", "Whole poses"  # names of rows
 MOST_LINES = 7  # of a key's values that are told

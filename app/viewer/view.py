@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ..cameras import whole_scene
+from ..capture.cameras import whole_scene
 from ..pipeline import Viewport
 from .gui import THEMES, em
 from .session import Session

@@ -15,11 +15,11 @@ SEAM_HEIGHT = -66.0  # [mm]
 # (s, outward displacement [mm]): the lip rolls in at s = 0, crests, and ends in a slight ledge.
 UPPER = (
     (0, 0.08, 0.25, 0.5, 0.78, 1, 1.25, 1.7, 2.3, 2.9),
-    (1.0, 1.8, 2.8, 3.4, 3.4, 3.0, 2.25, 1.1, 0.25, 0),
+    (1.0, 1.8, 2.9, 3.7, 3.8, 3.4, 2.5, 1.2, 0.25, 0),
 )
 LOWER = (
     (0, 0.08, 0.2, 0.4, 0.62, 0.82, 1, 1.3, 1.75, 2.3, 2.9),
-    (1.0, 2.0, 3.0, 3.9, 4.2, 3.9, 3.2, 2.2, 1.0, 0.25, 0),
+    (1.0, 2.0, 3.2, 4.5, 5.0, 4.7, 3.9, 2.6, 1.1, 0.25, 0),
 )
 
 
@@ -30,7 +30,7 @@ def _relative(x: Values, limit: float = 1.0) -> Values:
 def seam_height(x: Values) -> Values:
     """Height y of the line between the lips [mm]: a dip in the middle, corners lifted."""
     t = _relative(x, 1.3)
-    return SEAM_HEIGHT - 0.7 * np.exp(-((t / 0.33) ** 4)) + 0.3 * bump(t, 0.62, 0.3) - 0.3 * t**3
+    return SEAM_HEIGHT - 0.7 * np.exp(-((t / 0.33) ** 4)) + 0.3 * bump(t, 0.62, 0.3) + 0.3 * t**3
 
 
 def upper_border(x: Values) -> Values:

@@ -31,21 +31,21 @@ def distance(points: Points) -> Values:
 
 
 def _distance(half: Points) -> Values:
-    ridge = tapered_capsule(half, (0, 6, 87.6), (0, -20, 102.8), 4.5, 5.4)
-    lower_ridge = tapered_capsule(half, (0, -18, 101.6), (0, -31, 109.0), 5.5, 6.9)
-    side_wall = tapered_capsule(half, (0, 2, 81.5), (0, -32, 94.0), 7.2, 12.0)
-    tip = sphere(half, (0, -34.9, 111.5), 7.0)
-    lobe = sphere(half, (3.6, -35.0, 110.8), 6.0)
-    wing = ellipsoid(half, (11.3, -38.0, 102.0), (4.8, 5.4, 8.6), turn_deg=24)
-    triangle = ellipsoid(half, (7.9, -36.2, 106.5), (3.9, 4.0, 6.3), turn_deg=30)
-    columella = tapered_capsule(half, (0, -41.8, 101), (0, -41.1, 110.0), 2.7, 2.8)
+    ridge = tapered_capsule(half, (0, 6, 87.6), (0, -20, 102.4), 4.5, 5.0)
+    lower_ridge = tapered_capsule(half, (0, -18, 101.2), (0, -31, 109.4), 5.2, 6.6)
+    side_wall = tapered_capsule(half, (0, 2, 81.5), (0, -30, 93.0), 7.2, 11.2)
+    tip = sphere(half, (0, -34.6, 112.3), 6.6)
+    lobe = sphere(half, (4.0, -35.0, 111.2), 6.0)
+    wing = ellipsoid(half, (12.0, -38.5, 101.0), (4.7, 5.4, 8.2), turn_deg=24)
+    triangle = ellipsoid(half, (8.4, -36.2, 106.4), (3.9, 4.0, 6.3), turn_deg=30)
+    columella = tapered_capsule(half, (0, -42.1, 101), (0, -41.4, 110.4), 2.6, 2.8)
 
     result = smooth_minimum(ridge, lower_ridge, 6.0)
     result = smooth_minimum(result, side_wall, 9.0)
     result = smooth_minimum(result, tip, 7.0)
     result = smooth_minimum(result, lobe, 5.0)
-    result = smooth_minimum(result, triangle, 5.0)
-    result = smooth_minimum(result, wing, 4.6)
+    wing = smooth_minimum(wing, triangle, 5.5)
+    result = smooth_minimum(result, wing, 3.6)
     return smooth_minimum(result, columella, 3.0)
 
 
@@ -60,4 +60,4 @@ def fillet(points: Points) -> Values:
     bridge = smooth_step(-40.0, -18.0, points[:, 1])
     root = smooth_step(-8.0, 10.0, points[:, 1])
     middle = np.exp(-((points[:, 0] / 5.0) ** 2))
-    return 4.0 + 10.0 * bridge - 6.5 * root + 4.5 * middle * (1.0 - bridge)
+    return 4.0 + 10.0 * bridge - 4.5 * root + 4.5 * middle * (1.0 - bridge)

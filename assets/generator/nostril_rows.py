@@ -25,13 +25,11 @@ def nostril_ring() -> Points:
     return from_below(CENTRE[0] + cosine * x - sine * z, CENTRE[1] + sine * x + cosine * z)
 
 
-def nostril_cap(ring: Points) -> tuple[list[Points], Points]:
-    """Return two inner rings and the closing centre point above a ring."""
+def nostril_cap(ring: Points) -> tuple[Points, Points]:
+    """Return the inner ring and the closing centre point above a ring."""
     centre = ring.mean(axis=0)
     forward = np.clip((ring[:, 2] - ring[:, 2].min()) / (2.0 * HALF_LENGTH), 0.0, 1.0)
-    inner = centre + (ring - centre) * [0.80, 1.0, 0.80] + [-0.3, 0.35, 0.35]
+    inner = centre + (ring - centre) * [0.76, 1.0, 0.76] + [-0.4, 0.7, 0.4]
     inner[:, 1] += 1.4 * forward
-    deep = centre + (ring - centre) * [0.42, 0.8, 0.42] + [-0.7, 1.5, 0.9]
-    deep[:, 1] += 0.8 * forward
-    end = centre + np.array([-0.8, 2.3, 1.1])
-    return [inner, deep], end
+    end = centre + np.array([-0.8, 2.5, 1.0])
+    return inner, end

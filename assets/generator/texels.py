@@ -18,7 +18,7 @@ from .mouth_rows import OUTER_ROW, SIDE
 from .sections import direction_coordinates
 
 EYE_ROWS = 5
-NOSTRIL_DEPTH = 3  # edges from the rim of a nostril to its roof
+NOSTRIL_DEPTH = 2  # edges from the rim of a nostril to its roof
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
+import figures
 import numpy as np
 import numpy.typing as npt
 from imgui_bundle import imgui
@@ -23,13 +24,13 @@ from risorius.app.files import Image
 from risorius.app.live import LOOPBACK, Listening
 from risorius.app.live.sender import Sender
 from risorius.app.performances import read_performance, script_for
-from risorius.app.playback import Playback
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.playback import Playback
 from risorius.app.recordings.reading import read_take
 from risorius.app.scenes import FaceScene
 from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
-from risorius.bench import figures
+from risorius.bench.canvas import without_noise
 
 Part = tuple[tuple[str, ...], float, tuple[float, float, float, float]]  # see PLAYED
 
@@ -149,7 +150,7 @@ def neutral(take: Path) -> Image:
                     rows.append((f"{title}, {what}", capture.draw_image()))
                     moment, what = next(last, (np.inf, ""))
     sheet = contact_sheet(rows, columns=len(MOMENTS), cell_width=CELL[0])
-    return figures.without_noise(sheet)
+    return without_noise(sheet)
 
 
 def window(take: Path) -> Image:
@@ -162,7 +163,7 @@ def window(take: Path) -> Image:
         for _ in range(90):
             viewer.messages.say(said)
             viewer.frame()
-        return figures.without_noise(viewer.surface.read())
+        return without_noise(viewer.surface.read())
 
 
 def tracks(folder: Path) -> Image:
@@ -179,7 +180,7 @@ def tracks(folder: Path) -> Image:
         for _ in range(90):
             viewer.messages.seconds_left = 0.0
             viewer.frame()
-        return figures.without_noise(viewer.surface.read())
+        return without_noise(viewer.surface.read())
 
 
 def live(folder: Path) -> Image:
@@ -199,7 +200,7 @@ def live(folder: Path) -> Image:
                 viewer.frame()
             for _ in range(8):  # muscles follow
                 viewer.frame()
-            picture = figures.without_noise(viewer.surface.read())
+            picture = without_noise(viewer.surface.read())
             thread.join()
     return picture
 

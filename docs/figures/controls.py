@@ -10,15 +10,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 
+import figures
 import numpy as np
 
 from risorius import render
-from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene, Scene
-from risorius.bench import figures
+from risorius.bench.canvas import without_noise
 
 LAYERS = {
     "Action units": "action_units",
@@ -82,7 +83,7 @@ def contact_sheet_of(capture: Capture, names: Sequence[str]) -> Image:
     ]
     width = len(VIEWS) * capture.surface.size[0]
     sheet = contact_sheet(cells, columns=columns_for(len(cells)), cell_width=width)
-    return figures.without_noise(sheet)
+    return without_noise(sheet)
 
 
 def main(arguments: Sequence[str]) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
+import figures
 import numpy as np
 import PIL.Image
 from PIL import ImageDraw
@@ -16,7 +17,6 @@ from PIL import ImageDraw
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Shot, Studio
 from risorius.app.files import Image
-from risorius.bench import figures
 
 SEED, CELL, COLUMNS, ROWS = 21, 192, 6, 4
 LABELLED = (2, 3, 10, 11, 14, 22)  # numbers of samples

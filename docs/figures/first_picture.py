@@ -8,8 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from risorius import render
-from risorius.app.cameras import whole_scene
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.cameras import whole_scene
 from risorius.app.files import save_png
 from risorius.app.scenes import FaceScene
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
+import figures
 import numpy as np
 import numpy.typing as npt
 
@@ -21,8 +22,7 @@ from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
-from risorius.bench import figures
-from risorius.bench.canvas import Canvas, Drawing
+from risorius.bench.canvas import Canvas, Drawing, without_noise
 from risorius.bench.subjects import settled_positions
 
 CELL = (260, 320)  # [pixels] of one portrait: a contact sheet stays below 600 kB
@@ -151,7 +151,7 @@ def persons() -> Image:
         with Capture(scene, CaptureOptions(size=CELL, camera=view, style=style)) as capture:
             name = str(seed) if not pose else f"{seed}: {pose}, {light}"
             cells.append((name, capture.draw_image()))
-    return figures.without_noise(contact_sheet(cells, columns=4, cell_width=CELL[0]))
+    return without_noise(contact_sheet(cells, columns=4, cell_width=CELL[0]))
 
 
 def main(arguments: Sequence[str]) -> None:

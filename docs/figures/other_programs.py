@@ -21,6 +21,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import figures
 import numpy as np
 import PIL.Image
 import pyvista
@@ -32,7 +33,6 @@ from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.files import Image
 from risorius.app.script import parse_script
-from risorius.bench import figures
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "in_other_programs.md"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import figures
 import numpy as np
 import numpy.typing as npt
 import PIL.Image
@@ -18,7 +19,7 @@ from risorius.app.passes.files import labelled
 from risorius.app.passes.passes import NAMES, Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
-from risorius.bench import figures
+from risorius.bench.canvas import without_noise
 
 SIZE = (440, 500)
 POSE = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
@@ -60,7 +61,7 @@ def passes(size: tuple[int, int] = SIZE) -> Image:
         "tension: stretch red, compression blue": _tinted(images["tension"], on),
     }
     named = [(name, np.asarray(image).astype(np.uint8)) for name, image in cells.items()]
-    return figures.without_noise(contact_sheet(named, columns=4, cell_width=size[0]))
+    return without_noise(contact_sheet(named, columns=4, cell_width=size[0]))
 
 
 def _looked_up(numbers: npt.NDArray[Any], colours: Any, on: Any = None) -> npt.NDArray[Any]:

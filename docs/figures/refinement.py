@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import figures
 import numpy as np
 import numpy.typing as npt
 from diagrams import FAINT, FILL, INK, MOVED, NEW, SECOND, Diagram, equilateral
 from strain import tension_map
 
 from risorius.app.files import Image
-from risorius.bench import figures
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 

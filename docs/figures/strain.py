@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
-from risorius.app.cameras import camera_for
+from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 from risorius.bench.canvas import image_table

@@ -11,13 +11,14 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
+import figures
 import numpy as np
 from imgui_bundle import imgui
 
 from risorius import assets, render
 from risorius.app.anatomy import Dissection
-from risorius.app.cameras import camera_for
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
@@ -26,7 +27,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display
 from risorius.app.viewer.skin_drag import SkinDrag
 from risorius.assets.fitting.guess import FIRST
-from risorius.bench import figures
+from risorius.bench.canvas import without_noise
 
 SIZE = (1160, 700)
 PLATE, PLATE_CAMERA = (900, 1080), "-28,3,0.98"
@@ -211,7 +212,7 @@ def plate() -> Image:
     with Capture(scene, options) as capture:
         scene.pose({"joy": 0.85})
         scene.step(SETTLED)
-        return figures.without_noise(capture.draw_image())
+        return without_noise(capture.draw_image())
 
 
 STOPS: dict[str, Callable[[Viewer], None]] = {
@@ -244,7 +245,7 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
         stop(viewer)
         if not viewer.messages.text:
             wait_until_settled(viewer)
-        return figures.without_noise(viewer.surface.read())
+        return without_noise(viewer.surface.read())
 
 
 def main(arguments: Sequence[str]) -> None:

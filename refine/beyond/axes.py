@@ -18,6 +18,7 @@ from ..mesh.connectivity import Surroundings
 from ..mesh.vectors import (
     HALF,
     ONE,
+    THIRD,
     TINY,
     ZERO,
     Vector,
@@ -38,7 +39,6 @@ the way is smoothest, and farther from a scanned face; less leaves teeth."""
 FLAT = np.float32(0.02)
 """Squared height over an edge, in squared lengths, that counts as bent everywhere: what is flat has
 its middle in the centroid."""
-THIRD = np.float32(1 / 3)
 TWO = np.float32(2.0)
 FOUR = np.float32(4.0)
 

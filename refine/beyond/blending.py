@@ -45,7 +45,7 @@ import numpy.typing as npt
 from ...jit import njit
 from ..border.corner_values import Values
 from ..border.plugin import Origins, View
-from ..kahler.criterion import Measured
+from ..kahler.criterion import Criterion
 from ..kahler.frame import CENTRES, ROWS, TRIANGLES, FrameBuffers
 from ..kahler.refiner import Kahler
 from ..kahler.smoothing import Scheme
@@ -61,13 +61,12 @@ from ..kahler.table import (
 )
 from ..mesh.arrays import Floats, Small
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import HALF, ONE, ZERO, row_of, unit, write_row
+from ..mesh.vectors import HALF, ONE, QUARTER, THIRD, ZERO, row_of, unit, write_row
 
 RAMP = np.float32(0.25)
 """Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
 only half grown cost as much as whole ones."""
-THIRD, TWO_THIRDS = np.float32(1 / 3), np.float32(2 / 3)
-QUARTER, FOUR_NINTHS = np.float32(1 / 4), np.float32(4 / 9)
+TWO_THIRDS, FOUR_NINTHS = np.float32(2 / 3), np.float32(4 / 9)
 
 
 def fan(splits: tuple[int, int, int]) -> list[Triangle]:
@@ -86,14 +85,12 @@ FANS = table_of([fan(splits_of(configuration)) for configuration in range(CONFIG
 class Blended(Kahler):
     """The paper's refiner, but that points grow out of their edges, and nothing pops."""
 
-    _criterion: Measured
-
     def __init__(
         self,
         faces: npt.ArrayLike,
         rest_positions: npt.ArrayLike,
         *,
-        criterion: Measured,
+        criterion: Criterion,
         scheme: Scheme,
         **values: Unpack[Values],
     ) -> None:
@@ -101,7 +98,6 @@ class Blended(Kahler):
         super().__init__(faces, rest_positions, criterion=criterion, scheme=scheme, **values)
         self._patterns = FANS
         self._need = np.zeros(len(self.connectivity.edges), dtype=np.float32)
-        self._corrects = hasattr(scheme, "place_centres")
 
     @property
     def vertex_capacity(self) -> int:
@@ -111,7 +107,7 @@ class Blended(Kahler):
     def _mark(self, view: View | None) -> None:
         """Decide how far the points of every edge have grown, and so how often it is split."""
         frame = self._frame
-        self._pass_view(view)
+        self._criterion.set_view(view)
         self._criterion.measure(frame.positions, frame.normals, self._need)
         grow(self._need, self.edge_splits, frame.growth_once, frame.growth_twice)
 
@@ -126,8 +122,7 @@ class Blended(Kahler):
         """Write vertices and points on edges, then those in the middle of triangles."""
         super()._place(rows)
         place_centres(self.connectivity, self._frame)
-        if self._corrects:
-            self._scheme.place_centres(self._frame)  # type: ignore[attr-defined]
+        self._scheme.place_centres(self._frame)
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""

@@ -10,6 +10,7 @@ tell both (`Scheme.measure`): those with curved edges, and all with `normals="re
 import numpy as np
 
 from ...jit import njit
+from ..kahler.smoothing import Scheme
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
 from .blending import RAMP
@@ -36,9 +37,9 @@ class Bulge(Measuring):
         super().__init__(once, twice, "distances in mean edge lengths")
         self.turning = turning
 
-    def set_scheme(self, scheme: object) -> None:
+    def set_scheme(self, scheme: Scheme) -> None:
         """Take the scheme of the refiner; raises ValueError for one that does not measure."""
-        if not hasattr(scheme, "measure"):
+        if not scheme.measures:
             raise ValueError(
                 'criterion "bulge" asks the scheme how far it moves edges, which '
                 f'{type(scheme).__name__} tells with normals="refined" only'

@@ -23,6 +23,7 @@ import numpy as np
 
 from ...jit import njit
 from ..kahler.frame import FrameBuffers
+from ..kahler.smoothing import Scheme
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
@@ -42,7 +43,7 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
-from .curves import MIDDLE, NEAR_END, NEAR_START, CurveScheme
+from .curves import MIDDLE, NEAR_END, NEAR_START, bulge_sizes, place_on_curves
 
 FULLNESS = np.float32(1.2)
 """How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
@@ -73,18 +74,19 @@ class Tangents(NamedTuple):
     """The vertices before and after every border edge, shape (E, 2); of others no matter."""
 
 
-class CubicScheme(CurveScheme):
+class CubicScheme(Scheme):
     """Edges are cubic curves across the normals at their ends."""
 
+    interpolates = True
+
     def bind(
-        self,
-        connectivity: Connectivity,
-        rest_positions: Doubles,
-        rest_normals: Floats,
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Weigh the corners of the mesh at rest, and follow its borders."""
-        super().bind(connectivity, rest_positions, rest_normals)
-        mesh = connectivity
+        mesh = self._mesh = connectivity
+        self._around = mesh.around
+        self._bulges = np.zeros((len(mesh.edges), 3, 3), dtype=np.float32)
+        self._normals = np.zeros_like(rest_normals)
         valences = np.bincount(mesh.edges.ravel(), minlength=len(rest_normals))
         self._weights = np.zeros(mesh.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, mesh.faces, self._weights)
@@ -96,8 +98,20 @@ class CubicScheme(CurveScheme):
         )
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find the normals of vertices and the bulges of all edges."""
+        """Find the normals of vertices and the bulges of all edges, middles as if split once."""
         self._bulge(frame.positions)
+
+    def place(self, frame: FrameBuffers) -> None:
+        """Write vertices as they are, and the points of split edges on their curves."""
+        place_on_curves(self._around, frame, self._normals, self._bulges)
+
+    def measure(self, bulges: Floats, turns: Floats) -> None:
+        """Write how far the middle of every edge stands out if it is split once, shape (E,).
+
+        A mean of normals turns nothing: `turns`, shape (E,), become zero.
+        """
+        bulge_sizes(self._bulges, bulges)
+        turns[:] = ZERO
 
     def _bulge(self, positions: Doubles) -> None:
         weighted_normals(positions, self._mesh.faces, self._weights, self._normals)

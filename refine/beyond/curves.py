@@ -1,4 +1,4 @@
-r"""What the interpolating schemes share: edges that bulge between end points that stay.
+r"""Points on edges that bulge between end points that stay: the frame of `cubic` and `detail`.
 
 A scheme says how far the points of every edge would stand out of the straight edge, its *bulge*;
 this pass puts those of split edges there, as far as they have grown (blending.py):
@@ -20,50 +20,12 @@ from ...jit import njit
 from ..border.rows import place_unmoved
 from ..kahler.frame import ONCE, FrameBuffers
 from ..kahler.smoothing import write_mean_normal
-from ..mesh.arrays import Doubles, Floats
-from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.vectors import HALF, ZERO, mix, plus, row_of, times, write_row
+from ..mesh.arrays import Floats
+from ..mesh.connectivity import Surroundings
+from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, mix, plus, row_of, times, write_row
 
-QUARTER = np.float32(0.25)
-THREE_QUARTERS = np.float32(0.75)
 NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
 """Points of an edge in an array of bulges, shape (E, 3, 3): edge, point, x y z."""
-
-
-class CurveScheme:
-    """A scheme whose original vertices stay and whose edges are curves; fill in `prepare`."""
-
-    interpolates = True
-
-    def bind(
-        self,
-        connectivity: Connectivity,
-        rest_positions: Doubles,
-        rest_normals: Floats,
-    ) -> None:
-        """Take the mesh; `rest_positions` and `rest_normals`, shape (V, 3)."""
-        self._mesh, self._around = connectivity, connectivity.around
-        self._bulges = np.zeros((len(connectivity.edges), 3, 3), dtype=np.float32)
-        self._normals = np.zeros_like(rest_normals)
-
-    def prepare(self, frame: FrameBuffers) -> None:
-        """Write the bulges of all edges, split or not, and the unit normals of vertices, (V, 3).
-
-        The middle's bulge is that of an edge that is split once.
-        """
-        raise NotImplementedError
-
-    def place(self, frame: FrameBuffers) -> None:
-        """Write vertices as they are, and the points of split edges on their curves."""
-        place_on_curves(self._around, frame, self._normals, self._bulges)
-
-    def measure(self, bulges: Floats, turns: Floats) -> None:
-        """Write how far the middle of every edge stands out if it is split once, shape (E,).
-
-        A mean of normals turns nothing: `turns`, shape (E,), become zero.
-        """
-        bulge_sizes(self._bulges, bulges)
-        turns[:] = ZERO
 
 
 @njit
@@ -80,7 +42,7 @@ def place_on_curves(
 ) -> None:
     """Write vertices as they are, and the one or three points of every split edge.
 
-    `normals`: of the vertices, shape (V, 3).
+    `normals`: unit normals of vertices, shape (V, 3); `bulges`: of edges, shape (E, 3, 3).
     """
     points, vertices = frame.points, frame.rows
     place_unmoved(points, normals, vertices)

@@ -34,8 +34,9 @@ from ..kahler.frame import CENTRES, ROWS, FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.validation import checked_indices, checked_positions
-from ..mesh.vectors import HALF, ONE, ZERO, Vector, plus, row_of, times
-from .axes import find_middles, middle_axes, quarter_axes, slide_middle, triangle_axes
+from ..mesh.vectors import HALF, ONE, THIRD, ZERO, Vector, plus, row_of, times
+from .axes import FOUR, find_middles, middle_axes, quarter_axes, slide_middle, triangle_axes
+from .blending import FOUR_NINTHS
 from .closest import SearchSurface
 from .cubic import CubicScheme
 from .fit import ALONE, END, MIDDLE, START, Points, fit, middles_of
@@ -45,9 +46,6 @@ FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 
 AXES_OF = [START, MIDDLE, END, MIDDLE]
 """The directions that each point of an edge is stored along: both middles have the same."""
-THIRD = np.float32(1 / 3)
-FOUR = np.float32(4.0)
-FOUR_NINTHS = np.float32(4 / 9)
 
 
 class DetailScheme(CubicScheme):

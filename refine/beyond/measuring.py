@@ -21,19 +21,18 @@ needs a split, so that all of them can be blended (blending.py) and any of them 
 """
 
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 
-from ...jit import njit
 from ..border.plugin import View
-from ..kahler.criterion import Criterion, Measured, Thresholds
+from ..kahler.criterion import Criterion, Thresholds
+from ..kahler.smoothing import Scheme
 from ..mesh.arrays import Doubles, Floats, Small
 from ..mesh.connectivity import Connectivity
 
 
-class Measuring:
-    """What criteria that measure share: thresholds, and splits that follow from needs."""
+class Measuring(Criterion):
+    """A criterion that measures, and compares with two thresholds."""
 
     def __init__(self, once: float, twice: float, meaning: str) -> None:
         self.thresholds = Thresholds(once, twice, meaning)
@@ -43,61 +42,52 @@ class Measuring:
     ) -> None:
         """Take the edges."""
         self._edges = connectivity.edges.view(np.uint32)
-        self._need = np.zeros(len(self._edges), dtype=np.float32)
-
-    def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
-        """Write the number of splits of every edge into `splits`, shape (E,)."""
-        self.measure(positions, normals, self._need)
-        splits_of_needs(self._need, splits)
-
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
-        raise NotImplementedError
 
 
-class Maximum:
+class Maximum(Criterion):
     """Several criteria: each edge is split as often as the one that asks for most."""
 
     def __init__(self, criteria: Sequence[Criterion]) -> None:
         if not criteria:
             raise ValueError("criterion: an empty list decides nothing; name at least one")
-        self.criteria = tuple(criteria)
-        # Only a whole of measuring parts measures; others decide in whole splits.
-        if all(isinstance(criterion, Measured) for criterion in self.criteria):
-            self.measure = self._measure
+        self.parts = tuple(criteria)
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Bind them all."""
-        for criterion in self.criteria:
-            criterion.bind(connectivity, rest_positions, rest_normals)
+        for part in self.parts:
+            part.bind(connectivity, rest_positions, rest_normals)
         self._splits = np.zeros(len(connectivity.edges), dtype=np.uint8)
         self._need = np.zeros(len(connectivity.edges), dtype=np.float32)
 
-    def set_scheme(self, scheme: object) -> None:
-        """Show the scheme to those that want it."""
-        for criterion in self.criteria:
-            if hasattr(criterion, "set_scheme"):
-                criterion.set_scheme(scheme)
+    def set_scheme(self, scheme: Scheme) -> None:
+        """Show the scheme to them all."""
+        for part in self.parts:
+            part.set_scheme(scheme)
 
     def set_view(self, view: View | None) -> None:
-        """Show the view to those that want it."""
-        for criterion in self.criteria:
-            if hasattr(criterion, "set_view"):
-                criterion.set_view(view)
+        """Show the view to them all."""
+        for part in self.parts:
+            part.set_view(view)
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the largest number of splits of every edge into `splits`, shape (E,)."""
         splits[:] = 0
-        for criterion in self.criteria:
-            criterion.mark(positions, normals, self._splits)
+        for part in self.parts:
+            part.mark(positions, normals, self._splits)
             np.maximum(splits, self._splits, out=splits)
 
-    def _measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+    @property
+    def measures(self) -> bool:
+        """Only a whole of measuring parts measures; others decide in whole splits."""
+        return all(part.measures for part in self.parts)
+
+    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
+        """Write the largest need of every edge, shape (E,)."""
         need[:] = -np.inf
-        for criterion in self.criteria:
-            cast(Measured, criterion).measure(positions, normals, self._need)
+        for part in self.parts:
+            part.measure(positions, normals, self._need)
             np.maximum(need, self._need, out=need)
 
 
@@ -105,10 +95,3 @@ def mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:
     """Mean length of the edges; 1 if there are none."""
     lengths = np.linalg.norm(np.diff(positions[connectivity.edges], axis=1)[:, 0], axis=1)
     return np.float32(lengths.mean() if len(lengths) else 1.0)
-
-
-@njit
-def splits_of_needs(need: Floats, splits: Small) -> None:
-    """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
-    for e in range(need.shape[0]):
-        splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))

@@ -10,14 +10,7 @@ from typing import Literal, Unpack
 import numpy.typing as npt
 
 from ..border.corner_values import Values
-from ..kahler.criterion import (
-    THRESHOLD_ONCE,
-    THRESHOLD_TWICE,
-    Criterion,
-    Measured,
-    NormalDrop,
-    criteria,
-)
+from ..kahler.criterion import THRESHOLD_ONCE, THRESHOLD_TWICE, Criterion, NormalDrop, criteria
 from ..kahler.refiner import Kahler
 from ..kahler.smoothing import Scheme, schemes
 from .blending import Blended
@@ -68,15 +61,14 @@ def create_kahler(
             "coherent=True continues the triangulations of the frame before; with blend=True "
             "none ever turns a diagonal; ask for one of the two"
         )
-    measures = isinstance(decides, Measured)
-    if blend and not measures:
+    if blend and not decides.measures:
         raise ValueError(
             f"blend=True needs a criterion that measures, but {type(decides).__name__} "
             "has no method measure(positions, normals, need)"
         )
     if blend is None:
-        blend = chosen.interpolates and not coherent
-    if blend and isinstance(decides, Measured):
+        blend = chosen.interpolates and decides.measures and not coherent
+    if blend:
         return Blended(faces, rest_positions, criterion=decides, scheme=chosen, **values)
     return Kahler(
         faces, rest_positions, criterion=decides, scheme=chosen, coherent=bool(coherent), **values
@@ -92,10 +84,9 @@ def scheme_of(chosen: str | Scheme, detail: FinerMesh | None) -> Scheme:
         )
     if isinstance(chosen, str):
         chosen = schemes.find(chosen)(*([] if detail is None else [detail]))
-    if isinstance(chosen, type) or not _has(chosen, "bind", "place", "interpolates"):
+    if not isinstance(chosen, Scheme):
         raise ValueError(
-            f"scheme must be one of {schemes.available()} or an object with bind, place and "
-            f"interpolates, got {chosen!r}"
+            f"scheme must be one of {schemes.available()} or a refine.Scheme, got {chosen!r}"
         )
     return chosen
 
@@ -120,12 +111,6 @@ def criterion_of(
         if any(isinstance(one, Sequence) and not isinstance(one, str) for one in chosen):
             raise ValueError("criterion: a list must hold names and objects, not other lists")
         return Maximum([criterion_of(one, normal_drop) for one in chosen])
-    if isinstance(chosen, type) or not _has(chosen, "bind", "mark"):
-        raise ValueError(
-            f"criterion must be a name, an object with bind and mark, or a list, got {chosen!r}"
-        )
+    if not isinstance(chosen, Criterion):
+        raise ValueError(f"criterion must be a name, a refine.Criterion, or a list, got {chosen!r}")
     return chosen
-
-
-def _has(thing: object, *members: str) -> bool:
-    return all(hasattr(thing, member) for member in members)

@@ -26,6 +26,7 @@ import numpy as np
 
 from ...jit import njit
 from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers, buffers_for, split_everywhere
+from ..kahler.look_up import SIDE_BITS
 from ..kahler.smoothing import Scheme, write_mean_normal
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
@@ -33,6 +34,7 @@ from ..mesh.normals import normalise
 from ..mesh.vectors import (
     HALF,
     ONE,
+    THIRD,
     ZERO,
     Vector,
     add_to_row,
@@ -48,7 +50,6 @@ from ..mesh.vectors import (
     write_row,
 )
 
-THIRD = np.float32(1 / 3)
 FULL_CENTRE = np.float32(0.511)
 """How far the middle of a triangle follows the bulges of its edges: 4/9 (blending.py), and 15 %
 more: curves between these points stand out farther. Chosen: normals are nearer to a dense head."""
@@ -59,8 +60,6 @@ STEADY = np.float32(0.02)
 """Share of the mean of the ends' normals, in squared lengths of the edge, that is added to a normal
 in the middle. Chosen: where an edge is folded until nothing is left across it, this decides. More
 looks softer in deep folds and is farther from dense faces: 0.3 costs five points of thirty."""
-SIDE_BITS = np.uint32(2)
-"""A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 
 
 class WholeSurface:
@@ -101,40 +100,37 @@ class WholeSurface:
         measure_edges(self._mesh, self.rows, self.normals, bulges, turns)
 
 
-class RefinedNormals:
+class RefinedNormals(Scheme):
     """A scheme, with the normals of the surface that it makes."""
 
     def __init__(self, scheme: Scheme) -> None:
         """`scheme`: says where points go."""
-        self.scheme = scheme
+        self.parts = (scheme,)
         self.interpolates = scheme.interpolates
-        self._prepares = hasattr(scheme, "prepare")
-        self._corrects = hasattr(scheme, "place_centres")
+        self._scheme = scheme
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Bind the scheme, and make room for its surface."""
-        self.scheme.bind(connectivity, rest_positions, rest_normals)
+        self._scheme.bind(connectivity, rest_positions, rest_normals)
         self._mesh = connectivity
         self._surface = WholeSurface(connectivity, rest_positions)
 
     def prepare(self, frame: FrameBuffers) -> None:
         """Find the surface of this frame where every edge is split once, and its normals."""
-        if self._prepares:
-            self.scheme.prepare(frame)  # type: ignore[attr-defined]
-        self.scheme.place(self._surface.split(frame))
+        self._scheme.prepare(frame)
+        self._scheme.place(self._surface.split(frame))
         self._surface.find_normals()
 
     def place(self, frame: FrameBuffers) -> None:
         """Write points where the scheme has them, with the normals of its surface."""
-        self.scheme.place(frame)
+        self._scheme.place(frame)
         turn_normals(self._mesh, frame, self._surface.normals)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Let the scheme correct the middles of triangles, and turn their normals."""
-        if self._corrects:
-            self.scheme.place_centres(frame)  # type: ignore[attr-defined]
+        self._scheme.place_centres(frame)
         turn_centres(self._mesh, frame, self._surface.rows)
 
     def measure(self, bulges: Floats, turns: Floats) -> None:

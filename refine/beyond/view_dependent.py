@@ -4,25 +4,22 @@ Kähler, Haber, Seidel 2003, section 6.
 """
 
 import reprlib
-from typing import cast
 
 import numpy as np
 
 from ...jit import njit
 from ..border.plugin import View
 from ..mesh.arrays import Doubles, Floats, Unsigned
+from ..mesh.vectors import ONE
 from .blending import RAMP
 from .measuring import Measuring
 
-ONE = np.float32(1.0)
 BAND = 0.3
 """Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees away."""
 
 
 class ViewDependent(Measuring):
     """A criterion that depends on where the eye is."""
-
-    _view: View | None = None
 
     def set_view(self, view: View | None) -> None:
         """Take the view of this frame; raises ValueError if there is none, or no place for it."""
@@ -40,14 +37,7 @@ class ViewDependent(Measuring):
                 "view must have an eye of shape (3,) and a focal length in pixels above 0, all "
                 f"finite, got {reprlib.repr(view.eye)} and {reprlib.repr(view.focal)}"
             )
-        self._view = View(eye, focal)
-
-    def _eye_and_focal(self) -> tuple[Doubles, np.float32]:
-        if self._view is None:
-            raise ValueError(
-                f"{type(self).__name__}.set_view(view) must be called before every frame"
-            )
-        return cast(Doubles, self._view.eye), np.float32(self._view.focal)
+        self._eye, self._focal = eye, np.float32(focal)
 
 
 class Silhouette(ViewDependent):
@@ -65,7 +55,7 @@ class Silhouette(ViewDependent):
         """Write the need of every edge, shape (E,)."""
         limits = self.thresholds
         most = limits.once + (ONE + RAMP) * limits.width
-        turns_at_silhouette(positions, normals, self._edges, self._eye_and_focal()[0], most, need)
+        turns_at_silhouette(positions, normals, self._edges, self._eye, most, need)
         limits.scale(need)
 
 
@@ -78,8 +68,7 @@ class ScreenEdge(ViewDependent):
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,)."""
-        eye, focal = self._eye_and_focal()
-        lengths_on_screen(positions, self._edges, eye, focal, need)
+        lengths_on_screen(positions, self._edges, self._eye, self._focal, need)
         self.thresholds.scale(need)
 
 

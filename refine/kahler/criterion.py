@@ -18,15 +18,16 @@ one metre away, still far below the default thresholds.
 import reprlib
 from collections.abc import Callable
 from numbers import Real
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from ...jit import njit
+from ..border.plugin import View
 from ..border.registry import Registry
 from ..mesh.arrays import Doubles, Flags, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE, WIDTH, add_to_row, cross, difference, dot, row_of
+from .smoothing import Scheme
 
 THRESHOLD_ONCE = 0.02
 """Default drop above which an edge is split once: a flat place bent by 11 degrees along an edge.
@@ -46,35 +47,48 @@ UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
 
 
-class Criterion(Protocol):
-    """Decides on splits; anything with these two methods can take the place of the paper's rule.
+class Criterion:
+    """Decides on splits: what every criterion derives from, the paper's as well as your own.
 
-    More methods are used where they are there: `measure(positions, normals, need)`, which blending
-    asks for (see `Measured`); `set_view(view)`, which gets the `view` of every frame;
-    `set_scheme(scheme)`, which gets the smoothing scheme, once, before anything else.
+    It writes `mark`; or else `measure`, from which `mark` follows, and which blending asks for. All
+    other methods do nothing unless they are written. A refiner calls `set_scheme` and `bind` once,
+    then in every frame `set_view` and `mark`, or `measure` where it blends.
     """
 
+    parts: tuple["Criterion", ...] = ()
+    """Criteria that this one asks. Each of them, too, serves one refiner only."""
+    _need: Floats = np.zeros(0, dtype=np.float32)
+    """What `mark` follows from, shape (E,)."""
+
+    def set_scheme(self, scheme: Scheme) -> None:
+        """Learn where points will go."""
+
     def bind(
-        self,
-        connectivity: Connectivity,
-        rest_positions: Doubles,
-        rest_normals: Floats,
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Learn the undeformed mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
+    def set_view(self, view: View | None) -> None:
+        """Learn where the eye is in this frame; None if nobody said."""
+
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write 0, 1 or 2 for every edge into `splits`, shape (E,)."""
+        if len(self._need) != len(splits):
+            self._need = np.zeros(len(splits), dtype=np.float32)
+        self.measure(positions, normals, self._need)
+        splits_of_needs(self._need, splits)
 
-
-@runtime_checkable
-class Measured(Criterion, Protocol):
-    """A criterion that says how much an edge needs splits, and not only how many."""
+    @property
+    def measures(self) -> bool:
+        """Whether it has a `measure`."""
+        return type(self).measure is not Criterion.measure
 
     def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
         """Write the need of every edge, shape (E,): above 0 one split, above 1 two.
 
         It has to be a continuous function of the positions for blending to be one.
         """
+        raise NotImplementedError(f"{type(self).__name__} must have a method mark or measure")
 
 
 criteria: Registry[Criterion] = Registry("criterion", "risorius.criteria")
@@ -129,7 +143,7 @@ class Thresholds:
         scale_needs(measures, self.once * unit, self.width * unit, self.most)
 
 
-class NormalDrop:
+class NormalDrop(Criterion):
     """The paper's criterion: drop of the dot product of the vertex normals along each edge."""
 
     def __init__(
@@ -141,10 +155,7 @@ class NormalDrop:
         """Drops above which an edge is split once and twice; may be replaced at any time."""
 
     def bind(
-        self,
-        connectivity: Connectivity,
-        rest_positions: Doubles,
-        rest_normals: Floats,
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Store the dot product of every edge of the undeformed mesh."""
         self._edges = connectivity.edges.view(np.uint32)
@@ -196,6 +207,13 @@ def mark_drops(
     for e in range(edges.shape[0]):
         drop = rest_dots[e] - dots[e]
         splits[e] = np.uint8(drop > once) + np.uint8(drop > twice)
+
+
+@njit
+def splits_of_needs(need: Floats, splits: Small) -> None:
+    """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
+    for e in range(need.shape[0]):
+        splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))
 
 
 @njit

@@ -20,13 +20,10 @@ from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
 from ..border.stream import StreamArrays
 from ..mesh.arrays import Floats, Indices, Short, Unsigned
-from ..mesh.vectors import WIDTH, row_of, write_row
+from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, WIDTH, row_of, write_row
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
 from .table import CENTRE, Patterns
 
-QUARTER = np.float32(0.25)
-HALF = np.float32(0.5)
-THREE_QUARTERS = np.float32(0.75)
 SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
@@ -46,15 +43,16 @@ def number_points(
     rim_edges: Unsigned,
     wedge_count: int,
     frame: FrameBuffers,
-) -> None:
+) -> int:
     """List the split edges, give new points their rows, and triangles their configuration.
 
     `split_once` gets every split edge, `split_twice` those split twice. The entries of
     `first_points` for edges that are not split have no meaning. `counts` gets all but centres.
+    Returns the most splits of an edge.
     """
     splits, configurations = frame.splits, frame.configurations
     edge_count, face_count = edge_sides.shape[0], configurations.shape[0] - 1
-    once_count = twice_count = 0
+    once_count = twice_count = most = 0
     for e in range(edge_count):
         # Written always and counted when split: no branch that a processor could guess wrong.
         frame.split_once[once_count] = e
@@ -66,6 +64,7 @@ def number_points(
         split = splits[e]
         frame.split_twice[twice_count] = e
         twice_count += split > 1
+        most = max(most, split)
         points = points_on(split)
         frame.first_points[e] = row
         row += points
@@ -83,6 +82,7 @@ def number_points(
         row += points_on(splits[r])
     frame.counts[ROWS], frame.counts[ONCE], frame.counts[TWICE] = row, once_count, twice_count
     frame.counts[TRIANGLES] = triangle_count
+    return most
 
 
 @njit
@@ -92,11 +92,11 @@ def numbering(
     rim_edges: Unsigned,
     wedge_count: int,
     frame: FrameBuffers,
-) -> Iterator[tuple[int, int]]:
-    """Do `number_points` at each `next`, and give the numbers of output rows and triangles."""
+) -> Iterator[tuple[int, int, int]]:
+    """Do `number_points` at each `next`: numbers of output rows and triangles, most splits."""
     while True:
-        number_points(edge_sides, more_sides, rim_edges, wedge_count, frame)
-        yield int(frame.counts[ROWS]), int(frame.counts[TRIANGLES])
+        most = number_points(edge_sides, more_sides, rim_edges, wedge_count, frame)
+        yield int(frame.counts[ROWS]), int(frame.counts[TRIANGLES]), most
 
 
 @njit

@@ -65,11 +65,8 @@ class Kahler(BaseRefiner):
         self._numbering = numbering(sides, more, mesh.rim_edges, wedge_count, self._frame)
         self._out: StreamArrays | None = None
         self._looking_up: Iterator[None]
-        if hasattr(self._criterion, "set_scheme"):
-            self._criterion.set_scheme(self._scheme)
-        inner = getattr(self._scheme, "scheme", self._scheme)
-        self._own(self._criterion, inner, *getattr(self._criterion, "criteria", ()))
-        self._prepares = hasattr(self._scheme, "prepare")
+        self._own(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
+        self._criterion.set_scheme(self._scheme)
         self.find_normals()
         self._criterion.bind(mesh, self.rest_positions, self.normals)
         self._scheme.bind(mesh, self.rest_positions, self.normals)
@@ -87,8 +84,7 @@ class Kahler(BaseRefiner):
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Write the frame: one line for each step above."""
         self.find_normals()
-        if self._prepares:
-            self._scheme.prepare(self._frame)  # type: ignore[attr-defined]
+        self._scheme.prepare(self._frame)
         self._mark(view)
         vertex_count, triangle_count = self._number()
         out = self.reserve(stream, vertex_count, triangle_count)
@@ -100,17 +96,23 @@ class Kahler(BaseRefiner):
 
     def _mark(self, view: View | None) -> None:
         """Decide how often every edge is split (section 4.1)."""
-        self._pass_view(view)
+        self._criterion.set_view(view)
         self._criterion.mark(self._frame.positions, self._frame.normals, self.edge_splits)
-        if type(self._criterion) is not NormalDrop:
-            self._check_splits()
 
     def _number(self) -> tuple[int, int]:
-        """Give new points their rows and triangles their row of the table; count both."""
-        counts = next(self._numbering)
+        """Give new points their rows and triangles their row of the table; count both.
+
+        Raises ValueError if a criterion asks for more than the table has.
+        """
+        vertex_count, triangle_count, most = next(self._numbering)
+        if most > MOST_SPLITS:
+            raise ValueError(
+                f"{type(self._criterion).__name__}.mark must write 0, 1 or 2 for every edge, "
+                f"but edge {self.edge_splits.argmax()} got {most}"
+            )
         if self.history is not None:
             self.history.follow(self._frame.configurations)
-        return counts
+        return vertex_count, triangle_count
 
     def _write_to(self, out: StreamArrays) -> None:
         """Hand the arrays of a stream to the passes that write them."""
@@ -131,20 +133,6 @@ class Kahler(BaseRefiner):
     def _look_up(self) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
         next(self._looking_up)
-
-    def _pass_view(self, view: View | None) -> None:
-        """Show the criterion where the eye is, if it wants to know."""
-        if hasattr(self._criterion, "set_view"):
-            self._criterion.set_view(view)
-
-    def _check_splits(self) -> None:
-        """Raise ValueError if a criterion asks for more than the table has."""
-        most = self.edge_splits.max(initial=0)
-        if most > MOST_SPLITS:
-            raise ValueError(
-                f"{type(self._criterion).__name__}.mark must write 0, 1 or 2 for every edge, "
-                f"but edge {self.edge_splits.argmax()} got {most}"
-            )
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""

@@ -41,12 +41,11 @@ Normals of new points are interpolated between their two neighbours on the edge 
 (section 4.4, first paragraph).
 
 Section 6: "it would be interesting to investigate the effects of other smoothing schemes". So a
-scheme is one small class, bound once to the mesh and called once in every frame, when it is known
-which edges are split and where in the output their points go.
+scheme is one small class, `Scheme`.
 """
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -86,32 +85,49 @@ MIDDLE_RING = np.float32(1 / 16)
 """Its six neighbours, 3/(8 x 6) (Fig. 4 right)."""
 
 
-class Scheme(Protocol):
-    """Places points; anything with these members can take the place of the built-in schemes.
+class Scheme:
+    """Places points: what every scheme derives from, the paper's as well as your own.
 
-    More methods are used where they are there. `prepare(frame)` is called before the criterion
-    decides. What it keeps should be differences of positions: refined normals ask `place` twice,
-    first for the mesh as seen from vertex 0 with every edge split once. `measure(bulges, turns)`
-    tells the criterion `bulge` how far a split would move the middle of every edge, and by what
-    angle [rad], times the length of the edge, it would turn the normal there, both of shape (E,).
-    `place_centres(frame)` corrects the points in the middle of triangles after blending has written
-    them.
+    It writes `place`; all other methods do nothing unless they are written. A refiner calls `bind`
+    once, then in every frame `prepare`, `place` and, where it blends, `place_centres`.
     """
 
-    @property
-    def interpolates(self) -> bool:
-        """Whether the original vertices stay where they are."""
+    interpolates = False
+    """Whether the original vertices stay where they are."""
+    parts: tuple["Scheme", ...] = ()
+    """Schemes that this one asks. Each of them, too, serves one refiner only."""
 
     def bind(
-        self,
-        connectivity: Connectivity,
-        rest_positions: Doubles,
-        rest_normals: Floats,
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Learn the mesh: `rest_positions` and `rest_normals`, shape (V, 3)."""
 
+    def prepare(self, frame: FrameBuffers) -> None:
+        """Look at the deformed mesh, before the criterion decides.
+
+        What is kept should be differences of positions: refined normals ask `place` twice, first
+        for the mesh as seen from vertex 0 with every edge split once.
+        """
+
     def place(self, frame: FrameBuffers) -> None:
         """Write positions and normals of vertices and of points on split edges into the rows."""
+        raise NotImplementedError(f"{type(self).__name__} must have a method place")
+
+    def place_centres(self, frame: FrameBuffers) -> None:
+        """Correct the points in the middle of triangles, when blending has written them."""
+
+    @property
+    def measures(self) -> bool:
+        """Whether it has a `measure`."""
+        return type(self).measure is not Scheme.measure
+
+    def measure(self, bulges: Floats, turns: Floats) -> None:
+        """Tell the criterion `bulge` what a split of each edge would change, shape (E,) each.
+
+        How far it would move the middle, and by what angle [rad], times the length of the edge, it
+        would turn the normal there.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has no method measure")
 
 
 schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
@@ -137,16 +153,11 @@ class FirstLevel(NamedTuple):
     """First-level points as they are when fully grown, shape (E, 3); only of edges split now."""
 
 
-class LoopScheme:
+class LoopScheme(Scheme):
     """The paper's scheme: Loop's rules with Warren's weights (section 4.2)."""
 
-    interpolates = False
-
     def bind(
-        self,
-        connectivity: Connectivity,
-        rest_positions: Doubles,
-        rest_normals: Floats,
+        self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Work out the weights of every vertex."""
         self._around = connectivity.around

@@ -16,6 +16,7 @@ WIDTH = 3
 """Columns of a row. A kernel that asserts it is faster: the compiler need not multiply by it."""
 
 ZERO, HALF, ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
+THIRD, QUARTER, THREE_QUARTERS = np.float32(1 / 3), np.float32(0.25), np.float32(0.75)
 TINY = np.finfo(np.float32).tiny
 SHORT, LONG = np.float32(1e-30), np.float32(1e37)
 """Squares of lengths between which single precision tells a length to the last bit."""

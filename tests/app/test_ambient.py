@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from risorius import assets
-from risorius.app.ambient import bake, main, open_to_light, openness
-from risorius.app.mouth import shaded_mouth
 from risorius.app.scenes import FaceScene
+from risorius.app.scenes.ambient import bake, main, open_to_light, openness
+from risorius.app.scenes.mouth import shaded_mouth
 from risorius.assets.loading import HEAD_FILE, load_head
 from tests import meshes
 
@@ -89,12 +89,12 @@ def test_program_writes_the_light_of_a_head(unbaked: FaceScene) -> None:
     assert np.array_equal(unbaked.openness(), head.openness)
     np.savez(head.openness_file, openness=head.openness, made_from=np.array(1))
     with pytest.raises(
-        assets.AssetError, match=r"another head; .* 'python -m risorius.app.ambient'"
+        assets.AssetError, match=r"another head; .* 'python -m risorius.app.scenes.ambient'"
     ):
         _ = load_head(head.openness_file.with_name("head.npz")).openness
     head.openness_file.write_bytes(b"nothing")
     with pytest.raises(
-        assets.AssetError, match=r"not a readable npz .* 'python -m risorius.app.ambient'"
+        assets.AssetError, match=r"not a readable npz .* 'python -m risorius.app.scenes.ambient'"
     ):
         _ = load_head(head.openness_file.with_name("head.npz")).openness
 
@@ -104,8 +104,8 @@ def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
     """A picture of it is drawn without the code that bakes, let alone its compiling."""
     words = ["capture", "--set", "joy", "--size", "64x48", "-o", str(tmp_path / "joy.png")]
     code = (
-        "import sys; from risorius.app.cli import main; "
-        f"main({words}, standalone_mode=False); assert 'risorius.app.ambient' not in sys.modules"
+        f"import sys; from risorius.app.cli import main; main({words}, standalone_mode=False); "
+        "assert 'risorius.app.scenes.ambient' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
     assert (tmp_path / "joy.png").exists()

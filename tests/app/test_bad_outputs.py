@@ -42,8 +42,8 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     for name in (
         "risorius.app.capture.Capture.play",
-        "risorius.bench.figure_9.draw",
-        "risorius.bench.refine.measure",
+        "risorius.bench.reproduce.figure_9.draw",
+        "risorius.bench.refinement.refine.measure",
     ):
         monkeypatch.setattr(name, work)
     monkeypatch.chdir(tmp_path)

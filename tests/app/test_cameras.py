@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from risorius.app.cameras import DEFAULT_VIEW, camera_for, whole_scene
+from risorius.app.capture.cameras import DEFAULT_VIEW, camera_for, whole_scene
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius.app.curves import ACTION_UNITS, ARKIT_SHAPES, sided, solved
 from risorius.app.errors import UserError
+from risorius.app.motion.curves import ACTION_UNITS, ARKIT_SHAPES, sided, solved
 from risorius.app.scenes import FaceScene, PlaneScene
 
 Floats = npt.NDArray[np.float64]

@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 
 from risorius import assets, refine, render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.looks import STATIC, Refinement
-from risorius.app.refining import refiner_for
+from risorius.app.refining.looks import STATIC, Refinement
+from risorius.app.refining.refiners import refiner_for
+from risorius.app.refining.wrinkling import Compression, Relief, on_rows, relief_of
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.wrinkling import Compression, Relief, on_rows, relief_of
 from risorius.assets.fitting import fit
 from risorius.assets.meshes import Mesh
 from risorius.assets.model import HIGHEST_FOLD

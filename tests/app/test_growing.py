@@ -10,8 +10,8 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from risorius import assets
-from risorius.app.growing import Growing
 from risorius.app.scenes import FaceScene
+from risorius.app.scenes.growing import Growing
 
 POSES = (
     {"AU43": 1.0},

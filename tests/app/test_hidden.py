@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.looks import STATIC, Refinement
+from risorius.app.refining.looks import STATIC, Refinement
 from risorius.app.scenes import FaceScene
 from risorius.render import hidden
 from risorius.render.hidden import Occluder
@@ -38,7 +38,7 @@ def test_no_pixel_changes(
 
     Nor does one where what shows its inner side alone takes the program of all skin.
     """
-    from risorius.app.cameras import camera_for
+    from risorius.app.capture.cameras import camera_for
 
     known = studio.scene.limits
     studio.scene.reset()

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.cameras import camera_for
+from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
-from risorius.app.idle import EYES_MOST, Idle, looking_at
-from risorius.app.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
+from risorius.app.motion.idle import EYES_MOST, Idle, looking_at
+from risorius.app.motion.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
 from risorius.app.performances import limits_of, script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
-from risorius.app.cameras import whole_scene
+from risorius.app.capture.cameras import whole_scene
 from risorius.app.errors import UserError
-from risorius.app.looks import FIRST_LOOK, LOOKS, Look, Refinement, named
 from risorius.app.pipeline import Pipeline
-from risorius.app.refining import parse_comparison, refiner_for
+from risorius.app.refining.looks import FIRST_LOOK, LOOKS, Look, Refinement, named
+from risorius.app.refining.refiners import parse_comparison, refiner_for
 from risorius.app.scenes import SCENES, Scene
 from risorius.refine.border.registry import refiners
 
@@ -85,7 +85,7 @@ def test_looks_know_every_scene() -> None:
 def test_what_is_asked_for_is_over_the_look(monkeypatch: pytest.MonkeyPatch) -> None:
     """A look says which refiner and what it is told; both can be replaced; others get nothing."""
     told = {"kahler": {"scheme": "cubic", "blend": True}, "loop": {"levels": 2}}
-    monkeypatch.setattr("risorius.app.looks.LOOKS", {"x": {"face": Look("loop", told)}})
+    monkeypatch.setattr("risorius.app.refining.looks.LOOKS", {"x": {"face": Look("loop", told)}})
     assert Refinement("x").on("face") == ("loop", {"levels": 2})
     assert Refinement("x", "kahler").on("face") == ("kahler", told["kahler"])
     changed = Refinement("x", "kahler", {"blend": None}).on("face")
@@ -99,7 +99,7 @@ def test_a_refusal_tells_what_the_look_has(
 ) -> None:
     """An option may not go with what the look says; who asked for nothing is told no more."""
     told = {"kahler": {"scheme": "cubic", "blend": True}}
-    monkeypatch.setattr("risorius.app.looks.LOOKS", {"x": {"face": Look(options=told)}})
+    monkeypatch.setattr("risorius.app.refining.looks.LOOKS", {"x": {"face": Look(options=told)}})
     with pytest.raises(UserError, match=r"one of the two; the look x has scheme=cubic, blend=on$"):
         refiner_for(scenes["face"], Refinement("x", options={"coherent": True}))
     options = {"scheme": "loop", "blend": True, "coherent": True}

@@ -15,10 +15,10 @@ from PIL import Image
 from risorius.__main__ import command
 from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance, script_for
-from risorius.app.playback import LEAD, Playback
 from risorius.app.recordings import Take
 from risorius.app.recordings.conversion import lead_of, script_of
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.playback import LEAD, Playback
 from risorius.app.recordings.smoothing import smoothed
 from risorius.app.scenes import FaceScene
 from risorius.app.script import TOLERANCE, load_script

@@ -10,10 +10,10 @@ import pytest
 
 from risorius import refine, render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.looks import Refinement
 from risorius.app.motion import SETTLING
 from risorius.app.pipeline import Pipeline, side_by_side, splits_of_source
-from risorius.app.refining import refiner_for
+from risorius.app.refining.looks import Refinement
+from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import parse_script
 from risorius.refine.border.registry import refiners

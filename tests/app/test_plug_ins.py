@@ -20,20 +20,15 @@ import numpy as np
 from risorius import refine
 
 
-class Everywhere:
+class Everywhere(refine.Criterion):
     """Splits all edges once."""
-
-    def bind(self, connectivity, rest_positions, rest_normals):
-        pass
 
     def mark(self, positions, normals, splits):
         splits[:] = 1
 
 
-class Straight:
+class Straight(refine.Scheme):
     """Leaves all points where they are."""
-
-    interpolates = False
 
     def bind(self, connectivity, rest_positions, rest_normals):
         self.edges = connectivity.edges

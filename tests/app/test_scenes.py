@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from risorius import refine
-from risorius.app.cameras import whole_scene
+from risorius.app.capture.cameras import whole_scene
 from risorius.app.cli.options import SCENE_NAMES
 from risorius.app.errors import UserError
-from risorius.app.looks import LOOKS, Refinement
-from risorius.app.refining import refiner_for
+from risorius.app.refining.looks import LOOKS, Refinement
+from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import SCENES, ClothScene, FaceScene, PlaneScene, clamped
-from risorius.bench.lines_of_sight import meshes_of, widest_slit
+from risorius.bench.simulation.lines_of_sight import meshes_of, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from risorius.app.life import LID
+from risorius.app.motion.life import LID
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.idle_life import ASLEEP_AFTER
 from risorius.app.viewer.physics import STEP

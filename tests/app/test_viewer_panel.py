@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import pytest
 
+from risorius.app.controls.vocabulary import filters, pads, title_of
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.controls import Controls
-from risorius.app.vocabulary import filters, pads, title_of
 from risorius.assets.loading import read_words
 
 from .driving import (

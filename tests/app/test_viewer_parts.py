@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from viewer import STOPS
 
+from risorius.app.controls.mirror import mirrored
 from risorius.app.errors import UserError
-from risorius.app.mirror import mirrored
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.poses import Poses
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.panels.poses import PoseGrid
+from risorius.app.viewer.poses import Poses
 
 from .driving import (
     NEEDS_A_SCREEN,

@@ -14,8 +14,8 @@ import pytest
 
 from risorius import assets, render
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.refining.wrinkling import Wrinkling, on_rows, wrinkling_of
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.wrinkling import Wrinkling, on_rows, wrinkling_of
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 

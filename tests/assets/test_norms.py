@@ -64,6 +64,22 @@ def test_head_is_near_the_middle_on_the_whole(measures: dict[str, float]) -> Non
     assert float(np.sqrt(np.mean(np.square(scores)))) < 1.0
 
 
+def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head: Head, page: str) -> None:
+    """The aesthetic line of Ricketts, to which the foremost points of both lips are held."""
+    middle = head.vertices[head.vertices[:, 0] == 0.0]
+    tip, chin, seam = (
+        head.vertices[head.anatomy[name]] for name in ("pronasale", "pogonion", "stomion")
+    )
+    along = (chin - tip) / np.linalg.norm(chin - tip)
+    behind = (middle - tip) @ [0.0, -along[2], along[1]]
+    is_upper = (middle[:, 1] > seam[1]) & (middle[:, 1] < seam[1] + 10.0)
+    is_lower = (middle[:, 1] < seam[1]) & (middle[:, 1] > seam[1] - 12.0)
+    in_front = middle[:, 2] > 80.0
+    upper, lower = (float(behind[lip & in_front].min()) for lip in (is_upper, is_lower))
+    assert 0.5 < lower < upper < 3.5
+    assert f"{upper:.1f} and {lower:.1f} mm behind the line" in page
+
+
 def test_norms_are_plausible_figures() -> None:
     """Against slips of the pen: deviations of 4 to 25 %, men larger, large samples."""
     for code, norm in NORMS.items():

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
-from risorius.app import mirror
-from risorius.bench import soak, tearing
+from risorius.app.controls import mirror
+from risorius.bench.simulation import soak, tearing
 from risorius.bench.timing import WARMING, interleaved, paired
 
 

@@ -9,9 +9,10 @@ import pytest
 from click.testing import CliRunner
 
 from risorius import assets
-from risorius.bench import motion, simulate, soak, tearing
-from risorius.bench.playing_commands import bench_capture, bench_window
+from risorius.bench.playing.commands import bench_capture, bench_window
 from risorius.bench.report import table
+from risorius.bench.scans import motion
+from risorius.bench.simulation import simulate, soak, tearing
 
 
 def test_simulate() -> None:

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from risorius import assets, refine, sim
-from risorius.app.cameras import camera_for
+from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.looks import FIRST_LOOK, LOOKS
+from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 from risorius.app.scenes import ClothScene
 from risorius.assets.cloth import CELL, CELLS
 from risorius.assets.plane import make_grid
 from risorius.bench.canvas import Canvas, Drawing
-from risorius.bench.figure_9 import levels_apart, outline_apart
-from risorius.bench.figure_coherence import FLAT, GOURAUD
+from risorius.bench.reproduce.figure_9 import levels_apart, outline_apart
+from risorius.bench.reproduce.figure_coherence import FLAT, GOURAUD
 
 SMOOTH = LOOKS[FIRST_LOOK]["cloth"].told("kahler")
 

@@ -5,11 +5,11 @@ from pathlib import Path
 import controls
 import numpy as np
 import pytest
+from figures import FOLDER
 from PIL import Image
 
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
-from risorius.bench.figures import FOLDER
 
 LARGEST_IMAGE_FILE = 1_500_000  # bytes, at full size
 

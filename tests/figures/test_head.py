@@ -5,9 +5,8 @@ from pathlib import Path
 import head
 import numpy as np
 import pytest
+from figures import FOLDER
 from PIL import Image
-
-from risorius.bench.figures import FOLDER
 
 LARGEST_IMAGE_FILE = 600_000  # bytes, at full size
 

@@ -9,7 +9,7 @@ import pytest
 import refinement
 from PIL import Image
 
-from risorius.bench import figure_coherence
+from risorius.bench.reproduce import figure_coherence
 
 IMAGES = Path(__file__).parents[2] / "docs" / "pictures"
 LARGEST_IMAGE_FILE = 450_000  # bytes

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.cameras import camera_for
+from risorius.app.capture.cameras import camera_for
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import SCENES, FaceScene, Scene

@@ -16,18 +16,11 @@ def configuration_of(splits: tuple[int, int, int]) -> int:
     return splits[0] + 3 * splits[1] + 9 * splits[2]
 
 
-class Needed:
+class Needed(refine.Criterion):
     """A criterion that measures what it is told."""
 
     def __init__(self, need: npt.ArrayLike) -> None:
         self.need = np.asarray(need, dtype=np.float32)
-
-    def bind(self, connectivity: object, rest_positions: object, rest_normals: object) -> None:
-        """Need nothing of the undeformed mesh."""
-
-    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
-        """Write the splits that belong to the needs."""
-        splits[:] = (self.need > 0).astype(np.uint8) + (self.need > 1)
 
     def measure(self, positions: object, normals: object, need: npt.NDArray[np.float32]) -> None:
         """Write the needs."""
@@ -41,14 +34,11 @@ class Needed:
         return {n: (float(p), float(q)) for n, p, q in zip(names, once, twice, strict=True)}
 
 
-class Forced:
+class Forced(refine.Criterion):
     """A criterion that splits as it is told, whatever the mesh does."""
 
     def __init__(self, splits: npt.ArrayLike) -> None:
         self.wanted = np.asarray(splits, dtype=np.uint8)
-
-    def bind(self, connectivity: object, rest_positions: object, rest_normals: object) -> None:
-        """Need nothing of the undeformed mesh."""
 
     def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
         """Write the wanted splits."""

@@ -11,9 +11,9 @@ from risorius import assets, render
 from risorius.assets.topology import vertex_normals
 from risorius.sim.landmarks import MIRRORED
 
-from ...looks import STATIC, Refinement
 from ...passes.camera_labels import CameraLabels
 from ...pipeline import Pipeline, Viewport
+from ...refining.looks import STATIC, Refinement
 from ...scenes import Scene, build_scene
 from ..settings import Display, Settings
 from ..view import View

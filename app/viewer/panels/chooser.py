@@ -8,7 +8,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
-from ...vocabulary import sentence
+from ...controls.vocabulary import sentence
 from ..files import SUFFIX, Files, Request
 from ..gui import Gui, colour, em
 from ..messages import Message

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import imgui
 
-from ...vocabulary import filters
+from ...controls.vocabulary import filters
 from ..control_rows import Row, search_rows
 from ..gui import Gui, colour, em
 from ..session import Session

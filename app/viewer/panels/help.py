@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from imgui_bundle import imgui
 
-from ...vocabulary import readable
+from ...controls.vocabulary import readable
 from ..command import Command, pressed_key, set_keys
 from ..gui import Gui, colour, em
 from ..panel_state import PanelState

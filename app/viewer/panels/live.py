@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
+from ...controls.vocabulary import sentence
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
 from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
-from ...vocabulary import sentence
 from ..command import Command
 from ..control_rows import rows_of
 from ..gui import Gui, colour, em

@@ -14,10 +14,10 @@ from risorius import refine, render
 from risorius.assets.identities import NAMED, person_in_words
 
 from ...anatomy import OPACITY, SIDES
-from ...looks import FIRST_LOOK, LOOKS, STATIC, THRESHOLDS, named, words_of_looks
-from ...refining import DETAIL, can_detail
+from ...controls.vocabulary import readable
+from ...refining.looks import FIRST_LOOK, LOOKS, STATIC, THRESHOLDS, named, words_of_looks
+from ...refining.refiners import DETAIL, can_detail
 from ...scenes import BUILT_IN, OWN
-from ...vocabulary import readable
 from ..colours import COLOURS
 from ..file_drop import FileDrop
 from ..frame_times import PHASES, FrameTimes

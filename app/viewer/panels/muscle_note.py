@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from ...mirror import twin_of
-from ...vocabulary import called
+from ...controls.mirror import twin_of
+from ...controls.vocabulary import called
 from ..gui import LEFT, NOTE_FLAGS, Gui, em
 from ..session import Session
 from ..settings import Settings

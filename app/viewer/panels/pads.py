@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from ...vocabulary import Pad, pads
+from ...controls.vocabulary import Pad, pads
 from ..gui import LEFT, RIGHT, Gui, em, ink_of
 from ..session import Session
 from .widgets import hint

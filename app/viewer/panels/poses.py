@@ -13,10 +13,10 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ...mirror import mirrored
-from ...poses import Poses, Values
+from ...controls.mirror import mirrored
 from ..gui import LEFT, Gui, em, ink_of, wake_up
 from ..messages import Messages
+from ..poses import Poses, Values
 from ..session import Session
 from .widgets import button, hint
 

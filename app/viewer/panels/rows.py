@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from ...mirror import parted
-from ...vocabulary import readable, title_of
+from ...controls.mirror import parted
+from ...controls.vocabulary import readable, title_of
 from ..control_rows import Row, rows_of
 from ..gui import Gui, colour, em, ink_of
 from ..session import Session

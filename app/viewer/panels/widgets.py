@@ -7,7 +7,7 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from ...vocabulary import readable, sentence
+from ...controls.vocabulary import readable, sentence
 from ..gui import BACK, Gui, colour, em
 from ..settings import Settings
 from .sliders import Sliders

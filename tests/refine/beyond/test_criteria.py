@@ -261,8 +261,7 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
 
     criterion = kind(once, twice if level == "both" else np.inf)
     criterion.bind(connectivity, mesh.vertices, at_rest)
-    if hasattr(criterion, "set_view"):
-        criterion.set_view(refine.View(EYE, 500.0))
+    criterion.set_view(refine.View(EYE, 500.0))
     need = np.zeros(len(edges), dtype=np.float32)
     criterion.measure(deformed, now, need)
     wanted = np.minimum((expected - once) / width, np.inf if level == "both" else 1.0)
@@ -282,7 +281,7 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
         ("bending", r"criterion 'bending' is unknown; there are \('normal', 'curvature'"),
         ("normal+", "criterion '' is unknown; there are"),
         ([], "an empty list decides nothing"),
-        (7, "criterion must be a name, an object with bind and mark, or a list, got 7"),
+        (7, "criterion must be a name, a refine.Criterion, or a list, got 7"),
     ],
 )
 def test_bad_criteria(criterion: object, text: str) -> None:
@@ -361,7 +360,7 @@ def test_several_criteria_mark(names: str) -> None:
     normals = plain.refine(deformed).normals.copy()
     for part in parts:
         part.bind(refiner.connectivity, mesh.vertices, rest_normals)
-    drops = [refiner._criterion, *getattr(refiner._criterion, "criteria", ())]
+    drops = [refiner._criterion, *refiner._criterion.parts]
     drops = [one for one in drops if isinstance(one, refine.NormalDrop)]
     for change in (None, 0.3, 0.05):
         if change == 0.3:
@@ -392,3 +391,18 @@ def test_a_rule_of_ones_own_is_asked() -> None:
         refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
         refiner.refine(mesh.vertices)
         assert (refiner.splits == 2).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"criterion": refine.Criterion()}, "Criterion must have a method mark or measure"),
+        ({"scheme": refine.Scheme()}, "Scheme must have a method place"),
+    ],
+)
+def test_a_rule_that_says_nothing(options: dict[str, Any], text: str) -> None:
+    """A criterion or scheme without its one method says which that is, when a frame asks it."""
+    mesh = meshes.octahedron()
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, **options)
+    with pytest.raises(NotImplementedError, match=text):
+        refiner.refine(mesh.vertices)

@@ -197,7 +197,7 @@ def test_sphere_is_approached() -> None:
     ("options", "text"),
     [
         ({"scheme": "lop"}, "scheme 'lop' is unknown; there are"),
-        ({"scheme": 3}, "scheme must be one of .* or an object with bind, .*, got 3"),
+        ({"scheme": 3}, "scheme must be one of .* or a refine.Scheme, got 3"),
         ({"scheme": "detail"}, "go together, got scheme='detail' and detail not given"),
         ({"detail": (np.eye(3), [[0, 1, 2]])}, "go together, got scheme='loop' and detail given"),
         ({"scheme": "detail", "detail": np.eye(3)}, "detail must be a pair"),
@@ -217,9 +217,9 @@ def test_bad_choices(options: dict[str, object], text: str) -> None:
 
 
 def test_scheme_of_somebody_else() -> None:
-    """An object with bind and place takes the place of the built-in schemes."""
+    """A subclass takes the place of the built-in schemes."""
 
-    class Straight:
+    class Straight(refine.Scheme):
         """Points stay on their edges."""
 
         interpolates = True
@@ -235,9 +235,6 @@ def test_scheme_of_somebody_else() -> None:
             for e in frame.split_once[: frame.counts[ONCE]]:
                 a, b = self.edges[e]
                 frame.rows[frame.first_points[e]] = 0.5 * (frame.rows[a] + frame.rows[b])
-
-        def place_centres(self, frame: refine.FrameBuffers) -> None:
-            """Nothing to add."""
 
     mesh = meshes.open_grid()
     refiner = refine.create(

@@ -6,6 +6,7 @@ import copy
 import importlib.metadata
 import pickle
 from collections.abc import Callable, Iterator
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -341,7 +342,10 @@ def test_frames_can_be_kept() -> None:
         ({"threshold_twice": True}, "got .*True"),
         ({"blend": "no"}, "blend must be True or False, got 'no'"),
         ({"coherent": "no"}, "coherent must be True or False, got 'no'"),
-        ({"criterion": refine.Curvature}, "criterion must be a name, an object .*Curvature"),
+        (
+            {"criterion": refine.Curvature},
+            "a name, a refine.Criterion, .*Curvature",
+        ),
         ({"scheme": LoopScheme}, "scheme must be one of .*LoopScheme"),
     ],
 )
@@ -369,13 +373,15 @@ def test_options_by_place_or_by_name() -> None:
 @pytest.mark.parametrize("name", ["criterion", "scheme"])
 def test_an_object_knows_one_mesh(name: str) -> None:
     """A criterion or scheme that serves a refiner is refused to another, alone or in a list."""
-    thing = refine.Curvature() if name == "criterion" else LoopScheme()
-    first = refine.create("kahler", FINE.faces, FINE.vertices, **{name: thing})
+    thing = refine.Bulge() if name == "criterion" else LoopScheme()
+    create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")
+    first = create(**{name: thing})
     for shared in (thing, [thing, "normal"])[: 2 if name == "criterion" else 1]:
         with pytest.raises(ValueError, match=r"serves another refiner.*make one for each"):
-            refine.create("kahler", FINE.faces, FINE.vertices, **{name: shared})
+            create(**{name: shared})
+    first.refine(FINE.vertices)  # and has not learnt the other's scheme
     del first
-    refine.create("kahler", FINE.faces, FINE.vertices, **{name: thing})
+    create(**{name: thing})
 
 
 @pytest.mark.parametrize("view", [refine.View((0, 0, 5), "x"), refine.View("eye"), refine.View(5)])

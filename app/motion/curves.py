@@ -1,0 +1,143 @@
+"""From what muscles do to the controls of a layer: action units, ARKit's shapes.
+
+`solved(scene, ACTION_UNITS, activations)` is the way back through the tables of sim/layers.py. A
+layer's controls add up, so it is a bounded least squares problem in each frame:
+
+    minimise |shares x - activations|^2,    0 <= x <= the controls' limits
+
+Source: Stark and Parker 1995, "Bounded-variable least-squares", which scipy solves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from risorius.sim.layers import LEAST_WHOLE, SIDES, Layers, share_of_whole
+
+from ..errors import UserError
+from ..scenes import FaceScene, Scene
+
+Floats = npt.NDArray[np.float64]
+
+ACTION_UNITS, ARKIT_SHAPES = "Action units", "ARKit shapes"  # titles of layers
+SMALLNESS = 1e-3  # of values beside the fit: of all that fit alike, those in between are taken
+PARALLEL = 1e-9  # two controls do the same, but one more of it
+
+
+def solved(
+    scene: Scene,
+    layer: str,
+    activations: Mapping[str, Floats],
+    controls: Mapping[str, Floats] | None = None,
+) -> dict[str, Floats]:
+    """The values of a layer's controls that come nearest to these activations, by name.
+
+    layer: its title. activations: what each of the lowest controls comes to in N frames, shape
+    (N,), as `simulation.sums` and `Clip.activations` have it. controls: what was set to make them,
+    shape (N,) each; of this layer's controls that counts as it is, and only the rest is solved for.
+
+    A control that has sides (AU12) is told by these alone (AU12_left, AU12_right). Raises UserError
+    for a scene without muscles, or without the layer.
+    """
+    names = sided(scene, layer)
+    assert isinstance(scene, FaceScene)
+    simulation, tables = scene.simulation, scene.simulation.tables
+    frames = np.stack([activations[name] for name in simulation.controls], axis=1)
+    shares = np.stack([tables.shares[name] for name in names])
+    highest = np.array([scene.limits[name][1] for name in names])
+    known = _known(names, tables, controls or {}, len(frames), highest)
+    rest = frames - _sums(known, shares, np.stack([tables.floors[name] for name in names]))
+    found, where = np.unique(rest.round(9), axis=0, return_inverse=True)
+    values = _fitted(shares, highest, found)[where.ravel()]
+    counted = dict(zip(names, np.clip(known + values, 0.0, highest).T, strict=True))
+    return {name: _as_set(name, counted, tables) for name in names}
+
+
+def sided(scene: Scene, layer: str) -> tuple[str, ...]:
+    """The controls of a layer, without those that have sides; UserError where there is no such."""
+    if not isinstance(scene, FaceScene):
+        raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; take the scene face")
+    names = scene.simulation.layers.get(layer, ())
+    if not names:
+        raise UserError(f"{layer}: this head has no such controls; take the built-in head")
+    return tuple(name for name in names if name + SIDES[0] not in names)
+
+
+def _known(
+    names: Sequence[str],
+    tables: Layers,
+    controls: Mapping[str, Floats],
+    count: int,
+    highest: Floats,
+) -> Floats:
+    """What the layer's own controls were set to, as it counts, shape (N, L)."""
+    set_to = {
+        name: controls.get(name, np.zeros(count)) + controls.get(_without_side(name), 0.0)
+        for name in names
+    }
+    for name, whole in tables.share_of.items():
+        if name in set_to:
+            pairs = zip(set_to[name], controls.get(whole, np.zeros(count)), strict=True)
+            set_to[name] = np.array([share_of_whole(value, of) for value, of in pairs])
+    return np.clip(np.stack(list(set_to.values()), axis=1), 0.0, highest)
+
+
+def _without_side(name: str) -> str:
+    """AU12 of AU12_left; nothing of what has no side."""
+    return name.removesuffix(SIDES[0]).removesuffix(SIDES[1]) if name.endswith(SIDES) else ""
+
+
+def _sums(values: Floats, shares: Floats, floors: Floats) -> Floats:
+    """What values of the layer come to, shape (N, C), as sim/controls.py adds them up."""
+    least = np.zeros((len(values), floors.shape[1]))
+    for value, floor in zip(values.T, floors, strict=True):
+        np.maximum(least, np.outer(value, floor), out=least)
+    return np.where(least > 0.0, np.maximum(values @ shares, least), values @ shares)
+
+
+def _fitted(shares: Floats, highest: Floats, frames: Floats) -> Floats:
+    """Values (N, L) whose sums are nearest to the frames (N, C)."""
+    rays = _rays(shares)
+    reach = np.array([(np.linalg.norm(shares[ray], axis=1) * highest[ray]).sum() for ray in rays])
+    directions = np.stack([shares[ray].sum(axis=0) for ray in rays])
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    matrix = np.vstack([directions.T, SMALLNESS * np.eye(len(rays))])
+    values = np.zeros((len(frames), len(shares)))
+    for row, frame in zip(values, frames, strict=True):
+        wanted = np.concatenate([frame, np.zeros(len(rays))])
+        lengths = scipy.optimize.lsq_linear(matrix, wanted, (0.0, reach), method="bvls").x
+        for ray, length in zip(rays, lengths, strict=True):
+            for control in ray:  # the weakest first: a jaw drops (AU26) before it stretches (AU27)
+                strength = float(np.linalg.norm(shares[control]))
+                row[control] = min(length / strength, highest[control])
+                length -= row[control] * strength
+    return values
+
+
+def _rays(shares: Floats) -> list[list[int]]:
+    """The controls (L, C) in groups of those that do the same, from weak to strong in each."""
+    strengths = np.linalg.norm(shares, axis=1)
+    rays: list[list[int]] = []
+    for control in np.argsort(strengths, kind="stable"):
+        for ray in rays:
+            cosine = shares[control] @ shares[ray[0]] / (strengths[control] * strengths[ray[0]])
+            if cosine > 1.0 - PARALLEL:
+                ray.append(int(control))
+                break
+        else:
+            if strengths[control] > 0.0:
+                rays.append([int(control)])
+    return rays
+
+
+def _as_set(name: str, counted: Mapping[str, Floats], tables: Layers) -> Floats:
+    """A value as it is set; of a share of another control's (mouthClose) only so much of that."""
+    whole = tables.share_of.get(name)
+    if whole is None:
+        return counted[name]
+    of = counted.get(whole, np.zeros_like(counted[name]))
+    return np.minimum(counted[name] * np.maximum(of, LEAST_WHOLE), of)

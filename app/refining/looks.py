@@ -1,0 +1,108 @@
+"""Looks: how the application refines each scene, under names that a user chooses from.
+
+`smooth` looks best, and is what films and the window show unless told; `paper` is the rule of
+Kähler, Haber, Seidel 2003 alone. Whatever is drawn asks here by which refiner, told what.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from ..errors import UserError
+
+STATIC = "none"  # the refiner that leaves the mesh as it is
+CHANGED = ", changed"  # after the name of what has options over its own
+FIRST_LOOK, PAPERS_LOOK = "smooth", "paper"  # the one that is seen unless told, and the paper's
+THRESHOLDS = "threshold_once", "threshold_twice"  # options of this criterion alone:
+PAPERS_CRITERION = "normal"
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one scene is refined: by which refiner, and what each refiner is told there."""
+
+    refiner: str = "kahler"
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
+    raises_wrinkles: bool = False  # whether wrinkles get triangles and move them, see `wrinkling`
+
+    def told(self, refiner: str) -> Mapping[str, Any]:
+        """What a refiner is told where its defaults do not do; nothing, where this knows none."""
+        return self.options.get(refiner, {})
+
+
+# By `bulge` alone the outlines of crown and chin would stay polygons: edges there are long and turn
+# little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
+SMOOTH = Look(
+    options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}}, raises_wrinkles=True
+)
+# The hem of a cloth turns in the sheet itself.
+SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
+PAPER = Look()
+# A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
+# makes about as many triangles at most as in Table 1 (1328).
+PLANE = {"threshold_once": 0.001, "threshold_twice": 0.005}
+PAPERS_PLANE = Look(options={"kahler": PLANE})
+SMOOTH_PLANE = Look(options={"kahler": {"normals": "refined", **PLANE}})
+
+LOOKS: Mapping[str, Mapping[str, Look]] = MappingProxyType(  # by name, then by scene
+    {
+        FIRST_LOOK: {"face": SMOOTH, "plane": SMOOTH_PLANE, "cloth": SMOOTH_CLOTH},
+        PAPERS_LOOK: {"face": PAPER, "plane": PAPERS_PLANE, "cloth": PAPER},
+    }
+)
+
+
+def words_of_looks(option: str) -> list[str]:
+    """What looks tell any refiner by an option that is a word."""
+    looks = [look for by_scene in LOOKS.values() for look in by_scene.values()]
+    return [told[option] for look in looks for told in look.options.values() if option in told]
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """What a user asks for: a look, or a refiner as that look has it, and options over both."""
+
+    look: str = FIRST_LOOK
+    refiner: str | None = None  # None: the look's own
+    options: Mapping[str, Any] = field(default_factory=dict)  # over what the look tells it
+
+    def on(self, scene: str) -> tuple[str, dict[str, Any]]:
+        """The refiner's name, and all that it is told, on the scene of this name."""
+        look = LOOKS[self.look][scene]
+        name = look.refiner if self.refiner is None else self.refiner
+        return name, {**look.told(name), **self.options}
+
+    def has_thresholds(self, scene: str) -> bool:
+        """Whether the criterion is, or has in it, the one that THRESHOLDS are of."""
+        return PAPERS_CRITERION in self._criterion(scene).split("+")
+
+    def check(self, scene: str) -> None:
+        """Raise UserError for options that would do nothing on the scene of this name."""
+        unused = [name for name in THRESHOLDS if name in self.options]
+        if unused and not self.has_thresholds(scene):
+            raise UserError(
+                f"--option {unused[0]}: counts for the criterion {PAPERS_CRITERION} alone, and "
+                f"here it is {self._criterion(scene)}; leave it out, or add "
+                f"--option criterion={PAPERS_CRITERION}"
+            )
+
+    def _criterion(self, scene: str) -> str:
+        return str(self.on(scene)[1].get("criterion", PAPERS_CRITERION))
+
+    def raises_wrinkles(self, scene: str) -> bool:
+        """Whether wrinkles become shape; the mesh as it is has no triangles for it."""
+        return LOOKS[self.look][scene].raises_wrinkles and self.on(scene)[0] != STATIC
+
+    @property
+    def label(self) -> str:
+        """What it is called under a picture."""
+        name = "static" if self.refiner == STATIC else self.refiner or self.look
+        return f"{name}{CHANGED}" if self.options else name
+
+
+def named(name: str, look: str) -> Refinement:
+    """The look of this name, or else the refiner of this name, told what `look` tells it."""
+    return Refinement(name) if name in LOOKS else Refinement(look, name)

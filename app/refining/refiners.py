@@ -1,0 +1,181 @@
+"""Refiners for scenes: bound as a look has them, and options as words of the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import NoneType
+from typing import Any, Literal, get_args, get_origin
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine
+
+from ..errors import UserError
+from ..scenes import Scene
+from .looks import LOOKS, STATIC, Refinement, named
+from .wrinkling import FoldCriterion
+
+LARGEST = 1e30  # of a number in an option: in single precision it is still one
+DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
+AS_IT_SUITS = "automatic"  # what an option is called that is left open
+SWITCHES = {"on": True, "true": True, "off": False, "false": False}
+
+
+def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
+    """Bind the refiner that is asked for to the scene's mesh; UserError if it refuses an option."""
+    name, options = refinement.on(scene.name)
+    try:
+        if refinement.options:
+            _check(name, refinement.options)
+        if options.get("scheme") == DETAIL and "detail" not in options:
+            options["detail"] = finer_mesh(scene)
+            if options["detail"] is None:
+                raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
+        bound = dict(options)
+        chosen = options.get("criterion")
+        if isinstance(chosen, str) and scene.wrinkles and refinement.raises_wrinkles(scene.name):
+            bound["criterion"] = [*chosen.split("+"), FoldCriterion(scene)]
+        return refine.create(
+            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **bound
+        )
+    except (ValueError, TypeError) as error:
+        raise UserError(f"refiner {name}: {error}{_of_look(refinement, options)}") from None
+
+
+def _of_look(refinement: Refinement, options: Mapping[str, Any]) -> str:
+    """Words for what the look tells beside the user, who may not know that it does."""
+    told = [
+        f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
+        for name, value in options.items()
+        if name not in refinement.options and name != DETAIL
+    ]
+    is_mixed = told and refinement.options
+    return f"; the look {refinement.look} has {', '.join(told)}" if is_mixed else ""
+
+
+def options_of(name: str) -> dict[str, Any]:
+    """What a refiner can be told in numbers and words, as it is declared, and its defaults.
+
+    An option whose default is None is left out, unless it is a choice.
+    """
+    choices = open_choices(name)
+    return {
+        each.name: each.default
+        for each in refine.parameters(name)
+        if isinstance(each.default, bool | int | float | str) or each.name in choices
+    }
+
+
+def open_choices(name: str) -> dict[str, dict[str, bool | str | None]]:
+    """The options of a refiner that may be left open, and the values they may have, by words."""
+    values = {each.name: _values_of(each.annotation) for each in refine.parameters(name)}
+    return {option: {AS_IT_SUITS: None, **found} for option, found in values.items() if found}
+
+
+def _values_of(annotation: object) -> dict[str, bool | str]:
+    """Of `bool | None`, on and off; of `Literal[...] | None`, its words; else none.
+
+    Not of any union with bool: numpy's ArrayLike may be one, too.
+    """
+    rest = set(get_args(annotation)) - {NoneType}
+    if len(get_args(annotation)) != 2 or len(rest) != 1:
+        return {}
+    kind = rest.pop()
+    if kind is bool:
+        return {"on": True, "off": False}
+    return {word: word for word in get_args(kind)} if get_origin(kind) is Literal else {}
+
+
+def _check(name: str, options: Mapping[str, Any]) -> None:
+    """UserError for an option that the refiner does not offer, or of another kind."""
+    defaults, open_ones = options_of(name), open_choices(name)
+    for option, value in options.items():
+        if option not in defaults:
+            takes = f"it takes {', '.join(defaults)}" if defaults else "it has no options"
+            raise UserError(f"refiner {name}: unknown option {option}; {takes}")
+        default = defaults[option]
+        if option in open_ones:  # 1 is not on
+            values = open_ones[option]
+            is_right = any(type(value) is type(each) and value == each for each in values.values())
+            wanted = " or ".join(word for word in values if word != AS_IT_SUITS)
+        elif isinstance(default, bool):
+            is_right, wanted = isinstance(value, bool), "on or off"
+        elif isinstance(default, str):
+            is_right, wanted = isinstance(value, str), "a word"
+        else:
+            is_right = isinstance(value, int | float) and not isinstance(value, bool)
+            wanted = "a number"
+        if not is_right:
+            raise UserError(f"refiner {name}: option {option} was {value}, must be {wanted}")
+
+
+def can_detail(scene: Scene) -> bool:
+    """Whether the scene's head comes with a finer mesh."""
+    return hasattr(getattr(scene, "head", None), "finer")
+
+
+def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]] | None:
+    """Vertices and triangles of the scene's head with four times its triangles, if it has them."""
+    if not can_detail(scene):
+        return None
+    finer = scene.head.finer(1)  # type: ignore[attr-defined]
+    return finer.vertices, finer.faces
+
+
+def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any]:
+    """What `--option NAME=VALUE ...` tells a refiner (None: that of the look).
+
+    Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
+    drawn as it is.
+    """
+    if refiner is not None and refiner not in refine.available():
+        there_are = ", ".join(refine.available())
+        raise UserError(f"refiner '{refiner}' is unknown; there are {there_are}")
+    if refiner == STATIC and settings:
+        raise UserError(
+            f"--option {settings[0]}: --refiner none draws the mesh as it is and has no options"
+        )
+    options: dict[str, Any] = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        if not (name and equals and text):
+            raise UserError(f"--option {setting}: write NAME=VALUE, as in scheme=cubic")
+        options[name] = _value(text)
+        value = options[name]
+        if isinstance(value, int | float) and not -LARGEST <= value <= LARGEST:
+            raise UserError(f"--option {setting}: {text} is not a finite number up to {LARGEST:g}")
+    return options
+
+
+def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinement, ...]:
+    """What `--compare NAME,...` sets beside a refinement, left to right: looks and refiners.
+
+    None is nothing. Raises UserError for a name that is neither, and where two would be the same.
+    """
+    beside: list[Refinement] = []
+    for name in [] if names is None else names.split(","):
+        if name not in LOOKS and name not in refine.available():
+            raise UserError(
+                f"--compare: '{name}' is neither a look ({', '.join(LOOKS)}) nor a refiner "
+                f"({', '.join(refine.available())}); a SCRIPT goes before --compare"
+            )
+        other = named(name, refinement.look)
+        if other in (refinement, *beside):
+            raise UserError(
+                f"--compare: '{name}' would stand beside itself; choose a --look or a --refiner "
+                f"other than {name}, or compare with another"
+            )
+        beside.append(other)
+    return tuple(beside)
+
+
+def _value(text: str) -> bool | int | float | str:
+    if text.lower() in SWITCHES:
+        return SWITCHES[text.lower()]
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text

@@ -1,0 +1,275 @@
+"""How open the skin is to light from all around: ambient occlusion, baked once for a head.
+
+That of the built-in head is shipped: `python -m risorius.app.scenes.ambient [FILE]` bakes it anew,
+after `python -m risorius.assets.build`. A head of one's own is baked when it is loaded.
+
+From each vertex rays go out over its normal, more of them the closer they are to it, as light that
+comes from everywhere counts. What a ray meets within REACH takes its part of the light away, less
+the farther it is. A face moves: what touches at rest, lips or the folds of lids, may come to light
+later. So two poses are looked at, at rest and with mouth open and eyes shut, and the more open one
+counts.
+
+Sources: Zhukov, Iones, Kronin 1998, "An ambient light illumination model" (obscurance that fades
+with distance); Möller and Trumbore 1997 (ray and triangle).
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from risorius import assets, sim
+from risorius.assets.fitting.coarser import coarser
+from risorius.assets.fitting.warp import nearest_on
+from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.topology import vertex_normals
+from risorius.jit import njit
+
+from ..errors import told_in_one_line
+from ..files import cannot_be_written, check_file, written_atomically
+from ..stopping import handle_signals
+
+REACH = 45.0  # [mm] beyond which nothing shades
+MOST_SEEN = 6000  # triangles that rays are cast at: more would take seconds, and look the same
+RAYS = 48  # from each vertex
+DEPTH = 1.6  # power of what is left; chosen by eye: folds are told from afar, and nothing is black
+REVEALED = 0.8  # most light that comes to what only a moving face shows
+STEEP, LONG = 0.15, 8.0  # change along an edge, and its length [mm]: beyond them its middle counts
+START = 0.4  # [mm] above the skin, lest it shade itself
+THIN = 5.0  # [mm] a ray may leave what is thinner: at the root of an ear it begins within the ear
+REVEALING = ("yawn", "jaw_open")  # the first of these that a head knows opens mouth and shuts eyes
+SETTLED = 60  # steps of 1/60 s
+MARGIN = 3.0  # [texels] painted beyond a triangle, for texels between patches
+
+Points = npt.NDArray[np.float64]
+Triangles = npt.NDArray[np.int32]
+Values = npt.NDArray[np.float32]
+
+
+def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
+    """An image over the head's texture: 255 where all light comes in, 0 where none; (H, W).
+
+    head: with texture coordinates `uv`, `face_uv` and `albedo` (H, W, 3).
+    simulation: of that head, at rest; it is moved, and at rest again at the end.
+    """
+    seen, faces = _looked_through(simulation.positions, simulation.faces)
+    sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
+    # Places that are looked at: vertices, and middles of long edges along which it gets dark.
+    count = len(seen)
+    ends = np.concatenate([np.repeat(np.arange(count)[:, None], 2, axis=1), edges])
+    values = np.empty(len(ends), np.float32)
+    at_rest = simulation.positions[seen]
+    values[:count] = open_to_light(at_rest, faces, ends[:count])
+    lengths = np.linalg.norm(np.diff(at_rest[edges], axis=1)[:, 0], axis=1)
+    is_steep = abs(np.diff(values[edges])[:, 0]) > STEEP
+    steep = count + np.flatnonzero(is_steep & (lengths > LONG))
+    values[steep] = open_to_light(at_rest, faces, ends[steep])
+    name = next((each for each in REVEALING if each in simulation.limits), None)
+    if name is not None:
+        simulation.set(name, 1.0)
+        for _ in range(SETTLED):
+            simulation.step(1.0 / 60.0)
+        looked_at = np.concatenate([np.arange(count), steep])
+        hidden = looked_at[values[looked_at] < REVEALED]
+        moved = open_to_light(simulation.positions[seen], faces, ends[hidden])
+        values[hidden] = np.maximum(values[hidden], REVEALED * moved)
+        simulation.reset()
+    between = np.setdiff1d(np.arange(count, len(ends)), steep)
+    values[between] = values[ends[between]].mean(axis=1)
+    shades = values**DEPTH
+    height, width = head.albedo.shape[:2]
+    places = (head.uv * [width, -height] + [-0.5, height - 0.5])[head.face_uv]
+    if len(faces) < len(simulation.faces):
+        normals = vertex_normals(simulation.positions, simulation.faces)
+        near = nearest_on(simulation.positions, normals, at_rest, faces)
+        colours = near.interpolate(shades[:count]).astype(np.float32)[simulation.faces]
+    else:  # each triangle is painted in four: its corners, then what is between their middles
+        middles = 0.5 * (places + np.roll(places, -1, axis=1))
+        places = _quartered(places, middles)
+        colours = _quartered(shades[faces], shades[count + edge_of_side.reshape(-1, 3)])
+    # What is meant lies over what overlaps; and folds that another head's texture shows twice, such
+    # as the inside of a nostril, must not darken the open skin there: the more open one counts.
+    around, inside = np.zeros((2, height, width), np.float32)
+    _paint(places, colours, MARGIN, around)
+    _paint(places, colours, 0.0, inside)
+    image = np.where(inside > 0.0, inside, np.where(around > 0.0, around, 1.0))
+    return np.round(255.0 * image).astype(np.uint8)
+
+
+def _looked_through(positions: Points, faces: Triangles) -> tuple[npt.NDArray[np.intp], Triangles]:
+    """Vertices of a mesh and triangles between them that are enough to see what is open."""
+    if len(faces) <= MOST_SEEN:
+        return np.arange(len(positions)), faces
+    points, triangles = coarser(positions, faces, MOST_SEEN)
+    numbers, seen = np.unique(
+        scipy.spatial.cKDTree(positions).query(points)[1], return_inverse=True
+    )
+    triangles = seen[triangles].astype(np.int32)
+    is_sound = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return numbers, np.ascontiguousarray(triangles[is_sound])
+
+
+def _quartered(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Values at the corners of triangles in four, (4 F, 3, ...), of those at corners and middles.
+
+    Both are of shape (F, 3, ...); middle i lies between corners i and i + 1.
+    """
+    before = np.roll(middles, 1, axis=1)
+    four = np.concatenate([np.stack([corners, middles, before], axis=2), middles[:, None]], axis=1)
+    return np.ascontiguousarray(four.reshape(-1, *four.shape[2:]))
+
+
+def open_to_light(positions: Points, faces: Triangles, ends: npt.NDArray[np.intp]) -> Values:
+    """The share of the light from all around that reaches the middles between `ends`, 0..1.
+
+    ends: pairs of vertices, (n, 2); twice the same for a vertex itself.
+    """
+    corners = positions[faces]
+    normals = vertex_normals(positions, faces)[ends].sum(axis=1)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    middles = corners.mean(axis=1)
+    radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+    values = np.empty(len(ends), np.float32)
+    _cast(positions[ends].mean(axis=1), normals, corners, middles, radii, _hemisphere(), values)
+    return values
+
+
+def _hemisphere() -> Points:
+    """Directions above the plane z = 0, as many as go with the cosine; shape (RAYS, 3)."""
+    steps = np.arange(RAYS) + 0.5
+    outward, turn = np.sqrt(steps / RAYS), steps * np.pi * (3.0 - np.sqrt(5.0))
+    up = np.sqrt(1.0 - outward**2)
+    return np.stack([outward * np.cos(turn), outward * np.sin(turn), up], axis=1)
+
+
+@njit
+def _cast(
+    positions: Points,
+    normals: Points,
+    corners: Points,
+    middles: Points,
+    radii: Points,
+    directions: Points,
+    values: Values,
+) -> None:
+    near = np.empty((len(corners), 9), np.float32)
+    for v in range(len(positions)):
+        normal = normals[v]
+        eye = positions[v] + START * normal
+        count = 0
+        for t in range(len(corners)):
+            away = middles[t] - eye
+            reach = REACH + radii[t]
+            # Nothing below the plane of the vertex can be met.
+            if np.dot(away, away) < reach * reach and np.dot(away, normal) > -radii[t]:
+                for i in range(3):
+                    near[count, i] = corners[t, 0, i] - eye[i]
+                    near[count, 3 + i] = corners[t, 1, i] - corners[t, 0, i]
+                    near[count, 6 + i] = corners[t, 2, i] - corners[t, 0, i]
+                count += 1
+        # Any two directions across the normal.
+        side = np.array([1.0, 0.0, 0.0]) if abs(normal[0]) < 0.6 else np.array([0.0, 1.0, 0.0])
+        first = np.cross(normal, side)
+        first /= max(np.sqrt(np.dot(first, first)), 1e-12)
+        second = np.cross(normal, first)
+        lost = 0.0
+        for r in range(len(directions)):
+            ray = directions[r, 0] * first + directions[r, 1] * second + directions[r, 2] * normal
+            nearest = _nearest(ray.astype(np.float32), near, count)
+            lost += 1.0 - nearest / REACH
+        values[v] = 1.0 - lost / len(directions)
+
+
+@njit
+def _nearest(ray: Values, near: Values, count: int) -> float:
+    """How far a ray goes before it meets a triangle, at most REACH.
+
+    near: a corner, as seen from where the ray begins, and the sides from there; shape (.., 9).
+    """
+    x, y, z = ray
+    nearest = np.float32(REACH)
+    zero, one = np.float32(0.0), np.float32(1.0)
+    for t in range(count):
+        ux, uy, uz = near[t, 3], near[t, 4], near[t, 5]
+        wx, wy, wz = near[t, 6], near[t, 7], near[t, 8]
+        px, py, pz = y * wz - z * wy, z * wx - x * wz, x * wy - y * wx
+        size = ux * px + uy * py + uz * pz
+        part = one / size if size != zero else zero
+        sx, sy, sz = -near[t, 0], -near[t, 1], -near[t, 2]
+        b = (sx * px + sy * py + sz * pz) * part
+        qx, qy, qz = sy * uz - sz * uy, sz * ux - sx * uz, sx * uy - sy * ux
+        c = (x * qx + y * qy + z * qz) * part
+        distance = (wx * qx + wy * qy + wz * qz) * part
+        is_met = (b >= zero) & (c >= zero) & (b + c <= one) & (distance > zero)
+        is_met &= (size > zero) | (distance > np.float32(THIN))
+        if is_met and distance < nearest:
+            nearest = distance
+    return float(nearest)
+
+
+@njit
+def _paint(places: Points, values: Values, margin: float, image: Values) -> None:
+    """Paint texels in triangles and a margin beside them, straight between values at corners.
+
+    Where they overlap the greatest value counts.
+    """
+    height, width = image.shape
+    for t in range(len(places)):
+        a, b, c = places[t]
+        at_a, at_b, at_c = values[t]
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if abs(area) < 1e-9:
+            continue
+        least, most = min(at_a, at_b, at_c), max(at_a, at_b, at_c)
+        # How much of a corner's weight is lost within a margin beyond the side opposite to it.
+        slack_a = margin * np.hypot(c[0] - b[0], c[1] - b[1]) / abs(area) + 1e-9
+        slack_b = margin * np.hypot(a[0] - c[0], a[1] - c[1]) / abs(area) + 1e-9
+        slack_c = margin * np.hypot(b[0] - a[0], b[1] - a[1]) / abs(area) + 1e-9
+        left = max(int(np.floor(min(a[0], b[0], c[0]) - margin)), 0)
+        right = min(int(np.ceil(max(a[0], b[0], c[0]) + margin)), width - 1)
+        top = max(int(np.floor(min(a[1], b[1], c[1]) - margin)), 0)
+        bottom = min(int(np.ceil(max(a[1], b[1], c[1]) + margin)), height - 1)
+        for y in range(top, bottom + 1):
+            for x in range(left, right + 1):
+                of_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
+                of_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
+                of_a = 1.0 - of_b - of_c
+                if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
+                    value = of_a * at_a + of_b * at_b + of_c * at_c
+                    image[y, x] = max(image[y, x], min(max(value, least), most))
+
+
+def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
+    """Make everything that `head.openness_file` holds, array name -> array."""
+    return {
+        "openness": openness(head, sim.create(head)),
+        "made_from": np.array(head.fingerprint, dtype=np.uint32),
+    }
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Bake the light on a head made by `assets.build` into the file beside its data file."""
+    parser = argparse.ArgumentParser(
+        prog="python -m risorius.app.scenes.ambient", description=(__doc__ or "").splitlines()[0]
+    )
+    parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
+    head = load_head(parser.parse_args(arguments).file)
+    target = head.openness_file
+    check_file(target)
+    arrays = bake(head)
+    with written_atomically(target) as part, cannot_be_written(target):
+        np.savez_compressed(part, allow_pickle=False, **arrays)
+
+
+if __name__ == "__main__":
+    handle_signals()
+    with told_in_one_line():
+        main(sys.argv[1:])

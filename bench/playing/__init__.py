@@ -1,0 +1,1 @@
+"""What is played: films, long recordings, live faces, and the window."""

@@ -1,0 +1,110 @@
+"""The paper's Fig. 9: the plane under a strong sine, static and refined, beside the true sine.
+
+Below each picture stands how far it is from the true one, which no refiner knows, in shading and in
+outline: a mesh so dense that no triangle shows, with the normals of the sine itself.
+
+`risorius reproduce figure9` draws it.
+Kähler, Haber, Seidel 2003, section 5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine, render
+from risorius.app.capture.cameras import camera_for
+from risorius.app.files import Image
+from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.scenes import PlaneScene
+from risorius.assets.plane import CELL, COLUMNS, ROWS, make_grid
+
+from ..canvas import Canvas, Drawing, image_table
+from .figure_coherence import FLAT, FRAME_SECONDS, GOURAUD
+from .mouths import Variant
+
+PHASES = (0.0, 0.33, 0.66)  # moments of the wave
+VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
+FINENESS = 24  # cells of the true sine in each cell of the plane, each way: smaller than pixels
+BACKGROUND = 250.0  # grey level; pictures stand on white, and no part of the plane is as light
+SHADINGS = (("flat", FLAT), ("Gouraud", GOURAUD))
+
+
+VARIANTS = (
+    Variant("static", "none"),
+    Variant("refined", "kahler"),
+    Variant("refined, its own normals", "kahler", {"normals": "refined"}),
+    Variant("refined, cubic curves", "kahler", {"scheme": "cubic"}),
+)
+
+
+def draw(size: tuple[int, int] = (380, 230), *, variants: Sequence[Variant] = VARIANTS) -> Image:
+    """The rows of each shading in turn, the true sine last; columns are moments."""
+    with Canvas(size) as canvas:
+        plane = Waving(canvas)
+        true = [plane.true_image(phase) for phase in PHASES]
+        rows = []
+        for shading, style in SHADINGS:
+            for variant in variants:
+                if style is FLAT and "normals" in variant.options:
+                    continue  # facets show no normals of vertices
+                cells = []
+                for phase, truth in zip(PHASES, true, strict=True):
+                    image, count = plane.image(variant, style, phase)
+                    off, outline = levels_apart(image, truth), outline_apart(image, truth)
+                    text = f"{count} triangles: {off:.1f} levels, outline {outline:.1%} off"
+                    cells.append((text, image))
+                rows.append((f"{variant.title}, {shading} shading", cells))
+        rows.append(("the sine itself", [("", truth) for truth in true]))
+    return image_table(rows)
+
+
+class Waving:
+    """The plane in the frame of the figure, as refiners show it and as it should be."""
+
+    def __init__(self, canvas: Canvas) -> None:
+        self._canvas, self._scene = canvas, PlaneScene()
+        self._camera = camera_for(self._scene, VIEW)
+        self._dense = make_grid(COLUMNS * FINENESS, ROWS * FINENESS, CELL / FINENESS)
+
+    def image(self, variant: Variant, style: render.Style, phase: float) -> tuple[Image, int]:
+        """The picture of a variant, and the number of its triangles."""
+        scene = self._wave(phase)
+        papers = LOOKS[PAPERS_LOOK][scene.name]
+        options = {**papers.told(variant.refiner), **variant.options}
+        refiner = refine.create(variant.refiner, scene.faces, scene.rest_positions, **options)
+        image = self._canvas.draw_image(refiner, scene.positions, Drawing(self._camera, style))
+        return image, self._canvas.stream_for(refiner).triangle_count
+
+    def true_image(self, phase: float) -> Image:
+        """The picture of the sine itself; on triangles so small all shadings look alike."""
+        vertices, faces = self._dense
+        positions, normals = self._wave(phase).waved(vertices)
+        drawing = Drawing(self._camera, GOURAUD)
+        return self._canvas.draw_surface(positions, normals, faces, drawing)
+
+    def _wave(self, phase: float) -> PlaneScene:
+        """The scene at a moment of the full wave."""
+        self._scene.pose({"amplitude": 1.0, "phase": phase})
+        self._scene.step(FRAME_SECONDS)
+        return self._scene
+
+
+def levels_apart(image: Image, truth: Image) -> float:
+    """Root mean square of the difference in grey levels (0 .. 255), where both show the surface."""
+    grey, true_grey = _grey(image), _grey(truth)
+    both = np.maximum(grey, true_grey) < BACKGROUND
+    return float(np.sqrt(np.mean((grey - true_grey)[both] ** 2)))
+
+
+def outline_apart(image: Image, truth: Image) -> float:
+    """Share of the true surface's pixels that only one of the two shows, or only the other."""
+    shows, true_shows = _grey(image) < BACKGROUND, _grey(truth) < BACKGROUND
+    return float((shows != true_shows).sum() / true_shows.sum())
+
+
+def _grey(image: Image) -> npt.NDArray[np.float64]:
+    grey: npt.NDArray[np.float64] = image.mean(axis=2)
+    return grey

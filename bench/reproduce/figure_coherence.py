@@ -1,0 +1,98 @@
+"""A film strip of time-coherent splitting, and the styles that the figures are drawn in.
+
+`risorius reproduce coherence` draws it.
+Kähler, Haber, Seidel 2003, section 4.4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine, render
+from risorius.app.capture.cameras import camera_for
+from risorius.app.files import Image
+from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.scenes import PlaneScene
+
+from ..canvas import Canvas, Drawing, image_table
+from .claims import Outcome
+from .turned_lines import Line, inner_lines, point_rows, turned
+
+FRAME_SECONDS = 1.0 / 30.0
+CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
+FLAT = replace(CLAY, shading=render.Shading.FLAT)
+GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
+
+AMPLITUDES = (0.06, 0.12, 0.22, 0.4)  # of the wave in the columns of the film strip
+STEPS_BETWEEN = 8  # frames of the animation between two columns
+GROWING_VIEW = "20,-25,2.6"
+GROWING_PHASE = 0.18
+GROWING = replace(FLAT, wireframe=True, wire_opacity=0.6)
+ABOVE = 0.4  # [mm] that red lines float over the surface
+
+
+def coherence(size: tuple[int, int] = (250, 200)) -> Outcome:
+    """Draw a growing wave; each column is a moment, with the number of turned lines below it.
+
+    Above, triangles are looked up by their splits alone, and lines that were there before turn
+    (red); below they remember the order of their splits, and no line does.
+    """
+    scene = PlaneScene()
+    rows, values = [], {}
+    with Canvas(size) as canvas:
+        for is_coherent, title, memory in (
+            (False, "coherent=False: looked up by the splits of the moment", "without"),
+            (True, "coherent=True: split in the order in which the edges were", "with"),
+        ):
+            refiner = refine.create(
+                "kahler",
+                scene.faces,
+                scene.rest_positions,
+                coherent=is_coherent,
+                **LOOKS[PAPERS_LOOK][scene.name].told("kahler"),
+            )
+            cells, values[f"lines turned {memory} memory"] = _moments(scene, refiner, canvas)
+            rows.append((title, cells))
+    return Outcome(values, {"coherence": image_table(rows)})
+
+
+def _moments(
+    scene: PlaneScene, refiner: refine.Refiner, canvas: Canvas
+) -> tuple[list[tuple[str, Image]], int]:
+    """The columns of one row: what the plane looks like, and what turned since the last column.
+
+    Also the number of lines that turned in all.
+    """
+    camera = camera_for(scene, GROWING_VIEW)
+    cells, count = [], 0
+    before: set[Line] = set()
+    gone: set[Line] = set()
+    amplitudes = np.interp(
+        np.arange(1, STEPS_BETWEEN * len(AMPLITUDES) + 1) / STEPS_BETWEEN,
+        np.arange(len(AMPLITUDES) + 1),
+        (0.0, *AMPLITUDES),
+    )
+    for step, amplitude in enumerate(amplitudes, start=1):
+        scene.pose({"amplitude": float(amplitude), "phase": GROWING_PHASE})
+        scene.step(FRAME_SECONDS)
+        mesh = refiner.refine(scene.positions)
+        now, points = inner_lines(refiner, mesh), point_rows(refiner)
+        gone |= set(turned(before, now, points))
+        before = now
+        if step % STEPS_BETWEEN == 0:
+            lines = [_lifted(mesh, points[a], points[b]) for _, a, b in sorted(gone)]
+            drawing = Drawing(camera, GROWING, lines=lines, line_width=2.4)
+            image = canvas.draw_image(refiner, scene.positions, drawing)
+            cells.append((f"{len(mesh.triangles)} triangles, {len(gone)} turned", image))
+            count += len(gone)
+            gone = set()
+    return cells, count
+
+
+def _lifted(mesh: refine.RefinedMesh, a: int, b: int) -> npt.NDArray[np.float64]:
+    """A line between two vertices, a little above the surface."""
+    ends = mesh.positions[[a, b]] + ABOVE * mesh.normals[[a, b]]
+    return np.asarray(ends, dtype=np.float64)

@@ -1,0 +1,174 @@
+"""Table 1 of the paper beside ours: `risorius reproduce table1`.
+
+Kähler, Haber, Seidel 2003, section 5: triangles of the static mesh, the most that refinement makes
+of them during the animation, the time to render each, and c_rt, the factor by which the time per
+triangle grows. What the paper timed as "the rendering code" is here refining (or handing through),
+uploading and drawing, until OpenGL has finished.
+
+Where OpenGL is software, most of that is pixels, which do not care how many triangles they belong
+to. So the same is given for a picture of a few pixels, without drawing, and without uploading: the
+less there is beside refinement, the more c_rt says about it. On a mesh as small as the plane even
+the last is mostly the fixed cost of a call from Python.
+
+Static and refined are timed in pairs (timing.py). A refined mesh has more triangles, so a time
+below that of the static one cannot be: then c_rt < static / refined triangles, and that is noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine, render
+from risorius.app.capture.cameras import camera_for
+from risorius.app.performances import script_for
+from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.scenes import FaceScene, PlaneScene, Scene
+
+from ..canvas import Canvas, Drawing
+from ..report import driver, table
+from ..timing import paired
+from .claims import Measured, Outcome
+
+Points = npt.NDArray[np.float64]
+
+FRAMES_PER_SECOND = 30.0
+SIZE = (1280, 720)  # [pixels] of what is drawn
+SMALL = (64, 36)  # where pixels cost next to nothing
+QUICK = 10  # rounds of a way that draws nothing, for one of the others
+GOURAUD = render.Style(
+    textured=False, albedo=render.CLAY, shadows=False, shading=render.Shading.GOURAUD
+)
+DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL))
+UPLOADED, ALONE = "without drawing", "refinement alone"
+WAYS = (DRAWN, DRAWN_SMALL, UPLOADED, ALONE)
+"""What is timed, from most to least."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of Table 1: triangles of the static and of the refined mesh, and their times [ms]."""
+
+    title: str
+    static: int
+    dynamic: int
+    static_time: float
+    dynamic_time: float
+    ratio: Measured
+    """The paper's c_rt: time per triangle, refined over static."""
+
+    @classmethod
+    def of(cls, title: str, static: int, dynamic: int, seconds: npt.NDArray[np.float64]) -> Row:
+        """A row of ours. seconds: of static and refined in each round, shape (rounds, 2)."""
+        fewer = static / dynamic
+        ratio = Measured.median(fewer * seconds[:, 1] / seconds[:, 0], least=fewer)
+        static_time, dynamic_time = (1e3 * np.median(seconds, axis=0)).tolist()
+        return cls(title, static, dynamic, static_time, dynamic_time, ratio)
+
+
+PAPER = {
+    "face": Row("face, the paper", 2030, 3120, 1.3, 3.5, Measured(1.75)),
+    "plane": Row("plane, the paper", 154, 1328, 0.09, 2.0, Measured(2.58)),
+}
+
+
+def measure(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
+    """Measure our rows for face and plane, by scene; returns them and the name of what draws."""
+    with Canvas(SMALL) as canvas:
+        renderer = driver(canvas.surface.gl.info)
+    scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
+    return {scene.name: _measured(scene, rounds) for scene in scenes}, renderer
+
+
+def papers_refiner(scene: Scene) -> refine.Refiner:
+    """The paper's refiner, bound to the scene's mesh, with thresholds that suit it."""
+    options = LOOKS[PAPERS_LOOK][scene.name].told("kahler")
+    return refine.create("kahler", scene.faces, scene.rest_positions, **options)
+
+
+def _measured(scene: Scene, rounds: int) -> list[Row]:
+    """Time the scene's fullest frame in every way."""
+    static = refine.create("none", scene.faces, scene.rest_positions)
+    dynamic = papers_refiner(scene)
+    positions, count = _fullest_frame(scene, dynamic)
+    seconds = {}
+    for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL)):
+        with Canvas(size) as canvas:
+            draw = _drawing(scene, canvas, positions)
+            seconds[way] = paired(partial(draw, static), partial(draw, dynamic), rounds)
+            if size == SIZE:
+                upload = _uploading(canvas, positions)
+                quick = paired(partial(upload, static), partial(upload, dynamic), QUICK * rounds)
+                seconds[UPLOADED] = quick
+    seconds[ALONE] = paired(
+        lambda: static.refine(positions), lambda: dynamic.refine(positions), QUICK * rounds
+    )
+    return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
+
+
+def _drawing(scene: Scene, canvas: Canvas, positions: Points) -> Callable[[refine.Refiner], None]:
+    drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD)
+
+    def draw(refiner: refine.Refiner) -> None:
+        canvas.draw(refiner, positions, drawing)
+        canvas.surface.gl.finish()
+
+    return draw
+
+
+def _uploading(canvas: Canvas, positions: Points) -> Callable[[refine.Refiner], None]:
+    def upload(refiner: refine.Refiner) -> None:
+        stream = canvas.stream_for(refiner)
+        mesh = refiner.refine(positions, out=stream)
+        stream.upload(len(mesh.positions), len(mesh.triangles))
+
+    return upload
+
+
+def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
+    """Play the scene's own script; the frame with the most triangles."""
+    script = script_for(None, scene.name)
+    scene.reset()
+    best, positions = -1, scene.positions.copy()
+    for index in range(round(script.duration * FRAMES_PER_SECOND) + 1):
+        scene.pose(script.at(index / FRAMES_PER_SECOND))
+        scene.step(1.0 / FRAMES_PER_SECOND)
+        count = len(refiner.refine(scene.positions).triangles)
+        if count > best:
+            best, positions = count, scene.positions.copy()
+    return positions, best
+
+
+def experiment(*, rounds: int) -> Outcome:
+    """Measure the table, for the page and the command."""
+    measured, renderer = measure(rounds=rounds)
+    values: dict[str, Measured | float] = {}
+    for scene, rows in measured.items():
+        values[f"{scene}, static triangles"] = rows[0].static
+        values[f"{scene}, most triangles"] = rows[0].dynamic
+        values.update({row.title: row.ratio for row in rows})
+    return Outcome(values, text=report(measured), renderer=renderer)
+
+
+def report(measured: Mapping[str, Sequence[Row]]) -> str:
+    """The paper's rows and ours."""
+    lines = [
+        "The frame with the most triangles of the scene's own animation, Gouraud shaded; times in",
+        "ms, medians of static and refined in turn; c_rt with its quartiles.",
+        "",
+    ]
+    columns = ":<26|static:7d|dynamic:8d|t static:9.3f|t dynamic:9.3f|c_rt:6.2f|25 %:6.2f|75 %:6.2f"
+    for number, (scene, ours) in enumerate(measured.items()):
+        rows = [
+            (
+                *(row.title, row.static, row.dynamic, row.static_time, row.dynamic_time),
+                *(row.ratio.value, *(row.ratio.quartiles or (None, None))),
+            )
+            for row in (PAPER[scene], *ours)
+        ]
+        lines += [*table(columns, rows)[0 if number == 0 else 1 :], ""]  # the titles once
+    return "\n".join(lines).rstrip()

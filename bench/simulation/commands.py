@@ -1,0 +1,90 @@
+"""Commands of `risorius bench` that measure the simulated face.
+
+`simulate`, `seen`, `gaps`, `soak`, `tearing`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from risorius.app.cli.parameters import FiniteRange
+from risorius.app.errors import UserError
+
+from ..command_line import FILE, FOLDER, PATH, json_option, json_writer, told
+
+
+@click.command("simulate")
+@click.option("--rounds", type=click.IntRange(1, 100_000), default=100, show_default=True)
+def bench_simulate(rounds: int) -> None:
+    """Time a 60 Hz frame of the simulation: the head, and plain meshes up to 100k vertices."""
+    from . import simulate
+
+    click.echo(simulate.report(simulate.measure(rounds=rounds), rounds))
+
+
+@click.command("seen")
+@click.option(
+    "--model",
+    type=FILE,
+    required=True,
+    help="face_landmarker.task, the model of MediaPipe's face landmarker.",
+)
+@click.option(
+    "--reference", type=FOLDER, help="A folder with face.npz: scans, to be shown as well."
+)
+@click.option(
+    "--take", type=FILE, help="A recorded face, to be played and read back instead of the shapes."
+)
+@click.option("--pictures", type=PATH, help="A folder for all that the tracker is shown.")
+def bench_seen(
+    model: Path, reference: Path | None, take: Path | None, pictures: Path | None
+) -> None:
+    """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
+    from . import seen, seen_take
+    from .face_tracker import FaceTracker
+
+    if take is not None and reference is not None:
+        raise UserError("--reference goes with the shapes, not with --take")
+    with FaceTracker(model) as tracker, told("--reference: "):
+        if take is None:
+            click.echo(seen.report(seen.measure(tracker, pictures, reference)))
+        else:
+            click.echo(seen_take.report(*seen_take.measure(tracker, take, pictures)))
+
+
+@click.command("gaps")
+@json_option
+def bench_gaps(json_file: Path | None) -> None:
+    """Look through lips and lids that ought to be shut, in every action unit."""
+    from . import gaps
+
+    save = json_writer(json_file)
+    poses = gaps.measure()
+    click.echo(gaps.report(poses))
+    save([asdict(pose) for pose in poses])
+
+
+@click.command("soak")
+@click.option(
+    "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."
+)
+def bench_soak(minutes: float) -> None:
+    """Drive the face with random input for a simulated hour: does it stay sound, and come back."""
+    from . import soak
+
+    click.echo(soak.report(soak.measure(minutes=minutes)))
+
+
+@click.command("tearing")
+@click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
+def bench_tearing(mixtures: int) -> None:
+    """Look for torn skin and for contacts that fail, in all expressions and random mixtures."""
+    from . import tearing
+
+    click.echo(tearing.report(tearing.measure(mixtures=mixtures), mixtures))
+
+
+COMMANDS = (bench_simulate, bench_seen, bench_gaps, bench_soak, bench_tearing)

@@ -1,0 +1,121 @@
+"""The statements of sections 3 and 4 hold, and what counts breaches of them sees them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import refine
+from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.scenes import PlaneScene, Scene
+from risorius.bench.reproduce import statements
+from risorius.bench.reproduce.experiments import EXPERIMENTS, Experiment
+
+COUNTED = [each for each in EXPERIMENTS if each.function.startswith("statements.")]
+QUICK = "table", "criterion"  # no cracks, and splits where the mesh bends; the rest is slow
+
+
+@pytest.mark.parametrize(
+    "experiment",
+    [
+        pytest.param(each, marks=() if each.name in QUICK else pytest.mark.slow, id=each.name)
+        for each in COUNTED
+    ],
+)
+def test_statements_are_met(experiment: Experiment) -> None:
+    """As the paper says, on face and plane."""
+    result = experiment.run()
+    assert result.findings and not result.missed
+
+
+@pytest.fixture
+def waving(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
+    """The plane in two moments of its wave is all that is looked at."""
+
+    def moments(scene: Scene) -> Iterator[npt.NDArray[np.float64]]:
+        for amplitude in (1.0, 0.3):
+            scene.pose({"amplitude": amplitude})
+            scene.step(0.1)
+            yield scene.positions.copy()
+
+    monkeypatch.setattr(statements, "_moments", moments)
+    monkeypatch.setattr(statements, "FaceScene", PlaneScene)
+    return monkeypatch
+
+
+def measured(waving: pytest.MonkeyPatch, function: str, **options: Any) -> dict[str, Any]:
+    """What is measured of a refiner with these options, over the plane's own."""
+
+    def refiner(scene: Scene) -> refine.Refiner:
+        merged = {**LOOKS[PAPERS_LOOK][scene.name].told("kahler"), **options}
+        if "criterion" in options:
+            del merged["threshold_once"], merged["threshold_twice"]
+        return refine.create("kahler", scene.faces, scene.rest_positions, **merged)
+
+    waving.setattr(statements, "papers_refiner", refiner)
+    return dict(getattr(statements, function)().values)
+
+
+def test_points_inside_and_memory_are_seen(waving: pytest.MonkeyPatch) -> None:
+    """Blending puts points into triangles, coherent splitting remembers; the paper's does not."""
+    names = "points inside triangles", "frames that remember others"
+    inside, remember = names
+    assert [measured(waving, "overview")[name] for name in names] == [0, 0]
+    assert measured(waving, "overview", blend=True)[inside] > 0
+    assert measured(waving, "overview", coherent=True)[remember] > 0
+
+
+class AllOfThem(refine.Criterion):
+    """A criterion that splits every edge as often as it is told."""
+
+    def __init__(self, times: int) -> None:
+        self.times = times
+
+    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
+        """Split all."""
+        splits[:] = self.times
+
+
+def test_splits_without_bending_are_seen(waving: pytest.MonkeyPatch) -> None:
+    """All edges of both meshes are counted."""
+
+    def refiner(scene: Scene) -> refine.Refiner:
+        return refine.create("kahler", scene.faces, scene.rest_positions, criterion=AllOfThem(1))
+
+    waving.setattr(statements, "papers_refiner", refiner)
+    counted = dict(statements.criterion().values)
+    edges = len(refiner(PlaneScene()).edges)
+    assert list(counted.values()) == [2 * edges, 2 * edges]
+
+
+def test_cracks_are_seen(waving: pytest.MonkeyPatch) -> None:
+    """A frame that `refine.check` finds broken is counted."""
+
+    def broken(*_: object) -> None:
+        raise refine.BrokenMeshError("torn")
+
+    assert measured(waving, "table")["frames with cracks"] == 0
+    waving.setattr(refine, "check", broken)
+    assert measured(waving, "table")["frames with cracks"] == 4
+
+
+def test_moved_vertices_are_seen(waving: pytest.MonkeyPatch) -> None:
+    """A refiner that forgets to tell of its splits has moved vertices without need."""
+    real = statements.papers_refiner
+
+    class Silent:
+        """The real one, with splits that it does not tell."""
+
+        def __init__(self, scene: Scene) -> None:
+            self._refiner = real(scene)
+            self.edges = self._refiner.edges
+            self.splits = np.zeros(len(self.edges), np.uint8)
+            self.refine = self._refiner.refine
+
+    assert statements.smoothing().values["vertices moved without a split"] == 0
+    waving.setattr(statements, "papers_refiner", Silent)
+    assert statements.smoothing().values["vertices moved without a split"] > 100
