@@ -1,7 +1,8 @@
 """How much of the light from all around hair takes away from the skin.
 
 After Zhukov, Iones, Kronin 1998, "An ambient light illumination model": what lies near shades by
-the angle that it fills, and less the farther it is. `app/scenes/ambient.py` casts rays at the skin alone.
+the angle that it fills, and less the farther it is. `app/scenes/ambient.py` casts rays at the skin
+alone.
 """
 
 from __future__ import annotations
