@@ -37,7 +37,7 @@ void main() {
 #endif
     // Hair scatters light, so it is lit some way past where it turns away.
     float facing = dot(normal, to_key);
-    float lit = clamp((facing + 0.3) / 1.3, 0.0, 1.0) * mix(0.3, 1.0, lightness);
+    float lit = clamp((facing + 0.3) / 1.3, 0.0, 1.0) * mix(0.5, 1.0, lightness);
     float rim = max(dot(normal, TO_RIM), 0.0);
     surface.diffuse = 0.85 * key_light * lit + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
         + hemisphere(normal) + 0.5 * rim_light * rim * rim;
@@ -78,7 +78,7 @@ void main() {
     float first = cosine - TILT, second = cosine + TILT;
     float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);
     vec3 front = surface.colour * (1.0 + 0.5 * uneven);
-    vec3 shine = surface.shine * (bright * (0.06 + 0.25 * front) + 0.6 * glow * front);
+    vec3 shine = surface.shine * (bright * (0.06 + 0.25 * front) + 0.25 * glow * front);
     pixel_colour = vec4(display(front * surface.diffuse + shine), 1.0);
 }
 

@@ -170,7 +170,7 @@ def _waved(cut: Cut, at: Points, own: Values, length: float) -> Points:
     phase = 2.0 * np.pi * length / period + 2.0 * np.sin(3.0 * angle) + 0.5 * own
     # An angle means nothing at the crown.
     swing = far * min(length / LIFTED, 1.0) * smooth_step(140.0, 110.0, height)
-    aside, off = np.sin(phase)[:, None] * across, 0.25 * np.cos(phase)[:, None] * out
+    aside, off = np.sin(phase)[:, None] * across, 0.1 * np.cos(phase)[:, None] * out
     return np.asarray(at + swing[:, None] * (aside + off))
 
 

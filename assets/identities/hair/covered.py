@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 
 from ...generator.sections import direction_coordinates
 from .cuts import Cut
@@ -43,6 +44,8 @@ def is_seen(cut: Cut, locks: Mapping[str, Any], lining: Mapping[str, Any]) -> np
     close = np.where(is_beside & (height < BELOW) & cut.hangs, CLOSE_BESIDE, CLOSE)
     is_open = (radius > uppermost[cell] - close).reshape(len(faces), -1)
     kept = is_open.mean(axis=1)[: len(locks["faces"])] > LEAST
-    # All of a lock between two of its rows, or nothing: else it has jagged edges.
+    # All of a lock between two of its rows, or nothing: else it has jagged edges. And the pieces
+    # before and after, so that it ends under others.
     piece = locks["faces"].min(axis=1) // len(SECTION)
-    return np.asarray(np.bincount(piece, kept)[piece] > 0)
+    is_piece_seen = np.bincount(piece, kept, minlength=first // len(SECTION)) > 0
+    return np.asarray(scipy.ndimage.binary_dilation(is_piece_seen)[piece])

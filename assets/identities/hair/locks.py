@@ -18,8 +18,8 @@ CLOSER = 1.25  # power of shares of the length: more rows near the root, where l
 DEPTH = 0.18  # of a lock, by its width
 TURN = 0.1  # [rad] by which locks are twisted
 SHADES = (0.82, 1.05, 0.82)  # of colour over the section
-UNEVEN = 0.06  # by which locks differ in colour
-UNDER = 0.3  # by how much what lies under others is darker
+UNEVEN = 0.04  # by which locks differ in colour
+UNDER = 0.2  # by how much what lies under others is darker
 GRAIN = 400.0  # [mm] of the striation's pattern from which each lock takes its own
 
 
