@@ -93,7 +93,8 @@ def _shaded(
     behind = (front - points[:, 2] - gloom.begins) / (gloom.ends - gloom.begins)
     share = np.clip(behind, 0.0, 1.0)
     light = 1.0 - gloom.lost * share * share * (3.0 - 2.0 * share)
-    return (colours * light[:, None] ** np.array(gloom.powers)).astype(np.float32)
+    seen: Floats = (colours * light[:, None] ** np.array(gloom.powers)).astype(np.float32)
+    return seen
 
 
 def _painted_light(points: npt.NDArray[Any], front: float) -> npt.NDArray[Any]:
