@@ -31,9 +31,11 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .landmarks import EYE_LANDMARKS, Array, polyline_distance, smoothstep
+from .lid_lift import lift_off
 from .lip_lid_sides import lid_side
 from .rig import LIDS, Eyes, LidMuscle, Rig
 from .skull import Eyeball
+from .state import State
 from .surface import Surface
 
 COLUMNS = 41  # places along the opening where its height is known
@@ -133,8 +135,24 @@ def place_lids(
         lower_follows=eyes.lower_lid_follows,
         sideways_follow=eyes.lids_follow_sideways,
     )
+    vertices = vertices._replace(sink=joined.sink - _lift(vertices, surface, eyeballs))
     hold = eyes.lid_stiffness * areas * joined.weight
     return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
+
+
+def _lift(lids: LidVertices, surface: Surface, eyeballs: tuple[Eyeball, ...]) -> Array:
+    """How far each lid vertex must stand out [mm], shape (L,), when all eyes are closed."""
+    state = State.at_rest(surface)
+    closed = np.zeros((len(eyeballs), len(LIDS)))
+    closed[:, 0] = 1.0
+    turn_lids(state, surface.positions, lids, closed, np.zeros((len(eyeballs), 2)))
+    lift = np.zeros(len(lids.vertex))
+    for eye, ball in enumerate(eyeballs):
+        moves = np.zeros(surface.vertex_count)
+        moves[lids.vertex[lids.upper & (lids.eye == eye) & (lids.closing != 0.0)]] = 1.0
+        found = lift_off(state.carried, surface.positions, surface.faces, moves, ball)
+        lift = np.where(lids.eye == eye, found[lids.vertex], lift)
+    return lift
 
 
 class _OneEye(NamedTuple):

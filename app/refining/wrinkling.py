@@ -30,6 +30,7 @@ Amounts = npt.NDArray[np.float32]
 
 # Chosen by eye. Skin gives way a little before it folds, and a fold does not deepen for ever.
 ONSET, HALF = 0.015, 0.09  # loss of length at which furrows begin, and beyond which they are half
+FLAT = 0.1  # gain of length at which furrows of age are half as deep: taut skin has none
 LEAST_BEND = 0.07  # [mm] of a fold over an edge, above which it is split; the most that can pop
 PLACES = np.linspace(0.0, 1.0, 17, dtype=np.float32)  # along an edge, where the relief is looked up
 
@@ -51,10 +52,11 @@ class Compression:
 
         It begins and ends without a kink: nothing pops.
         """
-        lost = self._readiness * self._shortening.measure(positions)
-        beyond = np.square(np.maximum(lost - ONSET, 0.0))
+        lost = self._shortening.measure(positions)
+        beyond = np.square(np.maximum(self._readiness * lost - ONSET, 0.0))
         amounts = beyond / (beyond + (HALF - ONSET) ** 2)
-        shown: Amounts = np.maximum(amounts, self._resting).astype(np.float32)
+        resting = self._resting / (1.0 + np.square(np.minimum(lost, 0.0) / FLAT))
+        shown: Amounts = np.maximum(amounts, resting).astype(np.float32)
         return shown
 
 

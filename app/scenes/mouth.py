@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,10 +15,24 @@ from risorius.assets.generator.ambient import INCISORS, in_mouth_light
 from risorius.assets.topology import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
-LIT, DARK = 2.0, 34.0  # [mm] behind the front teeth, where it begins to get dark and no darker
-DIMMED, DIMMED_TEETH = 0.15, 0.45  # of the colour (sRGB) that is lost there; molars are hidden
 
 Floats = npt.NDArray[np.float32]
+
+
+class Gloom(NamedTuple):
+    """How colours (sRGB) get lost toward the back of the mouth."""
+
+    begins: float  # [mm] behind the front teeth
+    ends: float
+    lost: float  # share from there on
+    powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # of red, green, blue in what is left
+
+
+# Chosen by eye. What light reaches a molar has met red flesh before. The lower ones lie deep in the
+# shadow of lips and upper teeth: bright and grey, they would look like one broken tooth.
+REDDENED = (0.9, 1.2, 1.25)
+FLESH = Gloom(2.0, 34.0, 0.15)
+UPPER_TEETH, LOWER_TEETH = Gloom(2.0, 34.0, 0.45, REDDENED), Gloom(5.0, 26.0, 0.55, REDDENED)
 
 
 @dataclass(eq=False)
@@ -66,19 +80,21 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
             return Tongue.of(part, float(front))
         if not part.name.startswith(IN_MOUTH):
             return part
-        lost = DIMMED_TEETH if part.name.startswith("teeth") else DIMMED
-        return replace(part, colours=_shaded(part.vertices, part.colours, front, lost))
+        gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, FLESH)
+        return replace(part, colours=_shaded(part.vertices, part.colours, front, gloom))
 
     return tuple(shaded(part) for part in parts)
 
 
 def _shaded(
-    points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, lost: float = DIMMED
+    points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, gloom: Gloom = FLESH
 ) -> Floats:
-    """Colours (n, 3) as they are seen behind the front teeth; lost: of them, at the very back."""
-    share = np.clip((front - points[:, 2] - LIT) / (DARK - LIT), 0.0, 1.0)
-    light = 1.0 - lost * share * share * (3.0 - 2.0 * share)
-    return (colours * light[:, None]).astype(np.float32)
+    """Colours (n, 3) as they are seen behind the front teeth."""
+    behind = (front - points[:, 2] - gloom.begins) / (gloom.ends - gloom.begins)
+    share = np.clip(behind, 0.0, 1.0)
+    light = 1.0 - gloom.lost * share * share * (3.0 - 2.0 * share)
+    seen: Floats = (colours * light[:, None] ** np.array(gloom.powers)).astype(np.float32)
+    return seen
 
 
 def _painted_light(points: npt.NDArray[Any], front: float) -> npt.NDArray[Any]:

@@ -4,7 +4,7 @@ The tension map (tension.py) finds the direction of the strongest compression an
 and where there is little of it the direction is anybody's guess. Wrinkles stay where they are; so
 here the directions are given at rest, d at each vertex, and only the amount is measured:
 
-    shortening = max(1 - |F d|, 0)         F: from rest to now, in the plane of a triangle
+    shortening = 1 - |F d|                 F: from rest to now, in the plane of a triangle
 
 Written with the barycentric coordinates b of d, which add up to 0, |F d|^2 needs nothing but the
 squared lengths l of the triangle's edges,
@@ -56,9 +56,10 @@ class Shortening(StrainMeasure):
         _square_lengths(rest, self._faces, self._rest)
 
     def measure(self, positions: npt.NDArray[np.floating]) -> Floats:
-        """Loss of length of each vertex along its directions, 0 = none, up to 1, shape (V, k).
+        """Loss of length of each vertex along its directions, up to 1, shape (V, k).
 
-        `positions`: shape (V, 3), any float type. The result is overwritten by the next call.
+        0 = none, below 0 what it has gained. `positions`: shape (V, 3), any float type. The result
+        is overwritten by the next call.
         Raises ValueError for another shape and for positions that are not finite.
         """
         self._set_positions(positions)
@@ -124,4 +125,4 @@ def _shorten(
     for v in range(lost.shape[0]):
         for k in range(lost.shape[1]):
             left = np.sqrt(max(np.float32(1.0) + lost[v, k], np.float32(0.0)))
-            lost[v, k] = max(np.float32(1.0) - left, np.float32(0.0))
+            lost[v, k] = np.float32(1.0) - left

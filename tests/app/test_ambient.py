@@ -134,6 +134,10 @@ def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
             left = (drawn.colours / given.colours).mean(axis=1)
             assert left[given.vertices[:, 2].argmax()] > 0.9
             assert left[given.vertices[:, 2].argmin()] < 0.9
+    lower = {part.name: part.colours for part in shown}["teeth_lower"]
+    given = {part.name: part for part in head}["teeth_lower"]
+    red, _, blue = (lower / given.colours)[given.vertices[:, 2].argmin()]
+    assert blue < 0.5 and blue < 0.8 * red  # grey ones look like one broken tooth
     assert shaded_mouth(()) == ()
 
 

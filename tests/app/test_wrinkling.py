@@ -17,6 +17,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.refining.wrinkling import Wrinkling, on_rows, wrinkling_of
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.assets.fitting import fit_head
+from risorius.assets.identities import person_called
 from tests.heads import stranger
 
 Array = npt.NDArray[np.float64]
@@ -238,6 +239,21 @@ def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Wr
         found = amounts(another, measure, AU1=1.0, AU2=1.0)
         mean = found[forehead(another).astype(bool), 0].mean()
         assert 0.5 * built_in < mean < 1.6 * built_in
+
+
+def test_furrows_of_age_are_pulled_flat() -> None:
+    """A kiss draws the cheek over the fold beside the nose tight; its wrinkled lips stay so."""
+    person = person_called("maria")
+    aged = FaceScene(person)
+    measure = Wrinkling(aged, CARD)
+    before, after = (amounts(aged, measure, **pose) for pose in ({}, {"kiss": 1.0}))
+    x, y, _ = (aged.rest_positions - person.vertices[person.landmarks[54]]).T
+    fold = (x > -2.0) & (x < 22.0) & (y > 13.0) & (y < 26.0)
+    fold &= before[:, 0] > 0.0
+    lip = (np.abs(aged.rest_positions[:, 0]) < 10.0) & (y > 8.0) & (y < 14.0)
+    assert fold.sum() > 4
+    assert after[fold, 0].max() < 0.3 * before[fold, 0].min()
+    assert after[lip].max() > 1.5 * before[lip].max() > 0.0
 
 
 def test_the_plane_has_none() -> None:

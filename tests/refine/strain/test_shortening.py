@@ -37,12 +37,12 @@ def test_at_rest_there_is_none() -> None:
 
 
 def test_a_squeeze_is_found_along_its_direction_alone() -> None:
-    """A fifth shorter along x, a tenth longer along y: a fifth, and nothing."""
+    """A fifth shorter along x, a tenth longer along y: a fifth, and a tenth below nothing."""
     faces, rest = grid()
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     measured = shortening.measure(rest * [0.8, 1.1, 1.0])
     np.testing.assert_allclose(measured[:, 0], 0.2, atol=1e-5)
-    assert (measured[:, 1] == 0.0).all()
+    np.testing.assert_allclose(measured[:, 1], -0.1, atol=1e-5)
 
 
 def test_only_the_way_of_a_direction_counts() -> None:
@@ -63,11 +63,11 @@ def test_rigid_motions_and_bends_shorten_nothing() -> None:
     faces, rest = grid(41)
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
     turned = Rotation.from_euler("xyz", [0.3, -1.2, 2.0]).apply(rest + 300.0)
-    assert shortening.measure(turned).max() < 1e-5
+    assert np.abs(shortening.measure(turned)).max() < 1e-5
     radius = 4.0
     angle = rest[:, 0] / radius
     rolled = np.stack([radius * np.sin(angle), rest[:, 1], radius * np.cos(angle)], axis=1)
-    assert shortening.measure(rolled).max() < 1e-3
+    assert np.abs(shortening.measure(rolled)).max() < 1e-3
 
 
 def test_agrees_with_the_tension_map() -> None:
@@ -95,9 +95,9 @@ def test_what_does_not_fit_is_refused() -> None:
 
 @pytest.mark.parametrize("name", meshes.NAMED)
 def test_named_meshes(name: str) -> None:
-    """Debris, borders, flat triangles: finite, from 0 to 1."""
+    """Debris, borders, flat triangles: finite, and no more is lost than there was."""
     mesh = meshes.NAMED[name]()
     directions = np.tile([ALONG, (0.3, 0.4, -0.5)], (len(mesh.vertices), 1, 1))
     shortening = refine.Shortening(mesh.faces, mesh.vertices, directions)
     measured = shortening.measure(meshes.wrinkled(mesh, 5))
-    assert np.isfinite(measured).all() and (measured >= 0.0).all() and (measured <= 1.0).all()
+    assert np.isfinite(measured).all() and (measured <= 1.0).all()

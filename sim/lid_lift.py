@@ -1,0 +1,71 @@
+"""How far a closed lid must stand out, so that the eyeball does not look through it.
+
+Lids turn over the eyeball vertex by vertex and are kept off the ball there (contact.py). But a
+triangle between three of them is flat, and the cornea stands out of the ball: where a mesh is
+coarse, they would cut through each other. So the lids are closed once when a face is built; where
+a triangle then cuts the eyeball, its corners on the upper lid are moved outward, each by its share
+in the deepest point. The lower lid hardly moves, and lies as it was brought.
+
+Source: own; projection by shares as in Müller et al. 2007, "Position based dynamics", section 3.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from .contact import EYE_CLEARANCE
+from .landmarks import Array
+from .skull import Eyeball
+
+CORNEA_WIDTH, CORNEA_RISE = 0.49, 0.085  # radii of the ball: half width, and height above it
+STEPS = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
+PASSES = 30  # until corners that triangles share are out of the way for all of them
+NEAR_ENOUGH = 1e-3  # mm
+LEAST_SHARE = 0.5  # that corners on the upper lid have in a point, if they are to move for it
+
+
+def lift_off(
+    x: Array, rest: Array, faces: npt.NDArray[np.int32], moves: Array, ball: Eyeball
+) -> Array:
+    """How far each vertex must come outward [mm], shape (V,), where a lid is closed.
+
+    x, rest: of the vertices with the lid closed and at rest (V, 3); what lay in the ball may do so.
+    moves: 1 for those of the upper lid, else 0, shape (V,).
+    """
+    away = x - ball.centre
+    ways = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), NEAR_ENOUGH)
+    faces = faces[moves[faces].any(axis=1)]
+    corners = away[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    faces = faces[(normals * corners.sum(axis=1)).sum(axis=1) > 0.0]  # not the inner side of a lid
+    shares, lift = _shares(), np.zeros(len(x))
+    before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
+    kept = np.where(before < 0.0, before, EYE_CLEARANCE)
+    kept[moves[faces] @ shares.T < LEAST_SHARE] = -np.inf
+    for _ in range(PASSES):
+        points = shares @ (away + lift[:, None] * ways)[faces]  # (F, S, 3)
+        deep = _reach(points, ball.radius) + kept - np.linalg.norm(points, axis=2)
+        share = shares[deep.argmax(axis=1)] * moves[faces]
+        push = deep.max(axis=1, initial=0.0) / np.maximum((share**2).sum(axis=1), NEAR_ENOUGH)
+        if push.max(initial=0.0) < NEAR_ENOUGH:
+            break
+        further = np.zeros(len(x))
+        np.maximum.at(further, faces, share * push[:, None])
+        lift += further
+    return lift
+
+
+def _shares() -> Array:
+    """Shares of the corners in points all over a triangle, shape (S, 3)."""
+    ways = [(i, j, STEPS - i - j) for i in range(STEPS + 1) for j in range(STEPS + 1 - i)]
+    return np.array(ways, np.float64) / STEPS
+
+
+def _reach(points: Array, radius: float) -> Array:
+    """How far from its centre an eyeball's surface is towards `points` (..., 3); it looks ahead."""
+    ahead = points[..., 2] / np.maximum(np.linalg.norm(points, axis=-1), NEAR_ENOUGH)
+    beside = np.sqrt(np.maximum(1.0 - ahead**2, 0.0)) / CORNEA_WIDTH
+    rise = CORNEA_RISE * np.maximum(1.0 - beside**2, 0.0) ** 1.5
+    reach: Array = radius * (1.0 + np.where(ahead > 0.0, rise, 0.0))
+    return reach

@@ -1,0 +1,112 @@
+"""A closed lid of few triangles stands out so far that the eyeball does not cut through it."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import sim
+from risorius.assets.model import Head
+from risorius.sim import lid_lift
+from risorius.sim.landmarks import Side
+from risorius.sim.lid_lift import lift_off
+from risorius.sim.skull import Eyeball
+from tests.sim.poses import settled_displacement
+
+Array = npt.NDArray[np.float64]
+CLEARANCE = 0.3  # mm
+BALL = Eyeball(Side.LEFT, np.array([30.0, 2.0, 70.0]), 13.0)
+AHEAD = np.array([[-6.0, -5.0], [6.0, -5.0], [0.0, 7.0]])  # a triangle before the pupil
+FACE = np.array([[0, 1, 2]], np.int32)
+ALL = np.ones(3)
+ABOVE = np.array([0.0, 20.0, 0.0])  # a lid that closes lay there before
+
+
+def at(beside: Array, distance: float) -> Array:
+    """Points in front of the ball, `distance` [mm] from its centre, shape (n, 3)."""
+    ahead = np.sqrt(distance**2 - (beside**2).sum(axis=1))
+    return BALL.centre + np.column_stack([beside, ahead])
+
+
+def lifted(x: Array, lift: Array) -> Array:
+    """Points moved away from the ball by `lift` [mm]."""
+    away = x - BALL.centre
+    return x + lift[:, None] * away / np.linalg.norm(away, axis=1, keepdims=True)
+
+
+def nearest(x: Array) -> float:
+    """How near a triangle (3, 3) comes to the ball's centre [mm]."""
+    shares = np.random.default_rng(2).dirichlet([1.0, 1.0, 1.0], 20_000)
+    return float(np.linalg.norm(shares @ (x - BALL.centre), axis=1).min())
+
+
+def test_a_flat_triangle_is_lifted_over_the_cornea() -> None:
+    """Its corners are well off the ball, its middle cuts it; then the middle is off it as well."""
+    closed = at(AHEAD, 14.0)
+    rest = closed + ABOVE
+    assert nearest(closed) < 13.0
+    lift = lift_off(closed, rest, FACE, ALL, BALL)
+    assert (lift > 0.5).all()
+    assert 13.0 + CLEARANCE + 0.8 < nearest(lifted(closed, lift)) < 13.0 + CLEARANCE + 1.3
+
+
+def test_what_is_far_enough_stays() -> None:
+    """Small triangles as near to the ball as a lid is thick, beside the cornea, need no lift."""
+    closed = at(AHEAD / 20.0 + [11.0, 0.0], 13.0 + CLEARANCE + 0.05)
+    assert not lift_off(closed, closed, FACE, ALL, BALL).any()
+
+
+@pytest.mark.parametrize(
+    ("faces", "moves", "sunk"),
+    [
+        (FACE, np.zeros(3), 0.0),  # the lower lid
+        (FACE[:, ::-1], ALL, 0.0),  # the inner side of a lid
+        (FACE, ALL, 3.0),  # what lay in the ball, under the lid's edge
+    ],
+    ids=["lower lid", "inner side", "sunk at rest"],
+)
+def test_what_belongs_there_stays(faces: npt.NDArray[np.int32], moves: Array, sunk: float) -> None:
+    """Only the outer side of the upper lid must be in front of the ball."""
+    closed = at(AHEAD, 14.0)
+    rest = at(AHEAD, 13.0 - sunk) if sunk else closed + ABOVE
+    assert not lift_off(closed, rest, faces, moves, BALL).any()
+
+
+def test_a_corner_is_lifted_for_what_hangs_on_it_alone() -> None:
+    """One of three corners is of the upper lid: it comes out, but not for the far edge's sake."""
+    closed = at(AHEAD, 14.0)
+    alone = np.array([0.0, 0.0, 1.0])
+    lift = lift_off(closed, closed + ABOVE, FACE, alone, BALL)
+    assert not lift[:2].any()
+    assert 0.0 < lift[2] < 5.0
+
+
+def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head: Head) -> None:
+    """No point of it is farther out than the sphere with the cornea of lid_lift.py, or hardly."""
+    for eye in head.eyes:
+        ball = Eyeball(Side(eye.name), eye.centre, eye.radius)
+        part = next(part for part in head.parts if part.name == f"eyeball_{eye.name}")
+        drawn = part.vertices[part.vertices[:, 2] > eye.centre[2] + 1.0].astype(np.float64)
+        inward = drawn - CLEARANCE * (drawn - eye.centre) / eye.radius
+        tiny = inward[:, None] + [[0.0, 0.0, 0.0], [1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0]]
+        faces = np.arange(3 * len(drawn), dtype=np.int32).reshape(-1, 3)
+        points = tiny.reshape(-1, 3)
+        lift = lift_off(points, points + 2.0 * ABOVE, faces, np.ones(len(points)), ball)
+        assert lift.reshape(-1, 3)[:, 0] == pytest.approx(2.0 * CLEARANCE, abs=0.12)
+
+
+@pytest.mark.parametrize("name", ["AU43", "wink"])
+def test_a_face_is_built_with_it(head: Head, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """A cornea that stands out by 4 mm pushes a closed lid forward, and nothing at rest."""
+    reached, resting = [], []
+    for rise in (lid_lift.CORNEA_RISE, 0.3):
+        monkeypatch.setattr(lid_lift, "CORNEA_RISE", rise)
+        simulation = sim.create(head)
+        simulation.step(1 / 60)
+        resting.append(simulation.positions.copy())
+        away = head.vertices + settled_displacement(simulation, {name: 1.0}) - head.eyes[1].centre
+        before = (np.abs(away[:, :2]) < 4.0).all(axis=1) & (away[:, 2] > 0.0)
+        reached.append(np.linalg.norm(away[before], axis=1).mean())
+    assert reached[1] > reached[0] + 0.3
+    assert np.array_equal(resting[0], resting[1])
