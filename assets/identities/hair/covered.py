@@ -15,6 +15,7 @@ import numpy.typing as npt
 import scipy
 
 from ...generator.sections import direction_coordinates
+from ...topology import places_in_triangle
 from .cuts import Cut
 from .locks import SECTION
 
@@ -31,9 +32,7 @@ def is_seen(cut: Cut, locks: Mapping[str, Any], lining: Mapping[str, Any]) -> np
     first = len(locks["vertices"])
     vertices = np.vstack([locks["vertices"], lining["vertices"]]).astype(np.float64)
     faces = np.vstack([locks["faces"], lining["faces"] + first])
-    whole = range(SAMPLES + 1)
-    shares = [(i, j, SAMPLES - i - j) for i in whole for j in whole[: SAMPLES + 1 - i]]
-    points = np.einsum("kc,fcx->fkx", np.array(shares) / SAMPLES, vertices[faces])
+    points = np.einsum("kc,fcx->fkx", places_in_triangle(SAMPLES), vertices[faces])
     angle, height, radius = direction_coordinates(points.reshape(-1, 3))
     column, row = np.floor(np.degrees(angle) / CELL[0]), np.floor(height / CELL[1])
     cell = np.unique(row * 1000.0 + column, return_inverse=True)[1]

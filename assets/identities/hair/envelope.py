@@ -8,7 +8,7 @@ import scipy
 from ...generator.fields import Points, Values
 from ...generator.sections import TOP, direction_coordinates
 from ...model import IndexArray
-from ...topology import vertex_normals
+from ...topology import places_in_triangle, vertex_normals
 
 RISE, FALL = 0.26, 0.16  # how fast hair comes out above ears, and in again below [mm for each mm]
 HANGING = 60.0  # [mm] height below which it does
@@ -43,20 +43,15 @@ class Envelope:
 
     def radius(self, angle: Values, height: Values) -> Values:
         """From the axis of the head [mm], shape (n,)."""
-        return _between(self._reach, angle, height)
-
-
-def _between(grid: Values, angle: Values, height: Values) -> Values:
-    """A grid's values at places, shape (n,)."""
-    row, column = _places(angle, height)
-    top, left = np.minimum(row.astype(int), len(HEIGHTS) - 2), np.floor(column).astype(int)
-    down, right = row - top, column - left
-    left, beside = left % len(ANGLES), (left + 1) % len(ANGLES)
-    reach, below = grid[top], grid[top + 1]
-    rows = np.arange(len(row))
-    low = (1.0 - right) * reach[rows, left] + right * reach[rows, beside]
-    high = (1.0 - right) * below[rows, left] + right * below[rows, beside]
-    return np.asarray((1.0 - down) * low + down * high)
+        row, column = _places(angle, height)
+        top, left = np.minimum(row.astype(int), len(HEIGHTS) - 2), np.floor(column).astype(int)
+        down, right = row - top, column - left
+        left, beside = left % len(ANGLES), (left + 1) % len(ANGLES)
+        reach, below = self._reach[top], self._reach[top + 1]
+        rows = np.arange(len(row))
+        low = (1.0 - right) * reach[rows, left] + right * reach[rows, beside]
+        high = (1.0 - right) * below[rows, left] + right * below[rows, beside]
+        return np.asarray((1.0 - down) * low + down * high)
 
 
 def _close(vertices: Points, faces: IndexArray) -> Points:
@@ -65,10 +60,7 @@ def _close(vertices: Points, faces: IndexArray) -> Points:
     On the scalp, where triangles are large, skin that was refined stands 2 mm above them.
     Source: Boubekeur, Alexa 2008, "Phong tessellation".
     """
-    whole = range(STEPS + 1)
-    shares = (
-        np.array([(i, j, STEPS - i - j) for i in whole for j in whole[: STEPS + 1 - i]]) / STEPS
-    )
+    shares = places_in_triangle(STEPS)
     corners, normals = vertices[faces][:, None], vertex_normals(vertices, faces)[faces][:, None]
     flat = np.einsum("kc,fcx->fkx", shares, vertices[faces])[:, :, None]
     above = ((flat - corners) * normals).sum(axis=3, keepdims=True)  # the planes of the corners

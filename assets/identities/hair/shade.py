@@ -15,6 +15,7 @@ import scipy
 from ...files import Image
 from ...generator.fields import Points, Values, unit
 from ...model import IndexArray, Part
+from ...topology import places_in_triangle
 
 REACH = 35.0  # [mm] beyond which hair does not shade
 LAYERS = 2.5  # of hair over one place, on average, which shade as one
@@ -38,9 +39,7 @@ def shaded(
     from PIL import Image as Pictures
 
     values = _open(hair, vertices, normals)[faces]
-    whole = range(SAMPLES + 1)
-    shares = [(i, j, SAMPLES - i - j) for i in whole for j in whole[: SAMPLES + 1 - i]]
-    weights = np.array(shares) / SAMPLES
+    weights = places_in_triangle(SAMPLES)
     column, row = np.einsum("kc,fcx->xfk", weights, places).reshape(2, -1) * SIZE
     texel = np.clip(SIZE - 1 - row.astype(int), 0, SIZE - 1) * SIZE
     texel += np.clip(column.astype(int), 0, SIZE - 1)
