@@ -17,7 +17,7 @@ from .fields import Points, Values, cast
 from .form import distance
 
 TRAGUS_HEIGHT, TRAGUS_DEPTH = -13.0, -4.0  # [mm] y and z of the front line at the tragus
-TILT_DEG = 17.0  # the top lies further back
+TILT_DEG = 12.0  # the top lies further back
 STAND_OFF_DEG = ((-30.0, 12.0), (-15.0, 20.0), (5.0, 27.0), (30.0, 30.0))  # up [mm], angle
 MIDDLE = np.array([14.0, 3.0])  # back, up [mm]: the rows of the helix shrink toward it
 CONCHA = np.array([[12.3, 6.0], [10.2, -7.5]])
@@ -25,28 +25,28 @@ CONCHA = np.array([[12.3, 6.0], [10.2, -7.5]])
 # back, up [mm] of every column
 ROOT = (
     (-2.0, 15.5), (3.8, 19.3), (9.0, 22.3), (14.5, 20.8), (18.0, 16.2), (19.5, 10.0),
-    (19.1, 3.5), (17.5, -3.0), (15.6, -9.5), (13.0, -15.5), (9.2, -20.8), (3.0, -22.8),
-    (-2.5, -19.5), (-3.5, -8.5), (-3.2, 4.0),
+    (19.1, 3.5), (17.5, -3.0), (15.6, -9.5), (13.2, -15.5), (10.6, -20.2), (6.6, -23.0),
+    (2.0, -22.4), (-2.5, -19.5), (-3.5, -8.5), (-3.2, 4.0),
 )  # fmt: skip
 EDGE = (
     (-2.0, 15.5), (1.6, 26.0), (8.2, 32.4), (16.6, 34.4), (24.6, 31.6), (30.4, 24.6),
-    (32.8, 14.8), (32.0, 4.4), (29.0, -5.6), (24.6, -15.4), (15.6, -28.6), (5.4, -29.2),
-    (-2.5, -19.5), (-3.5, -8.5), (-3.2, 4.0),
+    (32.8, 14.8), (32.0, 4.4), (29.0, -5.6), (24.6, -15.4), (19.6, -24.6), (12.0, -29.8),
+    (4.6, -28.6), (-2.5, -19.5), (-3.5, -8.5), (-3.2, 4.0),
 )  # fmt: skip
 CONCHA_RIDGE = (
     (4.8, 9.0), (8.0, 14.0), (12.0, 16.5), (16.0, 15.5), (19.0, 12.0), (20.7, 7.3),
-    (20.8, 1.5), (19.3, -4.5), (16.8, -9.8), (13.5, -14.0), (9.8, -16.2), (6.2, -15.8),
-    (3.6, -11.5), (4.8, -4.8), (2.8, 2.2),
+    (20.8, 1.5), (19.3, -4.5), (17.2, -9.6), (14.8, -13.6), (11.6, -16.4), (8.0, -17.0),
+    (5.0, -15.2), (3.4, -11.0), (4.8, -4.8), (2.8, 2.2),
 )  # fmt: skip
 COLUMNS, ROWS = len(ROOT), 5
-ON_ROOT = (0, 12, 13, 14)  # columns whose free edge is the root
+ON_ROOT = (0, 13, 14, 15)  # columns whose free edge is the root
 CREST_SHRINK, HOLLOW_SHRINK = 0.84, 0.69
 EDGE_OUT = -0.4
-CREST_OUT = (0, 2.8, 3.6, 3.8, 3.6, 3.3, 2.9, 2.4, 1.8, 1.5, 1.6, 1.8, 0, 0, 0)
-HOLLOW_OUT = (2.2, -1.6, -3.0, -3.2, -3.2, -3.0, -2.6, -1.8, -0.6, 0.8, 2.0, 2.2, 2.0, 0, 0)
-RIDGE_OUT = (0.8, -1.6, -1.0, 1.6, 3.6, 4.6, 4.8, 4.4, 3.9, 3.6, 4.0, 2.0, 3.0, 6.4, 3.8)
+CREST_OUT = (0, 2.8, 3.6, 3.8, 3.6, 3.3, 2.9, 2.4, 1.8, 1.5, 1.5, 1.6, 1.7, 0, 0, 0)
+HOLLOW_OUT = (2.2, -1.6, -3.0, -3.2, -3.2, -3.0, -2.6, -1.8, -0.6, 0.8, 1.5, 2.1, 2.2, 2.0, 0, 0)
+RIDGE_OUT = (0.8, -1.6, -1.0, 1.6, 3.6, 4.6, 4.8, 4.4, 3.9, 3.6, 3.9, 3.4, 2.0, 3.0, 6.4, 3.8)
 CONCHA_OUT = (-6.5, -8.5)
-TO_LOWER_FLOOR = range(6, 13)  # columns that the lower vertex of the floor is joined to
+TO_LOWER_FLOOR = range(6, 14)  # columns that the lower vertex of the floor is joined to
 
 
 def _plane_axes() -> tuple[Points, Points]:
@@ -100,7 +100,7 @@ def ear_rows() -> tuple[list[Points], Points]:
 
 def merged_columns() -> list[tuple[int, ...]]:
     """For rows 1 to 4: the columns whose vertex is that of the row before."""
-    return [ON_ROOT, ON_ROOT, (13, 14), ()]
+    return [ON_ROOT, ON_ROOT, (14, 15), ()]
 
 
 def face_count() -> int:

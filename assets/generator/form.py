@@ -42,24 +42,24 @@ Stroke = tuple[float, tuple[tuple[float, float, float], ...]]
 
 # Strokes in the front view, laid over the plain head: half width [mm]; x, y, height [mm] along it.
 IN_FRONT: tuple[Stroke, ...] = (
-    (11.5, ((17, 1, -7.0), (34, 0, -5.6))),  # the orbit
-    (6.0, ((14.5, 4, -2.2),)),  # its inner hollow
-    (6.0, ((6, 16, 0.6), (17, 19, 2.0), (32, 21, 2.2), (45, 18, 2.0), (51, 11, 1.0))),  # brow
-    (4.2, ((28, 14, 0.5), (38, 13, 1.2), (46, 8, 0.8))),  # fullness over the outer lid
-    (10.5, ((31, -26, 2.0), (45, -26, 3.2))),  # cheek
+    (11.5, ((17, 1, -5.6), (37, 1, -5.0))),  # the orbit
+    (6.5, ((14.5, 4, -1.4),)),  # its inner hollow
+    (7.5, ((6, 17, 0.4), (17, 19, 1.5), (32, 20, 1.7), (45, 17, 1.5), (53, 9, 1.0))),  # brow
+    (4.6, ((28, 15, 0.4), (38, 14, 0.9), (45, 10, 0.6))),  # fullness over the outer lid
+    (14.0, ((30, -27, 1.5), (45, -28, 2.2))),  # cheek
     (3.6, ((16, -10, -0.2), (23, -15, -0.4), (31, -18, -0.2))),  # below the lower lid
     (3.0, tuple((x - 0.5, y, -0.55 * w) for (x, y), w in zip(FOLD, FOLD_DEPTH, strict=True))),
     (7.0, tuple((x, y, 1.0 * w) for (x, y), w in zip(FOLD_SIDE, FOLD_DEPTH, strict=True))),
-    (2.8, ((0, -46, -0.5), (0, -58.0, -1.2))),  # philtrum
-    (2.1, ((3.8, -48, 0.2), (5.4, -58, 1.1))),  # its ridges
+    (3.2, ((0, -46, -0.8), (0, -58.0, -0.9))),  # philtrum
+    (2.6, ((4.2, -49, 0.1), (5.4, -58, 0.6))),  # its ridges
     (7.0, ((0, -99, 0.4), (9, -99, 0.5))),  # chin
     (3.4, ((0, -84.5, -0.6), (13, -83, -0.6))),  # below the lower lip
-    (4.6, ((28.2, -66.3, -1.2),)),  # corner of the mouth
+    (5.5, ((28.6, -66.6, -1.0),)),  # corner of the mouth
 )
 # Strokes on the side: half width [mm]; angle about the axis [deg], height along it, height [mm].
 BESIDE: tuple[Stroke, ...] = (
-    (9.0, ((34, -23, 1.6), (48, -20, 3.0), (62, -16, 2.0), (76, -15, 0.2))),  # cheekbone
-    (14.0, ((48, -50, -1.0), (64, -52, -1.2))),  # hollow below
+    (11.0, ((34, -23, 1.0), (48, -20, 2.6), (62, -17, 2.2), (76, -15, 0.3))),  # cheekbone
+    (18.0, ((48, -54, -0.5), (64, -55, -0.8))),  # hollow below
     (13.0, ((56, 20, -1.8), (74, 22, -2.2))),  # temple
 )
 ARC = 1.3  # [mm] of the surface per degree
@@ -113,9 +113,9 @@ def neck_relief(angle: Values, height: Values, radius: Values, strip: float = 0.
     heights, degrees = np.array(NECK_MUSCLE).T
     behind = radius * (np.abs(angle) - np.radians(np.interp(height, heights, degrees)))
     from_middle = radius * np.abs(angle)
-    muscle = 4.4 * across(behind, 0.0, 8.5) - 2.0 * across(behind, -14.0, 9.0)
+    muscle = 3.4 * across(behind, 0.0, 9.5) - 1.4 * across(behind, -14.0, 10.0)
     larynx = bump(height, -143.0, 8.0) + 0.6 * smooth_step(-143.0, -152.0, height)
-    throat = 2.4 * larynx * across(from_middle, 0.0, 8.0) * smooth_step(-128.0, -140.0, height)
+    throat = 1.8 * larynx * across(from_middle, 0.0, 8.0) * smooth_step(-128.0, -140.0, height)
     along = smooth_step(-84.0, -112.0, height) * smooth_step(-166.0, -138.0, height)
     return muscle * along + throat
 

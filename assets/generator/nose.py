@@ -31,21 +31,21 @@ def distance(points: Points) -> Values:
 
 
 def _distance(half: Points) -> Values:
-    ridge = tapered_capsule(half, (0, 6, 87.6), (0, -20, 102.4), 4.5, 5.0)
-    lower_ridge = tapered_capsule(half, (0, -18, 101.2), (0, -31, 109.4), 5.2, 6.6)
-    side_wall = tapered_capsule(half, (0, 2, 81.5), (0, -30, 93.0), 7.2, 11.2)
-    tip = sphere(half, (0, -34.6, 112.3), 6.6)
-    lobe = sphere(half, (4.0, -35.0, 111.2), 6.0)
-    wing = ellipsoid(half, (12.0, -38.5, 101.0), (4.7, 5.4, 8.2), turn_deg=24)
-    triangle = ellipsoid(half, (8.4, -36.2, 106.4), (3.9, 4.0, 6.3), turn_deg=30)
+    ridge = tapered_capsule(half, (0, 6, 87.4), (0, -20, 101.4), 4.7, 6.0)
+    lower_ridge = tapered_capsule(half, (0, -18, 100.4), (0, -31, 108.8), 6.0, 7.2)
+    side_wall = tapered_capsule(half, (0, 2, 81.5), (0, -32, 94.0), 7.4, 13.4)
+    tip = sphere(half, (0, -35.2, 112.2), 6.6)
+    lobe = sphere(half, (3.5, -35.6, 111.2), 5.7)
+    wing = ellipsoid(half, (11.8, -37.8, 101.0), (4.9, 6.3, 8.4), turn_deg=24)
+    triangle = ellipsoid(half, (8.2, -36.6, 105.8), (3.8, 4.4, 6.2), turn_deg=30)
     columella = tapered_capsule(half, (0, -42.1, 101), (0, -41.4, 110.4), 2.6, 2.8)
 
     result = smooth_minimum(ridge, lower_ridge, 6.0)
-    result = smooth_minimum(result, side_wall, 9.0)
+    result = smooth_minimum(result, side_wall, 12.0)
     result = smooth_minimum(result, tip, 7.0)
     result = smooth_minimum(result, lobe, 5.0)
-    wing = smooth_minimum(wing, triangle, 5.5)
-    result = smooth_minimum(result, wing, 3.6)
+    wing = smooth_minimum(wing, triangle, 4.5)
+    result = smooth_minimum(result, wing, 4.0)
     return smooth_minimum(result, columella, 3.0)
 
 

@@ -46,7 +46,7 @@ BACK: Table = (
 )  # fmt: skip
 # height [mm], exponent of the superellipse: 2 is an ellipse, more is squarer
 SQUARENESS: Table = (
-    (150, 2.0), (90, 2.02), (50, 2.1), (20, 2.22), (0, 2.24), (-26, 2.24), (-46, 2.1), (-66, 1.95),
+    (150, 2.0), (90, 2.02), (50, 2.06), (20, 2.12), (0, 2.13), (-26, 2.13), (-46, 2.05), (-66, 1.95),
     (-85, 1.9), (-110, 1.9), (-175, 2.0),
 )  # fmt: skip
 # angle [deg], height [mm] of the lower border of the jaw, continued around the back of the head
@@ -54,8 +54,8 @@ JAW_LINE: Table = (
     (0, -108), (14, -107), (28, -104.5), (43, -100), (58, -95), (72, -89), (84, -81), (96, -70),
     (110, -60), (130, -62), (180, -75),
 )  # fmt: skip
-JAW_SLOPE, SLOPE_BEHIND = 2.7, 1.1  # how steeply the face falls away under it
-JAW_ROUNDING = 16.0  # [mm]
+JAW_SLOPE, SLOPE_BEHIND = 2.4, 1.1  # how steeply the face falls away under it
+JAW_ROUNDING = 20.0  # [mm]
 # y [mm], radius forward, sideways and backward [mm]
 NECK = (
     (-60, 50, 46, 77), (-100, 46, 44, 77), (-118, 42.5, 43.5, 76), (-132, 38.5, 44.5, 75.5),
@@ -142,7 +142,7 @@ def _radius(angle: Values, height: Values) -> Values:
     is_front = np.abs(angle) < np.pi / 2
     ahead = np.where(is_front, front(height), back(height))
     head = _superellipse(angle, ahead, side(height), squareness(height))
-    slope = JAW_SLOPE + (SLOPE_BEHIND - JAW_SLOPE) * smooth_step(1.0, 1.9, np.abs(angle))
+    slope = JAW_SLOPE + (SLOPE_BEHIND - JAW_SLOPE) * smooth_step(0.7, 1.7, np.abs(angle))
     below = slope * np.maximum(jaw(np.degrees(np.abs(angle))) - height, 0.0)
     head = head + JAW_ROUNDING - np.hypot(below, JAW_ROUNDING)
     throat, beside, nape = (curve(np.minimum(height, CROWN)) for curve in neck)
