@@ -80,6 +80,8 @@ def set_part(program: moderngl.Program, part: Part, light: Light, view: CameraVi
     program["rim_light"] = (0.0, 0.0, 0.0) if is_in_head else light.rim
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
+    # What is as wet as an eye is dark by itself, not for want of light; so is a shirt.
+    program["least_mirrored"] = shine * shine if part.bone in HEAD_BONES else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
     if thickness := getattr(part, "hair", 0.0):  # half of it, and what it is at least at distance 1
         _, _, width, height = view.viewport

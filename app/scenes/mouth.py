@@ -31,8 +31,8 @@ class Gloom(NamedTuple):
 # Chosen by eye. What light reaches a molar has met red flesh before. The lower ones lie deep in the
 # shadow of lips and upper teeth: bright and grey, they would look like one broken tooth.
 REDDENED = (0.9, 1.2, 1.25)
-FLESH = Gloom(2.0, 34.0, 0.15)
-UPPER_TEETH, LOWER_TEETH = Gloom(2.0, 34.0, 0.45, REDDENED), Gloom(5.0, 26.0, 0.55, REDDENED)
+FLESH, GUMS = Gloom(2.0, 34.0, 0.15), Gloom(2.0, 24.0, 0.4)
+UPPER_TEETH, LOWER_TEETH = Gloom(2.0, 34.0, 0.45, REDDENED), Gloom(0.0, 24.0, 0.55, REDDENED)
 
 
 @dataclass(eq=False)
@@ -80,7 +80,7 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
             return Tongue.of(part, float(front))
         if not part.name.startswith(IN_MOUTH):
             return part
-        gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, FLESH)
+        gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)
         return replace(part, colours=_shaded(part.vertices, part.colours, front, gloom))
 
     return tuple(shaded(part) for part in parts)

@@ -18,19 +18,22 @@ AROUND = 12
 LEVELS = (0.0, 0.4, 0.75, 0.93, 1.0)  # rings of a crown, from the gum to the edge
 STATIONS = 81  # of the gums along the arch; chosen: almost six to a tooth
 EDGE_COLOUR, NECK_COLOUR = (0.955, 0.94, 0.90), (0.94, 0.885, 0.80)
-FISSURE_COLOUR = (0.70, 0.60, 0.46)
+FISSURE_COLOUR = (0.84, 0.76, 0.64)
 GUM_COLOUR, MUCOSA_COLOUR, POCKET_COLOUR = (
     (0.83, 0.53, 0.51),
     (0.72, 0.34, 0.33),
     (0.45, 0.16, 0.15),
 )
 CANINE_COLOUR = (0.99, 0.97, 0.935)  # its dentine is thicker: times that of the others
-TIP, FLAT, ROUND, BROAD = "tip", "flat", "round", "broad"
-BETWEEN = 0.42  # of the light, lost where neighbours touch; more toward the gum than at the edge
+TIP, FLAT, SQUARE, ROUND, BROAD = "tip", "flat", "square", "round", "broad"
 BETWEEN_REDDENING = (0.75, 1.1, 1.25)  # powers: what is left comes from gum
-# How far the edge rises toward the gum at its corners [mm], near to the midline and far from it.
-CORNERS = {FLAT: (0.3, 0.9), ROUND: (0.55, 1.35), TIP: (1.3, 2.1), BROAD: (0.9, 1.1)}
-CORNER_POWERS = {FLAT: 3.2, ROUND: 2.6, TIP: 1.25, BROAD: 1.7}
+# How far the edge rises toward the gum at its corners [mm], near to the midline and far from it;
+# the power of x with which it does so; and how wide the edge is, as a share of the crown.
+EDGES = {
+    FLAT: (0.3, 0.9, 3.2, 0.93), SQUARE: (0.1, 0.3, 3.2, 0.98), ROUND: (0.55, 1.35, 2.6, 0.93),
+    TIP: (1.0, 1.6, 1.5, 0.93), BROAD: (0.4, 0.5, 2.4, 0.86),
+}  # fmt: skip
+PIT = 0.4  # [mm] that the middle of a broad crown lies below its edge's lowest point
 COVERED, PAPILLA = 0.9, 1.5  # [mm] of the crown that gum hides, and of it more between teeth
 
 # Section of the gums: distance outward from the labial line [mm] (or inward from the lingual one),
@@ -69,9 +72,9 @@ UPPER = (
     Tooth(9.4, 6.2, 10.0, 8.2, 1.1, 0.0, BROAD),
 )  # fmt: skip
 LOWER = (
-    Tooth(5.2, 9.4, 5.6, 1.3, 0.1, 0.0), Tooth(5.7, 9.5, 5.8, 1.3, 0.0, 0.02),
-    Tooth(6.8, 10.2, 7.2, 1.9, -0.3, 0.05, TIP), Tooth(7.0, 8.4, 7.6, 5.4, 0.2, 0.04, BROAD),
-    Tooth(7.1, 7.6, 8.0, 6.2, 0.5, 0.0, BROAD), Tooth(11.0, 6.0, 9.6, 8.0, 0.7, 0.0, BROAD),
+    Tooth(5.2, 9.4, 5.6, 1.3, 0.1, 0.0, SQUARE), Tooth(5.7, 9.5, 5.8, 1.3, 0.0, 0.02, SQUARE),
+    Tooth(6.8, 10.2, 7.2, 2.8, 0.1, 0.05, TIP), Tooth(7.0, 8.4, 7.4, 3.8, 0.2, 0.04, BROAD),
+    Tooth(7.1, 7.6, 8.0, 5.6, 0.5, 0.0, BROAD), Tooth(11.0, 6.0, 9.6, 8.0, 0.7, 0.0, BROAD),
     Tooth(10.4, 5.4, 9.6, 8.0, 0.8, 0.0, BROAD),
 )  # fmt: skip
 
@@ -83,6 +86,8 @@ class Arch:
     front: z of the foremost labial surface [mm]; half_width, length: of the arch [mm].
     edge, back_edge: height y of the biting edges in front and at the last molar [mm].
     up: +1 if the roots are above, -1 if below.
+    between: share of the light that is lost where neighbours touch; more toward the gum than at the
+        edge. The lower row is seen aslant: with much of it, a small picture shows splinters.
     """
 
     teeth: tuple[Tooth, ...]
@@ -92,6 +97,7 @@ class Arch:
     edge: float
     back_edge: float
     up: float
+    between: float
 
     def point(self, x: Values) -> Points:
         """The labial line of the arch over x, at the height of the edges, shape (n, 3)."""
@@ -102,11 +108,13 @@ class Arch:
 
 
 UPPER_ARCH = Arch(
-    UPPER, front=92.6, half_width=28.6, length=46.0, edge=-69.4, back_edge=-69.6, up=1.0
-)
+    UPPER, front=92.6, half_width=28.6, length=46.0, edge=-69.4, back_edge=-69.6, up=1.0,
+    between=0.42,
+)  # fmt: skip
 LOWER_ARCH = Arch(
-    LOWER, front=89.6, half_width=26.8, length=44.0, edge=-68.1, back_edge=-70.6, up=-1.0
-)
+    LOWER, front=89.6, half_width=26.8, length=44.0, edge=-68.1, back_edge=-70.6, up=-1.0,
+    between=0.15,
+)  # fmt: skip
 
 
 def _along(arch: Arch) -> tuple[Values, Points]:
@@ -117,32 +125,28 @@ def _along(arch: Arch) -> tuple[Values, Points]:
     return np.r_[0.0, np.cumsum(steps)], line
 
 
-def _crown(tooth: Tooth) -> tuple[Points, npt.NDArray[np.float64]]:
+def _crown(tooth: Tooth, between: float) -> tuple[Points, npt.NDArray[np.float64]]:
     """Vertices of one crown: x along the arch, y from the edge (0) to the gum, z outward."""
-    angle = 2.0 * np.pi * (np.arange(AROUND) + 0.5) / AROUND  # so that cusps get a vertex each
+    angle = 2.0 * np.pi * (np.arange(AROUND) + 0.5) / AROUND
     cosine, sine = np.cos(angle), np.sin(angle)
+    near, far, power, edge = EDGES[tooth.shape]
     rows, shades = [], []
     for level in LEVELS:
         width = tooth.width * (0.76 + 0.22 * np.sin(np.pi * (0.12 + 0.62 * level)))
         depth = tooth.neck_depth + (tooth.edge_depth - tooth.neck_depth) * level**0.8
-        closing = (0.80 if tooth.shape == BROAD else 0.93) if level == 1.0 else 1.0
+        closing = edge if level == 1.0 else 1.0
         x = np.sign(cosine) * np.abs(cosine) ** 0.62 * width * 0.5 * closing
         z = (np.sign(sine) * np.abs(sine) ** 0.75 * closing - 1.0) * depth * 0.5
         z -= 0.5 * level**2  # the labial face curves in toward the edge
-        near, far = CORNERS[tooth.shape]
-        power = CORNER_POWERS[tooth.shape]
         corner = np.where(x < 0.0, near, far) * (2.0 * np.abs(x) / tooth.width) ** power
         y = (1.0 - level) * tooth.height + corner * level**3
-        if tooth.shape == BROAD:
-            y += 0.5 * (1.0 - np.abs(np.sin(2.0 * angle))) * (level == 1.0)  # four cusps
         rows.append(np.column_stack([x + tooth.lean * y, y + tooth.rise, z]))
-        side = BETWEEN * (1.0 - 0.45 * level) * smooth_step(0.70, 1.0, np.abs(cosine))
+        side = between * (1.0 - 0.45 * level) * smooth_step(0.70, 1.0, np.abs(cosine))
         tint = mix(NECK_COLOUR, EDGE_COLOUR, np.full(AROUND, level**0.6))
         tint = tint * (CANINE_COLOUR if tooth.shape == TIP else 1.0)
         shades.append(tint * (1.0 - side)[:, None] ** np.array(BETWEEN_REDDENING))
     end = rows[-1].mean(axis=0)
-    if tooth.shape == BROAD:
-        end[1] += 1.1
+    end[1] = rows[-1][:, 1].min() + (PIT if tooth.shape == BROAD else 0.0)
     pit = FISSURE_COLOUR if tooth.shape == BROAD else EDGE_COLOUR
     return np.vstack([*rows, end]), np.vstack([*shades, pit])
 
@@ -165,7 +169,7 @@ def teeth(arch: Arch) -> Solid:
         ahead = np.array([np.interp(middle + 0.5, length, line[:, k]) for k in range(3)])
         tangent = unit(((ahead - centre) * [1.0, 0.0, 1.0])[None])[0]
         outward = np.array([-tangent[2], 0.0, tangent[0]])
-        local, colours = _crown(tooth)
+        local, colours = _crown(tooth, arch.between)
         vertices = (
             centre
             + local[:, :1] * tangent

@@ -28,7 +28,7 @@ LINING = (
     (24, 85.5, -60, -73),
 )  # fmt: skip
 LINING_COLUMNS, LINING_ROWS = 17, 6
-COVERED = 0.5  # chosen: of the light, what teeth and lips keep from the lining beside them
+COVERED = 0.3  # chosen: of the light, what teeth and lips keep from the lining beside them
 
 
 def _outline(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -95,13 +95,13 @@ def tongue() -> Solid:
     rows, roots = [], []
     for way in lengthwise:
         swell = np.sqrt(1.0 - (1.0 - min(way / 0.55, 1.0)) ** 2)
-        half_width = 18.5 * (1.0 - (1.0 - min(way / 0.75, 1.0)) ** 2) ** 0.58
+        half_width = 18.5 * (1.0 - (1.0 - min(way / 0.75, 1.0)) ** 2) ** 0.38
         height = 10.0 * swell
-        centre_y = -79.5 + 5.0 * np.sin(np.pi * min(way, 0.8)) - 5.0 * max(way - 0.6, 0.0)
+        centre_y = -78.0 + 4.0 * np.sin(np.pi * min(way, 0.8)) - 5.0 * max(way - 0.6, 0.0)
         centre_z = 83.0 - 50.0 * way
-        x = half_width * np.cos(around)
-        y = height * np.sign(np.sin(around)) * np.abs(np.sin(around)) ** 1.05
-        y = y - 2.2 * np.exp(-((x / 3.0) ** 2)) * (y > 0) * swell  # the groove in the middle
+        x = half_width * np.sign(np.cos(around)) * np.abs(np.cos(around)) ** 0.75
+        y = height * np.sign(np.sin(around)) * np.abs(np.sin(around)) ** 0.75
+        y = y - 1.4 * np.exp(-((x / 4.5) ** 2)) * (y > 0) * swell  # the groove in the middle
         rows.append(np.column_stack([x, centre_y + y, np.full(len(x), centre_z)]))
         roots.append(np.full(len(x), way))
     vertices = np.vstack(rows)

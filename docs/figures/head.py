@@ -21,6 +21,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
+from risorius.app.scenes.mouth import shaded_mouth
 from risorius.assets.identities import person_called
 from risorius.bench.canvas import Canvas, Drawing, without_noise
 from risorius.bench.subjects import settled_positions
@@ -77,7 +78,8 @@ def portrait(
     uv = head.uv if fine is None else fine.interpolate(head.uv).astype(np.float32)
     refiner = refine.create("none", faces, vertices, uv, faces)
     camera = render.OrbitCamera.framing(head.vertices, view=view)
-    drawing = Drawing(camera, style, parts=head.parts, bones=bones, texture=texture)
+    parts = shaded_mouth(head.parts)
+    drawing = Drawing(camera, style, parts=parts, bones=bones, texture=texture)
     return canvas.draw_image(refiner, vertices if positions is None else positions, drawing)
 
 

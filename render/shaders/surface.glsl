@@ -213,7 +213,9 @@ uniform vec4 wire_colour;
 #else
 in Surface { VARYINGS } surface;
 #endif
-#if !defined(COLOURED)
+#if defined(COLOURED)
+uniform float least_mirrored;  // of the highlight, where the part is black
+#else
 uniform vec3 inner_albedo;
 #endif
 #if defined(TEXTURED)
@@ -350,6 +352,8 @@ void main() {
     float lightness = 1.0;
 #endif
 #if defined(COLOURED)
+    // Deep in a mouth parts are painted dark: no more light gets there to be mirrored.
+    lit.specular *= max(front.r, least_mirrored);
     // Lids and lips are thin, and what they shade is small: light of a large lamp gets around them.
     lightness = mix(0.6, 1.0, lightness);
 #endif

@@ -129,6 +129,17 @@ def test_gums_hold_the_teeth(head: Head) -> None:
             assert least < margin[beside[1]].min() + 1.5 - crown.min() < most, (row, low)
 
 
+def test_the_tongue_lies_against_the_lower_crowns(head: Head) -> None:
+    """No more than 2.5 mm between, from the canines to the molars: their inner sides are hidden."""
+    tongue, teeth = (part(head, name).vertices for name in ("tongue", "teeth_lower"))
+    for z in (80.0, 75.0, 68.0, 59.0):
+        crowns = teeth[
+            (np.abs(teeth[:, 2] - z) < 1.5) & (teeth[:, 1] > -75.0) & (teeth[:, 0] > 4.0)
+        ]
+        beside = tongue[np.abs(tongue[:, 2] - z) < 1.5, 0].max()
+        assert crowns[:, 0].min() - 2.5 < beside < crowns[:, 0].min() + 1.0, z
+
+
 def test_parts_cost_no_more_than_they_must(head: Head) -> None:
     """On a software renderer they cost as much as the skin: 8000 to 16 000 triangles."""
     assert 8000 <= sum(len(found.faces) for found in head.parts) <= 16000
