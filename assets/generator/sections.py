@@ -46,8 +46,8 @@ BACK: Table = (
 )  # fmt: skip
 # height [mm], exponent of the superellipse: 2 is an ellipse, more is squarer
 SQUARENESS: Table = (
-    (150, 2.0), (90, 2.02), (50, 2.06), (20, 2.12), (0, 2.13), (-26, 2.13), (-46, 2.05), (-66, 1.95),
-    (-85, 1.9), (-110, 1.9), (-175, 2.0),
+    (150, 2.0), (90, 2.02), (50, 2.06), (20, 2.12), (0, 2.13), (-26, 2.13), (-46, 2.05),
+    (-66, 1.95), (-85, 1.9), (-110, 1.9), (-175, 2.0),
 )  # fmt: skip
 # angle [deg], height [mm] of the lower border of the jaw, continued around the back of the head
 JAW_LINE: Table = (
