@@ -44,7 +44,7 @@ SIZES = (
     ((20, -140, 42), 14.0, 12.0, 0.35),
 )
 LARGEST_IN_FACE, LARGEST_BEHIND, LARGEST_FAR_BEHIND = 13.0, 25.0, 32.0  # [mm]
-LARGEST_ON_CROWN = 13.4  # [mm] the crown is an outline from every side
+LARGEST_ON_CROWN = 12.9  # [mm] the crown is an outline from every side
 
 
 def wanted_length(points: Points) -> Values:
