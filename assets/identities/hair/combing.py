@@ -33,8 +33,8 @@ OVER_SKIN = 3.2  # [mm] that they are over the triangles of the skin there, at m
 LIFTED = 60.0  # [mm] from the root, where a lock has come up to its layer
 FLAT, EDGED = 0.8, 25.0  # how much closer they lie at the hairline, and from how far behind it [mm]
 BROWS = 30.0, 55.0  # heights above which they do [mm]
-CURLED = 9.0  # [mm] that ends turn in
-UNEVEN = 4.0  # [mm] by which they end at different heights
+CURLED = 10.0  # [mm] that ends turn in
+UNEVEN = 5.5  # [mm] by which they end at different heights
 
 
 def roots_of(

@@ -19,7 +19,7 @@ from .envelope import Envelope
 
 HANGING = 55.0  # [mm] height of the upper edge of what hangs
 ROWS, COLUMNS = 10, 48  # of either grid
-ENDED = 5.0  # [mm] over the hem, where it ends
+ENDED, RAGGED = 6.0, 1.5  # [mm] over the hem, where it ends, and how far up and down from there
 OPENED = 2.0  # [deg] behind the edges of the locks beside the face
 IN_FRONT = 4.0  # [mm] behind the hairline, where the cap begins
 # Of the locks' volume, that lies within them; short ones do not come up to it.
@@ -82,7 +82,7 @@ def _curtain(cut: Cut, envelope: Envelope) -> Piece:
     first = cut.opening[0] + OPENED
     around, share = _grid(first, 360.0 - first)
     angle = np.where(around > np.pi, around - 2.0 * np.pi, around)
-    hem = cut.end(angle) + ENDED
+    hem = cut.end(angle) + ENDED + RAGGED * np.sin(37.0 * around)
     height = HANGING + (hem - HANGING) * share
     origin, out = rays(angle, height)
     volume = (CAP + (CURTAIN - CAP) * smooth_step(0.0, 0.5, share)) * cut.volume
