@@ -33,7 +33,7 @@ from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
 from ..topology import vertex_normals
-from .hair import CUTS, HAIR, grown, shaded
+from .hair import CUTS, HAIR, bared, grown, shaded
 from .person import Person
 from .traits import Identity, Sex
 
@@ -97,6 +97,10 @@ class _Tints:
     melanins: FloatArray  # of the tones in `angles`
     angles: FloatArray  # ITA, rising
 
+    def melanin_of(self, angle: float) -> float:
+        """The amount of melanin in a tone (ITA)."""
+        return float(np.interp(angle, self.angles, self.melanins))
+
 
 def lab(light: npt.ArrayLike) -> FloatArray:
     """L*, a*, b* of linear light 0..1, shape (..., 3)."""
@@ -112,21 +116,29 @@ def typology_angle(light: npt.ArrayLike) -> FloatArray:
     return np.asarray(np.degrees(np.arctan2(found[..., 0] - 50.0, found[..., 2])))
 
 
-def recoloured(angle: float, *, blood: float = 1.0, features: Features = PLAIN) -> Image:
+def recoloured(
+    angle: float,
+    *,
+    blood: float = 1.0,
+    features: Features = PLAIN,
+    haired_as: float | None = None,
+    parted: SingleArray | float = 0.0,
+) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
     angle: ITA [deg], DARKEST to LIGHTEST, else ValueError. blood: as a share of what such skin has;
-    0.7 is pale, 1.3 flushed.
+    0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which its hair goes, else `angle`.
+    parted: how far each texel lies bare between hair that is combed aside, 0 to 1, (H, W).
     """
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
     tints = _tints()
-    melanin = float(np.interp(angle, tints.angles, tints.melanins))
-    density, redness, hair = _changes(melanin, blood)
-    hair = _hair_light(hair, features)
+    density, redness, _ = _changes(tints.melanin_of(angle), blood)
+    hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
-    kept = _kept_hair(tints, features)
+    kept = _kept_hair(tints, features) * (1.0 - parted)
+    covered = _grown_over(tints, features) * (1.0 - parted) if features.grown else 0.0
     light = np.empty_like(tints.light)
     relief = features.relief * tints.detail
     for channel in range(3):
@@ -135,23 +147,21 @@ def recoloured(angle: float, *, blood: float = 1.0, features: Features = PLAIN) 
         lost += features.beard * SHADOW[channel] * tints.beard
         bare = tints.light[..., channel] * np.exp(-lost) + skin[channel] * (tints.hair - kept)
         own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
-        light[..., channel] = bare + own * kept
-        if features.grown:
-            light[..., channel] += _grown_over(tints, features) * (own - light[..., channel])
+        haired = bare + own * kept
+        light[..., channel] = haired + covered * (own - haired)
     steps = (np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)).astype(np.int16)
     return _screen_bytes()[steps]
 
 
-def _hair_light(hair: FloatArray, features: Features) -> FloatArray:
-    """Linear light of hair that is not grey; hair: that of the tone, shape (3,)."""
+def _hair_light(angle: float, features: Features) -> FloatArray:
+    """Linear light of somebody's hair that is not grey, shape (3,); angle: ITA [deg]."""
+    hair = _changes(_tints().melanin_of(angle), 1.0)[2]
     return np.asarray(hair + features.fair * (to_linear(np.array(FAIR_HAIR)) - hair))
 
 
 def _hair_colour(angle: float, features: Features) -> FloatArray:
     """The colour of somebody's hair (sRGB), shape (3,); angle: ITA [deg]."""
-    tints = _tints()
-    melanin = float(np.interp(angle, tints.angles, tints.melanins))
-    hair = _hair_light(_changes(melanin, 1.0)[2], features)
+    hair = _hair_light(angle, features)
     return to_screen(LOCKS_LIGHTER * (hair + features.grey * (GREY_LIGHT - hair)))
 
 
@@ -199,19 +209,25 @@ def coloured(
 ) -> AnyHead:
     """A head with skin and eyes of other colours; None leaves them as they are.
 
-    With a tone, a person gets the hair of its cut, too.
+    With a tone, a person gets the hair of its cut, too, and keeps it in other tones (`in_tone`).
     """
-    skin = head.albedo if angle is None else recoloured(angle, blood=blood, features=features)
     parts = head.parts if irises is None else with_irises(head.parts, irises)
     segments = head.segments
     if features.baldness > 0.0:
         tints = _tints()
         is_bald = (segments == Segment.HAIR) & (_kept_hair(tints, features) < 0.5 * tints.hair)
         segments = np.where(is_bald, np.uint8(Segment.SKIN), segments)
-    if isinstance(head, Person) and angle is not None:
+    if angle is None:
+        return replace(head, parts=parts, segments=segments)
+    in_tone = partial(recoloured, blood=blood, features=features)
+    if isinstance(head, Person):
         parts = with_hair(head, parts, _hair_colour(angle, features), features.baldness)
-        head = replace(head, openness=_openness(head, parts))
-    return replace(head, albedo=skin, parts=parts, segments=segments)
+        places = head.uv[head.face_uv].astype(np.float64)
+        shape = head.albedo.shape[0], head.albedo.shape[1]
+        parted = bared(CUTS[head.identity.cut], head.vertices, head.faces, places, shape)
+        in_tone = partial(in_tone, haired_as=angle, parted=parted)  # hair stays, whatever the skin
+        head = replace(head, openness=_openness(head, parts), in_tone=in_tone)
+    return replace(head, albedo=in_tone(angle), parts=parts, segments=segments)
 
 
 def with_hair(
@@ -284,8 +300,7 @@ def in_own_colours(
     blood = float(np.clip(random.normal(1.0, 0.1), 0.75, 1.25))
     drawn = drawn_irises(random, angle)
     features = features_of(person.identity, angle, random)
-    own = coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
-    return replace(own, in_tone=partial(recoloured, blood=blood, features=features))
+    return coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
 
 
 def own_angle() -> float:

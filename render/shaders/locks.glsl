@@ -54,7 +54,7 @@ void main() {
 in Surface { VARYINGS } surface;
 out vec4 pixel_colour;
 
-const float THIN = 0.45, THICK = 2.1;    // [mm] widths of strands
+const float THIN = 0.4, THICK = 1.2;     // [mm] widths of strands
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 
@@ -77,8 +77,8 @@ void main() {
     float cosine = surface.cosine + UNEVEN * uneven;
     float first = cosine - TILT, second = cosine + TILT;
     float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);
-    vec3 front = surface.colour * (1.0 + 0.5 * uneven);
-    vec3 shine = surface.shine * (bright * (0.06 + 0.25 * front) + 0.25 * glow * front);
+    vec3 front = surface.colour * (1.0 + 0.4 * uneven);
+    vec3 shine = surface.shine * (bright * (0.06 + 0.4 * front) + 0.3 * glow * front);
     pixel_colour = vec4(display(front * surface.diffuse + shine), 1.0);
 }
 

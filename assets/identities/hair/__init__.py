@@ -7,6 +7,7 @@ envelope  the surface around head and ears on which it lies
 combing   the line of each lock, from its root to the hem
 locks     flat bands along these lines
 lining    what is under them
+parting   where the scalp is bare
 covered   which of their faces are never seen
 shade     how much light from all around it takes away from the skin
 """
@@ -23,9 +24,10 @@ from .cuts import CUTS
 from .envelope import Envelope
 from .lining import lining_of
 from .locks import locks_along
+from .parting import bared
 from .shade import shaded
 
-__all__ = ["CUTS", "HAIR", "grown", "shaded"]
+__all__ = ["CUTS", "HAIR", "bared", "grown", "shaded"]
 
 HAIR = "hair"  # how the names of its parts begin
 SHINE = 0.25

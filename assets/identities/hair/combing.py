@@ -20,19 +20,21 @@ from .envelope import Envelope
 STEP = 4.0  # [mm] of a line
 LEAST = 12.0  # [mm] from a root to the hem
 CANDIDATES = 15  # places for each root
-PARTED = 1.0  # [mm] beside the parting, where a row of locks begins
+PARTED = 1.6  # [mm] beside the parting, where a row of locks begins
 BARE = 7.0  # [mm] beside it where no other begins
-IN_ROW = 5.0  # [mm] from one of these to the next
+STRAIGHT = 25.0  # [mm] beside it, where hair does not go straight away from it any more
+IN_ROW = 3.5  # [mm] from one of these to the next
 PARTED_TO = -35.0  # [mm] z of its end behind
 TOGETHER = -75.0, -15.0  # [mm] z between which hair from both its sides comes together
+UNPARTED = 45.0  # [mm] beside it where hair that is brushed back goes aside as far as other hair
 ON_TOP = 60.0  # [mm] height above which a lock stays on its side of the parting
-ROOTED = 1.0  # [mm] that they lie over the envelope at their roots
-OVER_SKIN = 4.0  # [mm] that they are over the triangles of the skin there, at most
+ROOTED = 0.2  # [mm] that they lie over the envelope at their roots
+OVER_SKIN = 3.2  # [mm] that they are over the triangles of the skin there, at most
 LIFTED = 60.0  # [mm] from the root, where a lock has come up to its layer
 FLAT, EDGED = 0.8, 25.0  # how much closer they lie at the hairline, and from how far behind it [mm]
 BROWS = 30.0, 55.0  # heights above which they do [mm]
-CURLED = 9.0  # [mm] that ends turn in
-UNEVEN = 4.0  # [mm] by which they end at different heights
+CURLED = 10.0  # [mm] that ends turn in
+UNEVEN = 5.5  # [mm] by which they end at different heights
 
 
 def roots_of(
@@ -68,11 +70,14 @@ def roots_of(
 
 def _along_parting(cut: Cut, points: Points) -> Points:
     """Roots in two rows among points on top of the head, one on each side of the parting."""
-    near = points[np.abs(points[:, 0] - cut.parting) < IN_ROW]
-    first, last = max(near[:, 2].min(), PARTED_TO), near[:, 2].max()
-    ahead = np.linspace(first, last, max(round((last - first) / IN_ROW), 1) + 1)
-    order = np.argsort(near[:, 2])
-    height = np.interp(ahead, near[order, 2], near[order, 1])
+    if cut.brushed:
+        return np.zeros((0, 3))
+    near = points[np.abs(points[:, 0] - cut.parting) < BARE]
+    fit = np.polynomial.Polynomial.fit(near[:, 2], near[:, 1], 4)
+    ahead = np.linspace(max(near[:, 2].min(), PARTED_TO), near[:, 2].max(), 100)
+    far = np.cumsum(np.hypot(np.gradient(ahead), np.gradient(fit(ahead))))
+    ahead = np.interp(np.arange(far[0], far[-1], IN_ROW), far, ahead)
+    height = fit(ahead)
     return np.vstack(
         [
             np.stack([np.full(len(ahead), cut.parting + aside), height, ahead], axis=1)
@@ -91,13 +96,14 @@ def layers_of(cut: Cut, roots: Points, random: np.random.Generator) -> Values:
     angle, height, _ = direction_coordinates(roots)
     layer = 0.9 * smooth_step(-80.0, 120.0, height) + 0.1 * random.random(len(roots))
     layer *= 0.3 + 0.7 * smooth_step(0.0, 40.0, _behind(angle, height))
-    return np.asarray(layer * (1.0 - 0.5 * near_parting(cut, roots, 25.0)))
+    return np.asarray(layer)
 
 
 def near_parting(cut: Cut, points: Points, width: float) -> Values:
-    """1 at the parting, and where it ends behind; 0 from so far on [mm]."""
+    """1 at the parting, and where it ends behind; 0 from so far on [mm], or if hair is brushed."""
     behind = np.maximum(PARTED_TO - points[:, 2], 0.0)
-    return smooth_step(width, 0.0, np.hypot(points[:, 0] - cut.parting, behind))
+    away = np.hypot(points[:, 0] - cut.parting, behind)
+    return (1.0 - cut.brushed) * smooth_step(width, 0.0, away)
 
 
 def combed(
@@ -106,7 +112,7 @@ def combed(
     """The line of each lock, from its root to its end, shape (k, 3) with its own k."""
     count = len(roots)
     own, uneven = random.normal(0.0, 1.0, count), random.random(count)
-    side = np.where(roots[:, 0] > cut.parting, 1.0, -1.0)
+    side = np.clip((roots[:, 0] - cut.parting) / (UNPARTED if cut.brushed else 1e-3), -1.0, 1.0)
     longest = cut.longest * (0.8 + 0.2 * uneven)
     angle, height, radius = direction_coordinates(roots)
     origin, out = rays(angle, height)
@@ -136,11 +142,13 @@ def combed(
 def way_of(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Points:
     """Unit directions along the head in which hair lies, shape (n, 3)."""
     angle, height, out, across = _around(at)
-    # On top away from the parting and back, then down.
-    behind = -0.3 - 0.5 * smooth_step(20.0, 70.0, at[:, 2])
+    # On top away from the parting, at first straight, and back, then down.
+    off = 1.0 - near_parting(cut, at, STRAIGHT)
+    behind = off * (-0.3 - 0.5 * smooth_step(20.0, 70.0, at[:, 2]))
     aside = side * smooth_step(*TOGETHER, at[:, 2])
     parted = np.stack([aside, np.zeros(len(at)), behind], axis=1)
-    way = [0.0, -1.0, 0.0] + 1.6 * smooth_step(0.25, 0.95, out[:, 1])[:, None] * parted
+    way = 1.6 * smooth_step(0.25, 0.95, out[:, 1])[:, None] * parted
+    way[:, 1] -= off
     at_front = cut.brushed * smooth_step(-15.0, 45.0, at[:, 2]) * smooth_step(25.0, 45.0, height)
     back = np.stack([0.3 * side, np.full(len(at), 0.35), np.full(len(at), -1.0)], axis=1)
     way += at_front[:, None] * (1.6 * back - way)
@@ -148,7 +156,7 @@ def way_of(cut: Cut, at: Points, side: Values, own: Values, length: float) -> Po
     share = smooth_step(-100.0, 30.0, height)
     opening = np.radians(cut.opening[0] + (cut.opening[1] - cut.opening[0]) * share)
     within = np.clip((opening + 0.05 * own - np.abs(angle)) / 0.22, 0.0, 2.5)
-    within *= smooth_step(105.0, 75.0, height)
+    within *= smooth_step(105.0, 75.0, height) * (1.0 - 0.8 * at_front)
     aside = np.where((np.abs(angle) < 0.35) | (height > ON_TOP), side, np.sign(angle))
     uneven = 0.1 * own * np.sin(0.05 * length + 3.0 * own)
     way = way + (within * aside + uneven)[:, None] * across

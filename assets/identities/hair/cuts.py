@@ -58,7 +58,7 @@ CUTS: Mapping[str, Cut | None] = MappingProxyType(
             brushed=0.0,
             wave=(1.0, 60.0),
             count=480,
-            look=Look((9.0, 15.0), 0.6, 12),
+            look=Look((9.0, 15.0), 0.25, 16),
         ),
         "waves": Cut(
             hem=((50, -58), (85, -66), (120, -84), (180, -92)),
@@ -70,7 +70,7 @@ CUTS: Mapping[str, Cut | None] = MappingProxyType(
             brushed=0.0,
             wave=(3.0, 62.0),
             count=480,
-            look=Look((9.0, 15.0), 0.5, 16),
+            look=Look((9.0, 15.0), 0.25, 16),
         ),
         "short": Cut(
             hem=((55, 20), (75, 24), (85, 36), (120, 32), (134, -20), (150, -74), (180, -80)),

@@ -13,20 +13,21 @@ from ...generator.fields import Points, Values, smooth_step, unit
 from ...generator.regions import HAIRLINE, line_height
 from ...generator.sections import TOP, rays
 from ...generator.solids import grid_faces
-from .combing import curl, near_parting, way_of
+from .combing import PARTED_TO, UNPARTED, curl, near_parting, way_of
 from .cuts import Cut
 from .envelope import Envelope
 
 HANGING = 55.0  # [mm] height of the upper edge of what hangs
 ROWS, COLUMNS = 10, 48  # of either grid
-ENDED = 5.0  # [mm] over the hem, where it ends
+ENDED, RAGGED = 6.0, 1.5  # [mm] over the hem, where it ends, and how far up and down from there
 OPENED = 2.0  # [deg] behind the edges of the locks beside the face
 IN_FRONT = 4.0  # [mm] behind the hairline, where the cap begins
 # Of the locks' volume, that lies within them; short ones do not come up to it.
 CAP, CURTAIN, SHORT = 0.65, 0.85, 0.3
-LEAST = 1.0  # [mm] over the envelope, where no hair lies over the cap: at the parting
+LEAST = -0.2  # [mm] over the envelope, where no hair lies over the cap
+SUNK = 3.0  # [mm] below that at the parting, where the skin is seen
 WIDE = 85.0  # [mm] the radius by which its strands are as wide everywhere
-SHADES = 0.85, 0.5  # of its colour, outside and inside
+SHADES = 0.97, 0.6  # of its colour, outside and inside
 
 
 def lining_of(cut: Cut, envelope: Envelope, colour: Points, receded: float) -> dict[str, Any]:
@@ -61,11 +62,14 @@ def _cap(cut: Cut, envelope: Envelope, receded: float) -> Piece:
     height = TOP - 0.5 + (low - TOP + 0.5) * share
     origin, out = rays(angle, height)
     on_head = envelope.radius(angle, height)
-    parted = near_parting(cut, origin + on_head[:, None] * out, 55.0)
-    covered = smooth_step(0.0, 40.0, height - hairline) * (1.0 - parted)
+    on_scalp = origin + on_head[:, None] * out
+    covered = smooth_step(0.0, 40.0, height - hairline) * (1.0 - near_parting(cut, on_scalp, 42.0))
     volume = (CAP if cut.hangs else SHORT) * cut.volume
-    points = origin + (on_head + LEAST + (volume - LEAST) * covered)[:, None] * out
-    side = np.where(points[:, 0] > cut.parting, 1.0, -1.0)
+    off = LEAST + (volume - LEAST) * covered
+    off -= SUNK * near_parting(cut, on_scalp, 15.0) * smooth_step(PARTED_TO, 0.0, on_scalp[:, 2])
+    points = origin + (on_head + off)[:, None] * out
+    # Where the side changed from one vertex to the next, a coarse grid would show as a zigzag.
+    side = np.clip((points[:, 0] - cut.parting) / UNPARTED, -1.0, 1.0)
     along = way_of(cut, points, side, np.zeros(len(points)), 0.0)
     across = (points * np.cross(along, out)).sum(axis=1)
     # All that comes to the same place around it.
@@ -78,7 +82,7 @@ def _curtain(cut: Cut, envelope: Envelope) -> Piece:
     first = cut.opening[0] + OPENED
     around, share = _grid(first, 360.0 - first)
     angle = np.where(around > np.pi, around - 2.0 * np.pi, around)
-    hem = cut.end(angle) + ENDED
+    hem = cut.end(angle) + ENDED + RAGGED * np.sin(37.0 * around)
     height = HANGING + (hem - HANGING) * share
     origin, out = rays(angle, height)
     volume = (CAP + (CURTAIN - CAP) * smooth_step(0.0, 0.5, share)) * cut.volume

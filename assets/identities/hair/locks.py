@@ -13,13 +13,14 @@ from ...generator.solids import grid_faces
 
 # The cross-section: place across it, how far it bulges out, and its normal, across and out.
 # Edges go down: seen from its side a lock is no line, and has no gap below it.
-SECTION = np.array([(-1.0, -0.8, -0.4, 0.9), (0.0, 1.0, 0.0, 1.0), (1.0, -0.8, 0.4, 0.9)])
+SECTION = np.array([(-1.0, -0.8, -0.2, 1.0), (0.0, 1.0, 0.0, 1.0), (1.0, -0.8, 0.2, 1.0)])
 CLOSER = 1.25  # power of shares of the length: more rows near the root, where locks bend most
 DEPTH = 0.18  # of a lock, by its width
 TURN = 0.1  # [rad] by which locks are twisted
-SHADES = (0.82, 1.05, 0.82)  # of colour over the section
-UNEVEN = 0.04  # by which locks differ in colour
-UNDER = 0.2  # by how much what lies under others is darker
+SHADES = (0.94, 1.02, 0.94)  # of colour over the section
+UNEVEN = 0.025  # by which locks differ in colour
+UNDER = 0.1  # by how much what lies under others is darker
+ALIKE, TURNED = 16, 40.0  # neighbours that are lit as one, and how far off one is by its way [mm]
 GRAIN = 400.0  # [mm] of the striation's pattern from which each lock takes its own
 
 
@@ -52,22 +53,22 @@ def locks_along(
     aside, bulge, normal_aside, normal_out = SECTION.T[:, :, None]
     across, out = across[:, :, None], out[:, :, None]
     vertices = middle[:, :, None] + half * aside * across + depth * bulge * out
-    normals = unit((normal_aside * across + normal_out * out).reshape(-1, 3))
+    ahead, out = (each[:, :, None] for each in _alike(middle, out[:, :, 0]))
+    normals = unit((normal_aside * np.cross(ahead, out) + normal_out * out).reshape(-1, 3))
     start = random.uniform(0.0, GRAIN, (count, 1, 1, 2))
     widest = 0.5 * width.max(axis=1)[:, None, None]
     strands = start + np.stack(
         np.broadcast_arrays(widest * SECTION[:, 0], along[:, :, None]), axis=-1
     )
     tone = random.normal(1.0, UNEVEN, count) * (1.0 - UNDER * (1.0 - layer))
-    tones = tone[:, None] * np.interp(place, [0.0, 0.25, 1.0], [0.7, 1.0, 1.08])
+    tones = tone[:, None] * np.interp(place, [0.0, 0.25, 1.0], [0.9, 1.0, 1.04])
     tones = tones[:, :, None] * np.array(SHADES)
     tones /= tones.mean()
     faces = grid_faces(look.rows, len(SECTION))
     faces = faces + (np.arange(count) * look.rows * len(SECTION))[:, None, None]
     # The uppermost first: where nothing is multisampled, what they hide is not shaded then.
     faces = faces[np.argsort(-layer, kind="stable")]
-    along_strands = np.broadcast_to(_ahead(middle)[:, :, None], vertices.shape)
-    strands = np.concatenate([strands, along_strands], axis=-1)
+    strands = np.concatenate([strands, np.broadcast_to(ahead, vertices.shape)], axis=-1)
     return {
         "vertices": vertices.reshape(-1, 3).astype(np.float32),
         "normals": normals.astype(np.float32),
@@ -90,6 +91,16 @@ def _resampled(line: Points, place: Values) -> Points:
 def _ahead(middle: Points) -> Points:
     """Unit vectors along the locks, shape (n, rows, 3)."""
     return unit(np.gradient(middle, axis=1).reshape(-1, 3)).reshape(middle.shape)
+
+
+def _alike(middle: Points, out: Points) -> tuple[Points, Points]:
+    """Ways along locks and out of them, each the mean of neighbours: they shine as one surface."""
+    ahead = _ahead(middle)
+    places = np.concatenate([middle, TURNED * ahead], axis=2).reshape(-1, 6)
+    near = scipy.spatial.cKDTree(places).query(places, ALIKE)[1]
+    means = (unit(each.reshape(-1, 3)[near].mean(axis=1)) for each in (ahead, out))
+    ahead, out = (mean.reshape(middle.shape) for mean in means)
+    return ahead, out
 
 
 def _frames(middle: Points, turn: Values) -> tuple[Points, Points]:
