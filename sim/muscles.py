@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from .fibres import FIBRE_POINTS, bent_to_skin, build_fibre, fibre_coordinates
 from .landmarks import Array, Side, smoothstep
-from .rig import Fibre, LinearMuscle, Muscle, Rig, RingMuscle
+from .rig import MOUTH, Fibre, LinearMuscle, Muscle, Rig, RingMuscle
 from .skull import LATERAL, UP, rotation
 from .surface import Surface
 
@@ -184,6 +184,9 @@ def attach_to_ring(
     across = np.sqrt(np.maximum(1.0 - (x[:, 0] / corner) ** 2, 0.0))
     pull[:, 1] += muscle.flare * np.tanh((x[:, 1] - seam) / FLARE_HEIGHT) * across
     pull += muscle.bulge * places.normals
+    if (muscle.shape or muscle.centre) == MOUTH:  # between the lips both halves are as near
+        to_line = np.where(places.lip_side > 0.0, up, down) * np.maximum(1.0 - rho, 0.0)
+        x = x + (places.lip_side * to_line)[:, None] * UP
     arc = fibre_coordinates(points, x, width=1.0, beyond=1.0).arc
     return Attachment(weight, arc, weight[:, None] * pull)
 

@@ -58,6 +58,17 @@ def test_closed_mouth_shows_no_teeth(
         assert slit < SHUT, mesh
 
 
+def test_pursed_lips_meet_in_a_smooth_line(simulation: sim.Simulation, head: Head) -> None:
+    """The ring that purses both lips hangs on the half along each: neighbours move alike."""
+    moved = settled_displacement(simulation, head.expressions["kiss"])
+    seam = head.rings["mouth_2_left"]
+    for sign in (1.0, -1.0):
+        lip = seam[sign * simulation._anatomy.lip_side[seam] > 0.1]
+        lip = lip[np.argsort(head.vertices[lip, 0])]
+        assert len(lip) > 5
+        assert np.abs(np.diff(moved[lip, 1:], 2, axis=0)).max() < 0.6  # mm; it was 1.6
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("sides", "strength"),
