@@ -22,7 +22,7 @@ SEAM_ROW, CREST_ROW, BORDER_ROW, OUTER_ROW = 2, 3, 6, 7
 
 # Rows on the lips: position across the lip, x of the corner [mm], least opening [mm]. Every row
 # has a corner of its own, or the rows would fold over each other there.
-RED_ROWS = ((0.18, 25.2, 1.3), (0.45, 26.5, 2.8), (0.72, 27.9, 4.15), (1.0, 29.4, 5.7))
+RED_ROWS = ((0.18, 25.3, 1.6), (0.45, 26.7, 2.9), (0.72, 28.0, 4.15), (1.0, 29.4, 5.7))
 SEAM_CORNER = 24.1
 VESTIBULE = ((6.8, 3.2, 21.0), (3.0, 1.0, 22.8))  # depth, opening, x of the corner [mm]
 OUTER_CORNER = 33.2
