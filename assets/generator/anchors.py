@@ -41,6 +41,7 @@ FROM_FRONT = {
     "orbitale": (32.0, -17.5),
     "cheek": (44.0, -26.0),
     "nostril_sill": (7.6, -47.0),
+    "columella_base": (3.2, -44.8),
     "frontotemporale": (52.0, 34.0),
 }
 # angle about the axis [deg], height [mm]

@@ -23,7 +23,7 @@ from .sections import base_radius, direction_coordinates, rays
 EYE_CENTRE = np.array([31.2, 0.2, 70.8])  # [mm] the left eye
 EYE_RADIUS = 13.0  # [mm] 1 mm above anatomy: fills the fissure between the lids
 LID_RADII = (15.2, 14.7, 15.1)  # [mm] the lids are an ellipsoid around the eyeball
-LID_FILLET = 3.8  # [mm]
+LID_FILLET, LID_FILLET_BELOW = 3.8, 6.5  # [mm] a crease above the eye, a soft bag below
 RADIAL_SLOPE = 0.8  # radii are measured along slanted rays; this makes them about distances
 
 # x, y [mm] of the nasolabial fold, from the wing of the nose past the corner of the mouth
@@ -42,16 +42,16 @@ Stroke = tuple[float, tuple[tuple[float, float, float], ...]]
 
 # Strokes in the front view, laid over the plain head: half width [mm]; x, y, height [mm] along it.
 IN_FRONT: tuple[Stroke, ...] = (
-    (11.5, ((17, 1, -5.6), (37, 1, -5.0))),  # the orbit
-    (6.5, ((14.5, 4, -1.4),)),  # its inner hollow
+    (11.5, ((17, 1, -5.8), (37, 1, -4.6))),  # the orbit
+    (6.5, ((14.8, 4, -2.4), (17.5, 8, -1.0))),  # its inner hollow
     (7.5, ((6, 17, 0.4), (17, 19, 1.5), (32, 20, 1.7), (45, 17, 1.5), (53, 9, 1.0))),  # brow
-    (4.6, ((28, 15, 0.4), (38, 14, 0.9), (45, 10, 0.6))),  # fullness over the outer lid
+    (4.6, ((28, 14.5, 0.4), (38, 13, 1.5), (45.5, 9, 1.2))),  # fullness over the outer lid
     (14.0, ((30, -27, 1.5), (45, -28, 2.2))),  # cheek
     (3.6, ((16, -10, -0.2), (23, -15, -0.4), (31, -18, -0.2))),  # below the lower lid
     (3.0, tuple((x - 0.5, y, -0.55 * w) for (x, y), w in zip(FOLD, FOLD_DEPTH, strict=True))),
     (7.0, tuple((x, y, 1.0 * w) for (x, y), w in zip(FOLD_SIDE, FOLD_DEPTH, strict=True))),
-    (3.2, ((0, -46, -0.8), (0, -58.0, -0.9))),  # philtrum
-    (2.6, ((4.2, -49, 0.1), (5.4, -58, 0.6))),  # its ridges
+    (3.2, ((0, -48.5, -0.7), (0, -58.0, -0.9))),  # philtrum
+    (2.6, ((4.2, -49, 0.1), (5.4, -58, 0.4))),  # its ridges
     (7.0, ((0, -99, 0.4), (9, -99, 0.5))),  # chin
     (3.4, ((0, -84.5, -0.6), (13, -83, -0.6))),  # below the lower lip
     (5.5, ((28.6, -66.6, -1.0),)),  # corner of the mouth
@@ -59,7 +59,7 @@ IN_FRONT: tuple[Stroke, ...] = (
 # Strokes on the side: half width [mm]; angle about the axis [deg], height along it, height [mm].
 BESIDE: tuple[Stroke, ...] = (
     (11.0, ((34, -23, 1.0), (48, -20, 2.6), (62, -17, 2.2), (76, -15, 0.3))),  # cheekbone
-    (18.0, ((48, -54, -0.5), (64, -55, -0.8))),  # hollow below
+    (18.0, ((48, -54, -1.0), (64, -55, -1.5))),  # hollow below
     (13.0, ((56, 20, -1.8), (74, 22, -2.2))),  # temple
 )
 ARC = 1.3  # [mm] of the surface per degree
@@ -145,7 +145,9 @@ def distance(points: Points, strip: float = 0.0) -> Values:
     """The whole face [mm], negative inside, shape (n,)."""
     head = head_distance(points, strip)
     result = smooth_minimum(head, nose.distance(points), nose.fillet(points))
-    result = smooth_minimum(result, lid_distance(points), LID_FILLET)
+    below = smooth_step(-5.0, -11.0, points[:, 1])
+    fillet = LID_FILLET + (LID_FILLET_BELOW - LID_FILLET) * below
+    result = smooth_minimum(result, lid_distance(points), fillet)
     return smooth_maximum(result, -nose.nostril_dish(points), 2.5)
 
 

@@ -36,14 +36,14 @@ def seam_height(x: Values) -> Values:
 def upper_border(x: Values) -> Values:
     """Height y of the upper border of the red [mm], with Cupid's bow."""
     t = _relative(x)
-    height = 7.6 * (1 - t**2.0) ** 0.85 + 0.9 * bump(t, 0.2, 0.15) - 0.4 * bump(t, 0.0, 0.12)
+    height = 8.1 * (1 - t**2.0) ** 0.85 + 1.0 * bump(t, 0.22, 0.15) - 0.6 * bump(t, 0.0, 0.12)
     return seam_height(x) + height * (1 - t**9)
 
 
 def lower_border(x: Values) -> Values:
     """Height y of the lower border of the red [mm]."""
     t = _relative(x)
-    return seam_height(x) - 9.2 * (1 - t**2.2) ** 0.95
+    return seam_height(x) - 9.6 * (1 - t**2.2) ** 0.95
 
 
 def displacement(x: Values, y: Values) -> Values:

@@ -38,7 +38,7 @@ def _distance(half: Points) -> Values:
     lobe = sphere(half, (3.5, -35.6, 111.2), 5.7)
     wing = ellipsoid(half, (11.8, -37.8, 101.0), (4.9, 6.3, 8.4), turn_deg=24)
     triangle = ellipsoid(half, (8.2, -36.6, 105.8), (3.8, 4.4, 6.2), turn_deg=30)
-    columella = tapered_capsule(half, (0, -42.1, 101), (0, -41.4, 110.4), 2.6, 2.8)
+    columella = tapered_capsule(half, (2.0, -42.4, 101), (1.7, -41.7, 110.4), 2.2, 2.2)
 
     result = smooth_minimum(ridge, lower_ridge, 6.0)
     result = smooth_minimum(result, side_wall, 12.0)

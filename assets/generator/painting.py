@@ -22,7 +22,7 @@ from .texels import Texels, left_texels
 
 Cover = tuple[Points, Values]  # a colour in linear light and how much of it lies on each texel
 
-SIZE = 1320  # texels; chosen: more than three lie on a millimetre of the brow, the file 1 MB
+SIZE = 1280  # texels; chosen: more than three lie on a millimetre of the brow, the file 1 MB
 SCALP_SHADOW, BEARD_SHADOW = 0.5, 0.12  # density of shaved hair
 CROP = 0.85  # of the scalp's hair is seen: it is cropped short
 LIP_BLOOD, LIP_MELANIN = 0.61, 0.22  # beside those of the skin

@@ -33,7 +33,7 @@ from .remesh import Freedom, InfillMesh, remesh
 
 TARGET_HALF = 1015  # faces; the paper's face has 2030 triangles (Table 1)
 SCALE = 1.4  # of the wanted edge lengths; chosen: the infill ends a little above what it is cut to
-SEED = 74  # chosen among a few for the largest smallest angle
+SEED = 62  # chosen among a few for the largest smallest angle
 RIM_SCALE, CROWN_SCALE = 0.50, 0.62  # rim and crown are seen as an outline: finer
 
 
