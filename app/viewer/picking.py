@@ -16,6 +16,8 @@ from ..pipeline import Viewport
 
 FloatArray = npt.NDArray[np.float64]
 MUSCLE_REACH = 14.0  # [mm] from a fibre within which a click on the skin means its muscle
+# A ray that meets an edge must not slip between its two triangles by the last bit.
+ROUNDING = 1e-9  # of a triangle; [mm] too
 
 
 @dataclass(frozen=True)
@@ -53,9 +55,9 @@ def skin_under(
     Möller and Trumbore 1997, for all triangles at once whose corners lie around the ray.
     """
     axes = np.linalg.svd(ray.direction[None])[2][1:]  # across the ray
-    for side in ((positions - ray.origin) @ axis > 0.0 for axis in axes):
-        count = side[faces[:, 0]].astype(np.int8) + side[faces[:, 1]] + side[faces[:, 2]]
-        faces = faces[(count > 0) & (count < 3)]
+    for aside in ((positions - ray.origin) @ axis for axis in axes):
+        corners = aside[faces]
+        faces = faces[(corners.min(axis=1) < ROUNDING) & (corners.max(axis=1) > -ROUNDING)]
     a, b, c = (positions[faces[:, corner]] for corner in range(3))
     ab, ac = b - a, c - a
     across = np.cross(ray.direction, ac)
@@ -67,7 +69,8 @@ def skin_under(
     turned = np.cross(from_a, ab)
     v = (turned @ ray.direction) / volume
     distance = (ac * turned).sum(axis=1) / volume
-    hit = met & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0)
+    inside = (u >= -ROUNDING) & (v >= -ROUNDING) & (u + v <= 1.0 + ROUNDING)
+    hit = met & inside & (distance > 0.0)
     if not hit.any():
         return None
     point: FloatArray = ray.origin + distance[hit].min() * ray.direction

@@ -337,6 +337,21 @@ def test_the_point_under_the_mouse(scene: FaceScene, is_orthographic: bool) -> N
     assert picking.skin_under(missed, scene.rest_positions, scene.faces) is None
 
 
+def test_no_ray_slips_between_triangles(scene: FaceScene) -> None:
+    """At vertices and in the middle of edges, as clicks on the mid-line are, seen from anywhere."""
+    points, faces = scene.rest_positions, scene.faces
+    edges = points[faces[:, :2]].mean(axis=1)
+    middle = scene.rest_positions.mean(axis=0)
+    for target in (*points[::7], *points[points[:, 0] == 0.0], *edges[::11]):
+        outward = target - middle
+        for sight in (outward, outward * [0.0, 1.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.3, 1.0]):
+            sight = np.asarray(sight) / np.linalg.norm(sight)
+            ray = picking.Ray(target + 400.0 * sight, -sight)
+            point = picking.skin_under(ray, points, faces, from_outside=False)
+            assert point is not None
+            assert np.linalg.norm(point - ray.origin) < 400.0 + 1e-6
+
+
 def test_the_muscle_under_a_point(scene: FaceScene) -> None:
     """The nearest fibre's muscle within reach, or none."""
     fibres = scene.simulation.fibres()
