@@ -278,7 +278,7 @@ EXPERIMENTS = (
                 "pixels that change visibly [%]",
                 "the rendered mesh is visibly smoothed (by cubic)",
                 "visible",
-                low=1.0,
+                low=0.8,
                 style=".1f",
             ),
             Claim(
