@@ -278,7 +278,7 @@ EXPERIMENTS = (
                 "pixels that change visibly [%]",
                 "the rendered mesh is visibly smoothed (by cubic)",
                 "visible",
-                low=0.8,
+                low=0.9,
                 style=".1f",
             ),
             Claim(
