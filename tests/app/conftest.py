@@ -16,7 +16,7 @@ from risorius.app.viewer.files import Files
 from risorius.app.viewer.session import Session
 from risorius.app.viewer.settings import Display
 
-from .driving import SIZE, draw_frames, replace_state, xdotool
+from .driving import SIZE, replace_state, settle, xdotool
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def viewer() -> Iterator[Viewer]:
     script = replace(script_for(None, "face"), duration=0.5)
     with Viewer(script, SIZE) as opened:
         opened.settings.is_alive = False  # what is compared stands still
-        draw_frames(opened)
+        settle(opened)
         yield opened
 
 
@@ -43,7 +43,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.messages.text = ""
     viewer.panel_state.wanted_tab = "Face"
     viewer.view.fit_scene()
-    draw_frames(viewer)
+    settle(viewer)
 
 
 @pytest.fixture(scope="module")

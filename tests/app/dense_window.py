@@ -20,11 +20,11 @@ from risorius.app.viewer.files import Files
 from .driving import (
     click,
     drag,
-    draw_frames,
     middle,
     moved,
     nose,
     replace_state,
+    settle,
     show_controls,
     until,
     xdotool,
@@ -38,14 +38,14 @@ def main() -> None:
     """Look at the window on a dense screen, or at the size that it chooses itself."""
     if sys.argv[1:2] == ["first"]:
         with _screen_of(int(sys.argv[2])), Viewer(script_for(None, "plane")) as viewer:
-            draw_frames(viewer)
+            settle(viewer)
             found = {"window": viewer.placement._place()[2:], "panel": viewer.view.area[0]}
             print(json.dumps(found))
         return
     with _screen_of(DOTS_PER_INCH), Viewer(script_for(None, "face"), SIZE) as viewer:
         first = viewer.view.viewport[0]
         replace_state(viewer.files, Files(is_native=False))
-        draw_frames(viewer)
+        settle(viewer)
         is_settled = viewer.view.viewport[0] == first
         print(json.dumps({**_findings(viewer), "is_settled": is_settled}))
 

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.window import FRAMES_AFTER_EVENT
+
+import glfw  # isort: skip - after imgui_bundle, which the viewer imports
 
 NEEDS_A_SCREEN = [
     pytest.mark.window,
@@ -23,14 +24,27 @@ NEEDS_A_SCREEN = [
         reason="needs a display and xdotool; `make test` brings both",
     ),
 ]
-DELIVERY = 0.02  # [s] that the screen may take to hand on what xdotool sent before it ended
 SIZE = (900, 600)  # of the window that tests share
+DEADLINE = 30.0  # [s] for what takes a blink on a quiet machine
+STEADY = 2  # frames like the one before, after which no panel moves by itself
 
 
-def draw_frames(viewer: Viewer, frames: int = FRAMES_AFTER_EVENT) -> None:
-    """Let the window run for a few frames."""
-    for _ in range(frames):
+def settle(viewer: Viewer) -> None:
+    """Draw until the window has taken in all that was sent, and panels show all that was set.
+
+    When xdotool ends, the screen has handled what it sent: a question to the screen brings all of
+    it, in order, before the answer. A panel is laid out by sizes of the frame before.
+    """
+    end, alike, shown = time.monotonic() + DEADLINE, 0, None
+    glfw.get_window_pos(viewer.surface.handle)
+    # While a face moves, panels may be older than what was set.
+    usual, viewer.panel_cache.refresh = viewer.panel_cache.refresh, 0.0
+    while alike < STEADY:
         viewer.frame()
+        places = dict(viewer.gui.places)
+        alike, shown = (alike + 1 if places == shown else 0), places
+        assert time.monotonic() < end, "the window's panels do not come to rest"
+    viewer.panel_cache.refresh = usual
 
 
 def replace_state(part: object, fresh: object) -> None:
@@ -42,11 +56,10 @@ def replace_state(part: object, fresh: object) -> None:
 def xdotool(viewer: Viewer, *words: object) -> None:
     """Send real events and let the window take them in."""
     subprocess.run(["xdotool", *map(str, words)], check=True, capture_output=True)
-    time.sleep(DELIVERY)
-    draw_frames(viewer)
+    settle(viewer)
 
 
-def until(viewer: Viewer, condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEADLINE) -> bool:
     """Run until something has come true, or too long."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -58,15 +71,13 @@ def until(viewer: Viewer, condition: Callable[[], bool], seconds: float = 10.0) 
 
 def on_screen(viewer: Viewer, x: float, y: float) -> tuple[int, int]:
     """A place of the window, on the screen."""
-    import glfw
-
     left, top = glfw.get_window_pos(viewer.surface.handle)
     return round(left + x), round(top + y)
 
 
 def middle(viewer: Viewer, name: str) -> tuple[int, int]:
     """Where an item of a panel is, on the screen."""
-    assert until(viewer, lambda: name in viewer.gui.places, 3.0), name
+    assert until(viewer, lambda: name in viewer.gui.places), name
     left, top, right, bottom = viewer.gui.places[name]
     return on_screen(viewer, 0.5 * (left + right), 0.5 * (top + bottom))
 
@@ -85,9 +96,8 @@ def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button:
 
 
 def write(viewer: Viewer, text: str) -> None:
-    """Type into the line that has the focus; the window takes in about a key in two frames."""
+    """Type into the line that has the focus."""
     xdotool(viewer, "type", text)
-    draw_frames(viewer, 2 * len(text))
 
 
 def show_controls(viewer: Viewer, words: str) -> None:
@@ -127,4 +137,4 @@ def drop(viewer: Viewer, *paths: Path) -> None:
     )  # fmt: skip
     assert until(viewer, lambda: source.poll() is not None, 60.0)
     assert source.returncode == 0, source.communicate()[1]
-    draw_frames(viewer)
+    settle(viewer)

@@ -26,11 +26,11 @@ from .driving import (
     clear_search,
     click,
     drag,
-    draw_frames,
     middle,
     moved,
     nose,
     on_screen,
+    settle,
     show_controls,
     until,
     write,
@@ -101,7 +101,7 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
 def test_keys_change_the_picture(viewer: Viewer) -> None:
     """W, C, T, S and D each change what is seen, and back."""
     viewer.session.toggle_alone("disgust")
-    draw_frames(viewer)
+    settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     before, display = viewer.surface.read(), deepcopy(viewer.settings.display)
     left = round(viewer.view.area[0])
@@ -162,7 +162,7 @@ def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
     before = viewer.surface.read_scene()[:, left:].astype(int)
     xdotool(viewer, "mousemove", *middle(viewer, "zygomaticus_major_left"))
     assert "zygomaticus_major_left" in viewer.view.pointed
-    assert until(viewer, lambda: viewer.painter.is_complete, 3.0)
+    assert until(viewer, lambda: viewer.painter.is_complete)
     changed = np.abs(viewer.surface.read_scene()[:, left:].astype(int) - before).max(axis=2)
     assert (changed > 40).sum() > 30
     clear_search(viewer)
@@ -209,7 +209,7 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     few = viewer.stage.refined.triangle_count
     viewer.settings.display.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}
-    draw_frames(viewer)
+    settle(viewer)
     assert viewer.stage.refined.triangle_count > 1.5 * few
     click(viewer, "Refiner")
     click(viewer, "Refiner: loop")
@@ -232,7 +232,7 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     click(viewer, "Refiner")
     click(viewer, "Refiner: loop")
     display.options["loop"] = {"levels": 2}
-    draw_frames(viewer)
+    settle(viewer)
     assert stage.refined.label == "loop, changed"
     assert stage.refined.triangle_count == 16 * len(stage.scene.faces)
     click(viewer, "Look")
@@ -272,7 +272,7 @@ def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
     offered = {}
     for criterion in ("bulge", "normal+rest", "normal"):
         viewer.settings.display.options["kahler"] = {"criterion": criterion}
-        draw_frames(viewer)
+        settle(viewer)
         offered[criterion] = "threshold_once" in viewer.gui.places
     assert offered == {"bulge": False, "normal+rest": True, "normal": True}
 
@@ -331,7 +331,7 @@ def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
     xdotool(viewer, "key", "ctrl+a")
     write(viewer, path.name)
     xdotool(viewer, "key", "Return")
-    assert until(viewer, path.exists, 3.0) and not viewer.session.unsaved
+    assert until(viewer, path.exists) and not viewer.session.unsaved
     xdotool(viewer, "key", "n")
     assert until(viewer, lambda: moved(viewer) < 0.5)
     xdotool(viewer, "key", "ctrl+o")
@@ -348,7 +348,7 @@ def test_a_bad_file_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None
     bad = tmp_path / "bad.toml"
     bad.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\nno_such_muscle = 1.0\n")
     viewer.drop([str(bad)])
-    draw_frames(viewer)
+    settle(viewer)
     assert "no_such_muscle" in viewer.messages.text and "message" in viewer.gui.places
     viewer.drop([str(tmp_path / "none.toml")])
     assert "no such file" in viewer.messages.text
@@ -414,7 +414,7 @@ def test_an_idle_window_rests(viewer: Viewer) -> None:
     """With nothing to do neither physics nor the scene is computed again."""
     assert until(viewer, lambda: viewer.is_idle)
     times = {name: list(column) for name, column in viewer.times.milliseconds.items()}
-    draw_frames(viewer, 5)
+    settle(viewer)
     assert times == {name: list(column) for name, column in viewer.times.milliseconds.items()}
 
 

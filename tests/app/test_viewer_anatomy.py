@@ -12,7 +12,7 @@ from risorius import render  # isort: skip
 from risorius.app.anatomy import Dissection
 from risorius.app.capture import Capture, CaptureOptions
 
-from .driving import draw_frames, xdotool
+from .driving import settle, xdotool
 
 pytestmark = pytest.mark.window
 
@@ -20,10 +20,10 @@ pytestmark = pytest.mark.window
 @pytest.mark.usefixtures("calm")
 def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
     """U switches them on and off; nothing stays behind."""
-    draw_frames(viewer)
+    settle(viewer)
     usual = viewer.stage.draw_image(viewer.view).astype(int)
     xdotool(viewer, "key", "u")
-    draw_frames(viewer)
+    settle(viewer)
     assert viewer.settings.display.overlays == ["muscles"]
     shown = viewer.stage.draw_image(viewer.view).astype(int)
     assert (np.abs(shown - usual).max(axis=2) > 16).mean() > 0.05
@@ -36,7 +36,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
     assert np.percentile(off, 99) <= 2.0
     viewer.surface.make_current()
     xdotool(viewer, "key", "u")
-    draw_frames(viewer)
+    settle(viewer)
     assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)
 
 
@@ -45,11 +45,11 @@ def test_a_colour_bar_goes_with_the_colours(viewer: Viewer) -> None:
     """B shows one side of a comparison: the mesh that nothing splits has no bar, the other has."""
     display = viewer.settings.display
     display.colours, display.compare = "splits", "side by side"
-    draw_frames(viewer)
+    settle(viewer)
     assert len(viewer.surface.labels) == 3  # two captions
     counts = {}
     for _ in range(2):
         xdotool(viewer, "key", "b")
-        draw_frames(viewer)
+        settle(viewer)
         counts[display.compare] = len(viewer.surface.labels)
     assert counts == {"A alone": 1, "B alone": 2}

@@ -9,7 +9,7 @@ import numpy as np
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 
-from .driving import NEEDS_A_SCREEN, draw_frames, until
+from .driving import NEEDS_A_SCREEN, settle, until
 
 pytestmark = NEEDS_A_SCREEN
 
@@ -17,7 +17,7 @@ pytestmark = NEEDS_A_SCREEN
 def test_the_cloth_falls_in_the_window(tmp_path: Path) -> None:
     """Let go, it hangs after some seconds; the ball turns where nothing else moves, too."""
     with Viewer(script_for(None, "cloth"), (480, 360), settings_path=tmp_path / "s.json") as viewer:
-        draw_frames(viewer)
+        settle(viewer)
         assert {"drop", "turn"} <= viewer.gui.places.keys()  # sliders are there at once
         assert next(iter(viewer.layout._tabs)) == "Cloth###Face"  # it has none
         scene = viewer.session.scene

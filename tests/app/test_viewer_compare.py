@@ -17,10 +17,10 @@ from .driving import (
     clear_search,
     click,
     drag,
-    draw_frames,
     middle,
     nose,
     on_screen,
+    settle,
     show_controls,
     until,
     xdotool,
@@ -41,7 +41,7 @@ def only_open(viewer: Viewer, title: str) -> None:
     viewer.panel_state.wanted_tab = "Mechanism"
     titles = ("Refinement", "Style", "Overlays", "Light and person", "Milliseconds")
     viewer.settings.folds.update({each: each == title for each in titles})
-    draw_frames(viewer)
+    settle(viewer)
 
 
 def widths(viewer: Viewer) -> list[int]:
@@ -105,7 +105,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer: Viewer, tmp_path: Pa
     page = np.asarray(Image.open(path))
     assert seen_labels(viewer, page, viewer.view.viewport[:2]) == [True] * 3
     viewer.settings.display = Display()
-    draw_frames(viewer)
+    settle(viewer)
     assert not viewer.surface.labels
 
 
@@ -113,7 +113,7 @@ def test_any_two_are_compared_and_flipped(viewer: Viewer) -> None:
     """Each side has a list; B shows one and the other in all of the picture."""
     only_open(viewer, "Refinement")
     viewer.settings.display.compare = "side by side"
-    draw_frames(viewer)
+    settle(viewer)
     in_panel(viewer, ("A", "loop"), ("B", "paper"))
     shots = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
     assert [shot.drawn.label for shot in shots] == ["loop", "paper"]

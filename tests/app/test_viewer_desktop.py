@@ -25,7 +25,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.placement import FIRST_SIZE
 from risorius.app.viewer.settings import load_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, draw_frames, nose, show_controls, until, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, nose, settle, show_controls, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
 
@@ -59,7 +59,7 @@ def viewer(desktop: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     path = tmp_path_factory.mktemp("settings") / "viewer.json"
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
         opened.settings.is_alive = False  # what is compared stands still
-        draw_frames(opened, 8)
+        settle(opened)
         yield opened
 
 
@@ -71,7 +71,7 @@ def screen_size() -> tuple[int, int]:
 
 def place_of(viewer: Viewer) -> tuple[int, int, int, int]:
     """Where the window is, as the window itself knows it."""
-    draw_frames(viewer, 3)
+    settle(viewer)
     return viewer.placement._place()
 
 
@@ -81,12 +81,12 @@ def test_full_screen_and_back(viewer: Viewer, key: str) -> None:
     before = place_of(viewer)
     xdotool(viewer, "mousemove", *nose(viewer))
     xdotool(viewer, "key", key)
-    assert until(viewer, lambda: place_of(viewer) == (0, 0, *screen_size()), 5.0)
+    assert until(viewer, lambda: place_of(viewer) == (0, 0, *screen_size()))
     assert viewer.placement.is_full
     assert viewer.surface.read().shape[1::-1] == screen_size()
     assert viewer.placement.size == SIZE  # which is what is remembered
     xdotool(viewer, "key", key)
-    assert until(viewer, lambda: place_of(viewer) == before, 5.0)
+    assert until(viewer, lambda: place_of(viewer) == before)
     assert not viewer.placement.is_full
 
 
@@ -117,11 +117,11 @@ def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
     xdotool(viewer, "mousemove", *nose(viewer))
     viewer.face_panel.search = ""
     xdotool(viewer, "key", "F11", "h")
-    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()), 5.0)
+    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()))
     xdotool(viewer, "key", "3")
     assert viewer.session.is_alone(viewer.session.scene.expressions[2])
     xdotool(viewer, "key", "F11")
-    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE), 5.0)
+    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE))
     xdotool(viewer, "key", "3", "h")
     assert "play" in viewer.gui.places
 

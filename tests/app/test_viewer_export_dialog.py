@@ -24,7 +24,7 @@ from risorius.app.viewer.settings import ExportChoices, Settings, load_settings,
 from risorius.app.workers.child import GRACE
 from risorius.render import LIGHT, LIGHTS, Style
 
-from .driving import NEEDS_A_SCREEN, click, draw_frames, until, write, xdotool
+from .driving import NEEDS_A_SCREEN, click, settle, until, write, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -41,7 +41,7 @@ def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
     yield
     viewer.exporter.close()
     viewer.exporter.is_asking = False
-    draw_frames(viewer)
+    settle(viewer)
 
 
 def finish(viewer: Viewer, *key: str) -> None:
@@ -82,7 +82,7 @@ def test_a_film_shows_what_the_window_shows(viewer: Viewer, tmp_path: Path) -> N
     display.compare, display.colours, display.overlays = "wipe", "tension", ["landmarks"]
     viewer.settings.export.source, viewer.settings.export.seconds = "pose", 0.1
     viewer.session.set("jaw_open", 0.4)
-    draw_frames(viewer)
+    settle(viewer)
     assert until(viewer, lambda: viewer.physics.is_at_rest)
     viewer.settings.export.size = viewer.view.viewport[2:]
     seen = viewer.stage.draw_image(viewer.view).astype(int)
@@ -193,7 +193,7 @@ def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     viewer.settings.export.kind, viewer.settings.export.folder = kind, "/proc/none"
     xdotool(viewer, "key", "F10")
     click(viewer, "export: begin")
-    assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 5.0)
+    assert until(viewer, lambda: "cannot be written" in viewer.messages.text)
     assert viewer.messages.is_error and "\n" not in viewer.messages.text
     assert viewer.exporter.is_asking and viewer.exporter.job is None
     xdotool(viewer, "key", "Escape")
@@ -207,7 +207,7 @@ def test_a_path_that_cannot_be_is_no_trap(viewer: Viewer, folder: str, name: str
         viewer.settings.export.folder = folder
         xdotool(viewer, "key", "F10")
         viewer.exporter.name = name
-        draw_frames(viewer)
+        settle(viewer)
         assert "export: Cancel" in viewer.gui.places and not viewer.messages.text
         xdotool(viewer, "key", "Escape")
         assert not viewer.exporter.is_asking
@@ -218,10 +218,10 @@ def test_the_dialog_waits_while_something_is_asked(viewer: Viewer) -> None:
     viewer.session.set("jaw_open", 0.5)
     xdotool(viewer, "key", "F10")
     viewer.ask_to_close()
-    draw_frames(viewer, 6)  # until the question is in its place
+    settle(viewer)  # until the question is in its place
     assert "question: Back" in viewer.gui.places and "export: Cancel" not in viewer.gui.places
     click(viewer, "question: Back")
-    draw_frames(viewer)
+    settle(viewer)
     assert not viewer.question.is_open and "export: Cancel" in viewer.gui.places
 
 
@@ -230,7 +230,7 @@ def test_enter_opens_the_list_that_tab_came_to(viewer: Viewer) -> None:
     xdotool(viewer, "key", "F10")
     xdotool(viewer, "key", "Tab")
     xdotool(viewer, "key", "Return")
-    assert until(viewer, lambda: "Write: Film (.mov)" in viewer.gui.places, 5.0)
+    assert until(viewer, lambda: "Write: Film (.mov)" in viewer.gui.places)
     assert viewer.exporter.job is None
     xdotool(viewer, "key", "Escape")
     assert viewer.exporter.is_asking

@@ -21,11 +21,11 @@ from .driving import (
     NEEDS_A_SCREEN,
     click,
     drag,
-    draw_frames,
     drop,
     moved,
     nose,
     replace_state,
+    settle,
     until,
     write,
     xdotool,
@@ -76,9 +76,9 @@ def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "ctrl+o")
     assert "file picture.png" not in viewer.gui.places
     click(viewer, "folder takes")
-    assert until(viewer, lambda: "file smile.toml" in viewer.gui.places, 3.0)
+    assert until(viewer, lambda: "file smile.toml" in viewer.gui.places)
     click(viewer, "folder Up")
-    assert until(viewer, lambda: "folder takes" in viewer.gui.places, 3.0)
+    assert until(viewer, lambda: "folder takes" in viewer.gui.places)
     click(viewer, "folder takes")
     click(viewer, "file smile.toml", times=2)
     assert viewer.session.script.duration == 2.0 and not viewer.files.is_waiting
@@ -169,12 +169,12 @@ def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.Monk
     monkeypatch.chdir("/proc")
     viewer.messages.text = ""
     xdotool(viewer, "key", "F12")
-    assert until(viewer, lambda: "cannot be written" in viewer.messages.text, 3.0)
+    assert until(viewer, lambda: "cannot be written" in viewer.messages.text)
 
 
 def title_of(viewer: Viewer) -> str:
     """What the desktop shows above the window."""
-    draw_frames(viewer)
+    settle(viewer)
     command = ["xdotool", "search", "--onlyvisible", "--name", "^Risorius: "]
     window = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1]
     name = ["xdotool", "getwindowname", window]
@@ -280,10 +280,10 @@ def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
     (tmp_path / "another.json").write_text("{}")
     click(viewer, "menu File")
     click(viewer, "menu File: Open head ...")
-    assert until(viewer, lambda: "file stranger.obj" in viewer.gui.places, 3.0)
+    assert until(viewer, lambda: "file stranger.obj" in viewer.gui.places)
     assert f"file {landmarks.name}" not in viewer.gui.places
     click(viewer, "file stranger.obj", times=2)
-    assert until(viewer, lambda: "file another.json" in viewer.gui.places, 3.0)
+    assert until(viewer, lambda: "file another.json" in viewer.gui.places)
     xdotool(viewer, "key", "Return")  # those that bear the mesh's name are in the line
     assert until(viewer, lambda: viewer.session.scene is not before, 30.0)
     assert viewer.settings.recent[0].split("\n") == [str(mesh), str(landmarks)]
@@ -296,7 +296,7 @@ def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
     mesh, landmarks = stranger().write(tmp_path)
     landmarks.write_text('{"landmarks": [1, 2, 3]}')
     drop(viewer, mesh, landmarks)
-    assert until(viewer, lambda: viewer.messages.is_error, 20.0)
+    assert until(viewer, lambda: viewer.messages.is_error)
     assert "it must be the 68 iBug points" in viewer.messages.text
     assert viewer.session.scene is before
 
@@ -313,7 +313,7 @@ def test_heads_come_and_go_without_leaving_anything(
     for turn in range(4):
         viewer.show_scene(scenes[(turn + 1) % 2])
         viewer.session.set("jaw_open", 0.3)
-        draw_frames(viewer)
+        settle(viewer)
         assert until(viewer, lambda: viewer.is_idle)
         held.append(count())
     viewer.show_scene(scenes[0])

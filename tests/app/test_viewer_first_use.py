@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 
 from risorius.app.viewer import Viewer
 
-from .driving import NEEDS_A_SCREEN, click, draw_frames, middle, show_controls, until, xdotool
+from .driving import NEEDS_A_SCREEN, click, middle, settle, show_controls, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -19,7 +19,7 @@ def test_escape_closes_a_menu_whose_submenu_is_pointed_at(viewer: Viewer) -> Non
     xdotool(viewer, "mousemove", *middle(viewer, "menu Edit: History"))
     assert until(viewer, lambda: imgui.get_current_context().open_popup_stack.size() == 2)
     xdotool(viewer, "key", "Escape")
-    draw_frames(viewer, 8)
+    settle(viewer)
     assert not viewer.gui.has_popup
 
 
@@ -53,7 +53,7 @@ def test_first_steps_leave_the_bar_of_colours_free(viewer: Viewer) -> None:
     """They stand in the other half of the picture."""
     viewer.first_steps.begin()
     xdotool(viewer, "key", "h")  # so that there is room beside the face
-    draw_frames(viewer, 8)
+    settle(viewer)
     left, _, width, _ = viewer.view.area
     assert viewer.gui.places["first steps: Skip"][2] < left + 0.5 * width
     click(viewer, "first steps: Skip")

@@ -21,9 +21,9 @@ from .driving import (
     SIZE,
     click,
     drag,
-    draw_frames,
     middle,
     on_screen,
+    settle,
     until,
     xdotool,
 )
@@ -187,7 +187,7 @@ def test_the_timeline_is_dragged_taller(viewer: Viewer, tmp_path: Path) -> None:
 def test_frames_are_counted(viewer: Viewer) -> None:
     """A click on the time turns seconds into frames, and back."""
     viewer.session.seek(2.0)
-    draw_frames(viewer)
+    settle(viewer)
     click(viewer, "time shown")
     axis = viewer.time_axis
     assert viewer.settings.counts_frames and axis.told(2.0) == "frame 60"
@@ -215,7 +215,7 @@ def test_groups_fold(viewer: Viewer) -> None:
     tracks = dict.fromkeys(("joy", "AU12_left", "AU4_right", "viseme_aa"), keys)
     viewer.session.open(Script("groups", 2.0, "groups", tracks=tracks))
     sheet = viewer.timeline.dope_sheet
-    draw_frames(viewer)
+    settle(viewer)
     inside = {track.label: track.parents[-1:] for track in sheet.rows}
     assert inside["AU4 right"] == inside["AU12 left"] == ("Tracks: Action units",)
     assert inside["Viseme aa"] == ("Tracks: Visemes",) and inside["Visemes"] == ("Tracks",)
@@ -232,7 +232,7 @@ def test_a_dense_take_is_drawn_with_little(viewer: Viewer) -> None:
     times, chance = np.arange(9000) / 15.0, np.random.default_rng(5)
     tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000)) for name in names}
     viewer.session.open(Script("take", 600.0, "take", tracks=tracks))
-    draw_frames(viewer)
+    settle(viewer)
     graph = viewer.timeline.dope_sheet.graph
     assert 0 < len(graph.curves) < 24
     viewer.selection.select_all()

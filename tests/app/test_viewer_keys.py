@@ -20,8 +20,8 @@ from .driving import (
     NEEDS_A_SCREEN,
     clear_search,
     click,
-    draw_frames,
     middle,
+    settle,
     show_controls,
     until,
     xdotool,
@@ -58,7 +58,7 @@ def test_a_number_is_typed_into_a_slow_window(viewer: Viewer) -> None:
     for number, delay in ((0.3, 100), (0.85, 220)):
         double = ("click", "--repeat", 2, "--delay", delay, 1)
         slowly(viewer, *double, *typed(number))
-        assert until(viewer, lambda: viewer.session.values["jaw_open"] == number, 2.0), number  # noqa: B023
+        assert until(viewer, lambda: viewer.session.values["jaw_open"] == number), number  # noqa: B023
         assert [name for name, value in viewer.session.values.items() if value] == ["jaw_open"]
     slowly(viewer, "click", 1, "sleep", 2, "click", 1)
     assert not imgui.get_io().want_text_input  # two clicks, no double click
@@ -68,7 +68,7 @@ def test_a_number_is_typed_into_a_slow_window(viewer: Viewer) -> None:
 def test_a_pose_is_named_in_a_slow_window(viewer: Viewer) -> None:
     """Words typed right after the double click are the name; none of them is a shortcut."""
     viewer.session.open(load_script(Path(__file__).parents[2] / "docs" / "hello.toml"))
-    draw_frames(viewer)
+    settle(viewer)
     place = at(viewer, KeyPlace(POSES, 1.0))
     xdotool(viewer, "mousemove", *place)
     double = ("click", "--repeat", 2, "--delay", 100, 1)
@@ -113,7 +113,7 @@ def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
         (lambda: xdotool(viewer, "key", "ctrl+o"), "path"),
     ):
         opens()
-        assert until(viewer, lambda: shown in places, 3.0), shown  # noqa: B023
+        assert until(viewer, lambda: shown in places), shown  # noqa: B023
         xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
         assert shown not in places and not context.open_popup_stack.size(), shown
     xdotool(viewer, "key", "F1")
@@ -210,7 +210,7 @@ def test_messages_name_keys_as_they_are_now(
     monkeypatch.setattr(imgui, "text_unformatted", shown.append)
     viewer.session.set("jaw_open", 0.5)
     viewer.messages.say(viewer.session.seek(0.0) or "")
-    draw_frames(viewer, 1)
+    settle(viewer)
     assert "Jaw open not keyed, so let go; Ctrl+Z brings the pose back" in shown
     xdotool(viewer, "key", "F1")
     click(viewer, "key Undo")
@@ -261,7 +261,7 @@ def test_numbers_can_be_read_over_handles(viewer: Viewer) -> None:
     """In both themes the text stands out from a slider's handle beneath it (WCAG: 4.5 to 1)."""
     for theme in ("light", "dark"):
         viewer.settings.theme = theme
-        draw_frames(viewer, 1)
+        settle(viewer)
         text, field, grab = (
             np.array([*imgui.get_style().color_(which)])
             for which in (imgui.Col_.text, imgui.Col_.frame_bg, imgui.Col_.slider_grab)
@@ -280,7 +280,7 @@ def test_a_window_at_rest_claims_no_frames(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.times.frames_per_second == 0.0
     viewer.session.toggle_alone("joy")
-    draw_frames(viewer)
+    settle(viewer)
     assert viewer.times.frames_per_second > 0.0
 
 

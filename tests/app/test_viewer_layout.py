@@ -22,9 +22,9 @@ from .driving import (
     clear_search,
     click,
     drag,
-    draw_frames,
     moved,
     on_screen,
+    settle,
     show_controls,
     until,
     xdotool,
@@ -42,7 +42,7 @@ def test_headings_stay_folded(viewer: Viewer) -> None:
     show_controls(viewer, "joy")
     assert "joy" in viewer.gui.places
     clear_search(viewer)
-    draw_frames(viewer)
+    settle(viewer)
     assert "joy" not in viewer.gui.places and "jaw_open" in viewer.gui.places
 
 
@@ -74,7 +74,7 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
         assert min(x, y) >= 0.0 and right <= SIZE[0] and bottom <= SIZE[1]
     finally:
         viewer.settings.zoom, viewer.panel_state.is_help_open = 1.0, False
-        draw_frames(viewer)
+        settle(viewer)
 
 
 def test_keys_go_from_key_to_key(viewer: Viewer) -> None:
@@ -94,11 +94,11 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
     try:
         for size in ((1, 1), (40, 30), (700, 20), (20, 500), SIZE):
             glfw.set_window_size(viewer.surface.handle, *size)
-            draw_frames(viewer, 6)
+            settle(viewer)
             assert moved(viewer) < 60.0
     finally:
         glfw.set_window_size(viewer.surface.handle, *SIZE)
-        draw_frames(viewer)
+        settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
 

@@ -16,9 +16,9 @@ from .driving import (
     NEEDS_A_SCREEN,
     clear_search,
     drag,
-    draw_frames,
     middle,
     moved,
+    settle,
     show_controls,
     until,
     xdotool,
@@ -54,7 +54,7 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer: Viewer) -> None:
     """The eyes turn to the camera; sliders, undo and what is unsaved stay as they were."""
     assert until(viewer, lambda: viewer.session.scene.values["gaze_horizontal_left"] != 0.0)
     assert until(viewer, lambda: moved(viewer) > 0.5)
-    draw_frames(viewer, 20)
+    settle(viewer)
     assert not any(viewer.session.values.values())
     assert not viewer.session.unsaved and not viewer.session.can_undo
     eye = viewer.view.camera.eye
@@ -92,7 +92,7 @@ def test_a_face_that_somebody_holds_does_not_twitch(viewer: Viewer) -> None:
     show_controls(viewer, "jaw open")
     drag(viewer, middle(viewer, "jaw_open"), (40, 0))
     try:
-        draw_frames(viewer, 3)
+        settle(viewer)
         active = {name for name, value in viewer.session.scene.values.items() if value}
     finally:
         xdotool(viewer, "mouseup", 1)
@@ -121,7 +121,7 @@ def test_a_recording_has_only_what_the_user_did(viewer: Viewer) -> None:
     session.toggle_recording()
     assert not viewer.life.is_on
     session.set("jaw_open", 0.5)
-    draw_frames(viewer, 10)
+    settle(viewer)
     session.toggle_recording()
     after = session.script.tracks
     assert {name for name in after if after[name] is not before.get(name)} == {"jaw_open"}
@@ -140,7 +140,7 @@ def test_it_sleeps_when_nobody_is_there(viewer: Viewer) -> None:
 def test_panels_are_not_drawn_for_it(viewer: Viewer) -> None:
     """A face that only lives moves no slider: the panels' last picture stays."""
     assert until(viewer, lambda: viewer.is_left_alone)
-    draw_frames(viewer, 2)
+    settle(viewer)
     drawn, note = [], viewer.panel_cache.note_drawn
     viewer.panel_cache.note_drawn = lambda *size, **over: (
         drawn.append(True),

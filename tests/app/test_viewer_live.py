@@ -24,7 +24,7 @@ from risorius.app.viewer.live_commands import LiveCommands
 from risorius.app.viewer.panel_state import PanelState
 from risorius.app.viewer.panels.live import shown_of
 
-from .driving import NEEDS_A_SCREEN, click, draw_frames, moved, until, xdotool
+from .driving import NEEDS_A_SCREEN, click, moved, settle, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "silent")]
 
@@ -168,7 +168,7 @@ def test_a_signal_that_comes_back_is_taken_up_smoothly(viewer: Viewer) -> None:
     viewer.session.advance = noting  # type: ignore[method-assign]
     try:
         assert until(viewer, lambda: face.presence == 0.0)
-        draw_frames(viewer, 10)
+        settle(viewer)
         hold(viewer, face, 1.0, jawOpen=0.8)
     finally:
         viewer.session.advance = advance  # type: ignore[method-assign]
@@ -292,7 +292,7 @@ def test_rubbish_is_counted_and_shown(viewer: Viewer) -> None:
         for _ in range(3):
             sender.send({"jawOpen": 0.8})
     assert until(viewer, lambda: face.received == 3)
-    draw_frames(viewer)
+    settle(viewer)
     assert face.unusable == 3 and face.state is State.WAITING
     assert not moved(viewer) > 0.5
 

@@ -27,7 +27,7 @@ from risorius.assets.fitting.landmark_file import read_landmarks
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import METRES, Array, stranger
 
-from .driving import NEEDS_A_SCREEN, click, draw_frames, drop, on_screen, until, write, xdotool
+from .driving import NEEDS_A_SCREEN, click, drop, on_screen, settle, until, write, xdotool
 
 NEAR = 6.0 * METRES  # of the built-in head's own shape, guesses are that good
 
@@ -203,7 +203,7 @@ class TestInTheWindow:
 
     def room(self, viewer: Viewer) -> Room:
         """What is marked."""
-        assert until(viewer, lambda: viewer.room is not None, 20.0)
+        assert until(viewer, lambda: viewer.room is not None)
         assert viewer.room is not None
         return viewer.room
 
@@ -216,7 +216,7 @@ class TestInTheWindow:
     def face_it(self, viewer: Viewer) -> None:
         """Turn the camera to the face, which lies on its back: z is up in its file."""
         room = self.room(viewer)
-        draw_frames(viewer)  # the mesh gets its place in the window
+        settle(viewer)  # the mesh gets its place in the window
         front = placing(dict(enumerate(true_places()))).inverse.vectors([0.0, 0.0, 1.0])
         x, y, z = room.marking.placing.vectors(front)
         camera = room.view.camera
@@ -230,7 +230,7 @@ class TestInTheWindow:
             assert self.room(viewer).marking.current == number
             xdotool(viewer, "mousemove", *self.place(viewer, true_places()[number]))
             xdotool(viewer, "click", 1)
-        assert until(viewer, lambda: self.room(viewer).marking.marks.is_complete, 20.0)
+        assert until(viewer, lambda: self.room(viewer).marking.marks.is_complete)
 
     def test_a_head_is_marked_from_the_first_click_to_the_picture(
         self, viewer: Viewer, mesh: Path, tmp_path: Path
@@ -336,7 +336,7 @@ class TestInTheWindow:
         assert "no skin" in viewer.messages.text
         xdotool(viewer, "mousemove", *self.place(viewer, true_places()[FIRST[-1]]))
         xdotool(viewer, "click", 1)
-        assert until(viewer, lambda: marking.marks.is_complete, 20.0)
+        assert until(viewer, lambda: marking.marks.is_complete)
 
     @pytest.mark.slow
     def test_marks_that_make_no_head_are_told_and_kept(self, viewer: Viewer, mesh: Path) -> None:

@@ -16,9 +16,9 @@ from .driving import (
     clear_search,
     click,
     drag,
-    draw_frames,
     middle,
     on_screen,
+    settle,
     show_controls,
     until,
     xdotool,
@@ -38,19 +38,19 @@ def plain_panel(viewer: Viewer) -> Iterator[None]:
         viewer.gui, viewer.session, viewer.settings, viewer.view
     )
     viewer.settings.is_linked, viewer.settings.panel_width = True, WIDTH
-    draw_frames(viewer, 2)
+    settle(viewer)
 
 
 def rows_shown(viewer: Viewer) -> set[str]:
     """Labels of the rows in the panel."""
-    draw_frames(viewer, 3)
+    settle(viewer)
     return {name.removeprefix("show ") for name in viewer.gui.places if name.startswith("show ")}
 
 
 def test_plain_words_find_controls(viewer: Viewer) -> None:
     """What people would say finds expressions, units, shapes and muscles."""
     viewer.settings.zoom = 0.6  # room for all of them at once
-    draw_frames(viewer, 4)  # until all is in its place
+    settle(viewer)  # until all is in its place
     try:
         for words, found in (
             ("smile", {"joy", "AU12", "mouthSmile", SMILE}),

@@ -14,7 +14,7 @@ from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.panel_cache import REFRESH
 
-from .driving import clear_search, drag, draw_frames, middle, show_controls, until, xdotool
+from .driving import clear_search, drag, middle, settle, show_controls, until, xdotool
 
 pytestmark = [
     pytest.mark.window,
@@ -30,14 +30,14 @@ def viewer() -> Iterator[Viewer]:
     """One window for all tests of this file."""
     with Viewer(script_for(None, "face"), (900, 600)) as opened:
         opened.settings.is_alive = False  # what is compared stands still
-        draw_frames(opened)
+        settle(opened)
         yield opened
 
 
 def test_cached_panels_look_like_new_ones(viewer: Viewer) -> None:
     """While the camera moves, panels are kept; the window looks as if they had been drawn."""
     viewer.session.toggle_alone("disgust")
-    draw_frames(viewer)
+    settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     drawn = []
     note = viewer.panel_cache.note_drawn
@@ -73,7 +73,7 @@ def test_a_slider_answers_at_once_while_the_face_moves(viewer: Viewer) -> None:
             value = viewer.session.values["jaw_open"]
             subprocess.run(["xdotool", "mousemove_relative", "--", "12", "0"], check=True)
             viewer.view.camera.orbit(3.0, 0.0)
-            assert until(viewer, lambda old=value: viewer.session.values["jaw_open"] != old, 3.0)
+            assert until(viewer, lambda old=value: viewer.session.values["jaw_open"] != old)
             after = viewer.surface.read()[top:bottom, left:right].astype(int)
             assert (np.abs(after - before).max(axis=2) > 40).sum() > 20
     finally:

@@ -16,9 +16,9 @@ from .driving import (
     NEEDS_A_SCREEN,
     click,
     drag,
-    draw_frames,
     middle,
     replace_state,
+    settle,
     until,
     xdotool,
 )
@@ -66,7 +66,7 @@ def test_a_pose_is_kept_with_a_picture(viewer: Viewer, tmp_path: Path) -> None:
     viewer.settings.folds["Pose pictures"], viewer.settings.folds["Expressions"] = True, False
     viewer.session.set("jaw_open", 0.6)
     viewer.settings.zoom = 0.6
-    draw_frames(viewer, 12)  # until all is in its place
+    settle(viewer)  # until all is in its place
     try:
         click(viewer, "Keep this pose")
         assert until(viewer, lambda: "pose Pose 1" in viewer.gui.places)

@@ -26,7 +26,7 @@ from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles
 from risorius.assets.staging import PREFIX
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, draw_frames, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, settle, xdotool
 
 ROOT = Path(__file__).parents[2]
 POSED = {"jaw_open": 0.4}
@@ -464,7 +464,7 @@ def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_
     script = script_for(None, "face")
     for answer in ("Recover", "Throw away"):
         with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
-            draw_frames(viewer, 8)
+            settle(viewer)
             assert not viewer.session.unsaved
             click(viewer, f"offer: {answer}")
             assert "offer: Recover" not in viewer.gui.places
@@ -503,7 +503,7 @@ def test_work_that_is_undone_is_kept_no_more(
 def test_work_that_is_given_up_is_not_offered(tmp_path: Path) -> None:
     """Closed without saving, after the question: nothing is left."""
     with Viewer(script_for(None, "face"), SIZE, settings_path=tmp_path / "viewer.json") as viewer:
-        draw_frames(viewer, 8)
+        settle(viewer)
         viewer.session.set("jaw_open", 0.4)
         viewer.recovery.save(viewer.session)
         assert stored_work(tmp_path)
@@ -524,7 +524,7 @@ def test_recovering_asks_before_other_work_is_lost(session: Session, tmp_path: P
     recovery.close()
     script = script_for(None, "face")
     with Viewer(script, SIZE, settings_path=tmp_path / "viewer.json") as viewer:
-        draw_frames(viewer, 8)
+        settle(viewer)
         viewer.session.set("AU12", 0.7)
         click(viewer, "offer: Recover")
         click(viewer, "question: Back")

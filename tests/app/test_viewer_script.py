@@ -17,9 +17,9 @@ from .driving import (
     clear_search,
     click,
     drag,
-    draw_frames,
     middle,
     on_screen,
+    settle,
     show_controls,
     until,
     write,
@@ -132,7 +132,7 @@ def test_keys_are_copied_and_pasted(viewer: Viewer, own: Path, tmp_path: Path) -
     xdotool(viewer, "key", "ctrl+z")
     viewer.session.open(load_script(own))
     viewer.session.begin_script()
-    draw_frames(viewer)  # the row of tracks goes
+    settle(viewer)  # the row of tracks goes
     scrub(viewer, 1.5)
     xdotool(viewer, "key", "ctrl+v")
     assert pose_times(viewer) == [0.0, 1.5] and viewer.session.script.poses[1].name == "joy"
@@ -140,7 +140,7 @@ def test_keys_are_copied_and_pasted(viewer: Viewer, own: Path, tmp_path: Path) -
 
 def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
     """Never by Backspace; by Delete when the timeline was touched last, not after other work."""
-    draw_frames(viewer)
+    settle(viewer)
     press(viewer, at(viewer, JOY))
     assert viewer.selection.places == {JOY}
     xdotool(viewer, "key", "BackSpace")
@@ -163,7 +163,7 @@ def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
 def test_a_name_leaves_the_strip_where_it_is(viewer: Viewer) -> None:
     """Rows stay where they are when the first pose of a script gets its name, or loses it."""
     viewer.session.begin_script()
-    draw_frames(viewer)
+    settle(viewer)
     first = KeyPlace(POSES, 0.0)
     before = viewer.timeline.height(), at(viewer, first)
     viewer.selection.rename()

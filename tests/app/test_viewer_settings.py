@@ -24,7 +24,7 @@ from risorius.app.viewer.settings import (
 )
 from risorius.refine.border.registry import refiners
 
-from .driving import NEEDS_A_SCREEN, SIZE, draw_frames
+from .driving import NEEDS_A_SCREEN, SIZE, settle
 
 GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wireframe": True}}
 
@@ -220,7 +220,7 @@ def test_no_settings_keep_the_window_shut(path: Path) -> None:
     wrong["display"]["options"] = {"kahler": {"threshold_once": "x"}}
     path.write_text(json.dumps(wrong))
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
-        draw_frames(viewer, 3)
+        settle(viewer)
         assert viewer.messages.is_error and "theme = 'zzz'" in viewer.messages.text
         assert "kahler threshold_once = 'x'" in viewer.messages.text
 
@@ -234,7 +234,7 @@ def test_a_full_disk_is_told_and_closes_the_window(
     path.write_text('{"theme": "dark"}')
     viewer = Viewer(script_for(None, "face"), SIZE, settings_path=path)
     with viewer:
-        draw_frames(viewer)
+        settle(viewer)
         viewer.session.set("jaw_open", 0.5)
         viewer.recovery.save(viewer.session)
 
@@ -261,10 +261,10 @@ def test_a_refiner_that_cannot_be_loaded_is_told(monkeypatch: pytest.MonkeyPatch
         raise ValueError("refiner 'far' of 'nowhere:X' cannot be loaded")
 
     with Viewer(script_for(None, "face"), SIZE, display=Display()) as viewer:
-        draw_frames(viewer)
+        settle(viewer)
         monkeypatch.setattr(refiners, "find", broken)
         viewer.settings.display.refiner = "far"
         viewer.panel_state.wanted_tab = "Mechanism"
-        draw_frames(viewer, 6)
+        settle(viewer)
         assert viewer.messages.is_error and "cannot be loaded" in viewer.messages.text
         assert viewer.stage.refined.triangle_count > 0

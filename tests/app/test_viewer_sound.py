@@ -12,7 +12,7 @@ from risorius.app.script import load_script
 from risorius.app.sound import player
 from risorius.app.viewer import Viewer
 
-from .driving import NEEDS_A_SCREEN, drag, draw_frames, middle, on_screen, until, xdotool
+from .driving import NEEDS_A_SCREEN, drag, middle, on_screen, settle, until, xdotool
 from .sounds import noise, write_wav
 from .test_viewer_files import drop
 
@@ -45,7 +45,7 @@ def test_a_sound_is_dropped_and_played(viewer: Viewer, sound: Path, has_device: 
     drop(viewer, sound)
     assert "noise.wav" in viewer.messages.text and not viewer.messages.is_error
     assert viewer.session.script.sound == sound and viewer.session.script_is_unsaved
-    draw_frames(viewer)
+    settle(viewer)
     assert viewer.timeline.height() > before and viewer.soundtrack.sound is not None
     xdotool(viewer, "key", "space")
     assert viewer.session.is_playing
@@ -95,7 +95,7 @@ def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_devi
     xdotool(viewer, "key", "ctrl+shift+z")
     assert viewer.soundtrack.sound is not None
     viewer.scripts.remove_sound()
-    draw_frames(viewer)
+    settle(viewer)
     assert viewer.soundtrack.sound is None and not viewer.scripts.has_sound
     bad = sound.parent / "bad.mp3"
     bad.write_text("no sound")
@@ -103,7 +103,7 @@ def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_devi
     assert viewer.messages.is_error and "there is no sound in it" in viewer.messages.text
     sound.unlink()
     viewer.session.open(load_script(sound.parent / "s.toml"))
-    draw_frames(viewer)
+    settle(viewer)
     assert "no such sound file; the script plays without" in viewer.messages.text
     viewer.messages.text = ""
     xdotool(viewer, "key", "space")

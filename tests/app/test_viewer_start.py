@@ -21,7 +21,7 @@ from risorius.app.viewer.gui import THEMES
 from risorius.app.viewer.opening import COMPILING, LOADING, picture
 from risorius.app.viewer.settings import Settings, load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, drag, draw_frames, nose, on_screen, until, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, drag, nose, on_screen, settle, until, xdotool
 
 pytestmark = NEEDS_A_SCREEN
 
@@ -111,7 +111,7 @@ def viewer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
     path = tmp_path_factory.mktemp("settings") / "viewer.json"
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
         opened.settings.is_alive = False
-        draw_frames(opened)
+        settle(opened)
         yield opened
 
 
@@ -132,7 +132,7 @@ def test_the_steps_tick_themselves_off(viewer: Viewer) -> None:
     xdotool(viewer, "mouseup", 1, "key", "space")
     assert until(viewer, lambda: all(steps.done))
     xdotool(viewer, "key", "space")
-    assert until(viewer, lambda: not steps.done, 20.0)
+    assert until(viewer, lambda: not steps.done)
     click(viewer, "menu Help")
     click(viewer, "menu Help: First steps")
     assert steps.done == [False, False, False]

@@ -19,10 +19,10 @@ from .driving import (
     clear_search,
     click,
     drag,
-    draw_frames,
     middle,
     nose,
     on_screen,
+    settle,
     show_controls,
     until,
     xdotool,
@@ -87,7 +87,7 @@ def test_undo_takes_back_a_pull_that_is_held(viewer: Viewer) -> None:
     x, y = nose(viewer)
     drag(viewer, (x + 40, y + 30), (15, -10))  # beside the mouth
     xdotool(viewer, "mousemove_relative", "--", 10, -10)
-    assert until(viewer, lambda: any(viewer.session.values.values()), 5.0)
+    assert until(viewer, lambda: any(viewer.session.values.values()))
     xdotool(viewer, "key", "ctrl+z")
     assert not viewer.mouse.is_dragging and not any(viewer.session.values.values())
     xdotool(viewer, "mouseup", 1)
@@ -138,7 +138,7 @@ def test_buttons_stay_where_they_are(viewer: Viewer) -> None:
 
     def places() -> list[tuple[float, ...]]:
         """Of the buttons, when the panels have found theirs."""
-        draw_frames(viewer)
+        settle(viewer)
         return [viewer.gui.places[name] for name in BUTTONS]
 
     before, height = places(), viewer.timeline.height()
@@ -153,7 +153,7 @@ def test_buttons_stay_where_they_are(viewer: Viewer) -> None:
 
 def test_poses_are_unfolded_in_the_timeline_alone(viewer: Viewer) -> None:
     """The heading of the same name in the panel stays as it is."""
-    draw_frames(viewer)
+    settle(viewer)
     (row,) = (row for row in viewer.timeline.dope_sheet.rows if row.is_whole)
     left, top, _, bottom = viewer.gui.places[f"row {row.name}"]
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 4.0, 0.5 * (top + bottom)))
@@ -170,8 +170,8 @@ def test_the_hint_of_record_leaves_the_ruler_free(viewer: Viewer) -> None:
         windows = imgui.get_current_context().windows
         return [each for each in windows if each.active and each.name.startswith("##Tooltip")]
 
-    assert until(viewer, lambda: bool(hints()), 3.0)
-    draw_frames(viewer)
+    assert until(viewer, lambda: bool(hints()))
+    settle(viewer)
     (hint,) = hints()
     _, top, _, bottom = viewer.gui.places["time"]
     low, high = hint.pos.y, hint.pos.y + hint.size.y  # type: ignore[attr-defined]
@@ -195,7 +195,7 @@ def test_hints_name_the_key_that_works(viewer: Viewer, monkeypatch: pytest.Monke
     xdotool(viewer, "key", "F8")
     xdotool(viewer, "key", "Escape")
     xdotool(viewer, "mousemove", *middle(viewer, "record"))
-    assert until(viewer, lambda: any("(F7)" in text for text in told), 3.0)
+    assert until(viewer, lambda: any("(F7)" in text for text in told))
     assert not any("Ctrl+R" in text for text in told)
     viewer.session.toggle_alone("joy")
     xdotool(viewer, "key", "ctrl+z", "ctrl+shift+z")
@@ -214,7 +214,7 @@ def test_hints_name_the_key_that_works(viewer: Viewer, monkeypatch: pytest.Monke
 def test_values_are_zoomed_and_panned(viewer: Viewer) -> None:
     """Ctrl and the wheel about the mouse, the middle button both ways; Shift+F shows all."""
     viewer.settings.shows_curves = True
-    draw_frames(viewer)
+    settle(viewer)
     axis, graph = viewer.time_axis, viewer.timeline.dope_sheet.graph
     whole, span = graph.slope, axis.span
 
@@ -235,5 +235,5 @@ def test_values_are_zoomed_and_panned(viewer: Viewer) -> None:
     joy = viewer.session.script.poses[1].values["joy"]
     assert joy == 1.0  # keys stay
     xdotool(viewer, "key", "shift+f")
-    draw_frames(viewer)
+    settle(viewer)
     assert graph.slope == pytest.approx(whole) and axis.is_whole

@@ -22,9 +22,9 @@ from .driving import (
     clear_search,
     click,
     drag,
-    draw_frames,
     middle,
     on_screen,
+    settle,
     show_controls,
     until,
     write,
@@ -200,7 +200,7 @@ def test_a_pose_is_named(viewer: Viewer) -> None:
     xdotool(viewer, "key", "Return")
     assert [pose.name for pose in viewer.session.script.key_poses] == ["joy", "half a smile"]
     xdotool(viewer, "key", "ctrl+k")
-    assert until(viewer, lambda: "pose name" in viewer.gui.places, 3.0)
+    assert until(viewer, lambda: "pose name" in viewer.gui.places)
     write(viewer, "other")
     xdotool(viewer, "key", "Escape")
     assert viewer.session.script.key_poses[1].name == "half a smile"
@@ -223,7 +223,7 @@ def test_the_menus_do_the_same(viewer: Viewer) -> None:
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
     press(viewer, at(viewer, REST), button=3)
     click(viewer, "menu Keys: Name of the pose ...")
-    assert until(viewer, lambda: "pose name" in viewer.gui.places, 3.0)
+    assert until(viewer, lambda: "pose name" in viewer.gui.places)
     xdotool(viewer, "key", "Escape")
 
 
@@ -262,9 +262,9 @@ def test_a_key_under_the_mouse_tells_what_it_is(viewer: Viewer) -> None:
 
     x, y = at(viewer, JOY)
     xdotool(viewer, "mousemove", x, y)
-    assert until(viewer, is_told, 3.0)
+    assert until(viewer, is_told)
     xdotool(viewer, "mousemove", x + 40, y)
-    assert until(viewer, lambda: not is_told(), 3.0)
+    assert until(viewer, lambda: not is_told())
 
 
 def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
@@ -275,7 +275,7 @@ def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
     xdotool(viewer, "click", 1)
     assert viewer.timeline.height() > rows and viewer.settings.folds["Tracks"]
-    draw_frames(viewer)
+    settle(viewer)
     x, y = where(viewer, KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
     assert viewer.selection.places == {KeyPlace("blink", 2.4)}
@@ -309,7 +309,7 @@ def take(viewer: Viewer, own: Path, dense: Script) -> Script:
     """The dense script, opened, with a row for each of its tracks."""
     viewer.session.open(dense)
     viewer.settings.folds["Tracks"] = True
-    draw_frames(viewer, 6)  # until the rows are in their places
+    settle(viewer)  # until the rows are in their places
     return viewer.session.script
 
 
@@ -347,7 +347,7 @@ def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> 
 def test_what_is_selected_of_a_dense_track_is_dragged(viewer: Viewer, take: Script) -> None:
     """A drag on the bar moves all of it."""
     axis, name = viewer.time_axis, next(iter(take.tracks))
-    draw_frames(viewer)
+    settle(viewer)
     chosen = places_of(take).between(100.0, 200.0) & Places({name: take.tracks[name].times})
     viewer.selection.places = chosen
     row = where(viewer, KeyPlace(name, 0.0))[1] + 2.0 * ROW * imgui.get_font_size()
