@@ -83,13 +83,13 @@ def read_mesh(path: str | Path) -> Mesh:
             notes = libraries_missing(surface, Path(path).parent)
         else:
             content = CHECKS[suffix](content)
-            pictures: list[bytes | None] = []
             if suffix == "glb":
                 content, pictures = pictures_apart(content)
             pieces = _read_by_trimesh(content, suffix)
             vertices, faces = _joined(pieces)
             colours = _colours(pieces)
-            texture = _texture(pieces, pictures)
+            if suffix == "glb":  # the only one of these that holds the pictures themselves
+                texture = _texture(pieces, pictures)
         if suffix == "stl":
             vertices = vertices + 0.0  # no zero with a sign
             first, number = unique_points(vertices)

@@ -1,27 +1,32 @@
 """A folder beside a file, in which the file is made before it takes its place.
 
 It goes when the work ends. Where the process was killed it stays: the next one that works in the
-same place sweeps it away, if it is ours and old. A folder is ours by its name and by who owns it,
-and old a day after the last change in it: a run that works changes something every few minutes. A
-process that takes the place of one that died is told the mark in the names of that one's folders,
-and waits no day.
+same place sweeps it away, if it is ours and nobody works in it. A folder is ours by its name and by
+who owns it. Whoever works in it holds a lock on it, which ends with the process; the name says on
+which machine, since other machines may share the disk but not the locks. Without that knowledge a
+folder is left when nothing in it has changed for a day: a run that works changes something every
+few minutes.
 """
 
 import contextlib
+import hashlib
 import os
+import platform
 import re
 import secrets
 import shutil
 import stat
 import sys
 import time
+from functools import cache
 from pathlib import Path
 from typing import IO, Any
 
+if sys.platform != "win32":
+    import fcntl
+
 PREFIX = ".risorius-"  # what the names of such folders begin with
 OLD = 86_400.0  # [s] since the last change in a folder that is swept away
-MARK = "RISORIUS_MARK"  # environment: what names go on with, 12 hexadecimal digits or nothing
-DIED = "RISORIUS_DIED"  # environment: the mark of the one that died
 _NAME = re.compile(re.escape(PREFIX) + "([0-9a-f]{12}){1,2}")
 _swept: set[Path] = set()  # where this process has looked for what others left
 
@@ -33,21 +38,64 @@ class StagingFolder:
     """
 
     def __init__(self, parent: Path) -> None:
-        self._folder = parent / f"{PREFIX}{os.environ.get(MARK, '')}{secrets.token_hex(6)}"
+        self._parent = parent
+        self._folder: Path | None = None
+        self._lock = -1
 
     def __enter__(self) -> Path:
-        if self._folder.parent not in _swept:  # to look through 100 000 files takes a second
-            _swept.add(self._folder.parent)
-            sweep(self._folder.parent)
-        self._folder.mkdir(mode=0o700)
-        return self._folder
+        if self._parent not in _swept:  # to look through 100 000 files takes a second
+            _swept.add(self._parent)
+            sweep(self._parent)
+        while True:
+            self._folder = self._parent / f"{PREFIX}{_machine()}{secrets.token_hex(6)}"
+            self._folder.mkdir(mode=0o700)
+            # Another process may take it for one that was left, before it is locked.
+            with contextlib.suppress(FileNotFoundError, BlockingIOError):
+                self._lock = _locked_folder(self._folder)
+                if self._folder.exists():
+                    return self._folder
+            self._unlock()
 
     def __exit__(self, *_: object) -> None:
         self.remove()
 
     def remove(self) -> None:
         """Take it away with all that is in it; nothing the second time."""
-        shutil.rmtree(self._folder, ignore_errors=True)
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+        self._unlock()
+
+    def _unlock(self) -> None:
+        if self._lock >= 0:
+            os.close(self._lock)
+        self._lock = -1
+
+
+@cache
+def _machine() -> str:
+    """Twelve hexadecimal digits of this machine since it was started."""
+    name = platform.node()
+    with contextlib.suppress(OSError):
+        name += Path("/proc/sys/kernel/random/boot_id").read_text()
+    return hashlib.sha256(name.encode()).hexdigest()[:12]
+
+
+def _locked_folder(folder: Path) -> int:
+    """A handle that keeps a folder locked until it is closed; -1 where there are no locks.
+
+    Raises BlockingIOError where another handle keeps it locked.
+    """
+    if sys.platform == "win32":
+        return -1
+    handle = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(handle)
+        if isinstance(error, BlockingIOError):
+            raise
+        return -1
+    return handle
 
 
 def is_staging_folder(path: Path) -> bool:
@@ -62,15 +110,23 @@ def is_staging_folder(path: Path) -> bool:
 
 def sweep(parent: Path) -> None:
     """Remove the folders in `parent` that killed processes left; see above for which."""
-    died = os.environ.get(DIED)
     with contextlib.suppress(OSError):
         for path in [item for item in parent.iterdir() if item.name.startswith(PREFIX)]:
             with contextlib.suppress(OSError):
-                if is_staging_folder(path) and (
-                    (died and path.name.startswith(PREFIX + died))
-                    or _last_change(path) < time.time() - OLD
-                ):
-                    shutil.rmtree(path, ignore_errors=True)
+                if is_staging_folder(path):
+                    _remove_if_left(path)
+
+
+def _remove_if_left(path: Path) -> None:
+    """Remove one folder if nobody works in it; OSError where that cannot be known."""
+    lock = _locked_folder(path)
+    try:
+        is_from_here = lock >= 0 and path.name.startswith(PREFIX + _machine())
+        if is_from_here or _last_change(path) < time.time() - OLD:
+            shutil.rmtree(path, ignore_errors=True)
+    finally:
+        if lock >= 0:
+            os.close(lock)
 
 
 def _last_change(path: Path) -> float:
@@ -91,8 +147,6 @@ def locked(path: Path) -> IO[Any] | None:
 
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
         else:
-            import fcntl
-
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except (BlockingIOError, PermissionError):
         file.close()

@@ -101,6 +101,8 @@ def _check(
     """Raise UserError, before any work is done, where one of the outputs cannot be."""
     if time is not None and not _is_image(output):
         raise UserError("--time says when a picture is taken: it goes with -o PICTURE.png")
+    if time is not None and time > script.duration:
+        raise UserError(f"--time {time:g}: {script.source} ends at {script.duration:g} s")
     if options.span is not None:
         begin, end = options.span
         if sheet is not None or _is_image(output):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import io
 import os
 import sys
@@ -14,6 +15,8 @@ from typing import Any
 
 import click
 from tqdm import tqdm
+
+from risorius.assets import AssetError, fitting
 
 from ..batch.journal import Journal
 from ..batch.listing import Job, clashes, lines_of, words_of
@@ -153,6 +156,8 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         if not path.exists():
             raise UserError(f"{path}: there is no such file")
     check_apart(outputs, inputs)
+    if given.get("head") is not None:
+        _check_head(given["head"], given["landmarks"])
     if name == "capture" and given["output"] is not None:
         from ..capture.formats import check_name
 
@@ -179,6 +184,17 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         tuple(path.absolute() for path in outputs),
         tuple(path.absolute() for path in beside),
     )
+
+
+@functools.cache  # many lines may show one head
+def _check_head(head: Path, landmarks: Path | None) -> None:
+    """Raise UserError where a head of the user's own cannot be fitted."""
+    if landmarks is None:
+        raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
+    try:
+        fitting.fit_head(head, landmarks)
+    except AssetError as error:
+        raise UserError(str(error)) from None
 
 
 def _beside(name: str, given: dict[str, Any]) -> list[Path]:

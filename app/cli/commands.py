@@ -214,11 +214,14 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
 
     Live Link Face, OpenFace, py-feat, MediaPipe and others write recordings.
     """
-    from ..files import check_apart
+    from ..files import check_apart, check_file
     from ..performances import script_for
     from ..script import save_script
 
     check_apart((output,), (recording, playback.mapping))
+    check_file(output)
+    if output.suffix.lower() != ".toml":
+        raise UserError(f"{output}: scripts are written as .toml; choose a name that ends so")
     script = script_for(recording, None, playback=playback, tell=None if quiet else told)
     if not script.is_converted:
         raise UserError(f"{recording}: is a script already")

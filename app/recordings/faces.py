@@ -37,7 +37,8 @@ def one_face(table: Table, request: Request) -> Table:
     if request.face is not None and request.face not in counts:
         listed = ", ".join(f"'{face}'" for face in often[:MOST_LISTED])
         more = ", ..." if len(often) > MOST_LISTED else ""
-        raise UserError(f"{table.source}: no face '{request.face}'; in it are {listed}{more}")
+        there = f"in it are {listed}{more}" if often else "no row of it names one"
+        raise UserError(f"{table.source}: no face '{request.face}'; {there}")
     if len(counts) < 2:
         return table
     face = request.face or often[0]

@@ -7,7 +7,6 @@ see `chosen`.
 
 from __future__ import annotations
 
-import math
 import re
 import tomllib
 from collections.abc import Container, Iterable, Mapping
@@ -159,4 +158,4 @@ def is_channel(name: str) -> bool:
 def _is_share(share: object) -> bool:
     if isinstance(share, bool) or not isinstance(share, int | float):
         return False
-    return math.isfinite(share) and abs(share) <= GREATEST_SHARE
+    return -GREATEST_SHARE <= share <= GREATEST_SHARE  # neither of them for no number

@@ -22,7 +22,7 @@ DELIMITERS = ",;\t|"
 UNIT_SEPARATOR = "\x1f"  # stands between cells that were quoted: it is in no cell
 LONGEST_NAME = 80  # [characters] of a column; what is longer is no header
 LARGEST = 1e30  # what is larger is no measurement; nanoseconds since 1970 are 1.8e18
-MOST_COLUMNS = 20_000
+MOST_LINES = 4  # that a quoted cell may go on for
 NO_NUMBER = ("", "nan", "na", "n/a", "null", "none", "-", "inf", "-inf", "#n/a")
 
 
@@ -108,7 +108,7 @@ def header_of(text: str) -> tuple[tuple[str, ...], str]:
     except csv.Error:
         return (), delimiter
     is_header = (
-        0 < len(names) <= MOST_COLUMNS
+        bool(names)
         and all(len(name) <= LONGEST_NAME for name in names)
         and any(re.search(r"[^\W\d]", name) for name in names)
     )
@@ -119,17 +119,16 @@ def table_in(text: str, *, source: str) -> Table:
     """The table in a text. UserError where rows and header do not belong together."""
     names, delimiter = header_of(text)
     _, start, _ = _first_line(text)
+    before, notes = text.count("\n", 0, start) + 1, list[str]()
     if '"' in text:
         delimiter_within = UNIT_SEPARATOR
-        rows = _unquoted(text[start:], delimiter, source)
+        rows = _unquoted(text[start:], delimiter, len(names), before, notes)
     else:
         delimiter_within = delimiter
         rows = [(number, line) for number, line in enumerate(text[start:].split("\n"))]
-    before = text.count("\n", 0, start) + 1
     rows = [(before + number, line) for number, line in rows[1:] if line.strip(" \t,;|\x1f")]
     if not rows:
         raise UserError(f"{source}: has a header and no rows below it; nothing was recorded")
-    notes: list[str] = []
     if delimiter != "," and any(re.search(r"\d,\d", line) for _, line in rows[:100]):
         rows = [(number, line.replace(",", ".")) for number, line in rows]
         notes.append("Decimal commas were read as points.")
@@ -167,17 +166,39 @@ def _first_line(text: str) -> tuple[str, int, str]:
     return "", start, asked
 
 
-def _unquoted(text: str, delimiter: str, source: str) -> list[tuple[int, str]]:
-    """The rows of a text with quotes, which may hold delimiters and line ends."""
-    reader = csv.reader(text.splitlines(keepends=True), delimiter=delimiter, skipinitialspace=True)
-    rows = []
-    try:
-        for row in reader:
-            rows.append((reader.line_num - 1, UNIT_SEPARATOR.join(row)))
-    except csv.Error as error:
-        line = text.count("\n") and reader.line_num
-        raise UserError(f"{source}: line {line} cannot be read as a table: {error}") from None
+def _unquoted(
+    text: str, delimiter: str, length: int, before: int, notes: list[str]
+) -> list[tuple[int, str]]:
+    """The rows of a text with quotes, which may hold delimiters and a few line ends.
+
+    A quote that nothing closes ends with its line, so that it takes no other rows along.
+    """
+    lines, rows, open_quotes, start = text.splitlines(keepends=True), [], list[int](), 0
+    while start < len(lines):
+        for end in range(start + 1, min(start + MOST_LINES, len(lines)) + 1):
+            if "".join(lines[start:end]).count('"') % 2 == 0:
+                cells = _cells(lines[start:end], delimiter)
+                if end == start + 1 or len(cells) == length:
+                    break
+        else:
+            open_quotes.append(before + start)
+            end = start + 1
+            cells = _cells(lines[start:end], delimiter)
+        rows.append((end - 1, UNIT_SEPARATOR.join(cells)))
+        start = end
+    if open_quotes:
+        first = f"Line {open_quotes[0]} opens a quotation mark that nothing closes"
+        more = f", and so do {len(open_quotes) - 1} more" if len(open_quotes) > 1 else ""
+        notes.append(f"{first}{more}.")
     return rows
+
+
+def _cells(lines: list[str], delimiter: str) -> list[str]:
+    """The cells of one row; none where one of them is longer than the csv module bears."""
+    try:
+        return next(csv.reader(lines, delimiter=delimiter, skipinitialspace=True), [])
+    except csv.Error:
+        return []
 
 
 def _of_one_length(
@@ -198,7 +219,8 @@ def _of_one_length(
         what = (
             f"The last row, line {left_out[0]}, is torn and was left out."
             if left_out == [rows[-1][0]]
-            else f"{len(left_out)} rows of other length were left out, "
+            else f"{counted(len(left_out), 'row')} of other length "
+            f"{'was' if len(left_out) == 1 else 'were'} left out, "
             f"the first in line {left_out[0]}."
         )
         notes.append(what)

@@ -5,15 +5,12 @@ from __future__ import annotations
 import contextlib
 import os
 import pickle
-import secrets
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-from risorius.assets.staging import DIED, MARK
 
 from . import serving
 from .child import Child, DiedError
@@ -80,9 +77,7 @@ class Crew:
         """The process of this thread; a new one where it has none, or that has ended."""
         child: Child | None = getattr(self._own, "child", None)
         if child is None or child.process.poll() is not None:
-            marks = {MARK: secrets.token_hex(6), DIED: getattr(self._own, "mark", "")}
-            self._own.mark = marks[MARK]
-            child = self._own.child = Child(serving.__name__, {**self._environment, **marks})
+            child = self._own.child = Child(serving.__name__, self._environment)
             self._all.append(child)
             if self._is_over:  # told so while it was started
                 child.process.terminate()

@@ -32,6 +32,8 @@ from .arrays import Flags, Indices, Unsigned
 from .seams import find_seams
 from .validation import as_indices
 
+MOST_VERTICES = 2**31  # whose numbers are 32 bit, as in the tables that the kernels fill
+
 
 class Surroundings(NamedTuple):
     """What lies around each edge: all that placing points on edges asks of a mesh."""
@@ -90,10 +92,15 @@ def connect(
     `face_uv`: texture coordinate index of each corner, shape (F, 3); None when each vertex has one.
     Raises ValueError for other shapes or types and for indices out of range.
     """
+    if not isinstance(vertex_count, int | np.integer) or not 0 <= vertex_count < MOST_VERTICES:
+        most = MOST_VERTICES - 1
+        raise ValueError(
+            f"vertex_count must be a whole number from 0 to {most}, got {vertex_count!r}"
+        )
     given = as_indices("faces", faces, vertex_count, "the vertices")
     corners = np.array(given, dtype=np.uint32, order="C")
     if face_uv is not None:
-        face_uv = as_indices("face_uv", face_uv, 2**31, "the texture coordinates")
+        face_uv = as_indices("face_uv", face_uv, MOST_VERTICES, "the texture coordinates")
         if len(face_uv) != len(corners):
             raise ValueError(
                 f"face_uv must have one row per triangle ({len(corners)}), got {len(face_uv)}"

@@ -175,6 +175,24 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
 
 
 @pytest.mark.parametrize(
+    ("end", "told"),
+    [
+        ("\0", "NUL"),
+        (" --head broken.obj --landmarks joy.toml", "broken.obj: holds no triangles"),
+        (" --head broken.obj", "--landmarks LANDMARKS.json go together"),
+    ],
+)
+def test_what_would_fail_later_is_told_at_once(end: str, told: str) -> None:
+    """Before the first line is begun, and nothing is written."""
+    Path("broken.obj").write_text("v 0 0 0\n")
+    Path("clips.txt").write_text(f"{LIST}capture joy.toml -o k.mp4{end}\n")
+    before = contents(".")
+    ended = batch()
+    assert ended.exit_code == 2 and ended.stderr.count("\n") == 1 and told in ended.stderr
+    assert contents(".") == before
+
+
+@pytest.mark.parametrize(
     ("text", "told"), [(None, "no such list"), ("# nothing\n\n", "there is no command")]
 )
 def test_a_list_of_nothing(text: str | None, told: str) -> None:

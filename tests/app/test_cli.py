@@ -195,6 +195,9 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         ),
         (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),
         (["capture", "SMILE", "-o", "x.mp4", "--time", "1"], "it goes with -o PICTURE.png"),
+        (["capture", "SMILE", "-o", "x.png", "--time", "86400"], "smile.toml ends at"),
+        (["convert", "nothing.csv", "-o", "c.png"], "c.png: scripts are written as .toml"),
+        (["convert", "nothing.csv", "-o", "."], ".: is a folder"),
         (
             ["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=0.2"],
             "threshold_once: counts for the criterion normal alone, and here it is bulge+rest;",

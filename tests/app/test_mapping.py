@@ -93,6 +93,7 @@ def test_a_table_names_controls_that_the_face_has() -> None:
         ("jawOpen = { jaw_open = true }", "'jaw_open' was True, must be a number from -2 to 2"),
         ("jawOpen = { jaw_open = nan }", "'jaw_open' was nan, must be a number"),
         ("jawOpen = { jaw_open = 3 }", "'jaw_open' was 3, must be a number"),
+        (f"jawOpen = {{ jaw_open = 1{'0' * 400} }}", "'jaw_open' was 10+, must be a number"),
         ("jawOpen = { jaw_open = '1' }", "'jaw_open' was '1', must be a number"),
         ("jawOpen = {", "not valid TOML"),
     ],

@@ -88,6 +88,23 @@ def test_a_cell_with_a_delimiter(tmp_path: Path) -> None:
     check(path)
 
 
+def test_a_quote_that_nothing_closes(tmp_path: Path) -> None:
+    """It costs its own row at most, and is told with its line."""
+    path = written(tmp_path / "take.csv", {"input": ['"film.mp4"'] * 6} | COLUMNS)
+    whole = path.read_text()
+    path.write_text(whole.replace('film.mp4"', "film.mp4", 1))
+    take = read_take(path)
+    assert len(take.times) == 6 - 1 and told(
+        take.notes, "Line 2 opens a quotation mark that nothing"
+    )
+    assert told(take.notes, "1 row of other length was left out, the first in line 2")
+
+
+def test_very_many_columns(tmp_path: Path) -> None:
+    """What nobody knows is passed over, however much of it there is."""
+    check(written(tmp_path / "take.csv", COLUMNS | {f"x{n}": [0.0] * 6 for n in range(20_000)}))
+
+
 def test_a_torn_last_row(tmp_path: Path) -> None:
     """It is left out, and told."""
     path = tmp_path / "take.csv"

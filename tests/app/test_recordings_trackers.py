@@ -162,6 +162,9 @@ def test_several_faces(tmp_path: Path) -> None:
     assert len(read_take(path, face="3").times) == 20
     with pytest.raises(UserError, match=r"no face '7'; in it are '0', '3'"):
         read_take(path, face="7")
+    path = written(tmp_path / "empty.csv", one | {"face_id": ["nan"] * 60})
+    with pytest.raises(UserError, match="no face '0'; no row of it names one"):
+        read_take(path, face="0")
 
 
 def test_a_face_where_none_is_named(tmp_path: Path) -> None:

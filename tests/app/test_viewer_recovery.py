@@ -472,7 +472,7 @@ def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_
                 assert viewer.session.unsaved == "the pose" and stored_work(folder)
                 values = viewer.session.values
                 assert all(values[name] == value for name, value in pose.at(0.0).items())
-    # The kill may have met a file on its way; its staging folder is swept away a day later.
+    # The kill may have met a file on its way; its staging folder is swept by who writes there.
     left = [file for file in (folder / "unsaved").iterdir() if not file.name.startswith(PREFIX)]
     assert left == []
 

@@ -42,6 +42,26 @@ def test_other_formats(tmp_path: Path, suffix: str) -> None:
     assert np.array_equal(mesh.faces, ball.faces)
 
 
+@pytest.mark.parametrize("names", ["s t", "u v", "texture_u texture_v", "texcoord"])
+def test_a_ply_file_may_have_texture_coordinates(tmp_path: Path, names: str) -> None:
+    """Under any of their names, or at the corners of each face: the mesh is read as it stands."""
+    first, *second = names.split()
+    at_vertices = f"property float {first}\nproperty float {second[0]}\n" if second else ""
+    at_faces = "" if second else f"property list uchar float {first}\n"
+    path = tmp_path / "painted.ply"
+    path.write_text(
+        "ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 4\n"
+        f"property float x\nproperty float y\nproperty float z\n{at_vertices}element face 2\n"
+        f"property list uchar int vertex_indices\n{at_faces}end_header\n"
+        + "".join(
+            f"{x} {y} 0{f' {x} {y}' * bool(second)}\n" for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))
+        )
+        + "".join(f"3 {face}{' 6 0 0 1 0 1 1' * (not second)}\n" for face in ("0 1 2", "0 2 3"))
+    )
+    mesh = assets.read_mesh(path)
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]] and len(mesh.vertices) == 4
+
+
 def test_polygons_become_triangles(tmp_path: Path) -> None:
     """A quadrilateral is two triangles."""
     path = tmp_path / "quad.obj"

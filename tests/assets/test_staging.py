@@ -32,10 +32,10 @@ def made_old(folder: Path, seconds: float = staging.OLD + 60.0) -> Path:
 
 @pytest.fixture
 def killed(tmp_path: Path) -> Path:
-    """What a process left that was killed while it made a film."""
-    made = StagingFolder(tmp_path)
-    (made.__enter__() / "film.mp4").write_bytes(b"half")
-    [path] = tmp_path.iterdir()
+    """What a process on another machine left that was killed while it made a film."""
+    path = tmp_path / f"{staging.PREFIX}{'0' * 24}"
+    path.mkdir(mode=0o700)
+    (path / "film.mp4").write_bytes(b"half")
     return path
 
 
@@ -50,21 +50,36 @@ def test_a_folder_is_gone_after_the_work(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-def test_what_a_killed_process_leaves_is_swept_away_when_old(tmp_path: Path) -> None:
-    """The day after, by the next one that works there."""
-    ended = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
-    assert ended.returncode == -signal.SIGKILL
-    [left] = tmp_path.iterdir()
-    for age, names in ((0.0, [left]), (0.9 * staging.OLD, [left]), (1.1 * staging.OLD, [])):
-        made_old(tmp_path, age)
+def test_what_a_killed_process_leaves_is_swept_away(tmp_path: Path) -> None:
+    """At once, by the next one that works there; not what another process is working in."""
+    with StagingFolder(tmp_path) as busy:
+        made_old(busy)
+        ended = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
+        assert ended.returncode == -signal.SIGKILL
+        assert len(list(tmp_path.iterdir())) == 2
         staging._swept.clear()  # as in another process
-        with StagingFolder(tmp_path):
-            pass
-        assert list(tmp_path.iterdir()) == names
+        with StagingFolder(tmp_path) as own:
+            assert set(tmp_path.iterdir()) == {busy, own}
+
+
+def test_a_folder_that_is_swept_while_it_is_made_is_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before it is locked nobody can know that it is in use."""
+    lock = staging._locked_folder
+
+    def swept_first(folder: Path) -> int:
+        monkeypatch.setattr(staging, "_locked_folder", lock)
+        sweep(tmp_path)
+        return lock(folder)
+
+    monkeypatch.setattr(staging, "_locked_folder", swept_first)
+    with StagingFolder(tmp_path) as folder:
+        assert list(tmp_path.iterdir()) == [folder]
 
 
 def test_a_film_that_still_grows_stays(killed: Path) -> None:
-    """Whoever writes it, on this machine or on another that shares the disk."""
+    """Where another machine that shares the disk writes it, for locks may not be shared."""
     made_old(killed)
     (killed / "film.mp4").write_bytes(b"more")
     sweep(killed.parent)

@@ -117,6 +117,8 @@ def test_empty_mesh() -> None:
     ("arguments", "text"),
     [
         (([[0, 1, 4]], 4), r"from 0 to 3 into the vertices, but triangle 0 is \[0, 1, 4\]"),
+        (([[0, 1, 2]], 2**40), "vertex_count must be a whole number from 0 to 2147483647, got 10"),
+        (([[0, 1, 2]], "x"), "vertex_count must be a whole number .* got 'x'"),
         (([[0, 1, -1]], 4), r"triangle 0 is \[0, 1, -1\]"),
         (([[0.0, 1.0, 2.0]], 4), "faces must be integers .* got float64"),
         (([0, 1, 2], 4), r"shape \(F, 3\), got int64 of shape \(3,\)"),
