@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from ..errors import UserError, counted
@@ -165,14 +166,18 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
 
 
 def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | None:
-    """Write a clip, whole or not at all; return what there is to say of the file, if anything."""
+    """Write a clip, whole or not at all; return what there is to say of the file, if anything.
+
+    Sums of many numbers are rounded otherwise by two threads than by one. One writes the same bytes
+    here, within a batch, and on a machine of more cores.
+    """
     writer = chosen.load()
     whole = (
         written_atomically(output)
         if chosen.suffixes
         else folder_atomically(output, OWN, overwrite=request.overwrite)
     )
-    with cannot_be_written(output), whole as part:
+    with cannot_be_written(output), whole as part, threadpool_limits(1):
         return writer(clip, part, request)
 
 

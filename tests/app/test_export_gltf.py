@@ -22,6 +22,7 @@ import trimesh
 from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
+from threadpoolctl import threadpool_limits
 
 from risorius import assets, sim
 from risorius.__main__ import command as risorius
@@ -31,6 +32,7 @@ from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
 from risorius.app.export.pieces import moving_pieces
 from risorius.app.export.rig import fit
+from risorius.app.performances import script_for
 from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
 from risorius.assets.topology import vertex_normals
@@ -130,6 +132,17 @@ def test_every_vertex_is_where_the_clip_has_it(clip: Clip, glb: Path) -> None:
         assert np.array_equal(
             player.values(player.primitive(surface.name).indices).reshape(-1, 3), surface.faces
         )
+
+
+@pytest.mark.slow
+def test_bytes_are_the_same_on_any_number_of_cores(tmp_path: Path) -> None:
+    """However many threads sum up, as two do where a file is written alone."""
+    clip = record(script_for(None, "face"), build_scene("face", None), 10.0)
+    paths = [tmp_path / f"{threads}.glb" for threads in (1, 2)]
+    for threads, path in enumerate(paths, 1):
+        with threadpool_limits(threads):
+            written(clip, path)
+    assert paths[0].read_bytes() == paths[1].read_bytes()
 
 
 def test_times_are_those_of_the_frames(clip: Clip, glb: Path) -> None:
