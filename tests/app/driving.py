@@ -69,6 +69,14 @@ def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEAD
     return False
 
 
+def wait_for(condition: Callable[[], object]) -> None:
+    """Wait until another process has done something; AssertionError after too long."""
+    end = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
 def on_screen(viewer: Viewer, x: float, y: float) -> tuple[int, int]:
     """A place of the window, on the screen."""
     left, top = glfw.get_window_pos(viewer.surface.handle)

@@ -225,6 +225,7 @@ def test_orthographic_shows_and_finds_what_is_there(viewer: Viewer) -> None:
 def test_light_background_and_tone_are_chosen(viewer: Viewer) -> None:
     """Each changes the picture at once, and none keeps the others."""
     only_open(viewer, "Light and person")
+    assert until(viewer, lambda: viewer.is_idle)
     pages = [viewer.surface.read()[:, 400:].astype(int)]
     for row, choice in (("Background", "white"), ("Light", "hard"), ("Skin tone", "dark")):
         in_panel(viewer, (row, choice))

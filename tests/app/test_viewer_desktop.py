@@ -18,6 +18,7 @@ import glfw
 import numpy as np
 import pytest
 from Xlib import X, display
+from Xlib.error import XError
 from Xlib.protocol import event
 
 from risorius.app.performances import script_for
@@ -25,7 +26,17 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.placement import FIRST_SIZE
 from risorius.app.viewer.settings import load_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, nose, settle, show_controls, until, xdotool
+from .driving import (
+    NEEDS_A_SCREEN,
+    SIZE,
+    click,
+    nose,
+    settle,
+    show_controls,
+    until,
+    wait_for,
+    xdotool,
+)
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
 
@@ -43,7 +54,7 @@ def desktop() -> Iterator[None]:
         return
     manager = subprocess.Popen([MANAGER], stderr=subprocess.DEVNULL)
     try:
-        time.sleep(1.0)
+        wait_for(is_managed)
         # GLFW asks once, when it is made ready, what a window manager can do.
         glfw.terminate()
         yield
@@ -61,6 +72,13 @@ def viewer(desktop: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
         opened.settings.is_alive = False  # what is compared stands still
         settle(opened)
         yield opened
+
+
+def is_managed() -> bool:
+    """Whether a window manager has told that it is there (EWMH)."""
+    screen = display.Display()
+    told = screen.intern_atom("_NET_SUPPORTING_WM_CHECK")
+    return screen.screen().root.get_full_property(told, X.AnyPropertyType) is not None
 
 
 def screen_size() -> tuple[int, int]:
@@ -158,21 +176,15 @@ def test_a_minimised_window_rests_and_comes_back(tmp_path: Path) -> None:
         search = ["xdotool", "search", "--sync", "--onlyvisible", "--name", "Risorius: long"]
         found = subprocess.run(search, check=True, capture_output=True, text=True, timeout=60)
         window = found.stdout.split()[-1]
-        end = time.monotonic() + 15.0  # a machine that is busy takes some seconds to begin
-        while not looks_whole(window):
-            assert time.monotonic() < end
-            time.sleep(0.2)
-        playing = used_share(program.pid, 1.0)
+        wait_for(lambda: looks_whole(window))
+        wait_for(lambda: used_share(program.pid, 1.0) > 0.1)
         tell(window, "windowminimize")
-        time.sleep(1.0)
-        minimised = used_share(program.pid, 3.0)
-        assert minimised < 0.02 < playing
+        wait_for(lambda: used_share(program.pid, 3.0) < 0.02)
         tell(window, "windowactivate")
-        time.sleep(1.5)
-        assert looks_whole(window)
-        assert used_share(program.pid, 1.0) > 0.5 * playing
+        wait_for(lambda: looks_whole(window))
+        wait_for(lambda: used_share(program.pid, 1.0) > 0.1)
         tell(window, "windowminimize")
-        time.sleep(0.5)
+        wait_for(lambda: used_share(program.pid, 1.0) < 0.02)
         ask_to_close(window)
         assert program.wait(20.0) == 0
         assert program.stderr is not None and program.stderr.read() == ""
@@ -212,7 +224,10 @@ def looks_whole(window: str) -> bool:
     """Whether the window's pixels on the screen are panels at the left and a face beside them."""
     seen = display.Display().create_resource_object("window", int(window))
     size = seen.get_geometry()
-    raw = seen.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF).data
+    try:
+        raw = seen.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF).data
+    except XError:  # it is on its way
+        return False
     pixels = np.frombuffer(raw, np.uint8).reshape(size.height, size.width, 4)[..., :3].astype(int)
     skin = pixels[..., 2] - pixels[..., 0] > 30  # redder than blue
     panel = pixels[:, : size.width // 4]

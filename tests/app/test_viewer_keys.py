@@ -135,6 +135,7 @@ def test_the_keyboard_reaches_everything(viewer: Viewer, monkeypatch: pytest.Mon
             focused.append(name)
 
     monkeypatch.setattr(viewer.gui, "remember", note)
+    assert until(viewer, lambda: viewer.is_idle)
     before = viewer.surface.read().astype(int)
     xdotool(viewer, "key", "Tab")
     assert imgui.get_io().nav_visible

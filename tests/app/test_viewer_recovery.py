@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles
 from risorius.assets.staging import PREFIX
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, settle, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, settle, wait_for, xdotool
 
 ROOT = Path(__file__).parents[2]
 POSED = {"jaw_open": 0.4}
@@ -404,19 +404,10 @@ def windows_process(folder: Path) -> subprocess.Popen[str]:
     return process
 
 
-def wait_for(condition: Callable[[], object], seconds: float = 15.0) -> None:
-    """Until something has come true."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
 def press(*keys: str) -> None:
     """Keys, for the window under the mouse."""
     for key in keys:
         subprocess.run(["xdotool", "mousemove", "450", "200", "key", key], check=True)
-        time.sleep(0.2)
 
 
 @pytest.fixture
