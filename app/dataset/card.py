@@ -1,4 +1,4 @@
-"""The card of a set, its README.md: what it is, how it was made, what is in it, what it is not."""
+"""The card of a set, its README.md: what it is, how it was made, what is in it."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def make_set(
     """
     folder = SetFolder(request.output)
     with folder.held(request.options(), resume=resume):
-        there = folder.there()
+        there = {index for index in folder.there() if index >= count or folder.has(index)}
         if there and max(there) >= count:
             raise UserError(
                 f"{request.output}: has sample {max(there)} already; give --count {max(there) + 1} "

@@ -21,7 +21,8 @@ BY_NAME = {
 }  # fmt: skip
 LID_MARGIN = "eye_2"
 EYE_LANDMARK_COLUMNS = {42: 0, 43: 3, 44: 7, 45: 10, 46: 13, 47: 17}
-BORDER_COLUMNS = {51: 0, 52: 1, 53: 4, 54: SIDE, 55: 2 * SIDE - 4, 56: 2 * SIDE - 2, 57: 2 * SIDE}
+BORDER_COLUMNS = {51: 0, 52: 1, 53: 4, 55: 2 * SIDE - 4, 56: 2 * SIDE - 2, 57: 2 * SIDE}
+CORNER = {54: SIDE}  # where the lips meet: the border of the red passes outside of it
 SEAM_COLUMNS = {62: 0, 63: 4, 64: SIDE, 65: 2 * SIDE - 4, 66: 2 * SIDE}
 # Left landmark -> its mirror image on the right.
 OPPOSITE = {
@@ -47,6 +48,7 @@ def landmark_vertices(skin: SkinMesh) -> Faces:
     rows = (
         (EYE_LANDMARK_COLUMNS, LID_MARGIN),
         (BORDER_COLUMNS, f"mouth_{BORDER_ROW}"),
+        (CORNER, f"mouth_{CREST_ROW}"),
         (SEAM_COLUMNS, f"mouth_{SEAM_ROW}"),
     )
     for columns, row in rows:

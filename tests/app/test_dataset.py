@@ -77,9 +77,13 @@ def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path)
     studio = Studio(request)
     for index in (3, 0, 3):
         studio.shoot(index).save(tmp_path / f"{index:06d}.png")
-        for end in ENDS:
-            name = f"{index:06d}{end}"
+        for name in [f"{index:06d}{end}" for end in ENDS if end != ".json"]:
             assert (tmp_path / name).read_bytes() == (made / name).read_bytes(), name
+        alone, labels = (
+            json.loads((folder / f"{index:06d}.json").read_text("utf-8"))
+            for folder in (tmp_path, made)
+        )
+        assert labels == alone | {"files": labels["files"], "digest": labels["digest"]}
 
 
 def test_samples_are_of_different_faces(made: Path, samples: list[dict[str, Any]]) -> None:
@@ -99,6 +103,30 @@ def test_a_set_goes_on_where_it_was_left(made: Path, tmp_path: Path) -> None:
     result = run(folder, "--resume")
     assert "2 of them new" in result.output
     assert content(folder) == content(made)
+
+
+def test_a_sample_that_is_not_whole_is_made_anew(made: Path, tmp_path: Path) -> None:
+    """Whatever stands in the place of one of its files; the set is then as it was."""
+    whole = content(made)
+    damaged = {
+        "000000.json": b"", "000001.json": b'{"mine": 1}', "000002.json": whole["000001.json"],
+        "000003.json": whole["000003.json"].replace(b'"AU12":0', b'"AU12":1', 1)[:-1] + b" }",
+        "000004_seg.png": b"",
+    }  # fmt: skip
+    folder = tmp_path / "damaged"
+    shutil.copytree(made, folder)
+    request = request_of(folder, seed=SEED, size=SIZE, passes=PASSES)
+    held = SetFolder(request.output)
+    assert all(held.has(index) for index in range(COUNT))
+    for name, instead in damaged.items():
+        (folder / name).write_bytes(instead)
+    assert not any(held.has(index) for index in range(5))
+    for end in (".png", "_ldmks.txt", ".json"):
+        shutil.copytree(made, folder, dirs_exist_ok=True)
+        (folder / f"000001{end}").unlink()
+        assert [held.has(index) for index in range(COUNT)] == [k != 1 for k in range(COUNT)]
+    assert "1 of them new" in run(folder, "--resume").output
+    assert content(folder) == whole
 
 
 @pytest.mark.slow
