@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import click
 
 from risorius.app.errors import UserError, in_one_line
+
+from .report import Target
 
 PATH = click.Path(path_type=Path)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
@@ -30,6 +32,14 @@ def json_writer(target: Path | None) -> Callable[[object], None]:
     if target is not None:
         check_file(target)
     return save
+
+
+def conclude(text: str, targets: Iterable[Target]) -> None:
+    """Print a report and what it is held to; end with exit code 1 where a target is missed."""
+    targets = list(targets)
+    click.echo("\n".join([text, "", *map(str, targets)]))
+    if not all(target.is_met for target in targets):
+        sys.exit(1)
 
 
 @contextlib.contextmanager

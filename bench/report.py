@@ -6,6 +6,7 @@ import platform
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 
 def table(
@@ -29,9 +30,24 @@ def table(
     return [(indent + line).rstrip() for line in lines]
 
 
-def verdict(is_met: bool, text: str) -> str:
-    """A line that says whether a target is met."""
-    return f"  {'met   ' if is_met else 'MISSED'}  {text}"
+class Target(NamedTuple):
+    """Something that a benchmark is held to, in words, and whether it is met."""
+
+    text: str
+    is_met: bool
+
+    def __str__(self) -> str:
+        return f"  {'met   ' if self.is_met else 'MISSED'}  {self.text}"
+
+
+def at_most(what: str, value: float, most: float, unit: str = "") -> Target:
+    """A value that must not be larger; one that is no number misses it."""
+    return Target(f"{what}: {value:.4g}{unit}, at most {most:g}{unit}", value <= most)
+
+
+def at_least(what: str, value: float, least: float, unit: str = "") -> Target:
+    """A value that must not be smaller; one that is no number misses it."""
+    return Target(f"{what}: {value:.4g}{unit}, at least {least:g}{unit}", value >= least)
 
 
 def driver(information: Mapping[str, object]) -> str:

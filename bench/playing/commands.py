@@ -6,6 +6,8 @@ import click
 
 from risorius.app.cli.parameters import FiniteRange, Size
 
+from ..command_line import conclude
+
 
 @click.command("take")
 @click.option(
@@ -39,7 +41,8 @@ def bench_live(seconds: float, window: bool) -> None:
     """Time a live face from its packet to the skin, for each protocol."""
     from . import live
 
-    click.echo(live.report(seconds, with_window=window))
+    text, target = live.report(seconds, with_window=window)
+    conclude(text, [target])
 
 
 @click.command("capture")

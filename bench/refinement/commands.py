@@ -16,7 +16,8 @@ import click
 from risorius.app.cli.parameters import FiniteRange
 from risorius.app.errors import UserError, in_one_line
 
-from ..command_line import FOLDER, json_option, json_writer, say_progress, told
+from ..command_line import FOLDER, conclude, json_option, json_writer, say_progress, told
+from ..report import Target
 
 if TYPE_CHECKING:
     from ..subjects import Subject
@@ -72,6 +73,7 @@ def bench_quality(reference: Path | None, finer: str, expressions: tuple[str, ..
     """Measure how near every scheme comes to a dense face and its picture, for what it spends."""
     from . import quality, quality_report
 
+    targets: list[Target] = []
     measured = _subjects(reference, finer, expressions)
     for _, members in groupby(measured, lambda subject: subject.group):
         together = list(members)
@@ -83,7 +85,8 @@ def bench_quality(reference: Path | None, finer: str, expressions: tuple[str, ..
             )
         ]
         click.echo(quality_report.text(together[0], scores) + "\n")
-    click.echo(quality_report.LEGEND)
+        targets += quality_report.targets(together[0].group, scores)
+    conclude(quality_report.LEGEND, targets)
 
 
 def _subjects(reference: Path | None, finer: str, expressions: Collection[str]) -> list[Subject]:

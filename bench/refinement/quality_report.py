@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..report import table
+from ..report import Target, at_least, at_most, table
 from ..subjects import Subject
 from .methods import AS_SET, EVERYWHERE, STATIC, Key
 from .quality import Score, means
 
 STATIC_KEY: Key = (STATIC, "", 1.0)
+LEAST_GAIN, MOST_JUMP = 20.0, 1.5  # [%] of the error of static; times the input's motion
 LEGEND = """\
 better, worst  than static: per cent of error less, in the mean; largest share of it, of all
 levels         RMS of grey levels beside pictures of the dense mesh, three views, 480 x 480 pixels
@@ -63,3 +64,20 @@ def worst(scores: Sequence[Score], key: Key, what: str) -> float:
         errors.setdefault(score.key, {})[score.expression] = getattr(score, what)
     static = errors[STATIC_KEY]
     return max(error / max(static[name], 1e-300) for name, error in errors[key].items())
+
+
+def targets(group: str, scores: Sequence[Score]) -> list[Target]:
+    """What the scheme `cubic` is held to where `bulge` splits, at twice the triangles."""
+    average = means(scores)
+    static = average[STATIC_KEY]
+    best, calm = average["cubic", "bulge", 2.0], average["cubic", "bulge, blended", 2.0]
+    return [
+        *(
+            at_least(
+                f"{group}: {what} less than static",
+                100.0 * (1.0 - getattr(best, what) / getattr(static, what)), LEAST_GAIN, " %",
+            )
+            for what in ("distance", "picture")
+        ),
+        at_most(f"{group}: largest jump, blended", calm.jump, MOST_JUMP),
+    ]  # fmt: skip

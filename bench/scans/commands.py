@@ -8,7 +8,7 @@ import click
 
 from risorius.app.errors import in_one_line
 
-from ..command_line import FOLDER, PATH, told
+from ..command_line import FOLDER, PATH, conclude, told
 
 
 @click.command("motion")
@@ -23,7 +23,8 @@ def bench_motion(reference: Path) -> None:
     from . import motion
 
     with told("--reference: "):
-        click.echo(motion.report(*motion.measure(reference)))
+        rows, left_out, others = motion.measure(reference)
+    conclude(motion.report(rows, left_out, others), motion.targets(rows, others))
 
 
 @click.command("left-out")

@@ -33,12 +33,13 @@ from risorius.sim.coordinates import FaceSpace
 from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle
 
-from ..report import table
+from ..report import Target, at_least, table
 from ..subjects import settled_positions
 from .reading import Scans, read_scans
 
 Array = npt.NDArray[np.float64]
 
+LEAST_MEAN, LEAST_OF_A_SHAPE, LEAST_OF_OTHERS = 0.94, 0.88, 0.92  # cosines
 SETTLE = 60  # frames of 1/60 s until a pose is still
 SIDE = re.compile(r"_?(l|r|left|right)$", re.IGNORECASE)  # at the end of a field's name
 ALSO_CALLED = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
@@ -272,6 +273,16 @@ def report(rows: list[Row], left_out: list[str], others: Mapping[str, list[Row]]
     if left_out:
         lines += ["", f"left out, no skin moves or ARKit has no such shape: {', '.join(left_out)}"]
     return "\n".join(lines)
+
+
+def targets(rows: list[Row], others: Mapping[str, list[Row]]) -> list[Target]:
+    """What the muscles are held to: the mean, the shape that is least alike, other persons."""
+    worst = min(rows, key=_cosine)
+    return [
+        at_least("mean cosine", mean_row(rows).cosine, LEAST_MEAN),
+        at_least(f"least cosine, {worst.shape}", worst.cosine, LEAST_OF_A_SHAPE),
+        *(at_least(f"mean of {n}", mean_row(r).cosine, LEAST_OF_OTHERS) for n, r in others.items()),
+    ]
 
 
 def _cosine(row: Row) -> float:

@@ -13,7 +13,7 @@ import click
 from risorius.app.cli.parameters import FiniteRange
 from risorius.app.errors import UserError
 
-from ..command_line import FILE, FOLDER, PATH, json_option, json_writer, told
+from ..command_line import FILE, FOLDER, PATH, conclude, json_option, json_writer, told
 
 
 @click.command("simulate")
@@ -63,8 +63,8 @@ def bench_gaps(json_file: Path | None) -> None:
 
     save = json_writer(json_file)
     poses = gaps.measure()
-    click.echo(gaps.report(poses))
     save([asdict(pose) for pose in poses])
+    conclude(gaps.report(poses), gaps.targets(poses))
 
 
 @click.command("soak")
@@ -75,7 +75,8 @@ def bench_soak(minutes: float) -> None:
     """Drive the face with random input for a simulated hour: does it stay sound, and come back."""
     from . import soak
 
-    click.echo(soak.report(soak.measure(minutes=minutes)))
+    found = soak.measure(minutes=minutes)
+    conclude(soak.report(found), soak.targets(found))
 
 
 @click.command("tearing")
@@ -84,7 +85,8 @@ def bench_tearing(mixtures: int) -> None:
     """Look for torn skin and for contacts that fail, in all expressions and random mixtures."""
     from . import tearing
 
-    click.echo(tearing.report(tearing.measure(mixtures=mixtures), mixtures))
+    poses = tearing.measure(mixtures=mixtures)
+    conclude(tearing.report(poses, mixtures), tearing.targets(poses))
 
 
 COMMANDS = (bench_simulate, bench_seen, bench_gaps, bench_soak, bench_tearing)

@@ -17,7 +17,7 @@ from typing import Any
 from risorius import assets, refine, sim
 from risorius.app.refining.looks import FIRST_LOOK, LOOKS
 
-from ..report import table
+from ..report import Target, at_most, table
 from ..subjects import settled_positions
 from .lines_of_sight import eyeballs_of, lid_gaps, meshes_of, sunk_in_eyeballs, widest_slit
 
@@ -85,12 +85,11 @@ def _rows(simulation: sim.Simulation) -> Iterator[tuple[str, bool]]:
 
 def report(poses: Sequence[PoseGaps]) -> str:
     """The text to print."""
-    asked = {"lips": LIPS_MOST, "lids": LIDS_MOST, "sunk": None}
-    rows = []
-    for part, most in asked.items():
-        value, pose = worst(poses, part)
-        verdict = "" if most is None else f" {most} {'met' if value < most else 'MISSED'}"
-        rows.append((part, value, verdict, f" {pose.name}"))
+    rows = [
+        (part, value, f" {pose.name}")
+        for part in ("lips", "lids", "sunk")
+        for value, pose in [worst(poses, part)]
+    ]
     return "\n".join(
         [
             f"{len(poses)} poses of the built-in head, as simulated and as refined, the worse:",
@@ -100,6 +99,12 @@ def report(poses: Sequence[PoseGaps]) -> str:
             "",
             *table("pose:<14|lips:6.2f|lids:6.2f|sunk:6.2f", map(astuple, poses), empty="-"),
             "",
-            *table("worst:<6|mm:6.2f| asked:<11|:<1", rows),
+            *table("worst:<6|mm:6.2f| in:<1", rows),
         ]
     )
+
+
+def targets(poses: Sequence[PoseGaps]) -> list[Target]:
+    """What closed lips and lids are held to."""
+    most = {"lips": LIPS_MOST, "lids": LIDS_MOST}
+    return [at_most(part, worst(poses, part)[0], each, " mm") for part, each in most.items()]

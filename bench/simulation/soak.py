@@ -21,6 +21,8 @@ import numpy.typing as npt
 from risorius import assets, sim
 from risorius.app.controls.mirror import mirrored as on_the_other_side
 
+from ..report import Target, at_most
+
 Array = npt.NDArray[np.float64]
 
 SEED = 2003
@@ -30,6 +32,7 @@ FRAME = 1.0 / 60.0
 REPEATED = 60.0  # s of simulated time that are run twice
 MIRRORED_FRAMES = 240
 BLOW = 100.0  # mm/s
+FURTHEST, AT_REST, MIRRORED = 150.0, 1e-3, 1e-6  # [mm] at most
 ROUNDING = 1e-9  # of the energy: growth below it is arithmetic
 
 
@@ -158,3 +161,15 @@ def report(soak: Soak) -> str:
             f"mirrored input    {soak.mirror_error:.1e} mm from the mirrored motion",
         ]
     )
+
+
+def targets(soak: Soak) -> list[Target]:
+    """What an hour of random input must not do."""
+    return [
+        Target("finite", soak.finite),
+        at_most("furthest from rest", soak.furthest, FURTHEST, " mm"),
+        at_most("2 s after release", soak.rest_error, AT_REST, " mm"),
+        at_most("energy growth", soak.growth, 0.0),
+        Target("same bytes in two runs", soak.same_bytes),
+        at_most("mirrored input", soak.mirror_error, MIRRORED, " mm"),
+    ]

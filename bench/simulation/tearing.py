@@ -15,7 +15,7 @@ import numpy.typing as npt
 from risorius import assets, sim
 from risorius.assets.topology import cross_products
 
-from ..report import table
+from ..report import Target, at_most, table
 from ..subjects import settled_positions
 
 Array = npt.NDArray[np.float64]
@@ -24,6 +24,7 @@ SEED = 2001
 MIXTURES = 500
 MOST_CONTROLS = 8  # in a mixture
 SETTLE = 40  # frames of 1/60 s
+MOST_TORN, MOST_IN_A_POSE, DEEPEST = 2.0, 3, 0.1  # [% of poses]; triangles; [mm]
 AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
@@ -101,3 +102,16 @@ def report(poses: Sequence[PoseDefects], mixtures: int) -> str:
             *table("worst:<10|value:>9| in:<1", rows),
         ]
     )
+
+
+def targets(poses: Sequence[PoseDefects]) -> list[Target]:
+    """What skin and contacts are held to; a triangle turns over in a wink or a yawn."""
+    torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
+    return [
+        at_most("poses with a triangle turned", 100.0 * torn, MOST_TORN, " %"),
+        at_most("triangles turned in one pose", max(p.inverted for p in poses), MOST_IN_A_POSE),
+        *(
+            at_most(part, max(getattr(pose, part) for pose in poses), DEEPEST, " mm")
+            for part in ("lips", "lids", "teeth")
+        ),
+    ]

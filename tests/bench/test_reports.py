@@ -60,8 +60,9 @@ def test_motion_table(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_soak_table() -> None:
     """A few seconds of wild input are reported, and the face stays sound."""
-    text = soak.report(soak.measure(minutes=0.05))
-    assert "NO" not in text
+    found = soak.measure(minutes=0.05)
+    text = soak.report(found)
+    assert "NO" not in text and all(target.is_met for target in soak.targets(found))
     assert "0.1 simulated minutes" in text or "0.0 simulated minutes" in text
 
 
