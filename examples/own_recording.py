@@ -6,7 +6,7 @@ Reads what `risorius replay` reads, and writes an array (T, V, 3) of a frame at 
 the order of `risorius.assets.load("head").vertices`.
 """
 
-import sys
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +35,10 @@ def main(recording: Path) -> npt.NDArray[np.float64]:
 
 
 if __name__ == "__main__":
-    file = Path(sys.argv[2] if len(sys.argv) > 2 else "vertices.npy")
-    vertices = main(Path(sys.argv[1]))
-    np.save(file, vertices)
-    print(f"{len(vertices)} frames of {vertices.shape[1]} vertices: {file}")
+    command = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    command.add_argument("recording", type=Path)
+    command.add_argument("file", type=Path, nargs="?", default=Path("vertices.npy"))
+    given = command.parse_args()
+    vertices = main(given.recording)
+    np.save(given.file, vertices)
+    print(f"{len(vertices)} frames of {vertices.shape[1]} vertices: {given.file}")

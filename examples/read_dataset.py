@@ -6,9 +6,9 @@
 `Faces` has what PyTorch asks of a data set, a length and items by number: hand it to a DataLoader.
 """
 
+import argparse
 import csv
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +60,9 @@ class Faces:
 
 
 if __name__ == "__main__":
-    faces = Faces(Path(sys.argv[1]))
+    command = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    command.add_argument("folder", type=Path, help="of a set that `risorius dataset` made")
+    faces = Faces(command.parse_args().folder)
     training, testing = faces.split()
     units = np.stack([faces[number]["units"] for number in range(len(faces))])
     print(f"{len(training)} samples to train with, {len(testing)} to test with")

@@ -5,6 +5,7 @@
 Wheels are bundled as they come from the package index, for Blender's own Python and numpy.
 """
 
+import argparse
 import shutil
 import subprocess
 import sys
@@ -63,7 +64,8 @@ def main(platform: str, target: Path) -> Path:
 
 
 if __name__ == "__main__":
-    name = sys.argv[1] if len(sys.argv) > 1 else "linux-x64"
-    if name not in WHEELS_FOR:
-        sys.exit(f"unknown platform {name!r}; there are {', '.join(WHEELS_FOR)}")
-    print(main(name, Path(sys.argv[2] if len(sys.argv) > 2 else ".")))
+    command = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    command.add_argument("platform", nargs="?", choices=WHEELS_FOR, default="linux-x64")
+    command.add_argument("folder", nargs="?", type=Path, default=Path("."))
+    given = command.parse_args()
+    print(main(given.platform, given.folder))
