@@ -38,9 +38,10 @@ def build_throat(head: Any, pivots: Mapping[str, Floats]) -> list[Part]:
     )
     colours = DARK + (0.35 * down + 0.65 * across**2)[..., None] * (THROAT - DARK)
     parts = [_sheet("throat", origin + scale * places, colours, "cranium")]
+    chin = head.vertices[head.landmarks[8], 1]
     for loop in boundary_loops(head.faces):
         edge = head.vertices[loop]
-        if edge[:, 1].max() < origin[1] + scale * LOW:
+        if edge[:, 1].max() < chin:
             middle = edge.mean(axis=0)
             rings = np.stack([middle + share * (edge - middle) for share, _ in RINGS])
             inks = np.stack([np.tile(ink, (len(loop), 1)) for _, ink in RINGS])

@@ -52,10 +52,19 @@ def test_landmarks_lie_where_the_scheme_says(head: Head) -> None:
 
 
 def test_lip_landmarks_lie_on_the_lip_rows(head: Head) -> None:
-    """Outer lips on the border of the red, inner lips on the line where they meet."""
-    for numbers, row in ((range(48, 60), "mouth_6"), (range(60, 68), "mouth_2")):
+    """Outer lips on the border of the red, inner ones where lips meet, corners between."""
+    outer = [*range(49, 54), *range(55, 60)]
+    for numbers, row in ((outer, "mouth_6"), ((48, 54), "mouth_3"), (range(60, 68), "mouth_2")):
         on_row = {*head.rings[f"{row}_left"].tolist(), *head.rings[f"{row}_right"].tolist()}
         assert {int(head.landmarks[number]) for number in numbers} <= on_row
+
+
+def test_the_mouth_ends_at_the_corners_of_the_lips(head: Head) -> None:
+    """Landmarks 48 and 54 are where anatomists have them, a little outside of 60 and 64."""
+    corners = [head.anatomy[f"cheilion_{side}"] for side in ("right", "left")]
+    assert head.landmarks[[48, 54]].tolist() == corners
+    wide, red = (np.ptp(head.vertices[head.landmarks[pair], 0]) for pair in ([48, 54], [60, 64]))
+    assert red < wide < red + 4.0
 
 
 def test_lid_landmarks_lie_on_the_lid_margin(head: Head) -> None:
