@@ -37,12 +37,18 @@ class UserError(Exception):
         super().__init__(in_one_line(text))
 
 
-def needed(module: str, cure: str) -> Any:
-    """A library that not everybody has; UserError, whose text is `cure`, where it is missing."""
+def needed(module: str, what: str, extra: str, *, package: str | None = None) -> Any:
+    """A library that not everybody has installed; UserError, with the cure, where it is missing.
+
+    what: needs it ("--passes"). extra: of this distribution, which brings it. package: what brings
+    the module, if it is called otherwise.
+    """
     try:
         return import_module(module)
     except ImportError:
-        raise UserError(cure) from None
+        raise UserError(
+            f"{what} needs {package or module}; install it: pip install 'risorius[{extra}]'"
+        ) from None
 
 
 def line_for(error: Exception) -> str | None:

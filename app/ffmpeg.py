@@ -7,15 +7,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import imageio_ffmpeg
-
-from .errors import UserError
+from .errors import UserError, needed
 
 RATE = 48_000  # [samples/s] of sounds, unless told; what devices and films have, too
 
 
 def program() -> str:
     """The ffmpeg that is used here; UserError where there is none."""
+    imageio_ffmpeg = needed("imageio_ffmpeg", "film or sound", "films", package="imageio-ffmpeg")
     try:
         return str(imageio_ffmpeg.get_ffmpeg_exe())
     except RuntimeError:

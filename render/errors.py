@@ -40,7 +40,7 @@ _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     (
         r"GLFW3 shared library|No module named 'glfw'",
         "the GLFW library cannot be loaded",
-        "pip install --force-reinstall glfw",
+        "pip install 'risorius[window]'",
     ),
 )
 

@@ -22,10 +22,9 @@ from ..errors import needed
 from .clip import Clip, Surface
 from .formats import Request
 
-CURE = "this needs usd-core: pip install 'risorius[export]'"
-Gf, Sdf, Tf = (needed(f"pxr.{name}", CURE) for name in ("Gf", "Sdf", "Tf"))
-Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
-    needed(f"pxr.{name}", CURE) for name in ("Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
+Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
+    needed(f"pxr.{name}", "USD", "export", package="usd-core")
+    for name in ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
 )
 
 MILLIMETRE = 0.001  # metres per unit

@@ -19,7 +19,7 @@ from .clip import Clip
 from .formats import Request
 from .frame_surfaces import FrameSurface, frame_surfaces, joined
 
-h5py = needed("h5py", "this needs h5py: pip install 'risorius[export]'")
+h5py = needed("h5py", "VTKHDF", "export")
 
 VERSION = (2, 0)
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")

@@ -60,6 +60,7 @@ class LiveFace:
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """Listen from now on; UserError where that cannot be. wake: see `Receiver`."""
+        listening.protocol.check()
         self.listening, self._clock = listening, clock
         self.table = load_mapping(listening.mapping)
         usual = usual_gains(listening.protocol.title)

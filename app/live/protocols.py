@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import needed
 from . import ifacialmocap, livelink, vmc
 from .addresses import LOOPBACK
 from .frame import LiveFrame
@@ -18,6 +19,7 @@ class Protocol:
     title: as people call it. port: where receivers listen unless told. parse: see frame.py.
     packets: what a sender would send: (channels, subject=, frame=) -> packets.
     request: what makes a phone send that has not been told where to; b"" for nothing.
+    library: a module that not everybody has installed, "" for none.
     """
 
     title: str
@@ -25,11 +27,17 @@ class Protocol:
     parse: Callable[[bytes], LiveFrame | None]
     packets: Callable[..., list[bytes]]
     request: bytes = b""
+    library: str = ""
+
+    def check(self) -> None:
+        """Raise UserError where the library is missing."""
+        if self.library:
+            needed(self.library, self.title, "live", package="python-osc")
 
 
 PROTOCOLS: Mapping[str, Protocol] = {
     "livelink": Protocol("Live Link Face", livelink.PORT, livelink.parse, livelink.packets),
-    "vmc": Protocol("VMC", vmc.PORT, vmc.parse, vmc.packets),
+    "vmc": Protocol("VMC", vmc.PORT, vmc.parse, vmc.packets, library="pythonosc"),
     "ifacialmocap": Protocol(
         "iFacialMocap",
         ifacialmocap.PORT,

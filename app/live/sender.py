@@ -77,6 +77,7 @@ class Sender:
     def __init__(self, kind: str, address: str, port: int | None, subject: str) -> None:
         """kind: of PROTOCOLS. port: None for the protocol's own. UserError for no address."""
         self._protocol = PROTOCOLS[kind]
+        self._protocol.check()
         self.port = self._protocol.port if port is None else port
         self._subject, self._sent = subject, 0
         self._target = resolved(address), self.port

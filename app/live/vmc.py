@@ -20,15 +20,17 @@ what emotions look like.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 import struct
 from collections.abc import Iterator, Mapping
 
-from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
-from pythonosc.osc_message import OscMessage
-from pythonosc.osc_message import ParseError as MessageError
-from pythonosc.osc_message_builder import OscMessageBuilder
+with contextlib.suppress(ImportError):  # see Protocol.check
+    from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
+    from pythonosc.osc_message import OscMessage
+    from pythonosc.osc_message import ParseError as MessageError
+    from pythonosc.osc_message_builder import OscMessageBuilder
 
 from ..recordings.names import ARKIT
 from .frame import LiveFrame, put_angle, put_shape, shape_named

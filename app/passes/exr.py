@@ -30,7 +30,7 @@ NOTHING = 0xFFFFFFFF
 
 def openexr() -> Any:
     """OpenEXR's module; UserError where it is missing."""
-    return needed("OpenEXR", "--passes needs OpenEXR: pip install 'risorius[passes]'")
+    return needed("OpenEXR", "--passes", "passes")
 
 
 def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:

@@ -44,11 +44,7 @@ def phones_in(file: Path, text: str = "") -> tuple[Phone, ...]:
 
     text: the words, if they are known. Raises UserError where there is no speech, or other words.
     """
-    pocketsphinx = needed(
-        "pocketsphinx",
-        "hearing speech needs PocketSphinx: pip install 'risorius[speech]' "
-        "(it has no wheel for Python 3.14 yet; take 3.13 for this command)",
-    )
+    pocketsphinx = needed("pocketsphinx", "hearing speech", "speech")
     samples = load_sound(file, rate=RATE, is_mono=True).samples.tobytes()
     if text:
         phones = _aligned(pocketsphinx, samples, _words(text), file)

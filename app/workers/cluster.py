@@ -34,8 +34,7 @@ def run_on_cluster(
     logs: Sequence[Path] | None,
 ) -> Iterator[Outcome]:
     """Yield what became of each item as it ends; UserError where no scheduler answers."""
-    cure = "--scheduler needs distributed: pip install 'risorius[cluster]'"
-    distributed = needed("distributed", cure)
+    distributed = needed("distributed", "--scheduler", "cluster")
     try:
         # Asked first: a client takes half a minute to find that nobody is there, and waits for ever
         # where somebody answers who is no scheduler.
