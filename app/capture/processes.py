@@ -27,7 +27,7 @@ from ..stopping import cleaned_up_if_stopped
 from ..workers.child import Child, DiedError, share_of_cores, streams
 from .drawing import Capture, CaptureOptions, Frame
 
-SAMPLES_EACH = 3e8  # 80 frames of 1280 x 720: fewer are not worth a start of three seconds
+SAMPLES_EACH = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds
 MOST = 8  # more of them than one encoder can follow
 AHEAD = 32e6  # [bytes] of pictures that a process draws ahead of the film, or two pictures
 COMPILER = "risorius.jit"  # the log that tells of code that is compiled

@@ -16,8 +16,6 @@ from typing import Any
 import click
 from tqdm import tqdm
 
-from risorius.assets import AssetError, fitting
-
 from ..batch.journal import Journal
 from ..batch.listing import Job, clashes, lines_of, words_of
 from ..errors import UserError, counted, in_one_line
@@ -189,6 +187,8 @@ def _job(number: int, text: str, journal: Journal) -> Job:
 @functools.cache  # many lines may show one head
 def _check_head(head: Path, landmarks: Path | None) -> None:
     """Raise UserError where a head of the user's own cannot be fitted."""
+    from risorius.assets import AssetError, fitting  # slow, and seldom needed
+
     if landmarks is None:
         raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
     try:

@@ -121,7 +121,7 @@ def _films() -> tuple[bool, str]:
             check=True,
         ).stdout
     except UserError as error:
-        return False, f"no. {error}. {cure}"
+        return False, f"no. {error}" if "pip install" in str(error) else f"no. {error}. {cure}"
     except subprocess.TimeoutExpired:
         return False, f"no. {program} did not answer within {PATIENCE:g} s. {cure}"
     except (OSError, subprocess.CalledProcessError) as error:
