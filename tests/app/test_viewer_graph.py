@@ -133,7 +133,7 @@ def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
     """A right click on a key chooses how it is approached, and the curve is what is played."""
     xdotool(viewer, "mousemove", *at(viewer, 3.0, 0.6))
     xdotool(viewer, "click", 3)
-    click(viewer, "menu Keys: Approach: hold")
+    click(viewer, "menu Keys: Easing: hold")
     script = viewer.session.script
     assert script.poses[2].easing == "hold"
     times, drawn = script.posed_channel("joy").outline(0.0, 4.0, 200)

@@ -213,7 +213,7 @@ def test_the_menus_do_the_same(viewer: Viewer) -> None:
     """A right click on a key brings up its menu, in which there is more than keys have."""
     press(viewer, at(viewer, REST), button=3)
     assert viewer.selection.places == {REST}
-    click(viewer, "menu Keys: Approach: hold")
+    click(viewer, "menu Keys: Easing: hold")
     assert viewer.session.script.poses[2].easing == "hold"
     press(viewer, at(viewer, REST), button=3)
     click(viewer, "menu Keys: Delete")

@@ -39,7 +39,7 @@ class Layout:
 
     def draw(self, view: View) -> None:
         """Draw everything, and give the view its place."""
-        view.pointed = ()
+        view.pointed = {}
         if self._state.are_hidden:
             view.area = self._draw_bare()
         else:
