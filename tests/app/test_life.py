@@ -260,7 +260,7 @@ def test_asking_what_a_control_moves_moves_nothing(scene: FaceScene) -> None:
     before = fresh.values
     smile = fresh.moved_by("AU12")
     assert {"zygomaticus_major_left", "zygomaticus_major_right"} <= smile <= {*fresh.limits}
-    assert fresh.moved_by("jaw_open") == {"jaw_open"}
+    assert set(fresh.moved_by("jaw_open")) == {"jaw_open"}
     assert fresh.values == before
 
 
