@@ -17,6 +17,7 @@ from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
 
 from .driving import (
+    DEADLINE,
     NEEDS_A_SCREEN,
     SIZE,
     clear_search,
@@ -141,7 +142,7 @@ def test_a_window_that_was_stopped_goes_on_calmly(tmp_path: Path) -> None:
         time.sleep(1.0)
         assert program.poll() is None
         program.send_signal(signal.SIGCONT)
-        assert program.wait(60.0) == 0
+        assert program.wait(DEADLINE) == 0
         assert program.stderr is not None and program.stderr.read() == ""
     finally:
         program.kill()
