@@ -91,6 +91,7 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
     """Made tiny, flat, and large again while the face moves: it goes on, and nothing explodes."""
     import glfw
 
+    before = viewer.view.area
     xdotool(viewer, "key", "1")
     try:
         for size in ((1, 1), (40, 30), (700, 20), (20, 500), SIZE):
@@ -102,6 +103,7 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
         settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
+    assert viewer.view.area == before  # the panel is as wide as it was
 
 
 @pytest.mark.slow
