@@ -265,7 +265,7 @@ class TestInTheWindow:
         xdotool(viewer, "key", "ctrl+a")
         write(viewer, "marked")
         xdotool(viewer, "key", "Return")
-        assert until(viewer, lambda: viewer.room is None, 60.0)
+        assert until(viewer, lambda: viewer.room is None)
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
         image, marks = tmp_path / "joy.png", mesh.with_name("marked.json")
         options = ("--set", "joy", "--size", "160x160", "-o", image)
@@ -350,7 +350,7 @@ class TestInTheWindow:
         marking.note()
         marking.file = mesh.with_name("wrong.json")
         xdotool(viewer, "key", "ctrl+Return")
-        assert until(viewer, lambda: viewer.messages.is_error, 30.0)
+        assert until(viewer, lambda: viewer.messages.is_error)
         assert "\n" not in viewer.messages.text and viewer.room is not None
         assert not marking.unsaved and marking.file.exists()
 

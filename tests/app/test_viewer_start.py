@@ -21,7 +21,18 @@ from risorius.app.viewer.gui import THEMES
 from risorius.app.viewer.opening import COMPILING, LOADING, picture
 from risorius.app.viewer.settings import Settings, load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, drag, nose, on_screen, settle, until, xdotool
+from .driving import (
+    DEADLINE,
+    NEEDS_A_SCREEN,
+    SIZE,
+    click,
+    drag,
+    nose,
+    on_screen,
+    settle,
+    until,
+    xdotool,
+)
 
 pytestmark = NEEDS_A_SCREEN
 
@@ -93,7 +104,7 @@ def test_a_face_is_seen_before_anything_is_compiled(
             break
     assert all(is_like)
     close_window()
-    assert process.wait(10.0) == 0
+    assert process.wait(DEADLINE) == 0
 
 
 def test_the_steps_come_once(tmp_path: Path) -> None:
