@@ -151,7 +151,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         (2, "quotation mark"),
         (3, "is written by line 10"),
         (4, "a.mp4: is written by line 3"),
-        (5, "allowed are capture, export, convert, speak"),
+        (5, "allowed are capture, export, convert"),
         (6, "'risorius' is no command"),
         (7, "nothere.toml: there is no such file"),
         (8, "writes nothing"),
