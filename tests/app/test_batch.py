@@ -104,7 +104,7 @@ def test_files_that_come_along_are_in_the_way_too() -> None:
     Path("mine.obj").write_text("mine")
     Path("clips.txt").write_text(
         "export joy.toml -o a.pc2\n"
-        "export fear.toml -o a.mdd\n"
+        "export fear.toml -o a.pc2\n"
         "export joy.toml -o mine.pc2\n"
         "capture joy.toml -o b.png --passes depth\n"
         "capture fear.toml -o b.json.png --sheet b.png\n"
