@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .errors import UserError, needed
 
-RATE = 48_000  # [samples/s] of sounds, unless told; what devices and films have, too
+RATE = 48_000  # [samples/s] of sounds; what devices and films have, too
 
 
 def program() -> str:
@@ -23,13 +23,12 @@ def program() -> str:
         ) from None
 
 
-def sound_form(rate: int = RATE, *, is_mono: bool = False) -> tuple[str, ...]:
-    """Options for a sound of this form; of both sides, where it has them, unless it is mono.
+def sound_form() -> tuple[str, ...]:
+    """Options for a sound at `RATE`; of both sides, where it has them.
 
     What begins late in its file (the sound of a film, say) begins as late here.
     """
-    layouts = "mono" if is_mono else "mono|stereo"
-    form = f"aformat=sample_rates={rate}:channel_layouts={layouts}"
+    form = f"aformat=sample_rates={RATE}:channel_layouts=mono|stereo"
     return "-af", f"aresample=async=1:first_pts=0,{form}"
 
 

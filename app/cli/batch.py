@@ -24,7 +24,7 @@ from ..recordings.playback import Playback
 from ..stopping import cleaned_up_if_stopped
 from .options import PATH
 
-LISTED = ("capture", "export", "convert", "speak")  # commands that a line may hold
+LISTED = ("capture", "export", "convert")  # commands that a line may hold
 OUTPUTS = ("output", "sheet")  # how their parameters for what they write are called
 MOST_TOLD = 20  # lines that are wrong
 
@@ -65,7 +65,7 @@ def batch(
     """Do a list of commands side by side.
 
     LIST is a text file with a command in each line, as typed after risorius. Lines may hold
-    capture, export, convert and speak; those that begin with # hold nothing. Relative paths begin
+    capture, export and convert; those that begin with # hold nothing. Relative paths begin
     where you stand. All lines are checked before the first is begun.
     """
     from ..batch.running import FAILED, run_lines

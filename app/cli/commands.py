@@ -310,26 +310,6 @@ def open_window(
 
 
 @click.command()
-@click.argument("audio", type=PATH)
-@click.option("--text", default="", help="The words that are spoken, in English: better by far.")
-@click.option("-o", "--output", type=PATH, required=True, help="script.toml")
-def speak(audio: Path, text: str, output: Path) -> None:
-    """Make a script whose lips speak what is heard in AUDIO."""
-    from ..files import check_apart, check_file
-    from ..script import save_script
-    from ..sound import load_sound
-    from ..sound.speech import phones_in
-    from ..sound.visemes import spoken
-
-    check_apart((output,), (audio,))
-    check_file(output)
-    phones = phones_in(audio, text)
-    script = spoken(phones, audio, load_sound(audio).duration)
-    save_script(output, script)
-    click.echo(f"{in_one_line(output)}: {len(phones)} sounds of speech in {script.duration:.1f} s")
-
-
-@click.command()
 def demo() -> None:
     """Draw the built-in head in its expressions.
 
@@ -391,6 +371,6 @@ def warm(quiet: bool) -> None:
 
 
 ALL = (
-    capture, export, batch, dataset, view, replay, convert, speak, send, demo, controls, doctor,
+    capture, export, batch, dataset, view, replay, convert, send, demo, controls, doctor,
     warm,
 )  # fmt: skip

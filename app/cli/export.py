@@ -34,8 +34,8 @@ with_exporting = packed(
         "--as",
         "name",
         type=click.Choice(names()),
-        help="The format, where a suffix does not tell: obj and ply are folders of one file a "
-        "frame; of a .csv, arkit is meant unless told.",
+        help="The format, where a suffix does not tell: obj is a folder of one file a frame; "
+        "of a .csv, arkit is meant unless told.",
     ),
     click.option(
         "--fps",

@@ -35,7 +35,7 @@ RIGS = {"arkit": "ARKit shapes", "units": "Action units"}  # titles of layers, b
 Item = TypeVar("Item")
 
 FRAME = "frame_{:05d}"  # how files of a sequence are called, without their suffix
-OWN = re.compile(r"frame_\d{5,}\.(obj|ply)|frame\.mtl|frame_skin\.png")  # what such a folder holds
+OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # what such a folder holds
 
 
 @dataclass(frozen=True)
@@ -100,9 +100,7 @@ FORMATS = (
     Format("usd", "USD", (".usdc", ".usda", ".usd"), "usd:write_usd", True, beside=("_skin.png",)),
     Format("usdz", "USD in one file", (".usdz",), "usd:write_usdz", True),
     Format("pc2", "PC2 point cache", (".pc2",), "point_caches:write_pc2", beside=MESH),
-    Format("mdd", "MDD point cache", (".mdd",), "point_caches:write_mdd", beside=MESH),
     Format("obj", "OBJ sequence", (), "sequences:write_obj", True),
-    Format("ply", "PLY sequence", (), "sequences:write_ply", True),
     Format("vtkhdf", "VTKHDF", (".vtkhdf", ".hdf"), "vtkhdf:write_vtkhdf", True),
     Format("npz", "numpy arrays", (".npz",), "arrays:write_npz"),
     Format("arkit", "ARKit shapes over time", (".csv",), "tables:write_arkit"),

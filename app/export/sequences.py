@@ -1,7 +1,6 @@
-"""A folder of one mesh file a frame, OBJ or PLY: what every program reads, triangles as they come.
+"""A folder of one mesh file a frame, an OBJ: what every program reads, triangles as they come.
 
-Source: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL); Turk 1994, "The PLY
-polygon file format".
+Source: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL).
 """
 
 from __future__ import annotations
@@ -14,10 +13,7 @@ import PIL.Image
 
 from .clip import Clip, Floats, Indices
 from .formats import FRAME, Request
-from .frame_surfaces import METRES, FrameSurface, frame_surfaces, joined
-
-VERTEX = np.dtype([("point", "<f4", 3), ("normal", "<f4", 3), ("colour", "u1", 3)])  # of a PLY
-TRIANGLE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
+from .frame_surfaces import METRES, FrameSurface, frame_surfaces
 
 
 def write_obj(clip: Clip, folder: Path, request: Request) -> None:
@@ -78,30 +74,3 @@ def _faces(corners: Sequence[Indices]) -> str:
     line = "f" + " %d/%d/%d" * 3 + "\n"
     numbers = np.stack(corners, axis=-1)
     return (line * len(numbers)) % tuple(numbers.ravel().tolist())
-
-
-def write_ply(clip: Clip, folder: Path, request: Request) -> None:
-    """Write a binary PLY of each frame, in metres: all surfaces in one mesh, the skin first."""
-    frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
-    for number, frame in enumerate(frames):
-        (folder / f"{FRAME.format(number)}.ply").write_bytes(ply_bytes(frame))
-
-
-def ply_bytes(frame: Sequence[FrameSurface]) -> bytes:
-    """One PLY: vertices with normals and colours, which hold what a texture has there."""
-    counts = [len(surface.points) for surface in frame]
-    vertices = np.empty(sum(counts), VERTEX)
-    vertices["point"] = METRES * np.concatenate([surface.points for surface in frame])
-    vertices["normal"] = np.concatenate([surface.normals for surface in frame])
-    vertices["colour"] = np.round(255.0 * np.concatenate([surface.colours for surface in frame]))
-    corners = joined([surface.faces for surface in frame], counts)
-    triangles = np.empty(len(corners), TRIANGLE)
-    triangles["count"], triangles["corners"] = 3, corners
-    floats = "".join(f"property float {name}\n" for name in "x y z nx ny nz".split())
-    colours = "".join(f"property uchar {name}\n" for name in ("red", "green", "blue"))
-    head = (
-        "ply\nformat binary_little_endian 1.0\ncomment Risorius, metres\n"
-        f"element vertex {len(vertices)}\n{floats}{colours}"
-        f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    return head.encode() + vertices.tobytes() + triangles.tobytes()

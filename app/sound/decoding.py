@@ -36,12 +36,12 @@ class Sound:
         return len(self.samples) / self.rate
 
 
-def load_sound(file: Path, *, rate: int = RATE, is_mono: bool = False) -> Sound:
+def load_sound(file: Path) -> Sound:
     """Read a sound file, or the sound of a film; UserError says why there is none in it."""
     read_bytes(file, what="sound file", longest=2**40, first=0)
     name = program()
     source = sound_input(Path(os.path.abspath(file)), LONGEST + 1.0)
-    form = ["-map", "0:a:0", *sound_form(rate, is_mono=is_mono), "-f", "wav", "-c", "pcm_s16le"]
+    form = ["-map", "0:a:0", *sound_form(), "-f", "wav", "-c", "pcm_s16le"]
     try:
         heard = subprocess.run(
             [name, "-v", "error", "-nostdin", *source, *form, "-"],
@@ -59,7 +59,7 @@ def load_sound(file: Path, *, rate: int = RATE, is_mono: bool = False) -> Sound:
             f"{file}: there is no sound in it that ffmpeg can read; give a WAV, MP3, FLAC, M4A, "
             "or a film that is heard"
         )
-    sound = Sound(file, samples, rate)
+    sound = Sound(file, samples)
     if sound.duration > LONGEST:
         raise UserError(f"{file}: is longer than a sound may be, {LONGEST / 60:g} minutes")
     return sound

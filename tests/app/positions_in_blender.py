@@ -19,10 +19,10 @@ scene = bpy.context.scene
 scene.render.fps = int(frames_per_second)  # before the import: it turns seconds into frames
 if suffix == ".glb":
     bpy.ops.import_scene.gltf(filepath=source)
-elif suffix in (".pc2", ".mdd"):
+elif suffix == ".pc2":
     bpy.ops.wm.obj_import(filepath=str(Path(source).with_suffix(".obj")))
     cache = bpy.context.selected_objects[0].modifiers.new("motion", "MESH_CACHE")
-    cache.cache_format, cache.filepath, cache.frame_start = suffix[1:].upper(), source, 0.0
+    cache.cache_format, cache.filepath, cache.frame_start = "PC2", source, 0.0
 else:
     bpy.ops.wm.usd_import(filepath=source)
 found = {}

@@ -104,7 +104,7 @@ def test_files_that_come_along_are_in_the_way_too() -> None:
     Path("mine.obj").write_text("mine")
     Path("clips.txt").write_text(
         "export joy.toml -o a.pc2\n"
-        "export fear.toml -o a.mdd\n"
+        "export fear.toml -o a.pc2\n"
         "export joy.toml -o mine.pc2\n"
         "capture joy.toml -o b.png --passes depth\n"
         "capture fear.toml -o b.json.png --sheet b.png\n"
@@ -151,7 +151,7 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         (2, "quotation mark"),
         (3, "is written by line 10"),
         (4, "a.mp4: is written by line 3"),
-        (5, "allowed are capture, export, convert, speak"),
+        (5, "allowed are capture, export, convert"),
         (6, "'risorius' is no command"),
         (7, "nothere.toml: there is no such file"),
         (8, "writes nothing"),

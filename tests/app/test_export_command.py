@@ -91,14 +91,14 @@ def test_curves_need_muscles(name: str, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("-o", "x.pc2", "--refined"), "it goes with usd, usdz, obj, ply, vtkhdf"),
+        (("-o", "x.pc2", "--refined"), "it goes with usd, usdz, obj, vtkhdf"),
         (("-o", "x.usdc", "--rig", "arkit"), "--rig does not go with USD; it goes with gltf"),
-        (("-o", "x.obj"), "and folders with --as obj or --as ply"),
+        (("-o", "x.obj"), "and folders with --as obj"),
         (("-o", "x"), "x: has no suffix. Allowed are .glb"),
         (("-o", "x.glb", "--as", "obj"), "leave out .glb or --as obj"),
         (("-o", "x.usdc", "--as", "npz"), "numpy arrays is written as .npz"),
         (("-o", "cloth.toml", "--as", "obj"), "cloth.toml: is read and would be written"),
-        (("-o", "deep/none", "--as", "ply", "--fps", "0"), None),
+        (("-o", "deep/none", "--as", "obj", "--fps", "0"), None),
     ],
 )
 def test_what_cannot_be_is_one_line(
@@ -120,18 +120,18 @@ def test_files_of_somebody_else_stay(folder: Path) -> None:
     assert "x.obj: is there, and x.pc2 would come with such a file" in line
     Path("frames").mkdir()
     Path("frames/notes.txt").write_text("mine")
-    line = told(risorius("export", "cloth.toml", "--as", "ply", "-o", "frames"))
+    line = told(risorius("export", "cloth.toml", "--as", "obj", "-o", "frames"))
     assert (
         line == "risorius: frames: is there and not empty; name another folder, or add --overwrite"
     )
-    Path("frames/frame_00099.ply").write_text("of an earlier time")
-    result = risorius("export", "cloth.toml", "--as", "ply", "-o", "frames", "--overwrite")
+    Path("frames/frame_00099.obj").write_text("of an earlier time")
+    result = risorius("export", "cloth.toml", "--as", "obj", "-o", "frames", "--overwrite")
     assert result.exit_code == 0, result.output
     assert Path("frames/notes.txt").read_text() == Path("x.obj").read_text() == "mine"
-    assert not Path("frames/frame_00099.ply").exists()
+    assert not Path("frames/frame_00099.obj").exists()
     Path("head.json").write_text("{}")
     head = ("--head", "head.obj", "--landmarks", "head.json")
-    line = told(risorius("export", "face.toml", "-o", "head.mdd", *head))
+    line = told(risorius("export", "face.toml", "-o", "head.pc2", *head))
     assert "head.obj: is read and would be written" in line
 
 

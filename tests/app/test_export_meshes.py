@@ -257,25 +257,11 @@ def test_pc2_moves_the_mesh_beside_it(clip: Clip, tmp_path: Path) -> None:
     ]
 
 
-def test_mdd_moves_the_mesh_beside_it(clip: Clip, tmp_path: Path) -> None:
-    """By its published layout: counts, seconds and metres, all big-endian."""
-    data = written(clip, tmp_path / "face.mdd").read_bytes()
-    vertices = len(whole(clip, 0))
-    assert struct.unpack(">2i", data[:8]) == (FRAMES, vertices)
-    assert np.allclose(np.frombuffer(data, ">f4", FRAMES, 8), np.arange(FRAMES) / RATE)
-    points = np.frombuffer(data, ">f4", offset=8 + 4 * FRAMES).reshape(FRAMES, vertices, 3)
-    for frame in range(FRAMES):
-        assert is_near(points[frame], whole(clip, frame), METRES)
-
-
 # ---------- Sequences ---------------------------------------------------------------------------
 
 
 def triangles_in(path: Path) -> tuple[Points, Points]:
-    """Corners and normals of all triangles in an OBJ or PLY, shape (F, 3, 3), in their order."""
-    if path.suffix == ".ply":
-        read = trimesh.load_mesh(path, process=False, maintain_order=True)
-        return read.triangles, read.vertex_normals[read.faces]
+    """Corners and normals of all triangles in an OBJ, shape (F, 3, 3), in their order."""
     lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("f ")]
     corners = np.array([[corner.split("/") for corner in line] for line in lines], int) - 1
     return obj_rows(path, "v")[corners[..., 0], :3], obj_rows(path, "vn")[corners[..., 2]]
@@ -283,13 +269,12 @@ def triangles_in(path: Path) -> tuple[Points, Points]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("refinement", [None, REFINED], ids=["mesh", "refined"])
-@pytest.mark.parametrize("kind", ["obj", "ply"])
 def test_sequences_have_every_frame(
-    clip: Clip, tmp_path: Path, kind: str, refinement: Refinement | None
+    clip: Clip, tmp_path: Path, refinement: Refinement | None
 ) -> None:
     """Frames are numbered in order; triangles are those of the clip, and lit from outside."""
-    folder = written(clip, tmp_path / "frames", kind, refinement)
-    meshes = sorted(folder.glob(f"*.{kind}"))
+    folder = written(clip, tmp_path / "frames", "obj", refinement)
+    meshes = sorted(folder.glob("*.obj"))
     assert [each.stem for each in meshes] == [f"frame_{n:05d}" for n in range(FRAMES)]
     skins = None if refinement is None else refined_skins(clip)
     for frame, path in enumerate(meshes):
@@ -321,23 +306,6 @@ def test_an_obj_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> No
     ]
     assert "mtllib frame.mtl" in text and "frame_skin.png" in (folder / "frame.mtl").read_text()
     assert (folder / "frame_skin.png").is_file()
-
-
-def test_a_ply_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> None:
-    """V vertices in their order; colours of parts, and on the skin those of the texture."""
-    folder = written(clip, tmp_path / "frames", "ply")
-    read = trimesh.load_mesh(folder / "frame_00002.ply", process=False, maintain_order=True)
-    assert is_near(read.vertices, whole(clip, 2), METRES)
-    shown = read.visual.vertex_colors[:, :3] / 255.0
-    start = len(clip.skin.rest)
-    for surface in clip.surfaces[1:]:
-        assert surface.colours is not None
-        off = shown[start : start + len(surface.rest)] - surface.colours
-        assert np.abs(off).max() < 1.0 / 255.0
-        start += len(surface.rest)
-    assert clip.scene.albedo is not None and isinstance(clip.scene, FaceScene)
-    lip, cheek = shown[clip.scene.landmarks[62]], shown[clip.scene.landmarks[3]]
-    assert lip[0] / lip[1] > 1.1 * cheek[0] / cheek[1]  # lips are redder
 
 
 # ---------- Arrays, other scenes, Blender -------------------------------------------------------
@@ -372,13 +340,13 @@ def test_scenes_without_a_face(name: str, tmp_path: Path) -> None:
     assert is_near(points.Get(2), clip.skin.at(2))
     written(clip, tmp_path / "a.pc2")
     assert is_near(obj_rows(tmp_path / "a.obj", "v")[:, :3], whole(clip, 0), METRES)
-    frames = written(clip, tmp_path / "frames", "ply", REFINED)
-    assert len(trimesh.load_mesh(frames / "frame_00003.ply").faces) > len(clip.skin.faces)
+    frames = written(clip, tmp_path / "frames", "obj", REFINED)
+    assert len(trimesh.load_mesh(frames / "frame_00003.obj").faces) > len(clip.skin.faces)
     assert len(vtk_steps(written(clip, tmp_path / "a.vtkhdf"))) == clip.frame_count
 
 
 @pytest.mark.blender
-@pytest.mark.parametrize("name", ["face.usdc", "face.usdz", "fine.usdc", "face.pc2", "face.mdd"])
+@pytest.mark.parametrize("name", ["face.usdc", "face.usdz", "fine.usdc", "face.pc2"])
 def test_blender_sees_the_same(clip: Clip, tmp_path: Path, name: str) -> None:
     """Imported and stepped through in Blender, each vertex is where the clip has it."""
     python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
@@ -391,7 +359,7 @@ def test_blender_sees_the_same(clip: Clip, tmp_path: Path, name: str) -> None:
     subprocess.run(told, check=True, capture_output=True)
     with np.load(found) as positions:
         for frame in range(FRAMES):
-            if name.endswith(("pc2", "mdd")):
+            if name.endswith("pc2"):
                 assert is_near(positions["face"][frame], whole(clip, frame), METRES)
                 continue
             for surface in clip.surfaces[is_fine:]:

@@ -260,10 +260,6 @@ REFUSED = {
     "capture good.toml -o x.mp4 --sound pipe.png": "is a pipe",
     "capture good.toml -o x.mp4 --sound 'http://localhost/x.wav'": "no such sound file",
     "replay good.toml --sound folder": "is a folder",
-    "speak hum.wav": "Missing option '-o'",
-    "speak hum.wav -o hum.wav": "is read and would be written",
-    "speak hum.wav -o folder": "is a folder",
-    "speak notes.txt -o x.toml": "there is no sound in it",
     "capture good.toml -o pipe.png": "is a device",
     "capture good.toml -o /dev/full": "/dev/full",
     "capture good.toml -o /dev/null --overwrite": "/dev/null",
@@ -326,7 +322,6 @@ HOSTILE = {
 GIVEN = {  # what else a command needs to come as far as the option
     "capture": "good.toml -o x.png --size 16x16 --samples 0 --fps 5 --time 0 --quiet",
     "replay": "good.toml",
-    "speak": "hum.wav -o spoken.toml",
     "bench motion": "--reference folder",
     "bench meshes": "folder",
     "bench reference": "folder -o made",
