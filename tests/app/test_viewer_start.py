@@ -137,9 +137,17 @@ def test_the_steps_tick_themselves_off(viewer: Viewer) -> None:
     """Pulling the skin, dragging the line and playing end the guide; Help brings it back."""
     steps = viewer.first_steps
     assert steps.done == [False, False, False]
-    drag(viewer, nose(viewer), (30, 0))
+    x, y = nose(viewer)
+    drag(viewer, (x, y), (92, 0))
+    assert until(viewer, lambda: viewer.mouse.is_dragging_skin)
+    xdotool(viewer, "mouseup", 1)
+    assert until(viewer, lambda: viewer.messages.text.startswith("No muscle draws"))
+    assert not steps.done[0], "it swings back"
+    drag(viewer, (x + 40, y), (65, -65))  # a cheek
+    xdotool(viewer, "mouseup", 1)
     assert until(viewer, lambda: steps.done == [True, False, False])
-    xdotool(viewer, "mouseup", 1, "key", "d")
+    assert "short of the mouse" in viewer.messages.text
+    xdotool(viewer, "key", "d")
     left, top, width, height = viewer.view.area
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 0.5 * width, top + 0.1 * height))
     xdotool(viewer, "mousedown", 1)
