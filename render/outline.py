@@ -20,22 +20,26 @@ _SHORTEST = 1e-3  # [pixels] of an edge that has a direction
 _ENDS = np.array([0, 0, 1, 0, 1, 1])
 _SIDES = np.array([0, 1, 1, 0, 1, 0])
 
+IN_PLACE = np.eye(4)
 Floats = npt.NDArray[np.float32]
 
 
 def draw_fringes(gl: moderngl.Context, program: moderngl.Program, rows: Floats) -> None:
-    """Draw rows of `fringes` with a program that has in_fringe and what a mesh has."""
-    names, layout = ["in_position", "in_normal", "in_uv", "in_fringe"], "3f 3f 2f 3f"
-    if rows.shape[1] == 9:
-        names.remove("in_uv")
-        layout = "3f 3f 3f"
-    content: list[Any] = [(gl.buffer(rows), layout, *names)]
+    """Draw rows of `fringes` with a program that has in_fringe and what a mesh or a part has."""
+    layout, *more = {9: ("",), 11: ("2f ", "in_uv"), 12: ("3f ", "in_colour")}[rows.shape[1]]
+    names = "in_position", "in_normal", *more, "in_fringe"
+    content: list[Any] = [(gl.buffer(rows), f"3f 3f {layout}3f", *names)]
     gl.vertex_array(program, content, skip_errors=True).render(moderngl.TRIANGLES)
 
 
-def fringes(vertices: Floats, triangles: npt.NDArray[np.uint32], view: CameraView) -> Floats:
-    """Two triangles for each contour: the mesh's columns, offset in clip space x y, coverage."""
-    matrix = view.world_to_clip.astype(np.float32)
+def fringes(
+    vertices: Floats, triangles: npt.NDArray[Any], view: CameraView, bone: npt.ArrayLike = IN_PLACE
+) -> Floats:
+    """Two triangles for each contour: the mesh's columns, offset in clip space x y, coverage.
+
+    bone: what moves the vertices, for column vectors, shape (4, 4).
+    """
+    matrix = (np.transpose(bone) @ view.world_to_clip).astype(np.float32)
     clip = matrix[:3].T @ vertices[:, :3].T + matrix[3][:, None]  # by column
     half_size = 0.5 * np.array(view.viewport[2:], np.float32)
     x, y = clip[:2] / np.maximum(clip[3], np.float32(1e-6)) * half_size[:, None]

@@ -7,7 +7,8 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import box_corners
+from .camera_view import CameraView, box_corners
+from .outline import fringes
 from .style import linear
 
 # What is striped: by which attribute of a part, and its kind, layout and attributes in OpenGL.
@@ -60,6 +61,8 @@ class PartBuffers:
         self.hair = getattr(part, "hair", 0.0)
         # What it is drawn with: a define of surface.glsl, or LOCKS for locks.glsl.
         self.kind = "HAIR" if self.hair else "RIGID"
+        # What stands out of the head has an outline of its own; the rest is seen before skin.
+        self.is_outlined = self.kind == "RIGID" and part.bone == "neck"
         self._more: npt.NDArray[np.float32] | None = None  # attributes that others have not
         self._layout: tuple[str, ...] = ("3f 3f 3f", "in_position", "in_normal", "in_colour")
         for name, (kind, layout, *attributes) in STRIPED.items():
@@ -90,7 +93,12 @@ class PartBuffers:
             ]
         ).astype(np.float32)
         self._vertices.write(rows.tobytes())
+        self._rows = rows if self.is_outlined else rows[:0]
         self._uploaded = vertices
+
+    def fringes(self, view: CameraView, bone: npt.NDArray[np.float64]) -> npt.NDArray[np.float32]:
+        """Of its outline, see outline.py."""
+        return fringes(self._rows, self.part.faces, view, bone)
 
     def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
         """Choose among its faces, (m,), for `draw` of the chosen."""

@@ -256,7 +256,7 @@ class Renderer:
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
-        Raises ValueError for a bone without transform.
+        Raises ValueError for a bone without transform. What is on the neck has smooth edges always.
         cut: in front of it whole skin will hide them, even where they come out of it.
         """
         view = self._camera_view(camera, viewport, clip)
@@ -267,13 +267,16 @@ class Renderer:
         corners = [each.corners @ bone[:3, :3].T + bone[:3, 3] for each, bone in placed]
         if not placed or not self._use_layer(view, np.concatenate(corners)):
             return
-        is_chosen = self._occluder is not None and self._occluder.is_of(view, self.surface.target)
-        if is_chosen and self._occluder is not None:
-            self._occluder.choose_parts(placed)
+        occluder = self._occluder
+        if is_chosen := occluder is not None and occluder.is_of(view, self.surface.target):
+            occluder.choose_parts(placed)
+        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind == "HAIR")
+        if not self.surface.samples and cut is None:
+            drawn += [(*each, "FRINGE") for each in placed if each[0].is_outlined]
         programs = {}
-        for kind in {each.kind for each, _ in placed}:
-            program = self._program(*part_shader(kind, shadow is not None, cut is not None))
-            programs[kind] = program
+        for kind, *fringe in {(each.kind, *fringe) for each, _, *fringe in drawn}:
+            names = *part_shader(kind, shadow is not None, cut is not None), *fringe
+            programs[kind, *fringe] = program = self._program(*names)
             write_uniform(program, "projection", view.projection)
             set_light(program, style.light)
             if cut is not None and "cut" in program:
@@ -281,12 +284,15 @@ class Renderer:
             if shadow is not None and "shadow_map" in program:
                 offset = DEEP if kind == "LOCKS" else OFFSET
                 shadow.set_uniforms(program, view, _SHADOW_UNIT, offset)
-        for buffers, bone in sorted(placed, key=lambda each: each[0].kind == "HAIR"):
-            program = programs[buffers.kind]
+        for buffers, bone, *fringe in drawn:
+            program = programs[buffers.kind, *fringe]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
             set_part(program, buffers.part, style.light, view)
-            with blending(self._gl) if buffers.hair else nullcontext():
-                buffers.draw(program, chosen=is_chosen)
+            with blending(self._gl) if buffers.hair or fringe else nullcontext():
+                if fringe:
+                    draw_fringes(self._gl, program, buffers.fringes(view, bone))
+                else:
+                    buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
         self,
@@ -307,9 +313,8 @@ class Renderer:
             amounts of wrinkling, or counts for nothing.
         """
         view = self._camera_view(camera, None, None)
-        size = self.surface.target.size
-        if self._geometry_buffer is None or self._geometry_buffer.size != size:
-            self._geometry_buffer = GeometryBuffer(self._gl, size)
+        if self._geometry_buffer is None or self._geometry_buffer.size != self.surface.target.size:
+            self._geometry_buffer = GeometryBuffer(self._gl, self.surface.target.size)
         placed = self._parts.placed(parts, transforms)
         if not stream.has_wrinkles:
             wrinkles = None
@@ -356,8 +361,7 @@ class Renderer:
     def _camera_view(
         self, camera: OrbitCamera, viewport: Viewport | None, clip: Viewport | None
     ) -> CameraView:
-        inside = None if clip is None else self._viewport(clip)
-        return CameraView(camera, self._viewport(viewport), inside)
+        return CameraView(camera, self._viewport(viewport), clip and self._viewport(clip))
 
     def _viewport(self, viewport: Viewport | None) -> Viewport:
         self.surface.make_current()

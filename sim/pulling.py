@@ -99,9 +99,7 @@ class Pull:
             self._measure(np.arange(len(firsts)))
             here = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
             is_meant = here > MEANT * np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
-            self.candidates = [
-                c for c, is_it in zip(self.candidates, is_meant, strict=True) if is_it
-            ]
+            self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._low, self._high = self._low[is_meant], self._high[is_meant]
             self._value = self._start = self._start[is_meant]
             self._slope, self._turn = self._slope[is_meant], 0

@@ -99,6 +99,17 @@ class View:
         return self.pixels((0.0, 0.0, em(), 1.0))[2]
 
     @property
+    def foot(self) -> float:
+        """How far captions reach above the left foot of the picture [window units]."""
+        left, bottom, width, height = self.viewport
+        tops = [
+            y - bottom + len(image)
+            for x, y, image in self._surface.labels
+            if x < left + 0.5 * width and y < bottom + height / 3.0
+        ]
+        return max(tops, default=0) * self.area[3] / height
+
+    @property
     def camera_place(self) -> list[float]:
         """Yaw, pitch, distance and target of the camera, to be remembered."""
         camera = self.camera

@@ -219,7 +219,7 @@ class Viewer(Parts):
                 self.muscle_note.draw()
             else:
                 room.panel.draw(room.view)
-            messages.age(imgui.get_io().delta_time)
+            messages.age(imgui.get_io().delta_time, self.session.history.present.values)
             draw_message(gui, messages, view)
             if imgui.is_any_mouse_down():
                 view.pointed = {}

@@ -72,6 +72,18 @@ def test_side_by_side_is_two_equal_halves(viewer: Viewer) -> None:
     assert first > second + 100  # the wipe is where it was
 
 
+def test_a_line_of_text_leaves_captions_free(viewer: Viewer) -> None:
+    """What the left side of a comparison is stays in sight below it."""
+    xdotool(viewer, "key", "d")
+    viewer.messages.say("Something was done")
+    assert until(viewer, lambda: bool(viewer.surface.labels) and "message" in viewer.gui.places)
+    draw_frames(viewer)
+    x, y, image = viewer.surface.labels[0]
+    left, _, _, bottom = viewer.gui.places["message"]
+    assert left < x + image.shape[1], "else this shows nothing"
+    assert bottom <= viewer.surface.size[1] - y - len(image)
+
+
 def seen_labels(viewer: Viewer, page: np.ndarray, origin: tuple[int, int]) -> list[bool]:
     """Whether each label of the window is in a picture whose lower left corner is there."""
     seen = []

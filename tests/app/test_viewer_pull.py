@@ -117,7 +117,10 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.physics.is_at_rest)
     assert moved(viewer) > 4.0
     assert viewer.session.values == solved
-    xdotool(viewer, "key", "ctrl+z")
+    viewer.messages.seconds_left = 1e6
+    xdotool(viewer, "key", "n")
+    assert until(viewer, lambda: not viewer.messages.text), "this pose is there no more"
+    xdotool(viewer, "key", "ctrl+z", "ctrl+z")
     assert not any(viewer.session.values.values())
     assert until(viewer, lambda: moved(viewer) < 0.3)
 

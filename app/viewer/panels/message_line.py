@@ -14,7 +14,8 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     if not messages.text:
         return
     left, top, width, height = view.area
-    imgui.set_next_window_pos((left + em(0.8), top + height - em(0.8)), 0, (0.0, 1.0))
+    foot = top + height - view.foot - em(0.8)
+    imgui.set_next_window_pos((left + em(0.8), foot), 0, (0.0, 1.0))
     imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), 50.0), em(20)))
     imgui.begin("##message", None, NOTE_FLAGS | imgui.WindowFlags_.no_nav_focus)
     imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))
@@ -27,5 +28,6 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     is_clicked = imgui.is_window_hovered() and imgui.is_mouse_clicked(0)
     if is_clicked or (imgui.is_key_pressed(imgui.Key.escape) and not gui.has_popup):
         messages.text = ""
+    place, size = imgui.get_window_pos(), imgui.get_window_size()
     imgui.end()
-    gui.places["message"] = (left, top, left + width, top + height)
+    gui.places["message"] = (place.x, place.y, place.x + size.x, place.y + size.y)
