@@ -3,11 +3,14 @@
 The skin under the finger shall lie at its targets when the finger has gone, with few controls at
 work and the rest of the face left alone. Over the controls u, within their limits, minimise
 
-    sum_i s_i |A (t_i - p_i)|^2 + REST sum_j a_j |p_j - p_j(0)|^2 + PRICE d^2 sum_c |u_c - u_c(0)|
+    sum_i s_i |A (t_i - p_i)|^2 + REST sum_j a_j |p_j - p_j(0)|^2
+        + d^2 sum_c (PRICE |u_c - u_c(0)| + EFFORT (u_c - u_c(0))^2)
 
 i runs over the vertices under the finger, with shares s that add up to 1 and targets t, drawn by d
 on average; j over all others, with areas a against that under the finger. A counts less what lies
-along the line of sight, of which a mouse says nothing.
+along the line of sight, of which a mouse says nothing. The first price keeps controls few, the
+second moderate. Targets farther than the few strongest controls reach that way are brought in to
+there: prices are in proportion to d, and beyond that nothing would be worth them any more.
 
 Solved by Gauss and Newton. p is a twin of the face, at rest; its slopes are measured on a second
 twin, by moving one control a little and letting the skin come to rest. A twin's muscles have no
@@ -15,8 +18,9 @@ lag, so that takes six steps of 0.3 ms, and it knows what the tangent of the spr
 that stick and part, lids on their eyeballs, muscles that stiffen the skin. Such slopes are off by
 2 %; those of the implicit function theorem were by 5 to 60 %, and no faster (60 ms to factorise).
 
-Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. The price makes it
-the lasso of Tibshirani 1996, solved along one control after the other (Friedman et al. 2007).
+Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. The prices
+make it the elastic net of Zou and Hastie 2005, solved along one control after the other (Friedman
+et al. 2007).
 """
 
 from __future__ import annotations
@@ -33,16 +37,18 @@ from .landmarks import Array
 STEP = 1.0 / 60.0  # [s] of a twin
 STEPS_TO_REST = 6  # of a twin after a small change; less than a twentieth of it is left
 MOST = 16  # controls that are looked at: those that move the finger's skin most
+MEANT = 0.15  # of how far a control moves any skin: one that moves the finger's less is not meant
 PROBE = 0.25  # of a control's range, to measure its slope
 ALONG = 0.05  # what a distance along the line of sight counts
-REST = 0.1  # what the rest of the face counts, against as large an area under the finger
-PRICE = 0.08  # of a control at its limit, against skin that does not come along at all
-FINAL = 0.05  # of both when it is known which controls: these come as near as they can
-RIDGE = 1e-4  # of the same: two controls that do the same share it
+REST = 0.03  # what the rest of the face counts, against as large an area under the finger
+PRICE = 0.024  # of a control at its limit, against skin that does not come along at all
+EFFORT = 0.2  # the same, as the square of its share: two that do the same share it
+FINAL = 0.17  # of these three when it is known which controls: those come as near as they can
+FEW = 3  # controls at most are used; and so many strongest tell how far targets can be
 SWEEPS, STILL = 60, 1e-4  # through all controls at most, and a change that is none
 ROUNDS, NEAR = 6, 0.01  # of Gauss and Newton at most, and a change that is none
 LEAST = 0.02  # of a control's range: what changes by less is left alone
-WORTH = 0.01  # of the squared distances: what mends less beside others is left alone
+WORTH = 0.015  # of the squared distances: what mends less beside others is left alone
 ALIKE = 0.2  # of that: whose worth differs by less stay or go together, as both sides of a muscle
 MEAGRE = 0.25  # of the squared distances: who mends less does not pull that way at all
 Names = tuple[str, ...]
@@ -75,7 +81,7 @@ class Pull:
         self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
         _rest(self._base, {})
         self._home, self._from = self._base.twin(), self._base.positions.copy()
-        self.targets = self._from[self._vertices]
+        self.targets = self._aims = self._from[self._vertices]
         self._area = face.areas / face.areas[self._vertices].sum()
         self._area[self._vertices] = 0.0
         self._given, self.candidates = candidates, list[Names]()
@@ -91,7 +97,13 @@ class Pull:
             self._value = self._start = np.array([values[first] for first in firsts], np.float64)
             self._slope = np.zeros((len(firsts), *self._from.shape))
             self._measure(np.arange(len(firsts)))
-            self._first, self._turn = self._slope.copy(), 0
+            here = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
+            is_meant = here > MEANT * np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
+            self.candidates = [c for c, is_it in zip(self.candidates, is_meant, strict=True) if is_it]
+            self._low, self._high = self._low[is_meant], self._high[is_meant]
+            self._value = self._start = self._start[is_meant]
+            self._slope, self._turn = self._slope[is_meant], 0
+            self._first = self._slope.copy()
         return bool(self.candidates)
 
     @property
@@ -104,12 +116,13 @@ class Pull:
     @property
     def mends(self) -> bool:
         """Whether what was found comes nearer by more than a trace."""
-        return self._off(self._base.positions) < (1.0 - MEAGRE) * self._off(self._from)
+        return self._off(self._base.positions) < (1.0 - MEAGRE) * self._drawn
 
     @property
     def short(self) -> float:
         """How far the skin stays from its targets, as seen, on average [head units]."""
-        return float(np.sqrt(self._off(self._base.positions if self.mends else self._from)))
+        there = (self._base.positions if self.mends else self._from)[self._vertices]
+        return float(np.sqrt(self._square(self.targets - there)))
 
     def follow(self, count: int = 4) -> None:
         """A step of Gauss and Newton from where it is, after `count` slopes were measured anew."""
@@ -118,6 +131,7 @@ class Pull:
         every = len(self._value)
         self._measure([(self._turn + n) % every for n in range(min(count, every))])
         self._turn += count
+        self._aim()
         self._improve(np.ones(every, np.bool_), 1.0)
 
     def solve(self) -> None:
@@ -126,10 +140,21 @@ class Pull:
             return
         self._base.copy_from(self._home)
         self._slope[:], self._value = self._first, self._start.copy()
+        self._aim()
         self._improve_all(np.ones(len(self._start), np.bool_), 1.0)
         needed = self._needed()
         self._go(np.where(needed, self._value, self._start))
         self._improve_all(needed, FINAL)
+
+    def _aim(self) -> None:
+        """Where the finger draws to, no farther than the strongest controls together reach."""
+        drawn = self.targets - self._from[self._vertices]
+        seen = (self._share[:, None] * drawn) @ self._seen
+        along = ((self._first[:, self._vertices] @ self._seen) * seen).sum(axis=(1, 2))
+        room = np.where(along > 0.0, self._high, self._low) - self._start
+        reach = float(np.sort(along * room)[-FEW:].sum())
+        drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
+        self._aims = self._from[self._vertices] + drawn
 
     def _near(self, candidates: Sequence[Names]) -> list[Names]:
         """The candidates that move the finger's skin most within a step."""
@@ -147,8 +172,13 @@ class Pull:
         return float(self._share @ ((by @ self._seen) ** 2).sum(axis=1))
 
     def _off(self, positions: Array) -> float:
-        """Mean square of how far vertices (V, 3) under the finger are from their targets."""
-        return self._square(self.targets - positions[self._vertices])
+        """Mean square of how far vertices (V, 3) under the finger are from their aims."""
+        return self._square(self._aims - positions[self._vertices])
+
+    @property
+    def _drawn(self) -> float:
+        """The same for the skin as it was."""
+        return max(self._off(self._from), 1e-12)
 
     def _towards(self, names: Names, share: float) -> dict[str, float]:
         """Controls moved by a share of their range, the other way where there is no room."""
@@ -182,21 +212,22 @@ class Pull:
             self._measure(np.flatnonzero(self._value != self._start))
 
     def _improve(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
-        """One step of Gauss and Newton over usable controls (C,); thrift: of REST and PRICE."""
+        """One step of Gauss and Newton over usable controls (C,); thrift: of all prices."""
         self._go(self._value + self._system(thrift).least(usable))
 
     def _needed(self) -> npt.NDArray[np.bool_]:
-        """The controls that changed, without those whom the others can do without, (C,)."""
+        """The FEW that changed whom the others cannot do without, (C,)."""
         needed = np.abs(self._value - self._start) > LEAST * (self._high - self._low)
         system = self._system(FINAL)
-        worth = WORTH * self._off(self._from)
+        worth = WORTH * self._drawn
         while needed.any():
             best = system.cost(needed)
             loss = np.full(len(needed), np.inf)
             for c in np.flatnonzero(needed):
                 loss[c] = system.cost(needed & (np.arange(len(needed)) != c)) - best
             spared = loss <= loss.min() + ALIKE * worth
-            if system.cost(needed & ~spared) - best > worth * spared.sum():
+            is_worth = system.cost(needed & ~spared) - best > worth * spared.sum()
+            if is_worth and needed.sum() <= FEW:
                 break
             needed &= ~spared
         return needed
@@ -206,15 +237,15 @@ class Pull:
         now, count = self._base.positions, len(self._value)
         root = np.sqrt(self._share)[:, None]
         under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
-        off = (((self.targets - now[self._vertices]) @ self._seen) * root).ravel()
+        off = (((self._aims - now[self._vertices]) @ self._seen) * root).ravel()
         slope = self._slope.reshape(count, -1)
         others = slope * np.repeat(thrift * REST * self._area, 3)
-        drawn = max(self._off(self._from), 1e-12)
+        effort = thrift * EFFORT * self._drawn
         changed = self._value - self._start
         return _Lasso(
-            under @ under.T + others @ slope.T + RIDGE * drawn * np.eye(count),
-            under @ off + others @ (self._from - now).ravel() - RIDGE * drawn * changed,
-            0.5 * thrift * PRICE * drawn / np.maximum(self._high, -self._low),
+            under @ under.T + others @ slope.T + effort * np.eye(count),
+            under @ off + others @ (self._from - now).ravel() - effort * changed,
+            0.5 * thrift * PRICE * self._drawn / np.maximum(self._high, -self._low),
             changed, self._low - self._start, self._high - self._start,
         )  # fmt: skip
 

@@ -61,7 +61,6 @@ def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool)
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes."
 )
 @click.option("--resume", is_flag=True, help="Go on with a set, or make it larger.")
-@click.option("--coco", is_flag=True, help="Write landmarks as COCO's keypoints, too: coco.json.")
 @click.option("--quiet", is_flag=True, help="No progress bar.")
 @click.option(
     "--sample-table",
@@ -77,7 +76,6 @@ def dataset(
     passes: str,
     jobs: int,
     resume: bool,
-    coco: bool,
     quiet: bool,
     **drawn: Any,
 ) -> None:
@@ -90,7 +88,7 @@ def dataset(
     from ..dataset.request import request_of
 
     request = request_of(output, passes=passes.split(","), **drawn)
-    made = make_set(request, count, jobs=jobs, resume=resume, coco=coco, progress=not quiet)
+    made = make_set(request, count, jobs=jobs, resume=resume, progress=not quiet)
     click.echo(
         f"{in_one_line(output)}: {counted(made.samples, 'sample')}, {made.new} of them new, "
         f"{made.size / 1e6:.1f} MB"

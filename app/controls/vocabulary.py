@@ -14,6 +14,7 @@ from risorius.assets.loading import read_words
 from .mirror import parted
 
 VISEME = "viseme_"
+ENDINGS, LEAST_STEM = ("ing", "ed", "s"), 3  # of a word that is looked for; letters before them
 
 
 class Pad(NamedTuple):
@@ -103,7 +104,16 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
     """
     stems = {*names, *(parted(name)[0] for name in names)}
     return all(
-        word in text.lower()
-        or any(other.startswith(word) and found & stems for other, found in _synonyms())
+        any(
+            form in text.lower()
+            or any(other.startswith(form) and found & stems for other, found in _synonyms())
+            for form in _forms(word)
+        )
         for word in words.lower().split()
     )
+
+
+def _forms(word: str) -> list[str]:
+    """A word as it was typed, and without its ending: chewing, chew."""
+    stems = [word.removesuffix(end) for end in ENDINGS if word.endswith(end)]
+    return [word, *(stem for stem in stems if len(stem) >= LEAST_STEM)]

@@ -15,11 +15,8 @@ STEP = 15.0  # [degrees] of the histograms
 BAR = 40  # characters for all of a set
 
 
-def card_of(request: Request, counts: Counts, *, coco: bool) -> str:
-    """The text for a set that was made as requested, with what was counted in it.
-
-    coco: whether coco.json lies in it, too.
-    """
+def card_of(request: Request, counts: Counts) -> str:
+    """The text for a set that was made as requested, with what was counted in it."""
     persons = len(counts.persons)
     units = [
         [name, f"{number / counts.samples:.1%}"]
@@ -29,11 +26,10 @@ def card_of(request: Request, counts: Counts, *, coco: bool) -> str:
     return text.format(
         count=counts.samples,
         version=request.version,
-        told=f"{request.told} --coco" if coco else request.told,
+        told=request.told,
         seed=request.seed,
         size=" x ".join(map(str, request.size)),
         files=_table(["file", "what"], request.files()),
-        coco="\n`coco.json` has the landmarks of all as keypoints of COCO.\n" if coco else "",
         persons=persons,
         samples_each=counts.samples / persons,
         visible=counts.visible / (70 * counts.samples),

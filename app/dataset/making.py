@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from tqdm import tqdm
 
@@ -15,7 +14,6 @@ from ..process_cache import cached
 from ..stopping import cleaned_up_if_stopped
 from ..workers import run_all
 from .card import card_of
-from .coco import write_coco
 from .folder import SetFolder
 from .index import write_index
 from .persons import check_head
@@ -50,7 +48,6 @@ def make_set(
     *,
     jobs: int,
     resume: bool = False,
-    coco: bool = False,
     progress: bool = True,
 ) -> Made:
     """Make the samples 0 to count - 1 of a set, as far as they are not there, and its card.
@@ -80,7 +77,7 @@ def make_set(
                     raise UserError(f"{outcome.error} (with --resume the set goes on)")
                 size += outcome.result
                 bar.update(len(outcome.item.indices))
-        _finish(folder, request, count, coco=coco)
+        _finish(folder, request, count)
     return Made(count, count - len(there), size)
 
 
@@ -127,16 +124,9 @@ def _batches(request: Request, missing: Sequence[int]) -> list[Batch]:
     ]
 
 
-def _finish(folder: SetFolder, request: Request, count: int, *, coco: bool) -> None:
-    """Write index, card and coco.json from the samples' files."""
-
-    def samples() -> Iterator[dict[str, Any]]:
-        return map(folder.sample, range(count))
-
-    index, keypoints = folder.path / "index.csv", folder.path / "coco.json"
+def _finish(folder: SetFolder, request: Request, count: int) -> None:
+    """Write index and card from the samples' files."""
+    index = folder.path / "index.csv"
     with written_atomically(index) as part, cannot_be_written(index):
-        counts = write_index(part, samples())
-    save_text(folder.path / "README.md", card_of(request, counts, coco=coco))
-    if coco:
-        with written_atomically(keypoints) as part, cannot_be_written(keypoints):
-            write_coco(part, samples, f"{count} faces made by Risorius")
+        counts = write_index(part, map(folder.sample, range(count)))
+    save_text(folder.path / "README.md", card_of(request, counts))

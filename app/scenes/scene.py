@@ -97,9 +97,12 @@ class Scene:
         """Where the rigid parts are now: a (4, 4) matrix for each bone."""
         return {}
 
-    def moved_by(self, name: str) -> frozenset[str]:
-        """The lowest controls that a control moves: itself, or what a layer's control adds to."""
-        return frozenset({name})
+    def moved_by(self, name: str) -> Mapping[str, float]:
+        """The lowest controls that a control moves: itself, or what a layer's control adds to.
+
+        And how far each of them goes where the control is at its most, without a sign.
+        """
+        return {name: 1.0}
 
 
 class FaceScene(Scene):
@@ -137,7 +140,7 @@ class FaceScene(Scene):
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
-        self._moved_by: dict[str, frozenset[str]] = {}
+        self._moved_by: dict[str, dict[str, float]] = {}
 
     def twin(self) -> FaceScene:
         """The same head once more, at rest, which moves by itself; that takes no time."""
@@ -203,7 +206,7 @@ class FaceScene(Scene):
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         return self.simulation.bone_transforms()
 
-    def moved_by(self, name: str) -> frozenset[str]:
+    def moved_by(self, name: str) -> Mapping[str, float]:
         simulation = self.simulation
         if name not in self._moved_by:
             # Asked of the simulation, between two steps, so that nothing of layers is known here.
@@ -211,7 +214,7 @@ class FaceScene(Scene):
             simulation.pose({name: self.limits[name][1]})
             sums = simulation.sums
             simulation.pose(values)
-            self._moved_by[name] = frozenset(each for each, share in sums.items() if share)
+            self._moved_by[name] = {each: abs(share) for each, share in sums.items() if share}
         return self._moved_by[name]
 
 

@@ -37,7 +37,7 @@ class Row:
         """A row for both sides: one bar where they are linked and agree."""
         is_linked = linked and values[sides[0]] == values[sides[1]]
         apart = sides if not is_linked else sides[1:] if values[sides[1]] or not whole else ()
-        first = (whole,) if whole and (values[whole] or not apart) else ()
+        first = (whole,) if whole and not apart else ()
         return cls(label, (*first, *apart), sides, whole, is_linked)
 
 

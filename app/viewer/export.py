@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from copy import deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -58,7 +58,7 @@ class StagePainter:
     has_captions: bool
     letter: float  # [pixels] of captions, at least
     camera: Any = None
-    pointed: tuple[str, ...] = ()
+    pointed: Mapping[str, float] = field(default_factory=dict)
     stage: Any = None
 
     def on(self, scene: Scene, surface: Any) -> StagePainter:
@@ -95,7 +95,7 @@ class Exporter:
         self._session, self._settings, self._stage, self._view = session, settings, stage, view
         self.job: ExportJob | None = None
         self.is_asking = False  # the dialog is open
-        self.name = ""
+        self.name, self._proposed = "", ("", "")  # what was asked for, what was proposed
         self.span = (0.0, 0.0)  # [s] that is exported of a script in part
 
     @property
@@ -134,9 +134,11 @@ class Exporter:
         self.is_asking = True
 
     def propose(self) -> None:
-        """Take a name that no file has."""
-        suffix = self.kind.suffix
-        self.name = free_name(self.target.parent, self.name, suffix).name.removesuffix(suffix)
+        """Take a name that no file of this kind has: the one that was written, if that is free."""
+        suffix, (stem, proposed) = self.kind.suffix, self._proposed
+        stem = stem if self.name == proposed else self.name
+        self.name = free_name(self.target.parent, stem, suffix).name.removesuffix(suffix)
+        self._proposed = stem, self.name
 
     def played(self) -> tuple[Script, tuple[float, float]]:
         """The script, or the face as it is, and from when to when that is exported [s]."""

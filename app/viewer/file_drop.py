@@ -148,19 +148,13 @@ class FileDrop:
         return line
 
     def ask_head(self) -> None:
-        """Ask for a mesh, then for its landmarks, and show them as if they had been dropped."""
+        """Ask for a mesh; show it with the landmarks beside it, or have them marked."""
 
-        def go_on(mesh: Path) -> None:
-            """Ask for the landmarks, and offer those that bear the mesh's name."""
+        def go_on(mesh: Path) -> Message:
+            """Take the landmarks that bear the mesh's name."""
             own = (mesh.with_suffix(end) for end in (LANDMARKS, f".landmarks{LANDMARKS}"))
-            self._files.ask(
-                f"The landmarks of {mesh.name}",
-                lambda landmarks: self.open([str(mesh), str(landmarks)]),
-                saving=False,
-                proposed=next((path.name for path in own if path.is_file()), ""),
-                kind="Landmarks",
-                suffixes=(LANDMARKS,),
-            )
+            landmarks = next((path for path in own if path.is_file()), None)
+            return self.open([str(path) for path in (mesh, landmarks) if path is not None])
 
         self._files.ask("Open head", go_on, saving=False, kind="Meshes", suffixes=MESHES)
 

@@ -111,7 +111,7 @@ class KeySelection:
     def ease(self, easing: str) -> None:
         """How the selected keys are approached."""
         eased = keyframes.eased(self._session.script, self.places, easing)
-        self._session.edit(eased, f"Approach: {easing}")
+        self._session.edit(eased, f"Easing: {easing}")
 
     def is_eased(self, easing: str) -> bool:
         """Whether all selected keys are approached so."""

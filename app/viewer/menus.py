@@ -158,7 +158,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
-        *(change(f"Approach: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
+        *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
     )
 
 

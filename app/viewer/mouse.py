@@ -105,6 +105,7 @@ class Mouse(CameraMouse):
     """The mouse on a face: it drags the skin, and the line between two halves."""
 
     skin_drag: SkinDrag | None = None
+    _was_pulled = False  # a moment ago: muscles hold the skin where it was let go
 
     def __init__(
         self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
@@ -127,9 +128,13 @@ class Mouse(CameraMouse):
 
     @property
     def gestures(self) -> tuple[bool, bool]:
-        """Whether the skin, and whether the line between two halves, is being dragged."""
+        """Whether skin was pulled that stays, and whether the line between halves is dragged."""
         is_line = self._doing == "divider" and self._has_moved(imgui.get_io())
-        return self.is_dragging_skin, is_line
+        return self._was_pulled, is_line
+
+    def follow(self) -> None:
+        self._was_pulled = False
+        super().follow()
 
     def _hover(self, io: Any) -> None:
         if self._is_at_divider(io.mouse_pos.x):
@@ -160,6 +165,7 @@ class Mouse(CameraMouse):
     def _release(self, io: Any) -> None:
         if self.skin_drag is not None:
             self._messages.attempt(self.skin_drag.let_go)
+            self._was_pulled = self.skin_drag.is_held
             if not self.is_dragging_skin and not self._has_moved(io):
                 name = self.skin_drag.muscle()
                 if name is not None:

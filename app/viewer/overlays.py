@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 
 # sRGB
 POINTED_AT = np.array([1.0, 0.66, 0.10])
-FAINT = 0.3  # opacity of what is pointed at
+MOST_SEEN, LEAST_SEEN = 0.9, 0.2  # opacity of the muscle that does most; share that is seen
 SLACK, STRETCHED, SQUEEZED = (
     np.array([0.45, 0.47, 0.50]),
     np.array([0.80, 0.15, 0.12]),
@@ -68,8 +68,20 @@ def overlays_of(scene: Scene) -> tuple[str, ...]:
     return OVERLAYS if hasattr(scene, "simulation") else ("springs",)
 
 
-def pointed_lines(scene: Any, names: Collection[str]) -> Lines:
-    """The fibres of some muscles, faint, for whoever points at their sliders."""
+def pointed_lines(scene: Any, shares: Mapping[str, float]) -> list[Lines]:
+    """The fibres of muscles, for whoever points at a control: the clearer the more each does.
+
+    shares: name -> how far it goes. One without sides stands for both.
+    """
     fibres = scene.simulation.fibres() if hasattr(scene, "simulation") else {}
-    lines = [line for name in names for line in fibres.get(name, ())]
-    return Lines(lines, np.tile(POINTED_AT, (len(lines), 1)), 2.0, FAINT, FAINT)
+    seen: dict[str, float] = {}
+    for name, share in shares.items():
+        for side in (name, f"{name}_left", f"{name}_right"):
+            if side in fibres:
+                seen[side] = max(share, seen.get(side, 0.0))
+    most, drawn = max(seen.values(), default=1.0), []
+    for name, share in seen.items():
+        if share >= LEAST_SEEN * most:
+            opacity, colours = MOST_SEEN * share / most, np.tile(POINTED_AT, (len(fibres[name]), 1))
+            drawn.append(Lines(fibres[name], colours, 2.5, opacity, opacity))
+    return drawn

@@ -98,7 +98,9 @@ class Physics:
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
         self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP
-        self.has_stepped = steps > 0 and (is_driven or life is not None or not self.is_at_rest)
+        if is_driven:  # even in a frame too short for a step: the window must not go to sleep
+            self._still_for = 0.0
+        self.has_stepped = steps > 0 and (life is not None or not self.is_at_rest)
         if not self.has_stepped:
             self.has_moved = False
             return

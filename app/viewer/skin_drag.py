@@ -47,6 +47,7 @@ class SkinDrag:
         near = np.minimum(distance[self._vertices] / FINGER, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
         self.offset = np.zeros(3)
+        self.is_held = False  # by muscles, since it was let go
         poses = poses and not session.live.is_on  # which leads where it wants
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
@@ -67,7 +68,7 @@ class SkinDrag:
         self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
         self._simulation.drag(self._vertices, self._from + self.offset, self._firmness)
         if self._pull is not None:
-            self._pull.targets = self._at_rest + self.offset
+            self._pull.targets = self._at_rest + offset
             if len(self._simulation.faces) < DENSE:
                 self._pull.follow()
                 self._obey(self._pull)
@@ -84,6 +85,7 @@ class SkinDrag:
             return None
         pull.solve()
         self._obey(pull)
+        self.is_held = bool(pull.changes)
         names = [name for names in pull.changes for name in names]
         muscles = sum(not name.startswith("jaw_") for name in names)
         parts = counted(muscles, "muscle") if muscles else "", "jaw" * (muscles < len(names))

@@ -5,7 +5,7 @@ Uses the paper's Figure 1 part by part (refine, upload, draw) and keeps the time
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from risorius import render
@@ -130,7 +130,7 @@ class Stage:
                 shot.drawn.upload(amounts, style.wrinkles)
         with times.timed("draw"):
             self.surface.begin()
-            overlays = self._overlays(view, () if is_photo else view.pointed)
+            overlays = self._overlays(view, {} if is_photo else view.pointed)
             self._pipeline.solids.follow(display.dissection)
             self.renderer.draw_background(style, viewport)
             for shot in shots:
@@ -163,10 +163,10 @@ class Stage:
         if not (self.surface.samples or dissection.is_on(self.scene)):
             self.renderer.draw_outline(stream, camera, style, texture=skin["texture"], **where)
 
-    def _overlays(self, view: View, pointed: tuple[str, ...]) -> list[Lines]:
+    def _overlays(self, view: View, pointed: Mapping[str, float]) -> list[Lines]:
         edges, names = self.static.refiner.edges, view.display.overlays
         lines = [LINES[name](self.scene, edges, view.camera) for name in names if name in LINES]
-        return [*lines, pointed_lines(self.scene, pointed)] if pointed else lines
+        return [*lines, *pointed_lines(self.scene, pointed)] if pointed else lines
 
     def draw_image(self, view: View, *, has_captions: bool = True) -> Image:
         """The picture without panels, in full detail, with captions and a colour bar."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import asdict
 
@@ -24,17 +25,17 @@ class View:
     """One view of a session's scene.
 
     area: the scene's part of the window: left, top, width, height [window units].
-    pointed: the muscles whose sliders the mouse is on.
+    pointed: the muscles of the control that the mouse is on, and how much each has to do with it.
     """
 
     camera: render.OrbitCamera
     area: tuple[float, float, float, float]
-    pointed: tuple[str, ...]
+    pointed: Mapping[str, float]
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
         self._session, self._settings, self._surface = session, settings, surface
         self.area = (0.0, 0.0, 1.0, 1.0)
-        self.pointed = ()
+        self.pointed = {}
         self._noted: object = None  # the display as the session had it last
         self.fit_scene()
         place = settings.cameras.get(session.scene.name)

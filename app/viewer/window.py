@@ -222,7 +222,7 @@ class Viewer(Parts):
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, view)
             if imgui.is_any_mouse_down():
-                view.pointed = ()
+                view.pointed = {}
             dialogs = self.chooser.draw, self.export_dialog.draw
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, view),

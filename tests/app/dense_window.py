@@ -74,7 +74,7 @@ def _findings(viewer: Viewer) -> dict[str, object]:
     click(viewer, "Neutral")
     until(viewer, lambda: moved(viewer) < 0.5)
     drag(viewer, nose(viewer), (50, 40))
-    until(viewer, lambda: moved(viewer) > 4.0, 5.0)
+    until(viewer, lambda: moved(viewer) > 4.0)
     dragged = moved(viewer)
     xdotool(viewer, "mouseup", 1)
     return {

@@ -9,9 +9,11 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
+from imgui_bundle import imgui
 
 from risorius.app.viewer import Viewer
 
@@ -25,8 +27,8 @@ NEEDS_A_SCREEN = [
     ),
 ]
 SIZE = (900, 600)  # of the window that tests share
-DEADLINE = 30.0  # [s] for what takes a blink on a quiet machine
-STEADY = 2  # frames like the one before, after which no panel moves by itself
+DEADLINE = 60.0  # [s] for what takes a blink on a quiet machine
+STEADY = 3  # frames alike, after which no panel moves by itself
 
 
 def settle(viewer: Viewer) -> None:
@@ -35,16 +37,16 @@ def settle(viewer: Viewer) -> None:
     When xdotool ends, the screen has handled what it sent: a question to the screen brings all of
     it, in order, before the answer. A panel is laid out by sizes of the frame before.
     """
-    end, alike, shown = time.monotonic() + DEADLINE, 0, None
+    shown: list[object] = []
     glfw.get_window_pos(viewer.surface.handle)
+
+    def is_steady() -> bool:
+        shown.append((dict(viewer.gui.places), imgui.get_io().want_text_input))
+        return shown[-STEADY:] == STEADY * shown[-1:]
+
     # While a face moves, panels may be older than what was set.
-    usual, viewer.panel_cache.refresh = viewer.panel_cache.refresh, 0.0
-    while alike < STEADY:
-        viewer.frame()
-        places = dict(viewer.gui.places)
-        alike, shown = (alike + 1 if places == shown else 0), places
-        assert time.monotonic() < end, "the window's panels do not come to rest"
-    viewer.panel_cache.refresh = usual
+    with mock.patch.object(viewer.panel_cache, "refresh", 0.0):
+        assert until(viewer, is_steady), shown[-2:]
 
 
 def replace_state(part: object, fresh: object) -> None:
@@ -60,12 +62,12 @@ def xdotool(viewer: Viewer, *words: object) -> None:
 
 
 def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEADLINE) -> bool:
-    """Run until something has come true, or too long."""
+    """Show frames until something has come true, or too long: one at least, or it may be old."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
+        viewer.frame()
         if condition():
             return True
-        viewer.frame()
     return False
 
 
@@ -143,6 +145,6 @@ def drop(viewer: Viewer, *paths: Path) -> None:
         [*command, *map(str, paths)], stderr=subprocess.PIPE, text=True,
         cwd=Path(__file__).parents[2],
     )  # fmt: skip
-    assert until(viewer, lambda: source.poll() is not None, 60.0)
+    assert until(viewer, lambda: source.poll() is not None)
     assert source.returncode == 0, source.communicate()[1]
     settle(viewer)

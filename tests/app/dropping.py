@@ -17,7 +17,7 @@ from Xlib import X, Xatom, display
 from Xlib.protocol import event
 
 VERSION = 5
-PATIENCE = 20.0  # [s] for a window that is busy drawing
+PATIENCE = 40.0  # [s] for a window that is busy drawing
 
 
 class Source:

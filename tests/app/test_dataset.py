@@ -34,7 +34,7 @@ COUNT, SEED, SIZE, PASSES = 5, 11, (80, 64), ("depth", "normal", "segmentation")
 ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
 OPTIONS = (
     "--seed", str(SEED), "--size", "x".join(map(str, SIZE)), "--passes", ",".join(PASSES),
-    "--coco", "--quiet",
+    "--quiet",
 )  # fmt: skip
 
 
@@ -67,7 +67,7 @@ def samples(made: Path) -> list[dict[str, Any]]:
 
 
 def test_a_set_has_these_files_and_nothing_else(made: Path) -> None:
-    told = {"README.md", "coco.json", "dataset.json", "index.csv"}
+    told = {"README.md", "dataset.json", "index.csv"}
     assert set(content(made)) == told | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
 
 
@@ -235,27 +235,11 @@ def test_the_index_has_a_row_for_each_sample(made: Path, samples: list[dict[str,
         assert float(row["head_yaw"]) == sample["head"]["yaw"]
 
 
-def test_coco_has_every_keypoint(made: Path, samples: list[dict[str, Any]]) -> None:
-    coco = json.loads((made / "coco.json").read_text("utf-8"))
-    (category,) = coco["categories"]
-    assert len(set(category["keypoints"])) == 70
-    assert all(1 <= point <= 68 for line in category["skeleton"] for point in line)
-    assert [each["file_name"] for each in coco["images"]] == [f"{s['id']}.png" for s in samples]
-    for found, sample in zip(coco["annotations"], samples, strict=True):
-        keypoints = np.array(found["keypoints"]).reshape(70, 3)
-        np.testing.assert_allclose(keypoints[:, :2], sample["landmarks"]["pixels"])
-        assert (keypoints[:, 2] == 1 + np.array(sample["landmarks"]["visible"])).all()
-        assert found["num_keypoints"] == 70
-        assert found["image_id"] == sample["index"]
-        assert found["id"] == sample["index"] + 1  # COCO's evaluation takes 0 as not matched
-
-
 def test_the_card_tells_what_is_in_the_set(made: Path, samples: list[dict[str, Any]]) -> None:
     card = (made / "README.md").read_text("utf-8")
     (command,) = re.findall(r"^    risorius (.* -o FOLDER)$", card, re.MULTILINE)
     assert command.startswith(f"dataset --count {COUNT} --seed {SEED}")
-    assert command.endswith("--coco -o FOLDER")
-    for file in ("index.csv", "coco.json", "dataset.json"):
+    for file in ("index.csv", "dataset.json"):
         assert f"`{file}`" in card
     for unit in ("AU12", "AU25"):
         share = sum(sample["action_units"][unit] >= 0.05 for sample in samples) / COUNT

@@ -249,13 +249,13 @@ def test_a_person_takes_the_place_and_goes_again(viewer: Viewer) -> None:
     built_in = viewer.session.scene.rest_positions
     only_open(viewer, "Light and person")
     in_panel(viewer, ("Person", "Kofi, man, about 40"))
-    assert until(viewer, lambda: viewer.session.scene.called == "kofi", 60.0)
+    assert until(viewer, lambda: viewer.session.scene.called == "kofi")
     assert viewer.stage.scene is viewer.session.scene and not viewer.messages.text
     assert np.abs(viewer.session.scene.rest_positions - built_in).max() > 3.0
     assert viewer.session.values == pose and viewer.session.script is script
     click(viewer, "menu File")
     click(viewer, "menu File: Built-in head")
-    assert until(viewer, lambda: viewer.session.scene.called == "built-in", 60.0)
+    assert until(viewer, lambda: viewer.session.scene.called == "built-in")
     assert np.array_equal(viewer.session.scene.rest_positions, built_in)
     xdotool(viewer, "key", "ctrl+z")
     assert viewer.session.values["jaw_open"] == 0.0

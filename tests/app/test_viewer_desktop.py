@@ -27,6 +27,7 @@ from risorius.app.viewer.placement import FIRST_SIZE
 from risorius.app.viewer.settings import load_settings
 
 from .driving import (
+    DEADLINE,
     NEEDS_A_SCREEN,
     SIZE,
     click,
@@ -186,7 +187,7 @@ def test_a_minimised_window_rests_and_comes_back(tmp_path: Path) -> None:
         tell(window, "windowminimize")
         wait_for(lambda: used_share(program.pid, 1.0) < 0.02)
         ask_to_close(window)
-        assert program.wait(20.0) == 0
+        assert program.wait(DEADLINE) == 0
         assert program.stderr is not None and program.stderr.read() == ""
         assert load_settings(settings)[0].size == (700, 500)
     finally:

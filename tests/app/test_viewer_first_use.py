@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 from imgui_bundle import imgui
 
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.overlays import pointed_lines
+from risorius.app.viewer.settings import ExportChoices
 
-from .driving import NEEDS_A_SCREEN, click, middle, settle, show_controls, until, xdotool
+from .driving import (
+    NEEDS_A_SCREEN,
+    clear_search,
+    click,
+    drag,
+    middle,
+    nose,
+    on_screen,
+    settle,
+    show_controls,
+    until,
+    xdotool,
+)
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -58,3 +75,70 @@ def test_first_steps_leave_the_bar_of_colours_free(viewer: Viewer) -> None:
     assert viewer.gui.places["first steps: Skip"][2] < left + 0.5 * width
     click(viewer, "first steps: Skip")
     xdotool(viewer, "key", "h")
+
+
+def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
+    """A kiss lights the lips and no forehead; a clicked muscle is seen while it is named."""
+    xdotool(viewer, "mousemove", *middle(viewer, "show kiss"))
+    assert until(viewer, lambda: "orbicularis_oris_sphincter" in viewer.view.pointed)
+    scene, shares = viewer.session.scene, viewer.view.pointed
+    drawn = pointed_lines(scene, shares)
+    brows = scene.rest_positions[scene.head.landmarks[27], 1]
+    points = np.concatenate([line for lines in drawn for line in lines.polylines])
+    assert len(drawn) >= 6 and points[:, 1].max() < brows
+    assert max(lines.opacity for lines in drawn) > 0.8 > min(lines.opacity for lines in drawn)
+    xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
+    assert until(viewer, lambda: not viewer.view.pointed)
+    x, y = nose(viewer)
+    xdotool(viewer, "mousemove", x + 40, y, "click", 1)
+    assert until(viewer, lambda: bool(viewer.muscle_note.name))
+    assert until(viewer, lambda: viewer.muscle_note.name in viewer.view.pointed)
+    xdotool(viewer, "key", "Escape")
+
+
+def test_both_sides_of_a_row_have_a_bar_and_no_third(viewer: Viewer) -> None:
+    """The key of an expression whose sides were taken apart fills both bars."""
+    session = viewer.session
+    show_controls(viewer, "joy")
+    xdotool(viewer, "key", "Return")
+    if "joy_left" not in viewer.gui.places:
+        click(viewer, "sides joy")
+    xdotool(viewer, "key", "1")
+    assert session.current["joy"] == 1.0
+    assert "joy" not in viewer.gui.places and "joy_left" in viewer.gui.places
+    drag(viewer, middle(viewer, "joy_right"), (-300, 0))
+    xdotool(viewer, "mouseup", 1)
+    values = session.values
+    assert (values["joy"], values["joy_right"], values["joy_left"]) == (0.0, 0.0, 1.0)
+    click(viewer, "sides joy")
+
+
+def test_words_are_found_in_any_form(viewer: Viewer) -> None:
+    """As people say them."""
+    show_controls(viewer, "chewing")
+    assert until(viewer, lambda: "show jaw_open" in viewer.gui.places)
+    clear_search(viewer)
+
+
+def test_enter_opens_the_file_that_was_clicked(viewer: Viewer, tmp_path: Path) -> None:
+    """As in every list of files."""
+    (tmp_path / "mine.toml").write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n")
+    xdotool(viewer, "key", "ctrl+o")
+    click(viewer, "file mine.toml")
+    xdotool(viewer, "key", "Return")
+    assert until(viewer, lambda: viewer.session.script.duration == 2.0)
+
+
+def test_a_name_is_free_for_its_kind(viewer: Viewer, tmp_path: Path) -> None:
+    """A film of that name is no reason to call a mesh otherwise."""
+    viewer.settings.export = ExportChoices(kind="mp4", folder=str(tmp_path))
+    xdotool(viewer, "key", "F10")
+    name = viewer.exporter.name
+    xdotool(viewer, "key", "Escape")
+    (tmp_path / f"{name}.mp4").touch()
+    xdotool(viewer, "key", "F10")
+    assert viewer.exporter.name == f"{name}-2"
+    viewer.settings.export.kind = "gltf"
+    viewer.exporter.propose()
+    assert viewer.exporter.name == name
+    xdotool(viewer, "key", "Escape")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,6 @@ from risorius.app.script import Channel, Script, load_script
 from risorius.app.script.keyframes import FRAME, POSES, on_frame
 from risorius.app.script.places import NOWHERE, KeyPlace
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.panel_cache import REFRESH
 from risorius.app.viewer.settings import load_settings, save_settings
 
 from .driving import (
@@ -24,7 +22,6 @@ from .driving import (
     middle,
     on_screen,
     settle,
-    until,
     xdotool,
 )
 
@@ -41,9 +38,7 @@ def curves(viewer: Viewer, calm: None) -> None:
     viewer.settings.shows_curves, viewer.settings.counts_frames = True, False
     viewer.settings.timeline_height = 0.0
     viewer.time_axis.show_whole()
-    # While the face moves, panels are drawn anew a few times a second only.
-    end = time.monotonic() + 2.0 * REFRESH
-    assert until(viewer, lambda: time.monotonic() > end)
+    settle(viewer)
 
 
 def place_of(viewer: Viewer, when: float, value: float) -> tuple[float, float]:
@@ -133,7 +128,7 @@ def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
     """A right click on a key chooses how it is approached, and the curve is what is played."""
     xdotool(viewer, "mousemove", *at(viewer, 3.0, 0.6))
     xdotool(viewer, "click", 3)
-    click(viewer, "menu Keys: Approach: hold")
+    click(viewer, "menu Keys: Easing: hold")
     script = viewer.session.script
     assert script.poses[2].easing == "hold"
     times, drawn = script.posed_channel("joy").outline(0.0, 4.0, 200)

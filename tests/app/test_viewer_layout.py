@@ -17,6 +17,7 @@ from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
 
 from .driving import (
+    DEADLINE,
     NEEDS_A_SCREEN,
     SIZE,
     clear_search,
@@ -90,6 +91,7 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
     """Made tiny, flat, and large again while the face moves: it goes on, and nothing explodes."""
     import glfw
 
+    before = viewer.view.area
     xdotool(viewer, "key", "1")
     try:
         for size in ((1, 1), (40, 30), (700, 20), (20, 500), SIZE):
@@ -101,6 +103,7 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
         settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
+    assert viewer.view.area == before  # the panel is as wide as it was
 
 
 @pytest.mark.slow
@@ -141,7 +144,7 @@ def test_a_window_that_was_stopped_goes_on_calmly(tmp_path: Path) -> None:
         time.sleep(1.0)
         assert program.poll() is None
         program.send_signal(signal.SIGCONT)
-        assert program.wait(60.0) == 0
+        assert program.wait(DEADLINE) == 0
         assert program.stderr is not None and program.stderr.read() == ""
     finally:
         program.kill()

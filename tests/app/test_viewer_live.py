@@ -102,7 +102,7 @@ def hold(viewer: Viewer, face: LiveFace, seconds: float, **channels: float) -> N
                 sender.send(channels)
             return is_enough
 
-        assert until(viewer, leads, 60.0)
+        assert until(viewer, leads)
 
 
 def write_take(file: Path, **channels: float) -> Path:
@@ -128,7 +128,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path,
     face = listen(viewer, kind)
     assert until(viewer, lambda: "live state" in viewer.gui.places)
     with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
-        assert until(viewer, lambda: moved(viewer) > 8.0, 60.0)
+        assert until(viewer, lambda: moved(viewer) > 8.0)
         assert face.state is State.RECEIVING and not viewer.is_idle
         assert viewer.session.current["jawOpen"] > 0.1 and not face.unusable
     assert until(viewer, lambda: face.presence == 0.0)

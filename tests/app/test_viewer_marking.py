@@ -232,6 +232,30 @@ class TestInTheWindow:
             xdotool(viewer, "click", 1)
         assert until(viewer, lambda: self.room(viewer).marking.marks.is_complete)
 
+    def test_a_head_stands_upright_before_anything_is_marked(
+        self, viewer: Viewer, mesh: Path
+    ) -> None:
+        """Its file has z up; two buttons turn it where the first guess is none."""
+        drop(viewer, mesh)
+        marking = self.room(viewer).marking
+        settle(viewer)
+        ways = placing(dict(enumerate(true_places()))).inverse.vectors(np.eye(3))
+
+        def axes() -> Array:
+            """To the left, up and out of the face, as they are seen."""
+            turned = marking.placing.vectors(ways)
+            return turned / np.linalg.norm(turned, axis=1, keepdims=True)
+
+        assert axes() == pytest.approx(np.eye(3), abs=0.1)
+        click(viewer, "Turn 90 degrees")
+        assert axes()[1] == pytest.approx([1.0, 0.0, 0.0], abs=0.1)  # up is to the right
+        for _ in range(3):
+            xdotool(viewer, "key", "t")
+        assert axes() == pytest.approx(np.eye(3), abs=0.1)
+        self.room(viewer).view.camera.orbit(80.0, 0.0)
+        click(viewer, "Upright")
+        assert abs(axes()[2] @ [1.0, 0.0, 0.0]) == pytest.approx(1.0, abs=0.1)
+
     def test_a_head_is_marked_from_the_first_click_to_the_picture(
         self, viewer: Viewer, mesh: Path, tmp_path: Path
     ) -> None:
@@ -265,7 +289,7 @@ class TestInTheWindow:
         xdotool(viewer, "key", "ctrl+a")
         write(viewer, "marked")
         xdotool(viewer, "key", "Return")
-        assert until(viewer, lambda: viewer.room is None, 60.0)
+        assert until(viewer, lambda: viewer.room is None)
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
         image, marks = tmp_path / "joy.png", mesh.with_name("marked.json")
         options = ("--set", "joy", "--size", "160x160", "-o", image)
@@ -350,7 +374,7 @@ class TestInTheWindow:
         marking.note()
         marking.file = mesh.with_name("wrong.json")
         xdotool(viewer, "key", "ctrl+Return")
-        assert until(viewer, lambda: viewer.messages.is_error, 30.0)
+        assert until(viewer, lambda: viewer.messages.is_error)
         assert "\n" not in viewer.messages.text and viewer.room is not None
         assert not marking.unsaved and marking.file.exists()
 

@@ -35,7 +35,7 @@ def values_of(viewer: Viewer) -> dict[str, float]:
 def test_a_picture_is_taken_blended_and_mirrored(viewer: Viewer) -> None:
     """By a click, a drag to the right, and with Shift; Ctrl+Z takes each back in one step."""
     viewer.settings.folds["Pose pictures"] = True
-    assert until(viewer, lambda: "pose Joy" in viewer.gui.places, 60.0)
+    assert until(viewer, lambda: "pose Joy" in viewer.gui.places)
     click(viewer, "pose Joy")
     assert values_of(viewer) == {"joy": 1.0}
     drag(viewer, middle(viewer, "pose Anger"), (10, 0))

@@ -68,7 +68,7 @@ def test_pictures_have_no_lines_of_a_slider_that_is_pointed_at(viewer: Viewer) -
 
 
 @pytest.mark.slow
-def test_lines_are_faint_and_gone_as_a_slider_is_pressed(viewer: Viewer) -> None:
+def test_lines_are_seen_and_gone_as_a_slider_is_pressed(viewer: Viewer) -> None:
     """Pointing at a slider tints its fibres; while it is dragged the face is free of them."""
     point_at_slider(viewer)
     assert until(viewer, lambda: viewer.painter.is_complete)
@@ -76,8 +76,7 @@ def test_lines_are_faint_and_gone_as_a_slider_is_pressed(viewer: Viewer) -> None
     xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
     assert until(viewer, lambda: viewer.painter.is_complete and not viewer.view.pointed)
     changed = np.abs(picture(viewer) - tinted).max(axis=2)
-    assert (changed > 8).sum() > 30
-    assert changed.max() < 80
+    assert (changed > 40).sum() > 30
     point_at = middle(viewer, f"{MAJOR}_left")
     drag(viewer, point_at, (10, 0))
     assert until(viewer, lambda: viewer.session.values[f"{MAJOR}_left"] > 0.0)

@@ -63,7 +63,7 @@ def test_json_is_a_recording_or_landmarks_by_what_it_holds(viewer: Viewer, tmp_p
     mesh, landmarks = stranger().write(tmp_path)
     try:
         drop(viewer, landmarks, picture, mesh)
-        assert until(viewer, lambda: viewer.session.scene is not before, 30.0)
+        assert until(viewer, lambda: viewer.session.scene is not before)
         assert "with stranger" in viewer.messages.text
         assert viewer.session.values["jawOpen"] == 0.5
     finally:

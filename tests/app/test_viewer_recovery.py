@@ -26,7 +26,7 @@ from risorius.app.viewer.session import Session
 from risorius.app.viewer.unsaved import Work, WorkFiles
 from risorius.assets.staging import PREFIX
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, settle, wait_for, xdotool
+from .driving import DEADLINE, NEEDS_A_SCREEN, SIZE, click, settle, wait_for, xdotool
 
 ROOT = Path(__file__).parents[2]
 POSED = {"jaw_open": 0.4}
@@ -437,7 +437,7 @@ def test_a_window_that_is_told_to_stop_loses_nothing(
 ) -> None:
     """What was done this moment is written before the end."""
     at_work.send_signal(number)
-    assert at_work.wait(10.0) == -number
+    assert at_work.wait(DEADLINE) == -number
     assert at_work.stderr is not None and at_work.stderr.read() == ""
     [pose] = [load_script(file) for file in tmp_path.glob("risorius/unsaved/*.pose.toml")]
     assert any(pose.at(0.0).values())

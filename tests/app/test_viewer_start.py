@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,37 +23,52 @@ from risorius.app.viewer.gui import THEMES
 from risorius.app.viewer.opening import COMPILING, LOADING, picture
 from risorius.app.viewer.settings import Settings, load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, drag, nose, on_screen, settle, until, xdotool
+from .driving import (
+    DEADLINE,
+    NEEDS_A_SCREEN,
+    SIZE,
+    click,
+    drag,
+    nose,
+    on_screen,
+    settle,
+    until,
+    xdotool,
+)
 
 pytestmark = NEEDS_A_SCREEN
+
+
+def windows_of(process: subprocess.Popen[bytes], screen: display.Display) -> Iterator[Any]:
+    """Those on the screen that a process has opened."""
+    number = screen.get_atom("_NET_WM_PID")
+    for window in screen.screen().root.query_tree().children:
+        with contextlib.suppress(XError):  # it is not there any more
+            told = window.get_full_property(number, X.AnyPropertyType)
+            if told is not None and told.value[0] == process.pid:
+                yield window
 
 
 def first_pictures(process: subprocess.Popen[bytes]) -> Iterator[np.ndarray]:
     """What the window of a process that starts shows, again and again, (H, W, 3)."""
     screen = display.Display()
     while process.poll() is None:
-        for window in screen.screen().root.query_tree().children:
-            try:
-                name = str(window.get_wm_name())
-                if not name.startswith("Risorius"):
-                    continue
+        for window in windows_of(process, screen):
+            with contextlib.suppress(XError):  # it is not shown yet
                 size = window.get_geometry()
                 read = window.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF)
-            except XError:  # it is not there yet, or not any more
-                continue
-            pixels = np.frombuffer(read.data, np.uint8).reshape(size.height, size.width, 4)
-            yield pixels[..., 2::-1].astype(int)
+                pixels = np.frombuffer(read.data, np.uint8).reshape(size.height, size.width, 4)
+                yield pixels[..., 2::-1].astype(int)
         time.sleep(0.02)
 
 
-def close_window() -> None:
+def close_window(process: subprocess.Popen[bytes]) -> None:
     """Ask the window to close, as a desktop does."""
     screen = display.Display()
     protocols, delete = map(screen.get_atom, ("WM_PROTOCOLS", "WM_DELETE_WINDOW"))
-    for window in screen.screen().root.query_tree().children:
-        if str(window.get_wm_name()).startswith("Risorius"):
-            data = (32, [delete, X.CurrentTime, 0, 0, 0])
-            window.send_event(ClientMessage(window=window, client_type=protocols, data=data))
+    for window in windows_of(process, screen):
+        data = (32, [delete, X.CurrentTime, 0, 0, 0])
+        window.send_event(ClientMessage(window=window, client_type=protocols, data=data))
     screen.sync()
 
 
@@ -92,8 +109,8 @@ def test_a_face_is_seen_before_anything_is_compiled(
         if all(is_like):
             break
     assert all(is_like)
-    close_window()
-    assert process.wait(10.0) == 0
+    close_window(process)
+    assert process.wait(DEADLINE) == 0
 
 
 def test_the_steps_come_once(tmp_path: Path) -> None:
@@ -120,9 +137,17 @@ def test_the_steps_tick_themselves_off(viewer: Viewer) -> None:
     """Pulling the skin, dragging the line and playing end the guide; Help brings it back."""
     steps = viewer.first_steps
     assert steps.done == [False, False, False]
-    drag(viewer, nose(viewer), (30, 0))
+    x, y = nose(viewer)
+    drag(viewer, (x, y), (92, 0))
+    assert until(viewer, lambda: viewer.mouse.is_dragging_skin)
+    xdotool(viewer, "mouseup", 1)
+    assert until(viewer, lambda: viewer.messages.text.startswith("No muscle draws"))
+    assert not steps.done[0], "it swings back"
+    drag(viewer, (x + 40, y), (65, -65))  # a cheek
+    xdotool(viewer, "mouseup", 1)
     assert until(viewer, lambda: steps.done == [True, False, False])
-    xdotool(viewer, "mouseup", 1, "key", "d")
+    assert "short of the mouse" in viewer.messages.text
+    xdotool(viewer, "key", "d")
     left, top, width, height = viewer.view.area
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 0.5 * width, top + 0.1 * height))
     xdotool(viewer, "mousedown", 1)

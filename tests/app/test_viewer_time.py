@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,6 @@ from risorius.app.script import load_script
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import NOWHERE, KeyPlace
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.panel_cache import REFRESH
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -43,9 +41,7 @@ def opened(viewer: Viewer, calm: None) -> None:
     viewer.selection.places = NOWHERE
     viewer.settings.shows_curves, viewer.settings.timeline_height = False, 0.0
     viewer.time_axis.show_whole()
-    # While the face moves, panels are drawn anew a few times a second only.
-    end = time.monotonic() + 2.0 * REFRESH
-    assert until(viewer, lambda: time.monotonic() > end)
+    settle(viewer)
 
 
 # Undo while the mouse drags

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,6 @@ from risorius.app.script import Channel, Script, load_script, save_script
 from risorius.app.script.keyframes import POSES, on_frame, places_of
 from risorius.app.script.places import NOWHERE, KeyPlace, Places
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.panel_cache import REFRESH
 from risorius.app.viewer.panels.dope_sheet import ROW
 
 from .driving import (
@@ -46,9 +44,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     viewer.session.open(load_script(path))
     viewer.selection.places = NOWHERE
     viewer.time_axis.is_whole = True
-    # While the face moves, panels are drawn anew a few times a second only.
-    end = time.monotonic() + 2.0 * REFRESH
-    assert until(viewer, lambda: time.monotonic() > end)
+    settle(viewer)
     return path
 
 
@@ -213,7 +209,7 @@ def test_the_menus_do_the_same(viewer: Viewer) -> None:
     """A right click on a key brings up its menu, in which there is more than keys have."""
     press(viewer, at(viewer, REST), button=3)
     assert viewer.selection.places == {REST}
-    click(viewer, "menu Keys: Approach: hold")
+    click(viewer, "menu Keys: Easing: hold")
     assert viewer.session.script.poses[2].easing == "hold"
     press(viewer, at(viewer, REST), button=3)
     click(viewer, "menu Keys: Delete")

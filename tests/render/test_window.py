@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import time
 
 import numpy as np
 import pytest
@@ -41,8 +42,9 @@ def test_window_that_is_resized(window: render.WindowSurface) -> None:
 
     draw_image(window, sphere())
     glfw.set_window_size(window.handle, 130, 70)
-    for _ in range(50):
-        glfw.poll_events()
+    end = time.monotonic() + 60.0
+    while tuple(glfw.get_framebuffer_size(window.handle)) != (130, 70):
+        assert time.monotonic() < end
         glfw.wait_events_timeout(0.01)
     frame = draw_image(window, sphere())
     assert window.size == tuple(glfw.get_framebuffer_size(window.handle)) == (130, 70)

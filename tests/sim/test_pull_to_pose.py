@@ -13,7 +13,7 @@ from tests.sim.poses import FRAME
 Array = npt.NDArray[np.float64]
 FINGER = 16.0  # mm
 RIGHT_CORNER, LEFT_CORNER, LEFT_BROW, NOSE, CHIN = 48, 54, 24, 30, 8
-LEFT_LID = 44
+LEFT_LID, INNER_BROW, LEFT_WING = 44, 22, 35
 
 
 def candidates(face: sim.Simulation) -> list[tuple[str, ...]]:
@@ -108,6 +108,40 @@ def test_what_no_muscle_can_do_is_not_done(simulation: sim.Simulation, head: Hea
         pull.follow()
         pull.solve()
         assert not pull.changes
+
+
+@pytest.mark.parametrize(
+    ("landmark", "way"),
+    [
+        (LEFT_CORNER, (0.8, 0.6, 0.0)),
+        (INNER_BROW, (-1.0, 0.0, 0.0)),
+        (NOSE, (0.0, 1.0, 0.0)),
+        (LEFT_WING, (1.0, 0.0, 0.0)),
+    ],
+)
+def test_a_generous_pull_goes_as_far_as_a_short_one(
+    simulation: sim.Simulation, head: Head, landmark: int, way: tuple[float, ...]
+) -> None:
+    """Drawn far beyond what muscles can do, skin goes to the end of that, by three at most."""
+    went = []
+    for length in (6.0, 20.0, 40.0):
+        simulation.reset()
+        vertex = head.landmarks[landmark]
+        pull, _ = pull_at(simulation, vertex, length * np.array(way))
+        assert 1 <= len(pull.changes) <= 3
+        there = settled(simulation, values_of(pull))[vertex] - simulation.rest_positions[vertex]
+        went.append(float(there @ way))
+    assert went[1] > 0.95 * went[0]
+    assert went[2] > 0.95 * went[1]
+
+
+def test_an_effort_is_shared(simulation: sim.Simulation, head: Head) -> None:
+    """The corner of the mouth, 10 mm up: no more than three muscles, one at its limit at most."""
+    pull, before = pull_at(simulation, head.landmarks[LEFT_CORNER], (0.0, 10.0, 0.0))
+    found = values_of(pull)
+    assert len(found) <= 3
+    assert sum(value > 0.95 for value in found.values()) <= 1
+    assert pull.short < 0.35 * before
 
 
 def test_mirrored_pulls_are_mirrored(simulation: sim.Simulation, head: Head) -> None:

@@ -19,6 +19,7 @@ from risorius.assets.errors import AssetError
 from risorius.assets.fitting.guess import guess, placing, skin_around
 from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
 from risorius.assets.fitting.soundness import check_manifold
+from risorius.assets.fitting.upright import upright
 from risorius.assets.fitting.warp import Similarity, nearest_on
 from risorius.assets.meshes import read_mesh
 from risorius.assets.topology import vertex_normals
@@ -54,11 +55,8 @@ class Marking:
         self.history = History(self.marks, lambda _, after: len(after.places))
         self.current = ORDER[0]
         self.is_upright = False
-        middle = 0.5 * (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))
-        radius = max(float(np.linalg.norm(mesh.vertices - middle, axis=1).max()), 1e-12)
-        scale = SEEN_RADIUS / radius
         self.faces = mesh.faces
-        self._place(Similarity(scale, np.eye(3), -scale * middle))
+        self._place(upright(mesh.vertices, SEEN_RADIUS))
 
     # Where the mesh is seen
 
@@ -71,6 +69,11 @@ class Marking:
             self.faces = np.ascontiguousarray(self.faces[:, ::-1])
             self._normals = -self._normals
         self._nearest = scipy.spatial.cKDTree(self.positions)
+
+    def turn(self, rotation: FloatArray) -> None:
+        """Turn what is seen, (3, 3), as long as the marks do not tell how it stands."""
+        now = self.placing
+        self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
         """The first time: upright, looking ahead, as large as a head; AssetError for no face's."""

@@ -40,7 +40,7 @@ def _row(first: int, last: int, *more: int) -> tuple[int, ...]:
 
 
 GROUPS = (  # in the order of marking
-    Group("eyes", (0.96, 0.55, 0.08), (_row(36, 41, 36), _row(42, 47, 42)), 4.2),
+    Group("eyes", (0.96, 0.55, 0.08), (_row(36, 41, 36), _row(42, 47, 42)), 4.2, 25.0),
     Group("outer lips", (0.86, 0.18, 0.26), (_row(48, 59, 48),), 3.6),
     Group("inner lips", (0.93, 0.76, 0.20), (_row(60, 67, 60),), 3.6),
     Group("nose", (0.10, 0.62, 0.42), (_row(27, 30), _row(31, 35)), 3.2, 20.0),

@@ -22,7 +22,7 @@ GUIDE_SHARE = 0.34  # of the window's height, at most
 LARGE = 1.2  # letters of what is asked, as parts of the others
 DARK, WHITE = (0.08, 0.08, 0.10), (1.0, 1.0, 1.0)
 # Buttons in rows, by the labels of their commands.
-FIRST_ROWS = (("Undo", "Redo"),)
+FIRST_ROWS = (("Upright", "Turn 90 degrees"), ("Undo", "Redo"))
 ROWS = (
     ("Point before", "Next point"),
     ("Undo", "Redo", "Guess again"),
@@ -30,8 +30,8 @@ ROWS = (
 )
 LAST_ROWS = (("Use this head",), ("Save landmarks", "Leave"))
 BEGIN = (
-    "Turn the head until it looks at you: drag it with the mouse, far up or down where it lies on "
-    "its back. The wheel zooms. Then click the point on the skin that the guide shows."
+    "Click the point on the skin that the guide shows. Where the head does not look at you, drag "
+    "it with the mouse and press Upright, or Turn 90 degrees. The wheel zooms."
 )
 GO_ON = (
     "Drag points that are not where they belong; a click on the skin moves this one. White inside: "

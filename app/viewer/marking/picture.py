@@ -46,7 +46,7 @@ class MarkingView(View):
 
     def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:
         self._marking, self._settings, self._surface = marking, settings, surface
-        self.area, self.pointed = (0.0, 0.0, 1.0, 1.0), ()
+        self.area, self.pointed = (0.0, 0.0, 1.0, 1.0), {}
         self.guide_area = self.area
         self.fit_scene()
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import Protocol
 
+import numpy as np
+
 from risorius import render
+from risorius.assets.fitting.upright import axes_turned
 
 from ..command import Command, set_keys
 from ..file_drop import FileDrop
@@ -21,6 +24,7 @@ from .mouse import MarkingMouse
 from .panel import MarkingPanel
 from .picture import MarkingPicture, MarkingView, yaw_of
 
+QUARTER = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # clockwise, as seen
 SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size", "Keys and mouse")
 
 
@@ -86,12 +90,19 @@ class Room:
         self.marking.go(direction)
         self.view.camera.yaw, self.view.camera.pitch = yaw_of(self.marking.current), 0.0
 
+    def _straighten(self, roll: int = 0) -> None:
+        """Let what is seen now be the front, upright; or turned by so many right angles to it."""
+        seen = np.linalg.matrix_power(QUARTER, roll) @ np.array(self.view.camera.axes())
+        self.marking.turn(max(axes_turned(), key=lambda turn: float((turn * seen).sum())))
+        self.view.fit_scene()
+
     def _commands(self) -> tuple[Command, ...]:
         """All that a key or a menu does here."""
         marking, view = self.marking, self.view
         file, edit = partial(Command, "File"), partial(Command, "Edit")
         complete = partial(Command, can_run=lambda: marking.marks.is_complete)
         landmarks = partial(complete, "Landmarks")
+        turned = partial(Command, "View", can_run=lambda: not marking.is_upright)
         history = marking.history
         return (
             file("Open landmarks ...", "Ctrl+O", marking.ask_open),
@@ -100,6 +111,8 @@ class Room:
             file("Leave", "Ctrl+W", self.leave),
             edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: history.can_undo),
             edit("Redo", "Ctrl+Y", marking.redo, None, lambda: history.can_redo, "Ctrl+Shift+Z"),
+            turned("Upright", "U", self._straighten),
+            turned("Turn 90 degrees", "T", partial(self._straighten, 1)),
             landmarks("Next point", "Right", partial(self._step, 1)),
             landmarks("Point before", "Left", partial(self._step, -1)),
             landmarks("Mirror this group", "M", marking.mirror),

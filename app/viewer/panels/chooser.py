@@ -70,7 +70,7 @@ class FileChooser:
             return False, None
         self._draw_places(request)
         chosen = self._draw_listing(request)
-        is_confirmed = self._draw_line(request)
+        is_confirmed = self._draw_line(request) or self._is_entered()
         if is_confirmed and chosen is None:
             chosen = self._confirmed(request)
         imgui.same_line()
@@ -139,6 +139,12 @@ class FileChooser:
         if request.is_saving:
             label = "Replace" if self._warned == self._target(request) else "Save"
         return button(self._gui, label, name="path confirmed") or bool(is_entered)
+
+    def _is_entered(self) -> bool:
+        """Whether Enter was pressed where nobody types and a file was clicked."""
+        keys = (imgui.Key.enter, imgui.Key.keypad_enter)
+        is_pressed = any(imgui.is_key_pressed(key, False) for key in keys)
+        return is_pressed and bool(self._name) and not imgui.get_io().want_text_input
 
     def _target(self, request: Request) -> Path:
         """What the line stands for."""

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 
 from imgui_bundle import imgui
 
-from ..gui import PANEL, Gui, em, fixed_panel
+from ..gui import LEFT, PANEL, Gui, em, fixed_panel
 from ..panel_state import PanelState
 from ..settings import Settings
 from ..view import View
@@ -39,7 +39,7 @@ class Layout:
 
     def draw(self, view: View) -> None:
         """Draw everything, and give the view its place."""
-        view.pointed = ()
+        view.pointed = {}
         if self._state.are_hidden:
             view.area = self._draw_bare()
         else:
@@ -59,7 +59,8 @@ class Layout:
         left = round(min(wanted, PANEL_SHARE * display.x))
         below = round(self._timeline.height())
         with fixed_panel(PANEL, (0.0, top), (left, display.y - top), resizes=True):
-            if round(imgui.get_window_width()) != left:  # its edge is being dragged
+            is_other = round(imgui.get_window_width()) != left
+            if is_other and imgui.is_mouse_down(LEFT):  # its edge is being dragged
                 self._settings.panel_width = imgui.get_window_width() / em()
             self._draw_tabs()
         with fixed_panel("Time", (left, display.y - below), (display.x - left, below)):

@@ -48,8 +48,8 @@ class MuscleNote:
         imgui.pop_text_wrap_pos()
         is_on = imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
         imgui.end()
-        if is_on:
-            self._view.pointed = names
+        if is_on or not self._view.pointed:  # as long as the note is there
+            self._view.pointed = dict.fromkeys(names, 1.0)
         is_left = imgui.is_mouse_clicked(LEFT) and not is_on
         is_typing = imgui.get_io().want_text_input
         if is_left or (imgui.is_key_pressed(imgui.Key.escape) and not is_typing):

@@ -52,20 +52,27 @@ class ControlRows:
         else:
             imgui.same_line(left + label_room)
         width = (imgui.get_content_region_avail().x + spacing.x) / len(names) - spacing.x
+        shared = self._shared(row)
         for index, name in enumerate(names):
             if index:
                 imgui.same_line()
             limits, side = session.controls.limits[name], parted(name)[1].strip("_")[:1].upper()
-            mark = (side or ("both" if len(names) > 2 else "L")) if len(names) > 1 else ""
-            slid = self._sliders.draw(name, current[name], limits, width=width, mark=mark)
+            mark = (side or "L") if len(names) > 1 else ""
+            value = min(max(current[name] + shared, limits[0]), limits[1])
+            slid = self._sliders.draw(name, value, limits, width=width, mark=mark)
             pointed = (name,) if slid.is_hovered else pointed
             if slid.is_changed:
+                self._part(row, shared)
                 session.set(name, slid.value, linked=row.is_linked and name in row.sides)
             if slid.is_done:
                 session.note()
         if pointed:
             meant = (*pointed, *(row.sides if row.is_linked else ()))
-            self._view.pointed = tuple(sorted(set().union(*map(session.scene.moved_by, meant))))
+            self._view.pointed = {
+                muscle: share
+                for each in meant
+                for muscle, share in session.scene.moved_by(each).items()
+            }
 
     def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
         """Code, name and the switch of its sides; whether the mouse is on it."""
@@ -99,6 +106,17 @@ class ControlRows:
             imgui.same_line(0.0, 0.0)
             self._draw_switch(row)
         return is_pointed
+
+    def _shared(self, row: Row) -> float:
+        """What a control for both sides adds to the bar of each, where it has none itself."""
+        return self._session.current[row.whole] if row.whole not in ("", *row.names) else 0.0
+
+    def _part(self, row: Row, shared: float) -> None:
+        """Give both sides what they share, so that one of them can go on alone."""
+        if shared:
+            for name in row.sides:
+                self._session.set(name, self._session.current[name] + shared)
+            self._session.set(row.whole, 0.0)
 
     def _draw_switch(self, row: Row) -> None:
         """From one bar for both sides to one for each, while the face stays as it is, and back."""
