@@ -8,7 +8,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening
+from ..live import LOOPBACK, PROTOCOLS, Listening
 from ..recordings.playback import Playback
 from .options import packed
 
@@ -20,7 +20,6 @@ class Live:
     live: str | None
     port: int | None
     address: str
-    phone: str | None
 
     def listening(self, playback: Playback) -> Listening | None:
         """Where to listen, None for nowhere; UserError for what does not go together.
@@ -29,22 +28,14 @@ class Live:
         """
         if self.live is None:
             source = click.get_current_context().get_parameter_source
-            for name in ("port", "address", "phone"):
+            for name in ("port", "address"):
                 if source(name) is not ParameterSource.DEFAULT:
                     raise UserError(f"--{name} goes with --live, which says what is listened to")
             return None
-        if self.phone is not None and not PROTOCOLS[self.live].request:
-            raise UserError(f"--phone goes with --live ifacialmocap, not with {self.live}")
-        if self.phone is not None and self.address == LOOPBACK:
-            raise UserError(
-                f"--phone: no phone is reached from {LOOPBACK}; add --address {ANYWHERE}, "
-                "the whole network of this computer"
-            )
         return Listening(
             self.live,
             self.address,
             self.port,
-            self.phone or "",
             playback.mapping,
             playback.gains,
             playback.mirror,
@@ -65,5 +56,4 @@ with_live = packed(
         show_default=True,
         help="Of this computer, on which to listen; 0.0.0.0 for its whole network.",
     ),
-    click.option("--phone", metavar="ADDRESS", help="Ask iFacialMocap there to send."),
 )

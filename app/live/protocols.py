@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import needed
-from . import ifacialmocap, livelink, vmc
+from . import livelink, vmc
 from .addresses import LOOPBACK
 from .frame import LiveFrame
 
@@ -18,7 +18,6 @@ class Protocol:
 
     title: as people call it. port: where receivers listen unless told. parse: see frame.py.
     packets: what a sender would send: (channels, subject=, frame=) -> packets.
-    request: what makes a phone send that has not been told where to; b"" for nothing.
     library: a module that not everybody has installed, "" for none.
     """
 
@@ -26,7 +25,6 @@ class Protocol:
     port: int
     parse: Callable[[bytes], LiveFrame | None]
     packets: Callable[..., list[bytes]]
-    request: bytes = b""
     library: str = ""
 
     def check(self) -> None:
@@ -38,13 +36,6 @@ class Protocol:
 PROTOCOLS: Mapping[str, Protocol] = {
     "livelink": Protocol("Live Link Face", livelink.PORT, livelink.parse, livelink.packets),
     "vmc": Protocol("VMC", vmc.PORT, vmc.parse, vmc.packets, library="pythonosc"),
-    "ifacialmocap": Protocol(
-        "iFacialMocap",
-        ifacialmocap.PORT,
-        ifacialmocap.parse,
-        ifacialmocap.packets,
-        ifacialmocap.REQUEST,
-    ),
 }
 
 
@@ -53,14 +44,13 @@ class Listening:
     """Where packets are expected, of which protocol, and how they are taken at first.
 
     kind: a key of PROTOCOLS. address: the only one that is listened on. port: None for the
-    protocol's own. phone: address of a phone that has to be asked to send; "" for none.
-    mapping: a table of one's own. gains: "NAME=x" each. mirror: left and right change places.
+    protocol's own. mapping: a table of one's own. gains: "NAME=x" each. mirror: left and right
+    change places.
     """
 
     kind: str
     address: str = LOOPBACK
     port: int | None = None
-    phone: str = ""
     mapping: Path | None = None
     gains: tuple[str, ...] = ()
     mirror: bool = False

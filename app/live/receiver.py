@@ -7,7 +7,6 @@ is none; and only now and then for frames that say what those before them said.
 
 from __future__ import annotations
 
-import contextlib
 import socket
 import threading
 import time
@@ -22,7 +21,6 @@ from .protocols import Listening
 MOST_WAITING = 256  # frames or parts of them; of more, the oldest are dropped
 STILL_THERE = 0.2  # [s] after which a frame wakes although it says nothing new
 LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
-REQUEST_EVERY = 1.0  # [s] a phone is asked to send while nothing comes
 
 
 class Receiver:
@@ -49,10 +47,8 @@ class Receiver:
         self._said: dict[str, float] = {}  # the newest value of each channel
         self._is_new = False  # whether anything has changed since somebody was woken
         self._woke_at = -STILL_THERE
-        self._phone = resolved(listening.phone) if listening.phone else ""
         self._socket = _bound_socket(listening)
         self._socket.settimeout(LOOK_AROUND)
-        self._asked_at = -REQUEST_EVERY
         self._is_closing = False
         self._thread = threading.Thread(target=self._receive, name="live face", daemon=True)
         self._thread.start()
@@ -74,20 +70,15 @@ class Receiver:
         self._socket.close()
 
     def _receive(self) -> None:
-        last = -REQUEST_EVERY
         while not self._is_closing:
-            now = self._clock()
-            if now - max(last, self._asked_at) > REQUEST_EVERY:
-                self._ask_phone(now)
             try:
                 packet = self._socket.recv(MOST_BYTES + 1)
             except TimeoutError:
                 continue
-            except OSError:  # Windows tells here that the phone refused what it was asked
+            except OSError:  # a network that is down may come back
                 time.sleep(LOOK_AROUND)
                 continue
-            last = self._clock()
-            self._read(packet, last)
+            self._read(packet, self._clock())
 
     def _read(self, packet: bytes, at: float) -> None:
         """Keep what a packet says, wake who waits for that, and count the packet as dealt with."""
@@ -108,14 +99,6 @@ class Receiver:
         if frame.is_complete and frame.has_face and is_due and not self.has_frame:
             self.has_frame, self._is_new, self._woke_at = True, False, at
             self._wake()
-
-    def _ask_phone(self, now: float) -> None:
-        """Ask the phone to send, if there is one to be asked."""
-        self._asked_at = now
-        protocol = self._listening.protocol
-        if self._phone and protocol.request:
-            with contextlib.suppress(OSError):  # a network that is down may come back
-                self._socket.sendto(protocol.request, (self._phone, protocol.port))
 
 
 def _bound_socket(listening: Listening) -> socket.socket:

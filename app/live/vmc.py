@@ -176,7 +176,7 @@ def _angles(turn: Quaternion) -> tuple[float, float, float]:
 
 
 def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[bytes]:
-    """What an app would send of these channels, in several packets; see `ifacialmocap.packets`."""
+    """What an app would send of these channels, in several packets; of nobody by name."""
     messages: list[tuple[str, tuple[str | float, ...]]] = [
         (VALUE, (name[0].upper() + name[1:], channels[name])) for name in ARKIT if name in channels
     ]

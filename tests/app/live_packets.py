@@ -54,10 +54,3 @@ def vmc(values: Mapping[str, float]) -> bytes:
     """A whole frame of VMC in one packet."""
     shapes = [("/VMC/Ext/Blend/Val", name, value) for name, value in values.items()]
     return osc(*shapes, ("/VMC/Ext/Blend/Apply",))
-
-
-def ifacialmocap(
-    shapes: str, head: str = "0,0,0,0,0,0", eyes: tuple[str, str] = ("0,0,0",) * 2
-) -> bytes:
-    """A line of iFacialMocap."""
-    return f"{shapes}|=head#{head}|rightEye#{eyes[0]}|leftEye#{eyes[1]}|".encode()

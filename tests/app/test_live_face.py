@@ -23,7 +23,7 @@ from risorius.app.viewer.panels.live import (
     state_in_words,
 )
 
-from .live_packets import ifacialmocap, live_link, osc
+from .live_packets import live_link, osc, vmc
 
 VALUE, APPLY = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply"
 
@@ -271,11 +271,11 @@ def test_mapping_gains_and_mirror_may_be_given_from_the_start(tmp_path: Path) ->
             LiveFace(wrong)
 
 
-@pytest.mark.parametrize("wire", ["ifacialmocap"], indirect=True)
+@pytest.mark.parametrize("wire", ["vmc"], indirect=True)
 def test_what_is_not_named_keeps_its_value(wire: Wire) -> None:
-    """As iFacialMocap means it."""
-    wire.take(ifacialmocap("jawOpen-50|cheekPuff-30"))
-    wire.take(ifacialmocap("jawOpen-20"))
+    """A sender may tell only what has changed."""
+    wire.take(vmc({"jawOpen": 0.5, "cheekPuff": 0.3}))
+    wire.take(vmc({"jawOpen": 0.2}))
     channels = wire.face.channels
     assert channels["jawOpen"] == pytest.approx(0.2) and channels["cheekPuff"] == pytest.approx(0.3)
 
@@ -322,28 +322,6 @@ def test_only_the_address_given_is_listened_on() -> None:
         assert receiver._socket.getsockname()[0] == LOOPBACK
     finally:
         receiver.close()
-
-
-def test_a_phone_is_asked_to_send_until_it_does() -> None:
-    """iFacialMocap waits for a word; it is not repeated while frames come."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as phone:
-        phone.bind((LOOPBACK, 0))
-        phone.settimeout(10.0)
-        protocol = replace(PROTOCOLS["ifacialmocap"], port=phone.getsockname()[1])
-
-        class ToPhone(Listening):
-            """Whose phone listens where this test's does."""
-
-            protocol = property(lambda _: protocol)  # type: ignore[assignment]
-
-        receiver = Receiver(ToPhone("ifacialmocap", port=0, phone=LOOPBACK))
-        try:
-            word, sender = phone.recvfrom(1000)
-            assert word == b"iFacialMocap_sahuasouryya9218sauhuiayeta91555dy3719"
-            phone.sendto(ifacialmocap("jawOpen-50"), sender)
-            assert until(lambda: receiver.has_frame)
-        finally:
-            receiver.close()
 
 
 def test_closing_frees_the_port() -> None:

@@ -14,21 +14,19 @@ from pythonosc.osc_packet import OscPacket
 
 from risorius.app.live import PROTOCOLS
 from risorius.app.live.frame import LiveFrame
-from risorius.app.live.ifacialmocap import parse as parse_ifacialmocap
 from risorius.app.live.livelink import parse as parse_live_link
 from risorius.app.live.vmc import PRESETS
 from risorius.app.live.vmc import parse as parse_vmc
 from risorius.app.recordings.calibration import ANGLES
 from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 
-from .live_packets import LIVE_LINK, SHAPES, ifacialmocap, live_link, osc, vmc
+from .live_packets import LIVE_LINK, SHAPES, live_link, osc, vmc
 
 VALUE, APPLY, BONE = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply", "/VMC/Ext/Bone/Pos"
 KINDS = tuple(PROTOCOLS)
 GOOD = {
     "livelink": live_link({name: 0.01 * index for index, name in enumerate(LIVE_LINK)}),
     "vmc": vmc({name: 0.5 for name in SHAPES[:6]}),
-    "ifacialmocap": ifacialmocap("mouthSmile_L-37|jawOpen-80", "1,2,3,0,0,0"),
 }
 
 
@@ -104,56 +102,6 @@ def test_a_name_is_shown_only_as_far_as_it_can_be() -> None:
     frame = parse_live_link(live_link({}, subject="A\x1b[2J\n" + 300 * "x"))
     assert frame is not None
     assert frame.subject.isprintable() and len(frame.subject) <= 40
-
-
-# iFacialMocap
-
-
-@pytest.mark.parametrize("sign", ["-", "&"])
-def test_both_versions_of_ifacialmocap_are_percent(sign: str) -> None:
-    """Sides are _L and _R, or written in full; jaw and mouth have a left of their own."""
-    line = f"mouthSmile_L{sign}37|mouthSmileRight{sign}12|jawLeft{sign}5|mouthLeft{sign}100"
-    channels = channels_of(parse_ifacialmocap(ifacialmocap(line)))
-    shapes = {name: value for name, value in channels.items() if name not in ANGLES}
-    assert shapes == {
-        "mouthSmileLeft": 0.37,
-        "mouthSmileRight": 0.12,
-        "jawLeft": 0.05,
-        "mouthLeft": 1.0,
-    }
-
-
-def test_what_ifacialmocap_does_not_name_is_not_there() -> None:
-    """A shape that is missing is not 0; a negative one is, and an empty one is missing."""
-    channels = channels_of(
-        parse_ifacialmocap(b"browDown_L--3|browDown_R&-3|jawOpen-|cheekPuff-x|=")
-    )
-    assert channels == {"browDownLeft": 0.0, "browDownRight": 0.0}
-
-
-def test_ifacialmocap_angles_are_found_by_name() -> None:
-    """Degrees; eyes that look down have a positive x, to the subject's left a positive y."""
-    line = b"jawOpen-1|=|leftEye#6,-2,0.1|head#-21,-6,5,0,0,0|rightEye#6,2.5,0"
-    channels = channels_of(parse_ifacialmocap(line))
-    assert channels["eye_pitch_left"] == channels["eye_pitch_right"] == -6.0
-    assert channels["eye_yaw_left"] == -2.0 and channels["eye_yaw_right"] == 2.5
-    found = [channels[name] for name in ("head_pitch", "head_yaw", "head_roll")]
-    assert found == [21.0, -6.0, -5.0]
-
-
-def test_ifacialmocap_may_say_that_it_sees_no_face_and_name_its_object() -> None:
-    """Prefixes of other connections are passed over."""
-    frame = parse_ifacialmocap(b"jawOpen-10|trackingStatus-0|=head#0,0,0,0,0,0|")
-    assert frame is not None and not frame.has_face
-    assert channels_of(parse_ifacialmocap(b"faceObjGrp!Head|jawOpen-10|")) == {"jawOpen": 0.1}
-
-
-@pytest.mark.parametrize(
-    "line", [b"", b"|||", b"hello", b"=head#", b"nobody-3|", b"jawOpen-nan", "jawOpen-5é".encode()]
-)
-def test_other_text_is_no_line_of_ifacialmocap(line: bytes) -> None:
-    """Nothing known in it: counted as of no use."""
-    assert parse_ifacialmocap(line) is None
 
 
 # VMC
@@ -338,9 +286,8 @@ def test_names_that_nobody_knows_do_not_pile_up() -> None:
         """Send more new names than are remembered; the memory that is taken [bytes]."""
         for index in range(first, first + 50):
             names = [f"name{100 * index + number}" for number in range(100)]
-            parse_ifacialmocap(ifacialmocap("|".join(f"{name}-5" for name in names)))
-            parse_vmc(vmc({name + "x": 0.5 for name in names[:20]}))
-            parse_ifacialmocap(ifacialmocap(f"{9000 * 'x'}{index}-5"))
+            parse_vmc(vmc(dict.fromkeys(names, 0.5)))
+            parse_vmc(vmc({f"{9000 * 'x'}{index}": 0.5}))
         return tracemalloc.get_traced_memory()[0]
 
     tracemalloc.start()

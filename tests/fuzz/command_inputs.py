@@ -118,8 +118,6 @@ REFUSED = {
     "view --live osc": "'osc' is not one of",
     "view --live vmc --port 0": "is not in the range",
     "view --live vmc --port 65536": "is not in the range",
-    "view --live vmc --phone 127.0.0.1": "goes with --live ifacialmocap",
-    "view --live ifacialmocap --phone 192.0.2.1": "add --address 0.0.0.0",
     "view --live vmc --scene plane": "moves the scene 'face'",
     "view --port 11111": "--port goes with --live",
     "view --address 0.0.0.0": "--address goes with --live",

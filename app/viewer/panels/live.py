@@ -27,7 +27,7 @@ COMPUTERS = {LOOPBACK: "this computer alone", ANYWHERE: "the whole network"}
 FULL_ANGLE = 45.0  # [degrees] that fill a bar
 LEAST_SEEN = 0.05  # of a bar
 HINTS = {
-    "Protocol": "what the sender speaks; Live Link Face and iFacialMocap are apps of an iPhone, "
+    "Protocol": "what the sender speaks; Live Link Face is an app of an iPhone, "
     "VMC is what most programs for avatars send",
     "Listen to": "a phone needs the whole network; whoever is in it can then move this face, and "
     "do nothing else",
