@@ -77,7 +77,7 @@ def test_a_line_of_text_leaves_captions_free(viewer: Viewer) -> None:
     xdotool(viewer, "key", "d")
     viewer.messages.say("Something was done")
     assert until(viewer, lambda: bool(viewer.surface.labels) and "message" in viewer.gui.places)
-    draw_frames(viewer)
+    settle(viewer)
     x, y, image = viewer.surface.labels[0]
     left, _, _, bottom = viewer.gui.places["message"]
     assert left < x + image.shape[1], "else this shows nothing"
