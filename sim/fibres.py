@@ -130,10 +130,11 @@ def fibre_coordinates(
     start, segment = points[:-1], np.diff(points, axis=0)
     length = np.maximum(np.linalg.norm(segment, axis=1), 1e-9)
     arc_start = np.concatenate([[0.0], np.cumsum(length)])
-    t = ((positions[:, None] - start) * segment).sum(axis=2) / length**2
+    t = np.einsum("nkx,kx->nk", positions[:, None] - start, segment) / length**2
     t = np.clip(t, 0.0, 1.0)
     feet = start + t[:, :, None] * segment
-    squared = ((positions[:, None] - feet) ** 2).sum(axis=2)
+    away = positions[:, None] - feet
+    squared = np.einsum("nkx,nkx->nk", away, away)
     row, best = np.arange(len(positions)), squared.argmin(axis=1)
     foot = feet[row, best]
     arc = (arc_start[best] + t[row, best] * length[best]) / arc_start[-1]

@@ -93,6 +93,7 @@ class _Tints:
     brow: SingleArray  # (H, W)
     scalp: SingleArray  # (H, W)
     detail: SingleArray  # what of the picture's lightness is relief, in powers of e (H, W)
+    openness: Image  # of the bare skin to light from all around (H, W)
     skin: FloatArray  # (5,)
     melanins: FloatArray  # of the tones in `angles`
     angles: FloatArray  # ITA, rising
@@ -141,10 +142,15 @@ def recoloured(
     covered = _grown_over(tints, features) * (1.0 - parted) if features.grown else 0.0
     light = np.empty_like(tints.light)
     relief = features.relief * tints.detail
+    lips, beard = features.lips * BLOOD, features.beard * SHADOW
+    # In double precision it takes twice as long.
+    density, redness, hair, skin, lips, beard = np.array(
+        [density, redness, hair, skin, lips, beard], dtype=np.float32
+    )
     for channel in range(3):
         lost = density[channel] * tints.melanin + redness[channel] * tints.blood - relief
-        lost += features.lips * BLOOD[channel] * tints.lips
-        lost += features.beard * SHADOW[channel] * tints.beard
+        lost += lips[channel] * tints.lips
+        lost += beard[channel] * tints.beard
         bare = tints.light[..., channel] * np.exp(-lost) + skin[channel] * (tints.hair - kept)
         own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
         haired = bare + own * kept
@@ -242,7 +248,7 @@ def with_hair(
 def _openness(person: Person, parts: Sequence[Part]) -> Image:
     """How open the skin of a person is to light from all around, with the hair that it has."""
     hair = [part for part in parts if part.name.startswith(HAIR)]
-    openness = load("head").openness
+    openness = _tints().openness
     if not hair:
         return openness
     normals = vertex_normals(person.vertices, person.faces)
@@ -355,6 +361,7 @@ def _tints() -> _Tints:
         **soft,
         hair=hair,
         detail=detail,
+        openness=head.openness,
         skin=arrays["skin"],
         melanins=melanins,
         angles=typology_angle(tones),

@@ -34,9 +34,13 @@ def is_seen(cut: Cut, locks: Mapping[str, Any], lining: Mapping[str, Any]) -> np
     faces = np.vstack([locks["faces"], lining["faces"] + first])
     points = np.einsum("kc,fcx->fkx", places_in_triangle(SAMPLES), vertices[faces])
     angle, height, radius = direction_coordinates(points.reshape(-1, 3))
-    column, row = np.floor(np.degrees(angle) / CELL[0]), np.floor(height / CELL[1])
-    cell = np.unique(row * 1000.0 + column, return_inverse=True)[1]
-    uppermost = np.zeros(int(cell.max()) + 1)
+    column, row = (
+        np.floor(place / size).astype(np.intp)
+        for place, size in zip((np.degrees(angle), height), CELL, strict=True)
+    )
+    column, row = column - column.min(), row - row.min()
+    cell = row * (column.max() + 1) + column
+    uppermost = np.zeros(cell.max() + 1)
     np.maximum.at(uppermost, cell, radius)
     # Beside the face one looks in under the uppermost.
     is_beside = np.degrees(np.abs(angle)) < cut.opening[0] + BESIDE
