@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -153,21 +154,23 @@ def view(
 
 
 @click.command()
-@click.argument("recording", type=PATH)
+@click.argument("recording", type=PATH, required=False)
 @click.option(
     "--to", "kind", type=click.Choice(list(PROTOCOLS)), default="livelink", show_default=True
 )
 @port_option
 @click.option("--address", default=LOOPBACK, show_default=True, help="Of the receiving computer.")
 @click.option("--loop", is_flag=True, help="Again and again, until Ctrl-C.")
-def send(recording: Path, kind: str, port: int | None, address: str, loop: bool) -> None:
+def send(recording: Path | None, kind: str, port: int | None, address: str, loop: bool) -> None:
     """Send RECORDING as a phone would.
 
-    `risorius view --live` follows it.
+    `risorius view --live` follows it. Without RECORDING a short one is sent that comes along.
     """
     from ..live.sender import Sender, carried
     from ..recordings.reading import read_take
 
+    if recording is None:  # what `risorius export` makes of scripts/speech.toml
+        recording = Path(str(files("risorius.assets") / "data" / "speech.csv"))
     take = read_take(recording)
     channels, left_out = carried(take)
     with Sender(kind, address, port, recording.stem) as sender:

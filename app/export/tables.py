@@ -20,6 +20,7 @@ from ..recordings.playback import LEAD
 from .clip import Clip, Floats
 from .formats import Request
 
+DECIMALS = 6  # of numbers, whose zeros at the end are left out: three quarters of a table
 TIMECODE_RATE = 60  # Live Link Face counts so many frames a second, whatever the camera does
 OTHER_ORDER = {  # its columns are in ARKit's order but for these
     "jawLeft": "jawRight",
@@ -102,4 +103,5 @@ def _write(
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*names, *columns])
         for stamp, *values in zip(stamps, *columns.values(), strict=True):
-            writer.writerow([*stamp, *(f"{value + 0.0:.6f}" for value in values)])
+            numbers = np.round(values, DECIMALS) + 0.0  # -0 is 0
+            writer.writerow([*stamp, *(np.format_float_positional(n, trim="-") for n in numbers)])

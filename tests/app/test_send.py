@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Callable, Iterator
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from risorius.app.live import LOOPBACK, PROTOCOLS
 from risorius.app.live.sender import SHAPES_OF_UNITS, Sender, carried, frames
 from risorius.app.recordings import Take
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.reading import read_take
 
 STEP = 1.0 / 60.0
 
@@ -53,6 +55,34 @@ def test_a_take_comes_in_as_it_went_out(kind: str, heard: socket.socket) -> None
     wanted = list(zip(smile, turn, strict=True))
     assert [each[0] for each in found] == pytest.approx([each[0] for each in wanted], abs=1e-6)
     assert [each[1] for each in found] == pytest.approx([each[1] for each in wanted], abs=1e-3)
+
+
+def test_a_recording_comes_along(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, heard: socket.socket
+) -> None:
+    """Without a recording one is sent that is installed, which speaks, and blinks."""
+    monkeypatch.chdir(tmp_path)
+    sent: list[Take] = []
+    monkeypatch.setattr(Sender, "play", lambda _, take, **__: sent.append(take))
+    result = CliRunner().invoke(command(), ["send", "--port", str(heard.getsockname()[1])])
+    assert result.exit_code == 0, result.output
+    assert "speech.csv: Live Link Face, 6.10 s, " in result.output
+    assert sent[0].channels["jawOpen"].max() > 0.2
+    assert sent[0].channels["eyeBlinkLeft"].max() > 0.6
+    assert Path(sent[0].source).stat().st_size < 60_000
+
+
+@pytest.mark.slow
+def test_the_recording_that_comes_along_is_our_script(tmp_path: Path) -> None:
+    """`risorius export` makes it anew; processors round apart."""
+    folder = Path(str(files("risorius.assets")))
+    arguments = ["export", str(folder / "scripts" / "speech.toml"), "-o"]
+    result = CliRunner().invoke(command(), [*arguments, str(tmp_path / "speech.csv"), "--quiet"])
+    assert result.exit_code == 0, result.output
+    made, shipped = (read_take(each / "speech.csv") for each in (tmp_path, folder / "data"))
+    assert made.times == pytest.approx(shipped.times)
+    for name, values in shipped.channels.items():
+        assert made.channels[name] == pytest.approx(values, abs=0.02), name
 
 
 class Stopped(Exception):  # noqa: N818, what ends the test is no error
