@@ -1,11 +1,7 @@
-"""Commands of `risorius bench` that measure refinement.
-
-`refine`, `quality`, `meshes`.
-"""
+"""Commands of `risorius bench` that measure refinement: `refine`, `quality`."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Collection
 from itertools import groupby
 from pathlib import Path
@@ -114,29 +110,4 @@ def _subjects(reference: Path | None, finer: str, expressions: Collection[str]) 
     return found
 
 
-@click.command("meshes")
-@click.argument("folder", type=FOLDER)
-@click.option("--seed", type=click.IntRange(0, 2**32 - 1), default=2003, show_default=True)
-@click.option(
-    "--seconds", type=FiniteRange(0.1, 3600.0), default=20.0, show_default=True, help="Of a mesh."
-)
-@click.option(
-    "--most",
-    type=click.IntRange(1, 10_000_000),
-    default=200_000,
-    show_default=True,
-    help="Triangles; larger meshes are left out.",
-)
-def bench_meshes(folder: Path, seed: int, seconds: float, most: int) -> None:
-    """Refine every mesh in FOLDER and below, in noisy poses, and look for cracks: 1 if any."""
-    from . import meshes
-
-    with told():
-        results = meshes.measure(
-            folder, seed=seed, seconds=seconds, most_triangles=most, progress=say_progress
-        )
-    click.echo(meshes.report(results))
-    sys.exit(1 if any(each.broken for each in results) else 0)
-
-
-COMMANDS = (bench_refine, bench_quality, bench_meshes)
+COMMANDS = (bench_refine, bench_quality)

@@ -1,4 +1,4 @@
-"""Commands of `risorius bench` that compare skin with scans: `motion`, `left-out`, `reference`."""
+"""Commands of `risorius bench` that compare skin with scans: `motion`, `reference`."""
 
 from __future__ import annotations
 
@@ -27,16 +27,6 @@ def bench_motion(reference: Path) -> None:
     conclude(motion.report(rows, left_out, others), motion.targets(rows, others))
 
 
-@click.command("left-out")
-@click.option("--reference", type=FOLDER, required=True, help="A folder as `motion` takes it.")
-def bench_left_out(reference: Path) -> None:
-    """Fit muscles from anatomy to all scanned shapes but one, in turn. Takes ten minutes."""
-    from . import left_out
-
-    with told("--reference: "):
-        click.echo(left_out.report(left_out.measure(reference)))
-
-
 @click.command("reference")
 @click.argument("checkout", type=FOLDER)
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
@@ -51,4 +41,4 @@ def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> Non
         click.echo(in_one_line(line))
 
 
-COMMANDS = (bench_motion, bench_left_out, bench_reference)
+COMMANDS = (bench_motion, bench_reference)

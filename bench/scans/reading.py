@@ -19,7 +19,7 @@ import numpy.typing as npt
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.meshes import Mesh
 
-from ..subjects import COARSE, DENSE, PERSONS, read_arrays
+from ..subjects import DENSE, PERSONS, read_arrays
 
 NOT_SHAPES = ("vertices", "triangles", "landmarks68")
 
@@ -60,33 +60,6 @@ class Scans:
 def read_scans(directory: str | Path) -> Scans:
     """The scans in a folder. Raises ValueError, naming the file, if it is broken."""
     return _scans(directory, read_arrays(Path(directory) / DENSE, NOT_SHAPES), DENSE)
-
-
-def read_coarse_scans(directory: str | Path) -> Scans:
-    """The scans on the coarse mesh that lies beside them, where one does, to be moved often.
-
-    A landmark is at the vertex that lies and moves most as it does, which is put there.
-    """
-    fine = read_arrays(Path(directory) / DENSE, NOT_SHAPES)
-    if not (Path(directory) / COARSE).is_file():
-        return _scans(directory, fine, DENSE)
-    coarse = read_arrays(Path(directory) / COARSE, ("triangles", "fine_triangle", "barycentric"))
-    corners = fine["triangles"][coarse["fine_triangle"]]
-    moving = [name for name, array in fine.items() if array.shape == fine["vertices"].shape]
-    arrays = {
-        name: np.einsum("vi,vij->vj", coarse["barycentric"].astype(np.float64), fine[name][corners])
-        for name in moving
-    }
-    numbers, features = list[int](), np.concatenate([arrays[name] for name in moving], axis=1)
-    for landmark in fine["landmarks68"]:
-        there = np.concatenate([fine[name][landmark] for name in moving])
-        off = ((features - there) ** 2).sum(axis=1)
-        off[numbers] = np.inf
-        numbers.append(int(off.argmin()))
-        for name in moving:
-            arrays[name][numbers[-1]] = fine[name][landmark]
-    arrays |= {"triangles": coarse["triangles"], "landmarks68": np.array(numbers)}
-    return _scans(directory, arrays, COARSE)
 
 
 def _scans(directory: str | Path, arrays: Mapping[str, npt.NDArray[Any]], file: str) -> Scans:

@@ -1,6 +1,6 @@
 """Commands of `risorius bench` that measure the simulated face.
 
-`simulate`, `seen`, `gaps`, `soak`, `tearing`.
+`seen`, `gaps`, `soak`, `tearing`.
 """
 
 from __future__ import annotations
@@ -11,18 +11,8 @@ from pathlib import Path
 import click
 
 from risorius.app.cli.parameters import FiniteRange
-from risorius.app.errors import UserError
 
 from ..command_line import FILE, FOLDER, PATH, conclude, json_option, json_writer, told
-
-
-@click.command("simulate")
-@click.option("--rounds", type=click.IntRange(1, 100_000), default=100, show_default=True)
-def bench_simulate(rounds: int) -> None:
-    """Time a 60 Hz frame of the simulation: the head, and plain meshes up to 100k vertices."""
-    from . import simulate
-
-    click.echo(simulate.report(simulate.measure(rounds=rounds), rounds))
 
 
 @click.command("seen")
@@ -35,24 +25,14 @@ def bench_simulate(rounds: int) -> None:
 @click.option(
     "--reference", type=FOLDER, help="A folder with face.npz: scans, to be shown as well."
 )
-@click.option(
-    "--take", type=FILE, help="A recorded face, to be played and read back instead of the shapes."
-)
 @click.option("--pictures", type=PATH, help="A folder for all that the tracker is shown.")
-def bench_seen(
-    model: Path, reference: Path | None, take: Path | None, pictures: Path | None
-) -> None:
+def bench_seen(model: Path, reference: Path | None, pictures: Path | None) -> None:
     """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
-    from . import seen, seen_take
+    from . import seen
     from .face_tracker import FaceTracker
 
-    if take is not None and reference is not None:
-        raise UserError("--reference goes with the shapes, not with --take")
     with FaceTracker(model) as tracker, told("--reference: "):
-        if take is None:
-            click.echo(seen.report(seen.measure(tracker, pictures, reference)))
-        else:
-            click.echo(seen_take.report(*seen_take.measure(tracker, take, pictures)))
+        click.echo(seen.report(seen.measure(tracker, pictures, reference)))
 
 
 @click.command("gaps")
@@ -89,4 +69,4 @@ def bench_tearing(mixtures: int) -> None:
     conclude(tearing.report(poses, mixtures), tearing.targets(poses))
 
 
-COMMANDS = (bench_simulate, bench_seen, bench_gaps, bench_soak, bench_tearing)
+COMMANDS = (bench_seen, bench_gaps, bench_soak, bench_tearing)

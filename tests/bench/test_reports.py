@@ -12,15 +12,7 @@ from risorius import assets
 from risorius.bench.playing.commands import bench_capture, bench_window
 from risorius.bench.report import table
 from risorius.bench.scans import motion
-from risorius.bench.simulation import simulate, soak, tearing
-
-
-def test_simulate() -> None:
-    """Head and plain meshes each get a row with their sizes."""
-    text = simulate.report(simulate.measure(rounds=2, sizes=(400,)), 2)
-    assert "head, all muscles" in text
-    assert "2030" in text
-    assert "plain mesh" in text
+from risorius.bench.simulation import soak, tearing
 
 
 @pytest.mark.slow

@@ -11,8 +11,6 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from risorius.bench.playing import commands as playing
-from risorius.bench.playing import live
 from risorius.bench.refinement import commands as refinement
 from risorius.bench.refinement import quality, quality_report
 from risorius.bench.refinement.quality import Score
@@ -72,11 +70,6 @@ def of_quality(**change: Any) -> tuple[int, str]:
     return run(refinement.bench_quality, measured)
 
 
-def of_live(median: float = 1.0) -> tuple[int, str]:
-    target = at_most("slowest median", median, live.PROMISED)
-    return run(playing.bench_live, {(live, "report"): ("times", target)})
-
-
 @pytest.mark.parametrize(
     ("bench", "broken"),
     [
@@ -95,7 +88,6 @@ def of_live(median: float = 1.0) -> tuple[int, str]:
         (of_quality, {"distance": 0.9}),
         (of_quality, {"picture": 9.9}),
         (of_quality, {"jump": 1.6}),
-        (of_live, {"median": 30.0}),
     ],
 )  # fmt: skip
 def test_a_missed_target_is_told_and_ends_with_one(

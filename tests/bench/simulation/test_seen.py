@@ -16,7 +16,7 @@ from click.testing import CliRunner, Result
 
 from risorius.__main__ import command
 from risorius.app.recordings.names import ARKIT
-from risorius.bench.simulation import seen, seen_take
+from risorius.bench.simulation import seen
 from risorius.bench.simulation.face_tracker import FaceTracker, Scores, in_mirror, mean_of
 
 MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
@@ -89,28 +89,6 @@ def test_pictures_without_a_face_do_not_count() -> None:
     assert mean_of([{}, {}]) == {}
 
 
-def test_correlation_of_what_moves() -> None:
-    """What rests is left out, what the tracker never answers has no correlation."""
-    wave = np.sin(np.linspace(0.0, 6.0, 50)) ** 2
-    told = {
-        "jawOpen": wave,
-        "mouthFunnel": wave,
-        "cheekPuff": 0.01 * wave,
-        "mouthSmileLeft": wave,
-        "mouthSmileRight": 0.0 * wave,
-    }
-    scores = [
-        {**CALM, "jawOpen": 0.3 * value + 0.1, "mouthSmileLeft": 1.0 - value} for value in wave
-    ]
-    found = {channel.name: channel for channel in seen_take.compared(told, scores)}
-    assert list(found) == ["jawOpen", "mouthFunnel", "mouthSmile"]
-    assert found["jawOpen"].left == pytest.approx(1.0)
-    assert found["mouthFunnel"].left is None
-    assert found["mouthSmile"].left == pytest.approx(-1.0)
-    assert found["mouthSmile"].right is None
-    assert found["jawOpen"].moves == pytest.approx(wave.std())
-
-
 def test_without_mediapipe_one_line_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -135,15 +113,6 @@ def test_what_is_no_model_is_named(tmp_path: Path, content: bytes) -> None:
     assert "other.task: is no model of MediaPipe's face landmarker" in line
 
 
-def test_scans_do_not_go_with_a_take(tmp_path: Path) -> None:
-    """One line, before anything is loaded."""
-    (tmp_path / "any").write_bytes(b"")
-    told = ("--model", tmp_path / "any", "--take", tmp_path / "any", "--reference", tmp_path)
-    result = risorius("bench", "seen", *told)
-    assert result.exit_code == 2
-    assert "--reference goes with the shapes" in result.stderr
-
-
 @needs_model
 def test_the_tracker_sees_an_open_jaw(tmp_path: Path) -> None:
     """Our face looks to it like one; an empty picture does not; pictures are kept."""
@@ -156,18 +125,3 @@ def test_the_tracker_sees_an_open_jaw(tmp_path: Path) -> None:
         own, _, score = seen.compared(opened, neutral, ("jawOpen",))
         assert own > 0.5 > score
     assert len(list(tmp_path.glob("jawOpen_*.png"))) == len(seen.VIEWS)
-
-
-@needs_model
-def test_a_take_is_read_back(tmp_path: Path) -> None:
-    """A jaw that opens and shuts in a recording does so in the tracker's eyes."""
-    pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
-    values = [0.5 - 0.5 * np.cos(2.0 * np.pi * frame / 30.0) for frame in range(31)]
-    rows = "".join(f"{frame / 30.0:.4f},{value:.4f}\n" for frame, value in enumerate(values))
-    recording = tmp_path / "take.csv"
-    recording.write_text(f"timestamp,jawOpen\n{rows}")
-    with FaceTracker(MODEL) as tracker:
-        channels, frames, lost = seen_take.measure(tracker, recording)
-    (jaw,) = channels
-    assert (frames, lost) == (31, 0)
-    assert jaw.left is not None and jaw.left > 0.95
