@@ -43,7 +43,7 @@ def blocks(page: Path, language: str) -> str:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_links_lead_somewhere(page: Path) -> None:
     """Every file and heading that a page links to exists."""
-    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+    for target in re.findall(r"(?:\]\(|src=\")([^)\s\"]+)", page.read_text(encoding="utf-8")):
         if target.startswith("http"):
             continue
         name, _, heading = target.partition("#")
@@ -74,6 +74,13 @@ def test_pages_of_the_documentation_are_read() -> None:
     shown = [words for page in PAGES for words in COMMAND.findall(page.read_text("utf-8"))]
     assert len(shown) > 40
     assert any("--compare" in words for words in shown)
+
+
+def test_pictures_are_few_and_small() -> None:
+    """They travel with every clone: at most 40 files, and 8 MB in all."""
+    pictures = list((ROOT / "docs/pictures").iterdir())
+    assert len(pictures) <= 40
+    assert sum(path.stat().st_size for path in pictures) < 8_000_000
 
 
 def test_every_picture_is_shown() -> None:

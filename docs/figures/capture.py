@@ -46,7 +46,6 @@ MOMENTS = {
     4.75: "kiss",
     6.1: "to the left",
 }
-WINDOW = (1160, 700)
 TALL_WINDOW = (1160, 760)
 SMILING = 0.7  # of a smile, live
 ANGLES = ("HeadYaw", "HeadPitch", "HeadRoll", "LeftEyeYaw", "LeftEyePitch", "LeftEyeRoll",
@@ -153,19 +152,6 @@ def neutral(take: Path) -> Image:
     return without_noise(sheet)
 
 
-def window(take: Path) -> Image:
-    """A window into which the recording was dropped, in the smile."""
-    with Viewer(script_for(None, "face"), WINDOW) as viewer:
-        imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
-        viewer.messages.attempt(lambda: viewer.scripts.open(take))
-        said = viewer.messages.text
-        viewer.session.seek(3.5)
-        for _ in range(90):
-            viewer.messages.say(said)
-            viewer.frame()
-        return without_noise(viewer.surface.read())
-
-
 def tracks(folder: Path) -> Image:
     """A window with a recording that speaks: its sound, and its tracks unfolded."""
     take, sound = written(folder / "speech.csv", SPOKEN), voice(folder / "speech.wav")
@@ -212,7 +198,6 @@ def main(arguments: Sequence[str]) -> None:
         take = written(Path(folder) / "take.csv")
         every = {
             "capture_neutral": partial(neutral, take),
-            "capture_window": partial(window, take),
             "capture_tracks": partial(tracks, Path(folder)),
             "capture_live": partial(live, Path(folder)),
         }

@@ -2,7 +2,7 @@
 
 One contact sheet for each layer of controls: every action unit, expression, viseme and ARKit shape
 at full value, settled and refined, from the front and in three-quarter view. With `--only AU12 joy`
-some of them, larger with `--width`, go into some.png: to judge a row while it is edited.
+some of them, larger with `--width`, go into some.webp: to judge a row while it is edited.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LAYERS = {
     "ARKit shapes": "arkit",
 }
 SHOWN_OVER = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
-CELL = (150, 168)  # [pixels] of one view: a contact sheet stays below 1.5 MB
+CELL = (150, 168)  # [pixels] of one view
 VIEWS = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
 RAISED = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
 FAR_VIEWS = ("0,0,1.1", "-34,3,1.1")  # of a head that turns

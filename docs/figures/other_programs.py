@@ -2,10 +2,10 @@
 
     xvfb-run -a python docs/figures/other_programs.py [FOLDER]
 
-`export_blender` and `export_usd` are a glTF and a USD file in Blender, `hosts_blender` is a face as
-the add-on refines it; RISORIUS_BLENDER_PYTHON names a Python that has bpy. `export_paraview` is a
-VTKHDF file by VTK, which draws for ParaView, coloured by how far each point is from rest, and
-`hosts_pyvista` what the page's own program draws.
+`export_blender` is a glTF file in Blender, `hosts_blender` a face as the add-on refines it;
+RISORIUS_BLENDER_PYTHON names a Python that has bpy. `export_paraview` is a VTKHDF file by VTK,
+which draws for ParaView, coloured by how far each point is from rest, and `hosts_pyvista` what the
+page's own program draws.
 """
 
 from __future__ import annotations
@@ -22,8 +22,6 @@ from pathlib import Path
 from typing import Any
 
 import figures
-import numpy as np
-import PIL.Image
 import pyvista
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
@@ -66,7 +64,9 @@ def in_blender(name: str, moments: Mapping[str, str]) -> Image:
         ended = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
         if ended.returncode:
             raise UserError(f"Blender: {ended.stderr.strip().splitlines()[-1]}")
-        cells = [(title, read(Path(folder) / f"{frame}.png")) for frame, title in moments.items()]
+        cells = [
+            (title, figures.read(Path(folder) / f"{frame}.png")) for frame, title in moments.items()
+        ]
     return contact_sheet(cells, columns=len(cells), cell_width=900 // len(cells))
 
 
@@ -97,12 +97,7 @@ def in_pyvista() -> Image:
     programs = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.M | re.S)
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         exec(compile("\n".join(programs), PAGE, "exec"), {})
-        return read(Path("hosts_pyvista.png"))
-
-
-def read(file: Path) -> Image:
-    """A picture without its alpha."""
-    return np.asarray(PIL.Image.open(file).convert("RGB"))
+        return figures.read(Path("hosts_pyvista.png"))
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -112,7 +107,6 @@ def main(arguments: Sequence[str]) -> None:
     refined = {"15": "joy, as it is simulated", "15r": "with Refined Copy"}
     every: dict[str, Callable[[], Image]] = {
         "export_blender": partial(in_blender, "face.glb", dict(poses[3:])),
-        "export_usd": partial(in_blender, "face.usdz", dict(poses[:3])),
         "export_paraview": in_paraview,
         "hosts_pyvista": in_pyvista,
         "hosts_blender": partial(in_blender, "face.usdz", refined),

@@ -79,36 +79,9 @@ def wipe(viewer: Viewer) -> None:
     viewer.view.camera.zoom(1.08)
 
 
-def side_by_side(viewer: Viewer) -> None:
-    """Two viewports under one camera, coloured by how far the normals turned apart."""
-    viewer.session.toggle_alone("joy")
-    viewer.panel_state.wanted_tab = "Mechanism"
-    show_refinement(viewer)
-    viewer.settings.display = Display(
-        compare="side by side", a="paper", colours="curvature drop", skin="clay"
-    )
-
-
 def show_refinement(viewer: Viewer) -> None:
     """Of the panel Mechanism show what says how the mesh is refined, and its colours."""
     viewer.settings.folds |= dict.fromkeys(("Overlays", "Light and person", "Milliseconds"), False)
-
-
-def tension(viewer: Viewer) -> None:
-    """What is stretched and what is compressed, with the springs."""
-    viewer.session.toggle_alone("yawn")
-    viewer.panel_state.wanted_tab = "Mechanism"
-    viewer.settings.folds |= {"Refinement": False, "Light and person": False}
-    viewer.settings.display = Display(colours="tension", overlays=["springs"], skin="clay")
-
-
-def anatomy(viewer: Viewer) -> None:
-    """Skull, muscles and landmarks."""
-    viewer.session.set("jaw_open", 0.5)
-    viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    viewer.settings.folds |= dict.fromkeys(("Refinement", "Milliseconds"), False)
-    viewer.settings.display = Display(overlays=["skull", "muscles"], dissect="left")
-    viewer.view.camera = camera_for(viewer.session.scene, "three-quarter")
 
 
 def finger(viewer: Viewer) -> None:
@@ -148,40 +121,12 @@ def curves(viewer: Viewer) -> None:
     viewer.selection.places = places_of(viewer.session.script).between(3.5, 4.0)
 
 
-def light(viewer: Viewer) -> None:
-    """Another person, in the light of a window."""
-    viewer.panel_state.wanted_tab = "Mechanism"
-    viewer.settings.folds |= dict.fromkeys(("Refinement", "Overlays", "Milliseconds"), False)
-    viewer.file_drop.show_person("ada")
-    wait_until_settled(viewer)
-    viewer.settings.display = Display(light="window")
-    viewer.session.set("joy", 0.6)
-    viewer.view.camera.orbit(-16.0, 2.0)
-
-
 def export(viewer: Viewer) -> None:
     """What can be exported, and how."""
     viewer.session.toggle_alone("joy")
     viewer.exporter.choices.folder = "~/films"
     viewer.exporter.choices.is_turntable = True
     viewer.exporter.ask()
-
-
-def keys(viewer: Viewer) -> None:
-    """Help, made of the same table as the menus."""
-    viewer.panel_state.is_help_open = True
-
-
-def unsaved(viewer: Viewer) -> None:
-    """A question before work is lost."""
-    viewer.session.set("jaw_open", 0.4)
-    viewer.ask_to_close()
-
-
-def large(viewer: Viewer) -> None:
-    """Everything as on a screen of twice the density."""
-    viewer.settings.zoom = 2.0
-    viewer.session.toggle_alone("kiss")
 
 
 def landmarks(viewer: Viewer) -> None:
@@ -220,17 +165,10 @@ STOPS: dict[str, Callable[[Viewer], None]] = {
     "viewer_steps": steps,
     "viewer_controls": controls,
     "viewer_wipe": wipe,
-    "viewer_side_by_side": side_by_side,
-    "viewer_tension": tension,
-    "viewer_anatomy": anatomy,
     "viewer_pull": finger,
     "viewer_timeline": timeline,
     "viewer_curves": curves,
-    "viewer_light": light,
     "viewer_export": export,
-    "viewer_keys": keys,
-    "viewer_unsaved": unsaved,
-    "viewer_large": large,
     "viewer_landmarks": landmarks,
 }
 

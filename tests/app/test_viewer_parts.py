@@ -366,8 +366,8 @@ def test_the_page_shows_every_picture_of_the_tour() -> None:
     """docs/viewer.md and the program that draws its pictures agree, and the files are there."""
     page = Path("docs/viewer.md").read_text(encoding="utf-8")
     for name in STOPS:
-        image = Path("docs/pictures") / f"{name}.png"
-        assert f"pictures/{name}.png" in page
+        image = Path("docs/pictures") / f"{name}.webp"
+        assert f"pictures/{name}.webp" in page
         assert 10_000 < image.stat().st_size < 450_000
 
 

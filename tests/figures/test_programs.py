@@ -14,9 +14,9 @@ PROGRAMS = Path(__file__).parents[2] / "docs" / "figures"
 @pytest.mark.parametrize(
     ("program", "arguments", "told"),
     [
-        ("controls", ["/dev/null/x"], "risorius: /dev/null/x/action_units.png: cannot be written"),
-        ("head", ["/dev/null/x"], "risorius: /dev/null/x/head_views.png: cannot be"),
-        ("refinement", ["/dev/null/x"], "risorius: /dev/null/x/refine_cases.png: can"),
+        ("controls", ["/dev/null/x"], "risorius: /dev/null/x/action_units.webp: cannot be written"),
+        ("head", ["/dev/null/x"], "risorius: /dev/null/x/head_views.webp: cannot be"),
+        ("refinement", ["/dev/null/x"], "risorius: /dev/null/x/refine_cases.webp: can"),
         ("controls", ["--only", "AU127"], "risorius: unknown control 'AU127'"),
         ("head", ["--only", "foot"], "risorius: unknown figure 'foot'; there are head_views, "),
         ("controls", ["--width", "99999"], "error: argument --width: '99999' is no width; write"),

@@ -11,16 +11,13 @@ from PIL import Image
 
 from risorius.bench.reproduce import figure_coherence
 
-IMAGES = Path(__file__).parents[2] / "docs" / "pictures"
-LARGEST_IMAGE_FILE = 450_000  # bytes
-
 
 @pytest.mark.slow
 def test_figures_are_drawn(tmp_path: Path) -> None:
     """Every figure of the page, and ink on each; the same again to the last pixel."""
     refinement.main([str(tmp_path)])
     for name, figure in refinement.FIGURES.items():
-        drawn = np.asarray(Image.open(tmp_path / f"{name}.png"))
+        drawn = np.asarray(Image.open(tmp_path / f"{name}.webp"))
         assert 0.01 < (drawn.min(axis=2) < 128).mean() < 0.8
         assert name == "refine_tension" or (figure() == drawn).all()
 
@@ -36,9 +33,3 @@ def test_film_strip() -> None:
     assert is_red[half:].sum() == 0
     assert outcome.values["lines turned without memory"] > 100
     assert outcome.values["lines turned with memory"] == 0
-
-
-@pytest.mark.parametrize("path", sorted(IMAGES.glob("refine_*.png")), ids=lambda path: path.stem)
-def test_pictures_of_the_page_are_small(path: Path) -> None:
-    """They travel with the source."""
-    assert path.stat().st_size < LARGEST_IMAGE_FILE
