@@ -33,6 +33,7 @@ class Live:
                 if source(name) is not ParameterSource.DEFAULT:
                     raise UserError(f"--{name} goes with --live, which says what is listened to")
             return None
+        PROTOCOLS[self.live].check()
         if self.phone is not None and not PROTOCOLS[self.live].request:
             raise UserError(f"--phone goes with --live ifacialmocap, not with {self.live}")
         if self.phone is not None and self.address == LOOPBACK:
