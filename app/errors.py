@@ -43,12 +43,13 @@ def needed(module: str, what: str, extra: str, *, package: str | None = None) ->
     what: needs it ("--passes"). extra: of this distribution, which brings it. package: what brings
     the module, if it is called otherwise.
     """
+    name = f"{what} needs {package or module}"
     try:
         return import_module(module)
-    except ImportError:
-        raise UserError(
-            f"{what} needs {package or module}; install it: pip install 'risorius[{extra}]'"
-        ) from None
+    except ModuleNotFoundError:
+        raise UserError(f"{name}; install it: pip install 'risorius[{extra}]'") from None
+    except ImportError as error:  # a library of the system that it stands on, say
+        raise UserError(f"{name}, which is installed but does not load: {error}") from None
 
 
 def line_for(error: Exception) -> str | None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import UserError, counted, in_one_line, needed
+from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS
 from ..recordings.playback import Playback
 from ..refining.looks import STATIC, Refinement
@@ -268,8 +268,6 @@ def open_window(
 
     performance: None for the face's own, which is read while the window shows a picture already.
     """
-    needed("imgui_bundle", "the window", "window", package="imgui-bundle")  # before glfw is
-    needed("glfw", "the window", "window")
     from ..viewer.opening import Opening, settings_path
 
     def load() -> tuple[Script, FittedHead | None]:

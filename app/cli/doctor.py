@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
 import os
 import platform
 import subprocess
+from importlib.util import find_spec
 from typing import Any
 
 from risorius import __version__, render
@@ -14,6 +16,15 @@ from .. import ffmpeg
 from ..errors import UserError, in_one_line
 
 PATIENCE = 20.0  # [s] for ffmpeg to say which it is
+EXTRAS = {
+    "window": ("imgui_bundle", "glfw", "miniaudio"),
+    "films": ("imageio_ffmpeg",),
+    "live": ("pythonosc",),
+    "export": ("h5py", "pxr"),
+    "passes": ("OpenEXR",),
+    "cluster": ("distributed",),
+}
+"""What `pip install 'risorius[EXTRA]'` brings, as modules."""
 
 
 class Health(enum.IntEnum):
@@ -30,6 +41,11 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     offscreen_only: ask for offscreen frames alone, and report on nothing else.
     """
     found = {finding.name: finding for finding in render.probe(offscreen_only=offscreen_only)}
+    if not offscreen_only:
+        try:
+            from .. import viewer  # noqa: F401 - only whether it can be
+        except UserError as error:
+            found["window"] = render.Finding("window", is_ok=False, message=str(error))
     works = {name: finding.is_ok for name, finding in found.items()}
     lines = [
         f"Risorius {__version__}, Python {platform.python_version()}, "
@@ -39,7 +55,7 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     if not offscreen_only:
         works["films"], answer = _films()
         sound = _sound()
-        lines += [f"films: {answer}", f"sound: {sound}", *_names()]
+        lines += [f"films: {answer}", f"sound: {sound}", _extras(), *_names()]
         rest = "but a device for sound" if sound.startswith("no") else ""
     else:
         rest = "for offscreen frames; nothing else was looked at"
@@ -87,6 +103,21 @@ def _names() -> list[str]:
             except ValueError as error:
                 lines.append(str(error))
     return lines
+
+
+def _extras() -> str:
+    """Which extras are installed, and what installs the others."""
+
+    def is_there(module: str) -> bool:
+        """Whether it could be imported; that is not tried."""
+        with contextlib.suppress(ImportError):
+            return find_spec(module) is not None
+        return False
+
+    missing = [name for name, modules in EXTRAS.items() if not all(map(is_there, modules))]
+    there = ", ".join(name for name in EXTRAS if name not in missing) or "none"
+    cure = f"; for the others: pip install 'risorius[{','.join(missing)}]'" if missing else ""
+    return f"extras: {there}{cure}"
 
 
 def _sound() -> str:

@@ -32,6 +32,7 @@ class Live:
                 if source(name) is not ParameterSource.DEFAULT:
                     raise UserError(f"--{name} goes with --live, which says what is listened to")
             return None
+        PROTOCOLS[self.live].check()
         return Listening(
             self.live,
             self.address,

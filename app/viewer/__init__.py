@@ -16,7 +16,12 @@ recovery.py, unsaved.py    unsaved work outlives a crash
 
 from typing import TYPE_CHECKING, Any
 
-from . import gui  # first, before anything opens a window: see there
+from ..errors import needed
+
+needed("imgui_bundle", "the window", "window", package="imgui-bundle")  # before glfw: see gui.py
+needed("glfw", "the window", "window")
+
+from . import gui  # noqa: E402 - first, before anything opens a window: see there
 
 if TYPE_CHECKING:
     from .window import Viewer

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from risorius.app.errors import UserError
+from risorius.app.errors import UserError, needed
 
 from ..nearest import nearest_points
 
@@ -40,17 +40,12 @@ def decimated(
 
     Raises UserError without VTK, and for a mesh that has no more than that.
     """
-    try:
-        from vtkmodules.util.numpy_support import (
-            numpy_to_vtk,
-            numpy_to_vtkIdTypeArray,
-            vtk_to_numpy,
-        )
-        from vtkmodules.vtkCommonCore import vtkPoints
-        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-        from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
-    except ImportError:
-        raise UserError("VTK is not installed; pip install 'risorius[peers]'") from None
+    needed("vtkmodules", "decimation", "peers", package="VTK")
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
+
     if len(triangles) <= count:
         raise UserError(f"the face has {len(triangles)} triangles, and {count} are to be left")
     points, cells, mesh = vtkPoints(), vtkCellArray(), vtkPolyData()

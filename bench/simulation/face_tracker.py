@@ -21,7 +21,7 @@ from types import TracebackType
 import numpy as np
 
 from risorius.app.controls.mirror import twin_of
-from risorius.app.errors import UserError
+from risorius.app.errors import UserError, needed
 from risorius.app.files import Image
 
 Scores = dict[str, float]
@@ -35,14 +35,9 @@ class FaceTracker:
 
     def __init__(self, model: Path) -> None:
         """Load a model file. UserError where it is none, and where MediaPipe is not installed."""
-        try:
-            with _silent():
-                import mediapipe
-                from mediapipe.tasks.python import BaseOptions, vision
-        except ImportError:
-            raise UserError(
-                "MediaPipe is not installed; pip install 'risorius[mediapipe]'"
-            ) from None
+        with _silent():
+            mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
+            from mediapipe.tasks.python import BaseOptions, vision
         options = vision.FaceLandmarkerOptions(
             base_options=BaseOptions(model_asset_path=str(model)), output_face_blendshapes=True
         )

@@ -10,15 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from risorius.app.cli.doctor import EXTRAS
+from risorius.app.errors import UserError, needed
+
 ROOT = Path(__file__).parents[2]
-EXTRAS = {
-    "window": ("glfw", "imgui_bundle", "miniaudio"),
-    "films": ("imageio_ffmpeg",),
-    "live": ("pythonosc",),
-    "export": ("h5py", "pxr"),
-    "passes": ("OpenEXR",),
-    "cluster": ("distributed",),
-}
 WITHOUT = f"""
 import sys
 class Missing:
@@ -26,39 +21,83 @@ class Missing:
         if name.partition(".")[0] in {sum(EXTRAS.values(), ())!r}:
             raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
 sys.meta_path.insert(0, Missing())
-from risorius.__main__ import run
-run()
+"""
+RUN = "from risorius.__main__ import run; run()"
+EVERY_HELP = """
+from click.testing import CliRunner
+from risorius.__main__ import command
+
+def ask(words, group):
+    ended = CliRunner().invoke(main, [*words, "--help"])
+    print(*words, ended.exit_code, "" if ended.exception is None else repr(ended.exception))
+    for name, each in getattr(group, "commands", {}).items():
+        ask([*words, name], each)
+
+main = command()
+ask([], main)
 """
 
 
-def plain(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
+def plain(*words: str, folder: Path, code: str = RUN) -> subprocess.CompletedProcess[str]:
     """The command as `pip install risorius` alone has it."""
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
-        [sys.executable, "-c", WITHOUT, *words],
-        cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=120,
+        [sys.executable, "-c", WITHOUT + code, *words],
+        cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
 
 
 def test_a_picture_needs_no_extra(tmp_path: Path) -> None:
-    """Nor does a folder of frames, nor help, nor a glTF file."""
+    """Nor does a glTF file."""
     small = ("--size", "64x48", "--quiet")
     for words in (
         ("capture", "--set", "joy", "-o", "joy.png", *small),
         ("export", "--set", "joy", "-o", "joy.glb", "--quiet"),
-        ("--help",),
     ):
         ended = plain(*words, folder=tmp_path)
         assert ended.returncode == 0, ended.stderr
     assert (tmp_path / "joy.png").exists() and (tmp_path / "joy.glb").exists()
 
 
+def test_help_needs_no_extra(tmp_path: Path) -> None:
+    """Of the command and of each below it."""
+    ended = plain(folder=tmp_path, code=EVERY_HELP)
+    assert ended.returncode == 0, ended.stderr
+    lines = [line.rstrip() for line in ended.stdout.splitlines()]
+    assert len(lines) > 25 and [line for line in lines if not line.endswith(" 0")] == ["0"]
+
+
+def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
+    """And what installs it; without extras there are pictures, neither films nor a window."""
+    ended = plain("doctor", folder=tmp_path)
+    assert ended.returncode == 1, ended.stderr
+    lines = dict(line.split(": ", 1) for line in ended.stdout.splitlines() if ": " in line)
+    assert lines["extras"] == f"none; for the others: pip install 'risorius[{','.join(EXTRAS)}]'"
+    assert lines["window"].startswith("no. the window needs imgui-bundle; install it")
+    assert lines["Missing"].startswith("window, films;")
+
+
+def test_a_library_that_does_not_load_is_not_called_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To install it again would not help: what it says is told."""
+    (tmp_path / "broken_library.py").write_text("raise ImportError('libGL.so.1: no such file')")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(UserError, match=r"but does not load: libGL\.so\.1: no such file"):
+        needed("broken_library", "the window", "window")
+
+
 @pytest.mark.parametrize(
     ("extra", "command"),
     [
         ("window", "view"),
+        ("window", "replay take.csv --quiet"),
+        ("window", "bench window"),
+        ("window", "bench live"),
+        ("films", "bench capture"),
         ("films", "capture --set joy -o joy.mp4 --size 64x48 --quiet"),
         ("live", "send take.csv --to vmc"),
+        ("live", "view --live vmc"),
         ("export", "export --set joy -o joy.usd --quiet"),
         ("passes", "capture --set joy -o joy.png --passes depth --size 64x48 --quiet"),
         ("cluster", "batch list.txt --scheduler tcp://127.0.0.1:9 --quiet"),

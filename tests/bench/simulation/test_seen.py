@@ -98,7 +98,8 @@ def test_without_mediapipe_one_line_says_so(
     result = risorius("bench", "seen", "--model", tmp_path / "model.task")
     assert result.exit_code == 2
     assert result.stderr == (
-        "risorius: MediaPipe is not installed; pip install 'risorius[mediapipe]'\n"
+        "risorius: the face tracker needs MediaPipe; install it: "
+        "pip install 'risorius[mediapipe]'\n"
     )
 
 
