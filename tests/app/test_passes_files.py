@@ -170,7 +170,7 @@ def test_a_missing_library_is_told_with_its_cure(
     picture = ("-o", tmp_path / "joy.png")
     result = risorius(*CAPTURE, "--set", "joy", "--passes", "depth", *picture)
     assert result.exit_code == 2
-    assert "--passes needs OpenEXR: pip install 'risorius[passes]'" in result.output
+    assert "--passes needs OpenEXR; install it: pip install 'risorius[passes]'" in result.output
     result = risorius(*CAPTURE, "--set", "joy", "--passes", "landmarks", *picture)
     assert result.exit_code == 0, result.output
 
