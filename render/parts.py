@@ -61,14 +61,14 @@ class PartBuffers:
         self.hair = getattr(part, "hair", 0.0)
         # What it is drawn with: a define of surface.glsl, or LOCKS for locks.glsl.
         self.kind = "HAIR" if self.hair else "RIGID"
-        # What stands out of the head has an outline of its own; the rest is seen before skin.
-        self.is_outlined = self.kind == "RIGID" and part.bone == "neck"
         self._more: npt.NDArray[np.float32] | None = None  # attributes that others have not
         self._layout: tuple[str, ...] = ("3f 3f 3f", "in_position", "in_normal", "in_colour")
         for name, (kind, layout, *attributes) in STRIPED.items():
             if (more := getattr(part, name, None)) is not None:
                 self.kind, self._more = kind, more
                 self._layout = (f"{self._layout[0]} {layout}", *self._layout[1:], *attributes)
+        # What stands out of the head has an outline of its own; the rest is seen before skin.
+        self.is_outlined = self.kind == "RIGID" and part.bone == "neck"
         columns = 9 if self._more is None else 9 + np.shape(self._more)[1]
         self._vertices = gl.buffer(reserve=4 * columns * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
