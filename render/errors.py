@@ -38,10 +38,11 @@ _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     ),
     (r"GLXBadFBConfig|version|WGL|NSGL|EGL", "the driver is older than OpenGL 3.3", _SOFTWARE),
     (
-        r"GLFW3 shared library|No module named 'glfw'",
+        r"GLFW3 shared library",
         "the GLFW library cannot be loaded",
-        "pip install 'risorius[window]'",
+        "pip install --force-reinstall glfw",
     ),
+    (r"No module named 'glfw'", "GLFW is not installed", "pip install 'risorius[window]'"),
 )
 
 _DRIVER_VARIABLES = (

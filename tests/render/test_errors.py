@@ -99,6 +99,7 @@ def test_no_screen_is_one_line_without_warnings() -> None:
         ("GLX: GLX extension not found", "Cure: apt install libgl1 libgl1-mesa-dri"),
         ("GLX: Failed to create context: GLXBadFBConfig", "Cure: set LIBGL_ALWAYS_SOFTWARE=1"),
         ("Failed to load GLFW3 shared library.", "Cure: pip install --force-reinstall glfw"),
+        ("No module named 'glfw'", "Cure: pip install 'risorius[window]'"),
         ("", 'failed ("no reason given"). Cure: `risorius doctor`'),
         ("something\nnew", 'failed ("something new"). Cure: `risorius doctor`'),
     ],
