@@ -97,6 +97,7 @@ test-processors: setup opengl screen
 
 check: setup
 	@$(BIN)/python tests/as_installed.py .venv/as_installed
+	@$(BIN)/python tests/budgets.py
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
