@@ -14,12 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import UserError
-from .easing import EASINGS
+from .easing import ALL_EASINGS
 
 Floats = npt.NDArray[np.float64]
-Easings = npt.NDArray[np.uint8]  # places in EASING_NAMES
-EASING_NAMES = tuple(EASINGS)
-_CURVES = tuple(EASINGS.values())
+Easings = npt.NDArray[np.uint16]  # places in EASING_NAMES
+EASING_NAMES = tuple(ALL_EASINGS)
+_CURVES = tuple(ALL_EASINGS.values())
 
 Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
@@ -58,7 +58,7 @@ class Channel:
         for name, part, kind in (
             ("times", times, np.float64),
             ("values", values, np.float64),
-            ("easings", easings, np.uint8),
+            ("easings", easings, np.uint16),
         ):
             own = np.asarray(part, kind)
             if own.flags.writeable:  # somebody else might write it
@@ -97,10 +97,10 @@ class Channel:
     __hash__ = None  # type: ignore[assignment]
 
     @functools.cached_property
-    def _parts(self) -> tuple[array[float], array[float], bytes]:
+    def _parts(self) -> tuple[array[float], array[float], array[int]]:
         """The same numbers in sequences of Python's own, which are quicker to look into."""
-        times, values = self.times.tobytes(), self.values.tobytes()
-        return array("d", times), array("d", values), self.easings.tobytes()
+        times, values = array("d", self.times.tobytes()), array("d", self.values.tobytes())
+        return times, values, array("H", self.easings.tobytes())
 
     @functools.cached_property
     def lines(self) -> str:
@@ -259,7 +259,7 @@ class Script:
         if self.poses:
             before, after, share = _between(self._pose_times, time)
             previous, following = self.poses[before], self.poses[after]
-            share = EASINGS[following.easing](share)
+            share = ALL_EASINGS[following.easing](share)
             for name in {**previous.values, **following.values}:
                 start = previous.values.get(name, 0.0)
                 values[name] = start + (following.values.get(name, 0.0) - start) * share

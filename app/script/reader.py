@@ -18,7 +18,7 @@ import numpy as np
 from ..errors import UserError, in_one_line
 from ..files import read_text
 from .bounds import LONGEST_FILE, excess_in
-from .easing import EASINGS
+from .easing import ALL_EASINGS, ALLOWED
 from .model import EASING_NAMES, Channel, Key, Pose, Script
 
 SOON_READ = 2**20  # [bytes]; a longer script is said to be read
@@ -130,8 +130,8 @@ class _Reader:
     def easing(self, table: Mapping[str, Any], *, where: str) -> str:
         """The name of an easing that there is."""
         value = table.get("easing", "smooth")
-        if not isinstance(value, str) or value not in EASINGS:
-            raise self.fail(f"{where}: easing {value!r}; allowed are {', '.join(EASINGS)}")
+        if not isinstance(value, str) or value not in ALL_EASINGS:
+            raise self.fail(f"{where}: easing {value!r}; allowed are {ALLOWED}")
         return str(value)
 
     def time(self, table: Mapping[str, Any], previous: float | None, *, where: str) -> float:
@@ -198,7 +198,7 @@ class _Reader:
 
         A take has half a million of them: numbers are put into arrays, and checked there.
         """
-        times, values, easings = array("d"), array("d"), array("B")
+        times, values, easings = array("d"), array("d"), array("H")
         for number, words in enumerate(filter(None, map(str.split, io.StringIO(text))), start=1):
             try:
                 time, value, easing = words if len(words) == 3 else (*words, "linear")
@@ -208,7 +208,7 @@ class _Reader:
             except ValueError:
                 raise self.fail(
                     f"track '{name}', key {number}: {' '.join(words)!r} must be a time, a value "
-                    f"and perhaps an easing: {', '.join(EASINGS)}"
+                    f"and perhaps an easing: {ALLOWED}"
                 ) from None
         channel = Channel(times, values, easings)
         is_wrong = ~(np.abs(channel.values) <= LARGEST) | ~(channel.times <= LARGEST)

@@ -24,7 +24,7 @@ from risorius.app.script import (
     save_script,
     script_text,
 )
-from risorius.app.script.easing import EASINGS
+from risorius.app.script.easing import ALL_EASINGS, EASINGS, SLOPES, sloped
 
 HELLO = """
 title = "Hello"
@@ -55,12 +55,6 @@ def test_poses_and_tracks_add_up() -> None:
     assert [(pose.time, pose.name) for pose in script.key_poses] == [(2.0, "top")]
 
 
-def test_before_the_first_key() -> None:
-    """A channel keeps its first value before its first key."""
-    script = parse_script("[tracks]\njoy = [{time = 2, value = 0.5}]", source="s")
-    assert script.at(0.0) == {"joy": 0.5}
-
-
 def test_lines_are_keys_as_tables_are() -> None:
     """A track of lines and one of tables mean the same; only the default easing differs."""
     lines = parse_script("[tracks]\njoy = '''\n0 0.5\n 1.5  1 hold\n\n2 -0\n'''", source="s")
@@ -81,7 +75,9 @@ def channels(draw: st.DrawFn) -> Channel:
     )
     size = {"min_size": len(times), "max_size": len(times)}
     values = draw(st.lists(st.floats(-LARGEST, LARGEST), **size))
-    easings = draw(st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*EASINGS]), **size))
+    easings = draw(
+        st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*ALL_EASINGS]), **size)
+    )
     return Channel.of(map(Key, times, values, easings))
 
 
@@ -104,7 +100,9 @@ def test_a_channel_has_the_values_of_its_keys(channel: Channel, data: st.DataObj
     before = [key for key in keys if key.time <= time][-1:] or keys[:1]
     after = [key for key in keys if key.time > time][:1] or before
     share = (time - before[0].time) / (after[0].time - before[0].time or 1.0)
-    way = (after[0].value - before[0].value) * EASINGS[after[0].easing](min(max(share, 0.0), 1.0))
+    way = (after[0].value - before[0].value) * ALL_EASINGS[after[0].easing](
+        min(max(share, 0.0), 1.0)
+    )
     assert channel.value(time) == before[0].value + (way if before[0].time <= time else 0.0)
 
 
@@ -143,13 +141,35 @@ def test_nobody_can_change_the_keys_of_a_channel() -> None:
             part[0] = 1
 
 
-@given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(EASINGS)))
+@given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(ALL_EASINGS)))
 def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
     """Every easing goes from 0 to 1 and never leaves that range."""
-    ease = EASINGS[name]
+    ease = ALL_EASINGS[name]
     assert ease(0.0) == 0.0
     assert ease(1.0) == 1.0
-    assert 0.0 <= ease(fraction) <= 1.0
+    assert -1e-12 <= ease(fraction) <= 1.0 + 1e-12
+
+
+@pytest.mark.parametrize("name", sorted(EASINGS.keys() & SLOPES.keys()))
+def test_names_are_slopes(name: str) -> None:
+    """An easing with a name is the curve with the slopes that its handles have in the window."""
+    shares = np.linspace(0.0, 1.0, 9)
+    assert sloped(*SLOPES[name])(shares) == pytest.approx(EASINGS[name](shares), abs=1e-12)
+
+
+def test_free_slopes_are_read_and_written() -> None:
+    """Of poses, of tables and of lines; the curve leaves and arrives as steep as they say."""
+    script = parse_script(
+        "[[pose]]\ntime=0\n[[pose]]\ntime=1\njoy=1\neasing='0.5,2'\n[tracks]\n"
+        "blink=[{time=0,value=0},{time=2,value=1,easing='3,0.1'}]\nAU4='''0 0\n2 1 0,1.5'''",
+        source="t",
+    )
+    step = 1e-6
+    assert script.at(step)["joy"] / step == pytest.approx(0.5, abs=1e-4)
+    assert (1.0 - script.at(1.0 - step)["joy"]) / step == pytest.approx(2.0, abs=1e-4)
+    assert script.at(step)["blink"] / step == pytest.approx(1.5, abs=1e-4)
+    assert (1.0 - script.at(2.0 - step)["AU4"]) / step == pytest.approx(0.75, abs=1e-4)
+    assert parse_script(script_text(script), source="t") == script
 
 
 @pytest.mark.parametrize(
@@ -173,6 +193,7 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
         ("[[pose]]\ntime=1\neasing='x'", r"pose 1: easing 'x'; allowed are linear, smooth"),
         ("[[pose]]\ntime=1\njoy=true", r"pose 1: 'joy' is True; it must be a number"),
         ("[[pose]]\ntime=0", r"duration is 0 s; it must be above 0: write duration = 1.0, or"),
+        ("[[pose]]\ntime=1\neasing='1,3.1'", r"easing '1,3.1'; .* or two slopes from 0 to 3"),
         ("[[pose]]\ntime=1\neasing=['a']", r"pose 1: easing \['a'\]; allowed are"),
         ("[[pose]]\ntime=1" + 400 * "0", r"pose 1: 'time' must lie between -86400 and 86400"),
         ("duration=1\n[[pose]]\ntime=2\nname='x'", r"pose 'x' at 2 s comes after the duration"),
@@ -333,11 +354,3 @@ def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="longer than can be read again, 32 MB"):
         save_script(path, script)
     assert path.read_text() == "before"
-
-
-def test_an_outline_is_worked_out_once() -> None:
-    """Whoever draws the same curve in each frame is given the same points."""
-    channel = Channel(np.arange(1000.0), np.sin(np.arange(1000.0)), "linear")
-    first = channel.outline(0.0, 900.0, 100)
-    assert channel.outline(0.0, 900.0, 100) is first
-    assert channel.outline(0.0, 800.0, 100) is not first

@@ -49,7 +49,7 @@ SNAP = 0.4  # [em] beside a key of another track that draws a dragged one there
 class Drag:
     """What the mouse holds on to."""
 
-    doing: str  # keys, box, scrub, end, pan
+    doing: str  # keys, box, scrub, end, pan, slope
     began: tuple[float, float]  # [window units]
     script: Script  # as it was then
     selected: Places  # then
@@ -209,7 +209,7 @@ class DopeSheet:
     def _hover(self, io: Any, left: float) -> None:
         """The mouse is over rows or curves and holds nothing yet."""
         selection, axis, (x, y) = self.selection, self.axis, io.mouse_pos
-        row, hit, under = self._row_at(y), None, NOWHERE
+        row, hit, under, graph = self._row_at(y), None, NOWHERE, self.graph
         track = self.rows[row] if 0 <= row < len(self.rows) else None
         if x < left + self._gutter:
             if track is not None:
@@ -221,15 +221,20 @@ class DopeSheet:
             imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
             return
         if self.settings.shows_curves:
-            hit = self.graph.at(x, y)
+            graph.handle = graph.handle_at(x, y)
+            hit = None if graph.handle else graph.at(x, y)
             under = hit.key if hit else NOWHERE
         elif track is not None:
             under = track.places.near(axis.time(x), axis.seconds(em(REACH)))
         line = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
         if (under or line) and not imgui.is_mouse_down(LEFT):
             imgui.set_tooltip(described(self._session.script, under) if under else line)
-        if imgui.is_mouse_clicked(LEFT):
-            self.graph.held = hit
+        if self.settings.shows_curves and graph.handle is not None:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ns)
+            if imgui.is_mouse_clicked(LEFT):
+                self._begin("slope", io)
+        elif imgui.is_mouse_clicked(LEFT):
+            graph.held = hit
             is_dense = hit is None and track is not None and self._are_dense.get(track.name, False)
             self._press(io, under, is_dense=is_dense)
         elif imgui.is_mouse_clicked(RIGHT):
@@ -302,10 +307,11 @@ class DopeSheet:
                 keyframes.lasting(drag.script, axis.time(x)), is_done=False
             ),
             "pan": lambda: self.graph.scroll(*io.mouse_delta),
+            "slope": lambda: self._bend(y, drag),
         }
         if drag.has_moved or drag.doing in ("scrub", "pan"):
             self._messages.attempt(act[drag.doing])
-        if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
+        if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end", "slope"):
             self._drag = None
             self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
             self.selection.places = drag.selected
@@ -343,6 +349,13 @@ class DopeSheet:
         self.selection.places = places
         imgui.set_tooltip(line)
 
+    def _bend(self, y: float, drag: Drag) -> None:
+        assert self.graph.handle is not None
+        easing = self.graph.bent(self.graph.handle, y)
+        script = keyframes.eased(drag.script, self.graph.handle.key, easing)
+        self._session.edit(script, is_done=False)
+        imgui.set_tooltip(f"slopes {easing}")
+
     def _select_box(self, io: Any, drag: Drag) -> None:
         corner, inside = (io.mouse_pos.x, io.mouse_pos.y), NOWHERE
         if self.settings.shows_curves:
@@ -370,4 +383,6 @@ class DopeSheet:
         if drag.doing in ("keys", "end") and drag.has_moved:
             keys = counted(len(drag.selected), "key")
             session.note(f"Move {keys if drag.doing == 'keys' else 'the end'}")
+        elif drag.doing == "slope" and drag.has_moved:
+            session.note("Drag a handle")
         return line
