@@ -64,7 +64,7 @@ def line_for(error: Exception) -> str | None:
 
 
 @contextlib.contextmanager
-def told_in_one_line() -> Iterator[None]:
+def report_user_errors() -> Iterator[None]:
     """Turn what the user can mend into one line on the error stream and exit code 2."""
     try:
         yield

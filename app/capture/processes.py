@@ -118,7 +118,7 @@ def _next_of(drawer: Child) -> Frame | None:
         logging.getLogger(COMPILER).handle(found)
 
 
-class _Teller(logging.handlers.QueueHandler):
+class _LogForwarder(logging.handlers.QueueHandler):
     """Has the process that asked say what is compiled here."""
 
     queue: Queue[object]
@@ -139,7 +139,7 @@ def serve() -> None:
     room = max(int(AHEAD / (4 * width * height)), 2)
     drawn: Queue[object] = Queue(room)
     log = logging.getLogger(COMPILER)
-    log.addHandler(_Teller(drawn))
+    log.addHandler(_LogForwarder(drawn))
     log.setLevel(logging.INFO)
     log.propagate = False
 

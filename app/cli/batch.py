@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 import io
 import os
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -19,10 +18,10 @@ from tqdm import tqdm
 from ..batch.journal import Journal
 from ..batch.listing import Job, clashes, lines_of, words_of
 from ..errors import UserError, counted, in_one_line
-from ..files import cannot_be_written, check_apart
+from ..files import cannot_be_written, check_apart, check_folder
 from ..recordings.playback import Playback
 from ..stopping import cleaned_up_if_stopped
-from .options import PATH
+from .options import PATH, SILENT
 
 LISTED = ("capture", "export", "convert")  # commands that a line may hold
 OUTPUTS = ("output", "sheet")  # how their parameters for what they write are called
@@ -43,22 +42,14 @@ MOST_TOLD = 20  # lines that are wrong
     help="Leave out lines whose outputs are there and would come out the same.",
 )
 @click.option(
-    "--retries",
-    type=click.IntRange(0, 10),
-    default=2,
-    show_default=True,
-    help="How often a line is tried again whose process died.",
-)
-@click.option(
     "--logs", type=PATH, help="A folder for what lines print; LIST_logs beside LIST unless told."
 )
-@click.option("--quiet", is_flag=True, help="No progress bar.")
+@SILENT
 def batch(
     listing: Path,
     jobs: int | None,
     scheduler: str | None,
     resume: bool,
-    retries: int,
     logs: Path | None,
     quiet: bool,
 ) -> None:
@@ -68,8 +59,7 @@ def batch(
     capture, export and convert; those that begin with # hold nothing. Relative paths begin
     where you stand. All lines are checked before the first is begun.
     """
-    from ..batch.running import FAILED, run_lines
-    from ..batch.summary import save_summary, table
+    from ..batch.running import FAILED, run_lines, save_summary, table
     from ..workers.child import cores
 
     if jobs is not None and scheduler is not None:
@@ -87,7 +77,6 @@ def batch(
         logs,
         processes=jobs or cores(),
         scheduler=scheduler,
-        retries=retries,
         resume=resume,
     )
     with tqdm(total=len(listed), unit="line", disable=quiet or None) as bar:
@@ -134,42 +123,16 @@ def jobs_in(listing: Path, journal: Journal) -> list[Job]:
 def _job(number: int, text: str, journal: Journal) -> Job:
     """What a line asks for. Raises UserError, or click's errors, for what cannot be done."""
     name, *arguments = words_of(text)
-    if name not in LISTED:
-        raise UserError(f"'{name}' is no command of a list; allowed are {', '.join(LISTED)}")
-    parent = click.get_current_context().parent
-    assert parent is not None and isinstance(parent.command, click.Group)
-    command = parent.command.commands[name]
-    with contextlib.redirect_stdout(io.StringIO()):  # of --help
-        try:
-            given = command.make_context(f"risorius {name}", list(arguments)).params
-        except click.exceptions.Exit:
-            raise UserError("it writes nothing") from None
+    command = _listed(name)
+    given = _parsed(command, arguments)
     outputs = [given[key] for key in OUTPUTS if given.get(key) is not None]
-    if not outputs:
-        raise UserError("it writes nothing: give -o OUTPUT")
     inputs = [
         value for key, value in given.items() if isinstance(value, Path) and key not in OUTPUTS
     ]
-    for path in inputs:
-        if not path.exists():
-            raise UserError(f"{path}: there is no such file")
-    check_apart(outputs, inputs)
-    if given.get("head") is not None:
-        _check_head(given["head"], given["landmarks"])
-    if name == "capture" and given["output"] is not None:
-        from ..capture.formats import check_name
-
-        check_name(given["output"])
+    _check_files(name, given, inputs, outputs)
     beside = _beside(name, given)
-    if "overwrite" in given and not given["overwrite"]:
-        for path in beside if name == "export" and not outputs[0].exists() else ():
-            if os.path.lexists(path) and not journal.began(outputs[0].absolute()):
-                raise UserError(f"{path}: is there; choose another name, or add --overwrite")
-        for path in outputs:
-            if path.is_dir() and any(path.iterdir()) and not journal.began(path.absolute()):
-                raise UserError(
-                    f"{path}: is there and not empty; name another folder, or add --overwrite"
-                )
+    if given.get("overwrite") is False:
+        _check_free(name, outputs, beside, journal)
         arguments.insert(0, "--overwrite")  # what is there then, an attempt before has left
     assert command.callback is not None
     return Job(
@@ -184,17 +147,50 @@ def _job(number: int, text: str, journal: Journal) -> Job:
     )
 
 
-@functools.cache  # many lines may show one head
-def _check_head(head: Path, landmarks: Path | None) -> None:
-    """Raise UserError where a head of the user's own cannot be fitted."""
-    from risorius.assets import AssetError, fitting  # slow, and seldom needed
+def _listed(name: str) -> click.Command:
+    """The command of this name; UserError unless a line may hold it."""
+    if name not in LISTED:
+        raise UserError(f"'{name}' is no command of a list; allowed are {', '.join(LISTED)}")
+    parent = click.get_current_context().parent
+    assert parent is not None and isinstance(parent.command, click.Group)
+    return parent.command.commands[name]
 
-    if landmarks is None:
-        raise UserError("--head HEAD.obj and --landmarks LANDMARKS.json go together")
-    try:
-        fitting.fit_head(head, landmarks)
-    except AssetError as error:
-        raise UserError(str(error)) from None
+
+def _parsed(command: click.Command, arguments: Sequence[str]) -> dict[str, Any]:
+    """What click makes of the arguments, by the names of parameters."""
+    with contextlib.redirect_stdout(io.StringIO()):  # of --help
+        try:
+            return command.make_context(f"risorius {command.name}", list(arguments)).params
+        except click.exceptions.Exit:
+            raise UserError("it writes nothing") from None
+
+
+def _check_files(
+    name: str, given: dict[str, Any], inputs: Sequence[Path], outputs: Sequence[Path]
+) -> None:
+    """UserError for files that are not there, or of no use, and for outputs that cannot be."""
+    if not outputs:
+        raise UserError("it writes nothing: give -o OUTPUT")
+    for path in inputs:
+        if not path.exists():
+            raise UserError(f"{path}: there is no such file")
+    check_apart(outputs, inputs)
+    if name == "capture" and given["output"] is not None:
+        from ..capture.formats import check_name
+
+        check_name(given["output"])
+
+
+def _check_free(
+    name: str, outputs: Sequence[Path], beside: Sequence[Path], journal: Journal
+) -> None:
+    """UserError where something is in the place of outputs that no batch has put there."""
+    for path in beside if name == "export" and not outputs[0].exists() else ():
+        if os.path.lexists(path) and not journal.began(outputs[0].absolute()):
+            raise UserError(f"{path}: is there; choose another name, or add --overwrite")
+    for path in outputs:
+        if not journal.began(path.absolute()) and path.is_dir():
+            check_folder(path, overwrite=False)
 
 
 def _beside(name: str, given: dict[str, Any]) -> list[Path]:

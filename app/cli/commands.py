@@ -6,34 +6,33 @@ What needs OpenGL or compiled code is imported inside the commands, so that --he
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from ..errors import UserError, counted, in_one_line
-from ..live import LOOPBACK, PROTOCOLS
+from ..live import LOOPBACK, PROTOCOLS, Listening
 from ..recordings.playback import Playback
-from ..refining.looks import STATIC, Refinement
 from .batch import batch
+from .capture import capture, demo
 from .dataset import dataset
-from .dissecting import dissection_of
 from .export import export
-from .live import Live, port_option, with_live
 from .options import (
     PATH,
     QUIET,
     SCENE_NAMES,
+    SILENT,
     SOUND,
     Drawing,
-    Filming,
     mapping_table,
+    packed,
+    played,
     told,
-    told_size,
     with_drawing,
-    with_filming,
     with_playback,
 )
 from .parameters import Size
@@ -41,81 +40,54 @@ from .parameters import Size
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
 
-    from ..live import Listening
     from ..script import Script
 
 
-@click.command()
-@click.argument("script", type=PATH, required=False)
-@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT.")
-@click.option(
-    "-o", "--output", type=PATH, help="out.mp4, .mov, .webm, .gif, .webp, a folder, or .png"
+@dataclass(frozen=True)
+class Live:
+    """What a window is told of a face that is sent to it."""
+
+    live: str | None
+    port: int | None
+    address: str
+
+    def listening(self, playback: Playback) -> Listening | None:
+        """Where to listen, None for nowhere; UserError for what does not go together.
+
+        playback: its mapping, gains and mirror are those of the live face.
+        """
+        if self.live is None:
+            source = click.get_current_context().get_parameter_source
+            for name in ("port", "address"):
+                if source(name) is not ParameterSource.DEFAULT:
+                    raise UserError(f"--{name} goes with --live, which says what is listened to")
+            return None
+        PROTOCOLS[self.live].check()
+        return Listening(
+            self.live,
+            self.address,
+            self.port,
+            playback.mapping,
+            playback.gains,
+            playback.mirror,
+        )
+
+
+port_option = click.option(
+    "--port", type=click.IntRange(1, 65535), help="Unless told, the protocol's own."
 )
-@click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
-@click.option("--scene", type=SCENE_NAMES, help="What is animated.")
-@SOUND
-@with_filming
-@with_playback
-@with_drawing
-def capture(
-    script: Path | None,
-    settings: tuple[str, ...],
-    output: Path | None,
-    sheet: Path | None,
-    scene: str | None,
-    sound: Path | None,
-    filming: Filming,
-    playback: Playback,
-    drawing: Drawing,
-) -> None:
-    """Draw SCRIPT as a film, frames, a picture or a contact sheet.
-
-    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... Without SCRIPT
-    the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
-    """
-    from ..capture import CaptureOptions
-    from ..capture import capture as film_of
-    from ..capture.formats import HEARD
-    from ..files import check_apart
-    from ..passes.files import beside
-    from ..refining.refiners import parse_comparison
-
-    written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
-    check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
-    if sound is not None and (output is None or output.suffix.lower() not in HEARD):
-        raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
-    performance = _played(script, scene, sound, playback, settings, quiet=filming.quiet)
-    refinement = drawing.refinement()
-    refinement.check(performance.scene)
-    options = CaptureOptions(
-        size=filming.size,
-        frames_per_second=filming.fps,
-        refinement=refinement,
-        beside=parse_comparison(filming.compare, refinement),
-        captions=filming.captions,
-        camera=filming.camera or performance.camera,
-        is_turntable=filming.turntable,
-        span=filming.span,
-        style=replace(drawing.style(), background=filming.background),
-        dissection=dissection_of(drawing),
-        samples=filming.samples,
-        head=drawing.fitted_head(),
-        is_alive=filming.alive,
-        passes=() if filming.passes is None else tuple(filming.passes.split(",")),
-    )
-    most = film_of(
-        performance,
-        options,
-        output=output,
-        sheet=sheet,
-        time=filming.still_time,
-        overwrite=filming.overwrite,
-        progress=not filming.quiet,
-    )
-    made = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
-    click.echo(f"{made}: {most} triangles at most")
-    if output is not None and not filming.quiet:
-        told_size(output, options)
+with_live = packed(
+    "live",
+    Live,
+    click.option("--live", type=click.Choice(list(PROTOCOLS)), help="Follow a face that is sent."),
+    port_option,
+    click.option(
+        "--address",
+        default=LOOPBACK,
+        show_default=True,
+        help="Of this computer, on which to listen; 0.0.0.0 for its whole network.",
+    ),
+)
 
 
 @click.command()
@@ -149,7 +121,7 @@ def view(
     is_bare = drawing.head is not None and drawing.landmarks is None and drawing.person is None
     mesh = drawing.head if is_bare else None
     is_plain = (script, scene, sound, playback) == (None, None, None, Playback())
-    performance = None if is_plain else _played(script, scene, sound, playback, quiet=quiet)
+    performance = None if is_plain else played(script, scene, sound, playback, quiet=quiet)
     open_window(performance, size, drawing, listening=listening, mesh=mesh)
 
 
@@ -202,7 +174,7 @@ def replay(
     drawing: Drawing,
 ) -> None:
     """Play SCRIPT, or a recording of a face, in the window."""
-    performance = _played(script, None, sound, playback, quiet=quiet)
+    performance = played(script, None, sound, playback, quiet=quiet)
     open_window(performance, size, drawing, playing=True, once=once)
 
 
@@ -236,24 +208,6 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
         click.echo(f"{in_one_line(output)}: {what}")
 
 
-def _played(
-    script: Path | None,
-    scene: str | None,
-    sound: Path | None,
-    playback: Playback,
-    settings: tuple[str, ...] = (),
-    *,
-    quiet: bool,
-) -> Script:
-    """What is played, with its sound; what there is to say of it is said, unless `quiet`."""
-    from ..performances import script_for
-    from ..sound import with_sound
-
-    tell = None if quiet else told
-    performance = script_for(script, scene, settings, playback=playback, tell=tell)
-    return with_sound(performance, sound)
-
-
 def open_window(
     performance: Script | None,
     size: tuple[int, int] | None,
@@ -272,7 +226,7 @@ def open_window(
 
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
-        script = performance or _played(None, None, None, Playback(), quiet=True)
+        script = performance or played(None, None, None, Playback(), quiet=True)
         head = drawing.fitted_head() if mesh is None else None
         import risorius.app.viewer.window  # noqa: F401
 
@@ -282,7 +236,7 @@ def open_window(
         from ..viewer.live_commands import check_scene
 
         check_scene(performance.scene)
-    told_of = (drawing.refinement(), dissection_of(drawing)) if drawing.is_told else None
+    told_of = (drawing.refinement(), drawing.dissection()) if drawing.is_told else None
     if told_of is not None:
         told_of[0].check("face" if performance is None else performance.scene)
     if mesh is None:
@@ -308,23 +262,6 @@ def open_window(
             if mesh is not None:
                 viewer.mark(mesh)
             viewer.run(playing=playing, once=once)
-
-
-@click.command()
-def demo() -> None:
-    """Draw the built-in head in its expressions.
-
-    Writes out/demo.mp4 and out/demo.png.
-    """
-    from ..capture import CaptureOptions
-    from ..capture import capture as film_of
-    from ..performances import script_for
-
-    script = script_for(None, "face")
-    options = CaptureOptions(beside=(Refinement(refiner=STATIC),), camera=script.camera)
-    film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
-    most = film_of(script, options, output=film, sheet=sheet)
-    click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")
 
 
 @click.command()
@@ -363,7 +300,7 @@ def doctor(offscreen: bool, quiet: bool) -> None:
 
 
 @click.command()
-@click.option("--quiet", is_flag=True, help="No progress bar.")
+@SILENT
 def warm(quiet: bool) -> None:
     """Compile everything once, so that no later start has to."""
     from .compiling import warm as compile_all

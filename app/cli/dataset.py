@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from ..errors import counted, in_one_line
-from .options import PATH
+from .options import PATH, SILENT
 from .parameters import Size
 
 MOST = 1_000_000  # samples; their names have six digits
@@ -61,7 +61,7 @@ def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool)
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes."
 )
 @click.option("--resume", is_flag=True, help="Go on with a set, or make it larger.")
-@click.option("--quiet", is_flag=True, help="No progress bar.")
+@SILENT
 @click.option(
     "--sample-table",
     is_flag=True,

@@ -11,8 +11,19 @@ from ..errors import in_one_line
 from ..export.formats import RIGS, Request, check_request, format_for, names
 from ..export.formats import export as write
 from ..recordings.playback import Playback
-from .options import PATH, SCENE_NAMES, Subject, packed, told, with_playback, with_subject
-from .parameters import FiniteRange
+from .options import (
+    FPS,
+    PATH,
+    SCENE,
+    SCRIPT,
+    SETTINGS,
+    SILENT,
+    Subject,
+    packed,
+    told,
+    with_playback,
+    with_subject,
+)
 
 
 @dataclass(frozen=True)
@@ -37,13 +48,7 @@ with_exporting = packed(
         help="The format, where a suffix does not tell: obj is a folder of one file a frame; "
         "of a .csv, arkit is meant unless told.",
     ),
-    click.option(
-        "--fps",
-        type=FiniteRange(1, 240),
-        default=30.0,
-        show_default=True,
-        help="Frames a second.",
-    ),
+    FPS,
     click.option(
         "--refined",
         is_flag=True,
@@ -58,15 +63,15 @@ with_exporting = packed(
     click.option(
         "--overwrite", is_flag=True, help="Replace frames in a folder, or files beside -o."
     ),
-    click.option("--quiet", is_flag=True, help="No progress bar."),
+    SILENT,
 )
 
 
 @click.command()
-@click.argument("script", type=PATH, required=False)
-@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT.")
+@SCRIPT
+@SETTINGS
 @click.option("-o", "--output", type=PATH, required=True, help="A file, or a folder with --as.")
-@click.option("--scene", type=SCENE_NAMES, help="What is animated.")
+@SCENE
 @with_exporting
 @with_playback
 @with_subject

@@ -13,16 +13,16 @@ from click.core import ParameterSource
 
 from ..errors import UserError
 from ..recordings.playback import LEAD, Playback
-from ..refining.looks import FIRST_LOOK, LOOKS, STATIC, Refinement
-from .dissecting import DISSECTING, DISSECTION_OPTIONS
-from .parameters import BackgroundName, FiniteRange, PersonName, Size, looks_from, refiners_from
+from ..refining.looks import FIRST_LOOK, LOOKS, Refinement
+from .parameters import FiniteRange, PersonName
 
 if TYPE_CHECKING:
     from risorius import render
     from risorius.assets.fitting import FittedHead
 
-    from ..capture import CaptureOptions
+    from ..anatomy import Dissection
     from ..recordings.report import Report
+    from ..script import Script
 
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
@@ -30,7 +30,16 @@ SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
 SOUND = click.option(
     "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
 )
+SILENT = click.option("--quiet", is_flag=True, help="No progress bar.")
+FPS = click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True)
+SCRIPT = click.argument("script", type=PATH, required=False)
+SETTINGS = click.option(
+    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT."
+)
+SCENE = click.option("--scene", type=SCENE_NAMES, help="What is animated.")
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
+SOLIDS = ("muscles", "skull")  # anatomy.SOLIDS, not imported yet
+DISSECTION_OPTIONS = ("anatomy", "skin_opacity", "dissect")
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles", "light")
 
 
@@ -136,6 +145,25 @@ class Drawing(Subject):
             light=render.LIGHTS[self.light],
         )
 
+    def dissection(self) -> Dissection:
+        """What is seen under the skin; UserError for what is not there."""
+        from ..anatomy import OPACITY, Dissection
+
+        if self.anatomy is None:
+            for name in ("skin_opacity", "dissect"):
+                if getattr(self, name) is not None:
+                    option = name.replace("_", "-")
+                    raise UserError(
+                        f"--{option} goes with --anatomy, which says what is under the skin"
+                    )
+            return Dissection()
+        names = self.anatomy.split(",")
+        for name in names:
+            if name not in SOLIDS:
+                raise UserError(f"--anatomy: '{name}' is not there; it takes {', '.join(SOLIDS)}")
+        opacity = OPACITY if self.skin_opacity is None else self.skin_opacity
+        return Dissection(tuple(names), opacity, self.dissect or "both")
+
 
 HEAD = (
     click.option("--head", type=PATH, help="A head of your own: any triangle mesh."),
@@ -144,6 +172,25 @@ HEAD = (
         "--person",
         type=PersonName(),
         help="Another person than the built-in head: for each number one, and some by name.",
+    ),
+)
+DISSECTING = (
+    click.option(
+        "--dissect",
+        type=click.Choice(["both", "left", "right"]),
+        help="With --anatomy: the subject's side whose skin is translucent; both unless told.",
+    ),
+    click.option(
+        "--skin-opacity",
+        type=FiniteRange(0, 1),
+        help="With --anatomy: how much of the skin is seen, 0.25 unless told; 0: none.",
+    ),
+    click.option(
+        "--anatomy",
+        is_flag=False,
+        flag_value=",".join(SOLIDS),
+        metavar="[NAME,...]",
+        help="Draw muscles, skull or both under translucent skin.",
     ),
 )
 STYLE = (
@@ -189,7 +236,6 @@ REFINING = (
     click.option(
         "--refiner",
         metavar="NAME",
-        shell_complete=refiners_from,
         help="Refine plug-in, unless that of the look (risorius doctor lists them); none draws the "
         "mesh as it is.",
     ),
@@ -203,79 +249,6 @@ REFINING = (
 )
 with_subject = packed("subject", Subject, *HEAD, *REFINING)
 with_drawing = packed("drawing", Drawing, *HEAD, *DISSECTING, *STYLE, *REFINING)
-
-
-@dataclass(frozen=True)
-class Filming:
-    """What capture alone is told."""
-
-    size: tuple[int, int]
-    fps: float
-    compare: str | None
-    captions: bool
-    camera: str | None
-    turntable: bool
-    span: tuple[float, float] | None
-    background: render.Background | None
-    passes: str | None
-    alive: bool
-    still_time: float | None
-    samples: int
-    overwrite: bool
-    quiet: bool
-
-
-with_filming = packed(
-    "filming",
-    Filming,
-    click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told."),
-    click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True),
-    click.option(
-        "--compare",
-        shell_complete=looks_from,
-        is_flag=False,
-        flag_value=STATIC,
-        metavar="[NAME,...]",
-        help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
-    ),
-    click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
-    click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
-    click.option("--turntable", is_flag=True, help="The camera goes round once."),
-    click.option(
-        "--range",
-        "span",
-        type=FiniteRange(0, 86_400),
-        nargs=2,
-        metavar="FROM TO",
-        help="The part of the script that is seen [s].",
-    ),
-    click.option(
-        "--background",
-        type=BackgroundName(),
-        default="light",
-        help="light, dark, white, black, a colour as #00b140, or transparent.",
-    ),
-    click.option(
-        "--passes",
-        metavar="NAME,...",
-        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
-        "landmarks.",
-    ),
-    click.option(
-        "--alive",
-        is_flag=True,
-        help="What the script leaves alone lives: eyes blink and look at the camera.",
-    ),
-    click.option(
-        "--time",
-        "still_time",
-        type=FiniteRange(0, 86_400),
-        help="When a .png is taken [s]: else in the first named pose, or at the end.",
-    ),
-    click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True),
-    click.option("--overwrite", is_flag=True, help="Replace the frames in a folder."),
-    click.option("--quiet", is_flag=True, help="No progress bar."),
-)
 
 
 with_playback = packed(
@@ -320,16 +293,22 @@ def told(report: Report) -> None:
         click.echo(line, err=True)
 
 
-def told_size(output: Path, options: CaptureOptions) -> None:
-    """Say where a film is larger than was asked for."""
-    from ..capture.formats import size_of_film
+def played(
+    script: Path | None,
+    scene: str | None,
+    sound: Path | None,
+    playback: Playback,
+    settings: tuple[str, ...] = (),
+    *,
+    quiet: bool,
+) -> Script:
+    """What is played, with its sound; what there is to say of it is said, unless `quiet`."""
+    from ..performances import script_for
+    from ..sound import with_sound
 
-    width, height = size_of_film(output, options.size, is_transparent=options.is_transparent)
-    if (width, height) != options.size:
-        click.echo(
-            f"The film has {width}x{height} pixels, the last row or column twice: films of this "
-            "kind have even sizes."
-        )
+    tell = None if quiet else told
+    performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    return with_sound(performance, sound)
 
 
 def _write_mapping_table(context: click.Context, _: click.Parameter, asked: bool) -> None:

@@ -1,4 +1,4 @@
-"""Kinds of parameters of the command line: sizes of pictures, numbers, names that a shell knows."""
+"""Kinds of parameters of the command line: sizes of pictures, numbers, names."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ import re
 from typing import TYPE_CHECKING, Any
 
 import click
-
-from ..refining.looks import LOOKS
 
 if TYPE_CHECKING:
     from risorius import render
@@ -76,22 +74,6 @@ class FiniteRange(click.FloatRange):
         if not math.isfinite(number):
             self.fail(f"{value} is not a finite number", param, ctx)
         return number
-
-
-def refiners_from(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
-    """What a shell offers for the name of a refiner."""
-    from risorius import refine
-
-    return [name for name in refine.available() if name.startswith(begun)]
-
-
-def looks_from(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
-    """What a shell offers for looks and refiners with commas between them: for the last."""
-    from risorius import refine
-
-    before, comma, last = begun.rpartition(",")
-    names = (name for name in (*LOOKS, *refine.available()) if name.startswith(last))
-    return [f"{before}{comma}{name}" for name in names]
 
 
 class PersonName(click.ParamType[int | str]):

@@ -13,13 +13,12 @@ from ..files import cannot_be_written, save_text, written_atomically
 from ..process_cache import cached
 from ..stopping import cleaned_up_if_stopped
 from ..workers import run_all
-from .card import card_of
 from .folder import SetFolder
-from .index import write_index
 from .persons import check_head
 from .request import Request
 from .sampling import draw
 from .studio import Studio
+from .summary import card_of, write_index
 
 BATCH = 8  # samples that a process is given at once, all of one person
 

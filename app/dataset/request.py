@@ -13,7 +13,6 @@ from typing import Any
 from risorius.assets.meshes import FORMATS
 
 from ..errors import UserError
-from ..passes.exr import CHANNELS
 from ..passes.files import check_wanted
 from ..passes.passes import IMAGES
 from .surroundings import Backgrounds, backgrounds_of, digest, files_in
@@ -55,17 +54,6 @@ class Request:
         }
         plain: dict[str, Any] = json.loads(json.dumps(options))
         return plain
-
-    def files(self) -> list[list[str]]:
-        """What lies in the set for each sample: names, and what that is."""
-        floats = ", ".join(name for name in self.passes if name in CHANNELS)
-        rows = [["ID.png", "the picture, 8 bits sRGB"]]
-        if floats:
-            rows.append(["ID.exr", f"{floats}: 32 bits for each pixel (OpenEXR)"])
-        if "segmentation" in self.passes:
-            rows.append(["ID_seg.png", "what each pixel shows, by the numbers of FaceSynthetics"])
-        rows.append(["ID_ldmks.txt", "x and y of 68 landmarks and both pupils [pixels]"])
-        return [*rows, ["ID.json", "all labels"]]
 
 
 def request_of(

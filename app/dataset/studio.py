@@ -20,21 +20,24 @@ from risorius import render
 from ..files import Image
 from ..motion import SETTLING
 from ..motion.idle import looking_at
+from ..passes.camera_labels import CameraLabels
 from ..passes.files import Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline
 from ..refining.looks import Refinement
 from ..scenes import FaceScene
-from .cameras import camera_of
 from .folder import name_of
 from .labels import labels_of_face
 from .persons import person_of
 from .request import Request
-from .sampling import Sample, draw, gaze_controls
+from .sampling import Sample, View, draw, gaze_controls
 from .surroundings import laid_over, light_of
 
 SAMPLES = 8  # of each pixel
 MOST_PERSONS = 4  # that are kept, those that came last
+MARGIN = 0.03  # of the picture, free on each side of the head at zoom 1: the neck ends outside
+CHIN = 8  # the landmark
+BELOW_CHIN = 12.0  # [mm] of the neck that go with the head
 
 
 @dataclass(frozen=True)
@@ -127,11 +130,36 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
     scene.reset()
     scene.pose(sample.controls)
     scene.step(SETTLING)
-    camera = camera_of(scene, sample.view, size)
+    camera = _camera_of(scene, sample.view, size)
     if sample.gaze is None:
         eyes = looking_at(scene, camera.eye)["eyes"]
     else:
         eyes = gaze_controls(sample.gaze)
     scene.pose({**sample.controls, **eyes})
     scene.step(SETTLING)
+    return camera
+
+
+def _camera_of(scene: FaceScene, view: View, size: tuple[int, int]) -> render.OrbitCamera:
+    """A camera that has the head of the scene, as it is now, in the middle, but for the shift.
+
+    It is moved on where landmarks would be beside the picture, of `size` pixels.
+    """
+    rest = scene.rest_positions
+    head = rest[:, 1] > rest[scene.landmarks[CHIN], 1] - BELOW_CHIN
+    camera = render.OrbitCamera.framing(
+        np.vstack([scene.positions, rest]), view="front", field_of_view=view.field_of_view
+    )
+    camera.orbit(view.yaw, view.pitch)
+    camera.fit(scene.positions[head], MARGIN)
+    camera.zoom(view.zoom)
+    camera.pan(*view.shift)
+    for _ in range(3):  # perspective makes one round inexact
+        pixels = CameraLabels.of(camera, size).project(scene.positions[scene.landmarks])
+        places = pixels / size[1]
+        end = np.array([size[0] / size[1], 1.0]) - MARGIN
+        right, down = np.maximum(places.max(axis=0) - end, 0.0) - np.maximum(
+            MARGIN - places.min(axis=0), 0.0
+        )
+        camera.pan(float(right), -float(down))
     return camera

@@ -32,7 +32,7 @@ from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.topology import vertex_normals
 from risorius.jit import njit
 
-from ..errors import told_in_one_line
+from ..errors import report_user_errors
 from ..files import cannot_be_written, check_file, written_atomically
 from ..stopping import handle_signals
 
@@ -271,5 +271,5 @@ def main(arguments: Sequence[str]) -> None:
 
 if __name__ == "__main__":
     handle_signals()
-    with told_in_one_line():
+    with report_user_errors():
         main(sys.argv[1:])

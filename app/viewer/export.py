@@ -24,7 +24,7 @@ from ..files import Image, check_file, save_png
 from ..pipeline import Viewport
 from ..scenes import FaceScene, Scene
 from ..script import Script, pose_script
-from ..workers import telling
+from ..workers.progress import Task
 from .export_kinds import FRAMES, KINDS, SHEET, Kind
 from .frame_times import FrameTimes
 from .gui import wake_up
@@ -83,7 +83,7 @@ class ExportJob:
     """An export that is being made."""
 
     target: Path
-    task: telling.Task
+    task: Task
     began: tuple[float, float] = (0.0, 0.0)  # [s] when the first of it was done, and how much
     told: float = 0.0  # how much of it was done when the user was told
 
@@ -189,7 +189,7 @@ class Exporter:
             rate = choices.rate
             write = partial(export, head=head, frames_per_second=rate, span=span)
             work = partial(write, script, target, chosen, request)
-        task = telling.Task(work, round(span[1] * choices.rate) + 1, wake_up)
+        task = Task(work, round(span[1] * choices.rate) + 1, wake_up)
         self.job, self.is_asking = ExportJob(target, task), False
 
     @property

@@ -1,7 +1,7 @@
 """The same on the workers of a Dask cluster: each of them has processes of its own for the work.
 
 Threads of a Dask worker cannot draw, nor can one that crashed be told from one that was killed. So
-what is sent there asks a `Crew`, just as here.
+what is sent there asks a `WorkerPool`, just as here.
 """
 
 from __future__ import annotations
@@ -17,21 +17,19 @@ from typing import Any
 
 from ..errors import UserError, in_one_line, needed
 from ..stopping import cleaned_up_if_stopped
-from .crew import Crew, Outcome
+from .pool import RETRIES, Outcome, WorkerPool
 
 PATIENCE = 10.0  # [s] for the scheduler to answer
 
-_crews: dict[str, Crew] = {}
+_pools: dict[str, WorkerPool] = {}
 """In a Dask worker: the processes of each run."""
 
 
 def run_on_cluster(
     work: Callable[[Any], Any],
     items: Sequence[Any],
-    *,
+    logs: Sequence[Path | None],
     scheduler: str,
-    retries: int,
-    logs: Sequence[Path] | None,
 ) -> Iterator[Outcome]:
     """Yield what became of each item as it ends; UserError where no scheduler answers."""
     distributed = needed("distributed", "--scheduler", "cluster")
@@ -59,12 +57,12 @@ def run_on_cluster(
         try:
             places = list(range(len(items)))
             futures = client.map(
-                partial(_do, run, work, retries),
+                partial(_do, run, work),
                 places,
                 items,
-                list(logs) if logs else [None] * len(places),
+                logs,
                 pure=False,
-                retries=retries,
+                retries=RETRIES,
                 key=[f"{run}-{place}" for place in places],
             )
             place_of = {future.key: place for place, future in enumerate(futures)}
@@ -74,7 +72,7 @@ def run_on_cluster(
                 place = place_of[future.key]
                 if future.status != "finished":
                     why = in_one_line(future.exception())
-                    outcome = Outcome(place, items[place], None, why, retries + 1, 0.0)
+                    outcome = Outcome(place, items[place], None, why, RETRIES + 1, 0.0)
                 futures[place] = None  # the cluster may forget it
                 yield outcome
         finally:
@@ -87,19 +85,11 @@ async def _greet(distributed: Any, scheduler: str) -> None:
     (await asyncio.wait_for(greeting, PATIENCE)).abort()
 
 
-def _do(
-    run: str,
-    work: Callable[[Any], Any],
-    retries: int,
-    index: int,
-    item: Any,
-    log: Path | None,
-) -> Outcome:
+def _do(run: str, work: Callable[[Any], Any], index: int, item: Any, log: Path | None) -> Outcome:
     """In a Dask worker: work on an item."""
-    crew = _crews.setdefault(run, Crew(threads=1))
-    return crew.do(work, index, item, retries=retries, log=log)
+    return _pools.setdefault(run, WorkerPool(threads=1)).do(work, index, item, log)
 
 
 def _end(run: str) -> None:
     """In a Dask worker: the run is over."""
-    _crews.setdefault(run, Crew(threads=1)).stop()
+    _pools.setdefault(run, WorkerPool(threads=1)).stop()

@@ -14,10 +14,8 @@ import queue
 import signal
 import sys
 import threading
-import time
 import traceback
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -28,15 +26,6 @@ from .child import streams
 
 PATIENCE = 300.0  # [s] without work, after which the process ends
 Request = tuple[Path | None, bytes]  # the log, and a pickled function with its argument
-
-
-@dataclass(frozen=True)
-class Reply:
-    """How an attempt at an item ended: with what it gave, or with a line that says why not."""
-
-    result: Any
-    error: str | None
-    seconds: float
 
 
 def serve() -> None:
@@ -61,21 +50,18 @@ def _listen(requests: IO[bytes], inbox: queue.SimpleQueue[Request]) -> None:
 
 
 def _answer(request: Request, replies: IO[bytes]) -> None:
-    start = time.monotonic()
+    """Do what is asked, and send what it gave, or None and a line that says why not."""
     log, asked = request
     with _printed_to(log):
-        result, error = _attempt(asked)
         try:
-            reply = pickle.dumps(Reply(result, error, time.monotonic() - start))
+            content = pickle.dumps(_attempt(asked))
         except (pickle.PicklingError, TypeError, AttributeError) as unfit:
-            why = f"the result cannot be sent: {in_one_line(unfit)}"
-            reply = pickle.dumps(Reply(None, why, time.monotonic() - start))
-        replies.write(reply)
+            content = pickle.dumps((None, f"the result cannot be sent: {in_one_line(unfit)}"))
+        replies.write(content)
         replies.flush()
 
 
 def _attempt(asked: bytes) -> tuple[Any, str | None]:
-    """Do what is asked, a pickled function and its argument."""
     try:
         work, item = pickle.loads(asked)
         done: Callable[[Any], Any] = work

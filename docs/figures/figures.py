@@ -17,7 +17,7 @@ import numpy as np
 import PIL.Image
 
 from risorius.app.cli.parameters import LEAST, MOST
-from risorius.app.errors import UserError, told_in_one_line
+from risorius.app.errors import UserError, report_user_errors
 from risorius.app.files import Image, cannot_be_written, check_file, written_atomically
 from risorius.app.stopping import handle_signals
 
@@ -80,7 +80,7 @@ def read(file: Path) -> Image:
 def run(main: Callable[[Sequence[str]], None]) -> None:
     """Run a program by the rules of the command: mistakes are one line, signals are heard."""
     handle_signals()
-    with told_in_one_line():
+    with report_user_errors():
         main(sys.argv[1:])
 
 

@@ -13,7 +13,6 @@ import imageio_ffmpeg
 import numpy as np
 import numpy.typing as npt
 import pytest
-from click.shell_completion import ShellComplete
 from click.testing import CliRunner, Result
 from PIL import Image
 
@@ -129,38 +128,12 @@ def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
     assert np.abs(drawn(320, "--compare")[0][:, :160] - pictures[0]).max() <= 2
 
 
-@pytest.mark.parametrize(
-    ("option", "begun", "offered"),
-    [
-        ("--look", "", ["smooth", "paper"]),
-        ("--refiner", "k", ["kahler"]),
-        ("--compare", "p", ["paper"]),
-        ("--compare", "paper,none,l", ["paper,none,loop"]),
-    ],
-)
-def test_a_shell_completes_names(option: str, begun: str, offered: list[str]) -> None:
-    """Of looks and of refiners, also behind a comma."""
-    shell = ShellComplete(command(), {}, "risorius", "_RISORIUS_COMPLETE")
-    items = shell.get_completions(["capture", option], begun)
-    assert [item.value for item in items] == offered
-
-
 def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
     """`capture --scene plane` refines the waving plane to the paper's many triangles."""
     sheet = tmp_path / "plane.png"
     result = risorius(
-        "capture",
-        "--scene",
-        "plane",
-        "--sheet",
-        sheet,
-        "-o",
-        tmp_path / "frames",
-        "--fps",
-        "10",
-        "--size",
-        "320x240",
-        "--quiet",
+        *"capture --scene plane --fps 10 --size 320x240 --quiet -o".split(),
+        *(tmp_path / "frames", "--sheet", sheet),
     )
     assert result.exit_code == 0, result.output
     most = int(result.output.rpartition(" triangles")[0].split()[-1])
@@ -169,99 +142,97 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("words", "message"),
     [
-        (["capture", "no.toml", "-o", "x.mp4"], "no.toml: no such script"),
-        (["capture", "SMILE"], "nothing to write: give -o OUTPUT"),
-        (["capture", "SMILE", "-o", "x.avi"], "what is '.avi'? Allowed are .mp4"),
+        ("capture no.toml -o x.mp4", "no.toml: no such script"),
+        ("capture SMILE", "nothing to write: give -o OUTPUT"),
+        ("capture SMILE -o x.avi", "what is '.avi'? Allowed are .mp4"),
+        ("capture SMILE -o x.mp4 --refiner magic", "'magic' is unknown; there are"),
+        ("capture SMILE -o x.mp4 --camera behind", "camera 'behind': allowed"),
+        ("capture SMILE -o x.mp4 --camera 1,2,0", "zoom above 0"),
+        ("capture SMILE -o x.mp4 --compare --refiner none", "other than none"),
+        ("capture --compare SMILE -o x.mp4", "a SCRIPT goes before --compare"),
+        ("capture SMILE -o x.mp4 --look big", "'big' is not one of 'smooth'"),
+        ("capture SMILE -o x.mp4 --size big", "'big' is no size"),
+        ("capture SMILE -o x.mp4 --size ²x²", "'²x²' is no size"),
+        ("view --size 100000x100000", "each 16 to 8192"),
         (
-            ["capture", "SMILE", "-o", "x.mp4", "--refiner", "magic"],
-            "'magic' is unknown; there are",
-        ),
-        (["capture", "SMILE", "-o", "x.mp4", "--camera", "behind"], "camera 'behind'; allowed"),
-        (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,x"], "camera '1,2,x': allowed"),
-        (["capture", "SMILE", "-o", "x.mp4", "--camera", "1,2,0"], "zoom above 0"),
-        (["capture", "SMILE", "-o", "x.mp4", "--compare", "--refiner", "none"], "other than none"),
-        (["capture", "--compare", "SMILE", "-o", "x.mp4"], "a SCRIPT goes before --compare"),
-        (["capture", "SMILE", "-o", "x.mp4", "--look", "big"], "'big' is not one of 'smooth'"),
-        (["view", "--look", "big"], "'big' is not one of 'smooth'"),
-        (["replay", "SMILE", "--look", "big"], "'big' is not one of 'smooth'"),
-        (["capture", "SMILE", "-o", "x.mp4", "--size", "big"], "'big' is no size"),
-        (["capture", "SMILE", "-o", "x.mp4", "--size", "²x²"], "'²x²' is no size"),
-        (["view", "--size", "100000x100000"], "each 16 to 8192"),
-        (
-            ["capture", "SMILE", "-o", "x.mp4", "--scene", "plane"],
+            "capture SMILE -o x.mp4 --scene plane",
             "unknown name 'joy'; `risorius controls --scene plane` lists every control",
         ),
-        (["capture", "SMILE", "-o", "x.mp4", "--shading", "toon"], "'toon' is not one of"),
-        (["capture", "SMILE", "-o", "x.mp4", "--time", "1"], "it goes with -o PICTURE.png"),
-        (["capture", "SMILE", "-o", "x.png", "--time", "86400"], "smile.toml ends at"),
-        (["convert", "nothing.csv", "-o", "c.png"], "c.png: scripts are written as .toml"),
-        (["convert", "nothing.csv", "-o", "."], ".: is a folder"),
+        ("capture SMILE -o x.mp4 --shading toon", "'toon' is not one of"),
+        ("capture SMILE -o x.mp4 --time 1", "it goes with -o PICTURE.png"),
+        ("capture SMILE -o x.png --time 86400", "smile.toml ends at"),
+        ("convert nothing.csv -o c.png", "c.png: scripts are written as .toml"),
+        ("convert nothing.csv -o .", ".: is a folder"),
         (
-            ["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=0.2"],
+            "capture SMILE -o x.mp4 --option threshold_once=0.2",
             "threshold_once: counts for the criterion normal alone, and here it is bulge+rest;",
         ),
         (
-            ["export", "SMILE", "-o", "x.usdz", "--refined", "--option", "threshold_twice=0.2"],
+            "export SMILE -o x.usdz --refined --option threshold_twice=0.2",
             "threshold_twice: counts for the criterion normal alone, and here it is bulge+rest;",
         ),
-        (["view", "--option", "threshold_once=0.2"], "threshold_once: counts for the criterion"),
         (
-            [
-                "capture",
-                "SMILE",
-                "-o",
-                "x.mp4",
-                "--look",
-                "paper",
-                "--option",
-                "threshold_once=0.2",
-            ],
+            "capture SMILE -o x.mp4 --look paper --option threshold_once=0.2",
             "0 <= threshold_once <= threshold_twice",
         ),
-        (["capture", "SMILE", "-o", "x.mp4", "--option", "scheme=round"], "'round' is unknown"),
-        (["capture", "SMILE", "-o", "x.mp4", "--option", "cubic"], "write NAME=VALUE"),
-        (["capture", "SMILE", "-o", "x.mp4", "--option", "attributes=3"], "option attributes; it"),
+        ("capture SMILE -o x.mp4 --option scheme=round", "'round' is unknown"),
+        ("capture SMILE -o x.mp4 --option cubic", "write NAME=VALUE"),
+        ("capture SMILE -o x.mp4 --option attributes=3", "option attributes; it"),
+        ("capture SMILE -o x.mp4 --look paper --option threshold_once=a", "be a number"),
+        ("capture SMILE -o x.mp4 --option blend=maybe", "must be on or off"),
         (
-            ["capture", "SMILE", "-o", "x.mp4", "--look", "paper", "--option", "threshold_once=a"],
-            "be a number",
-        ),
-        (["capture", "SMILE", "-o", "x.mp4", "--option", "blend=maybe"], "must be on or off"),
-        (
-            ["capture", "SMILE", "-o", "x.mp4", "--option", "blend=True", "--option", "coherent=1"],
+            "capture SMILE -o x.mp4 --option blend=True --option coherent=1",
             "option coherent was 1, must be on or off",
         ),
         (
-            ["capture", "SMILE", "-o", "x.mp4", "--refiner", "loop", "--option", "scheme=cubic"],
+            "capture SMILE -o x.mp4 --refiner loop --option scheme=cubic",
             "unknown option scheme; it takes levels",
         ),
         (
-            ["capture", "SMILE", "-o", "x.mp4", "--refiner", "none", "--option", "scheme=detail"],
+            "capture SMILE -o x.mp4 --refiner none --option scheme=detail",
             "--option scheme=detail: --refiner none draws the mesh as it is and has no options",
         ),
+        ("capture SMILE -o x.mp4 --fps nan", "nan is not a finite number"),
+        ("capture SMILE -o x.png --time nan", "nan is not a finite number"),
+        ("capture SMILE -o x.mp4 --option threshold_once=nan", "not a finite"),
+        ("capture SMILE --sheet x.txt", "pictures are written as .png"),
+        ("bench refine --seconds nan", "nan is not a finite number"),
+        ("capture --set AU12=x -o x.png", "--set AU12=x: 'x' is no number"),
+        ("capture --set AU12= -o x.png", "--set AU12=: '' is no number"),
+        ("capture --set joy=7 -o x.png", "--set: joy is 7; it must be from 0 to 1"),
         (
-            ["view", "--refiner", "none", "--option", "scheme=detail"],
-            "--option scheme=detail: --refiner none draws the mesh as it is and has no options",
+            "capture --scene plane --set phase=-1 -o x.png",
+            "--set: phase is -1; it must be from 0 to 100",
         ),
-        (["capture", "SMILE", "-o", "x.mp4", "--fps", "nan"], "nan is not a finite number"),
-        (["capture", "SMILE", "-o", "x.png", "--time", "nan"], "nan is not a finite number"),
-        (["capture", "SMILE", "-o", "x.mp4", "--option", "threshold_once=nan"], "not a finite"),
-        (["capture", "SMILE", "--sheet", "x.txt"], "pictures are written as .png"),
-        (["bench", "refine", "--seconds", "nan"], "nan is not a finite number"),
-        (["replay", "no.toml"], "no.toml: no such script"),
-        (["--wrong"], "No such option '--wrong'"),
-        (["bench", "motion", "--reference", "nowhere"], "Directory 'nowhere' does not exist"),
+        ("capture --set AU121=1 -o x.png", "--set: unknown name 'AU121'; did you mean AU"),
+        (
+            "capture --head no.obj -o x.png",
+            "--head HEAD.obj and --landmarks LANDMARKS.json go together",
+        ),
+        ("capture --head no.obj --landmarks no.json -o x.png", "no.obj: no such mesh file"),
+        ("capture --head no.obj --person 3 -o x.png", "goes with neither --head nor --landmarks"),
+        ("capture --person 3 --scene plane -o x.png", "--head and --person go with the scene face"),
+        (
+            "capture --person -1 -o x.png",
+            "'-1' is nobody; write a number, 0 or more, or ada, kofi, maria",
+        ),
+        ("capture --person 4294967296 -o x.png", "4294967296 is not in the range 0<=x<=4294967295"),
+        ("capture --light moon -o x.png", "'moon' is not one of 'studio', 'side', 'overcast',"),
+        ("capture SMILE --set joy -o x.png", "a script and --set exclude each other"),
+        ("--wrong", "No such option '--wrong'"),
+        ("bench motion --reference nowhere", "Directory 'nowhere' does not exist"),
     ],
 )
 def test_mistakes_are_one_line(
-    arguments: list[str], message: str, smile: Path, monkeypatch: pytest.MonkeyPatch
+    words: str, message: str, smile: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Bad input ends with exit code 2 and a text that says what is allowed; nothing is written."""
     monkeypatch.chdir(smile.parent)
-    result = risorius(*[str(smile) if word == "SMILE" else word for word in arguments])
+    result = risorius(*[smile if word == "SMILE" else word for word in words.split()])
     assert result.exit_code == 2
-    assert message.replace("'behind'; ", "'behind': ") in result.output
+    assert message in result.output
     assert "Traceback" not in result.output
     told = [line for line in result.output.splitlines() if not line.startswith("Compiling")]
     assert len(told) == 1 and told[0].startswith("risorius: ")
@@ -334,40 +305,6 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
     assert len(set(images)) == 3
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--set", "AU12=x"), "--set AU12=x: 'x' is no number"),
-        (("--set", "AU12="), "--set AU12=: '' is no number"),
-        (("--set", "joy=7"), "--set: joy is 7; it must be from 0 to 1"),
-        (("--scene", "plane", "--set", "phase=-1"), "--set: phase is -1; it must be from 0 to 100"),
-        (("--set", "AU121=1"), "--set: unknown name 'AU121'; did you mean AU"),
-        (("--head", "no.obj"), "--head HEAD.obj and --landmarks LANDMARKS.json go together"),
-        (("--head", "no.obj", "--landmarks", "no.json"), "no.obj: no such mesh file"),
-        (("--head", "no.obj", "--person", "3"), "goes with neither --head nor --landmarks"),
-        (("--person", "3", "--scene", "plane"), "--head and --person go with the scene face"),
-        (("--person", "-1"), "'-1' is nobody; write a number, 0 or more, or ada, kofi, maria"),
-        (("--person", "4294967296"), "4294967296 is not in the range 0<=x<=4294967295"),
-        (("--light", "moon"), "'moon' is not one of 'studio', 'side', 'overcast',"),
-    ],
-)
-def test_mistakes_of_poses_and_heads(
-    tmp_path: Path, arguments: tuple[str, ...], message: str
-) -> None:
-    """One line and exit code 2."""
-    result = risorius("capture", *arguments, "-o", tmp_path / "a.png", "--quiet")
-    assert result.exit_code == 2
-    assert message in result.stderr
-    assert len(result.stderr.strip().splitlines()) == 1
-
-
-def test_a_script_and_a_pose_exclude_each_other(smile: Path, tmp_path: Path) -> None:
-    """It would not be clear which of them is meant."""
-    result = risorius("capture", smile, "--set", "joy", "-o", tmp_path / "a.png")
-    assert result.exit_code == 2
-    assert "a script and --set exclude each other" in result.stderr
-
-
 @pytest.mark.slow
 def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
     """`--head` and `--landmarks`: another head, in metres and z up, smiles; errors are one line."""
@@ -390,28 +327,11 @@ def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
     """`--person` and `--light`: other pictures than without, the same ones every time."""
     seen = []
     for words in ("", "--person 3", "--light side", "--person ada", "--person 3"):
-        asked = (
-            "--set",
-            "joy",
-            *words.split(),
-            "-o",
-            tmp_path / "a.png",
-            "--size",
-            "96x96",
-            "--quiet",
-        )
-        result = risorius("capture", *asked)
+        asked = f"capture --set joy {words} --size 96x96 --quiet -o".split()
+        result = risorius(*asked, tmp_path / "a.png")
         assert result.exit_code == 0, result.output
         seen.append(np.asarray(Image.open(tmp_path / "a.png")).tobytes())
     assert seen[1] == seen[-1] and len(set(seen)) == 4
-
-
-def test_doctor_reports_offscreen_opengl() -> None:
-    """Where the tests run, offscreen OpenGL works, and the doctor says with what."""
-    result = risorius("doctor", "--offscreen")
-    assert result.exit_code == 0, result.output
-    assert "OpenGL" in result.output
-    assert risorius("doctor", "--offscreen", "--quiet").output == ""
 
 
 def test_bench_refine(tmp_path: Path) -> None:

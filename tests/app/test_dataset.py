@@ -21,9 +21,10 @@ import pytest
 from click.testing import CliRunner, Result
 from scipy.ndimage import binary_dilation
 
+from risorius import render
 from risorius.app.cli import main
 from risorius.app.dataset.folder import UNFINISHED, SetFolder
-from risorius.app.dataset.labels import action_units
+from risorius.app.dataset.labels import action_units, labels_of_face
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
 from risorius.app.dataset.table import load_table
@@ -66,9 +67,12 @@ def samples(made: Path) -> list[dict[str, Any]]:
     return [json.loads((made / f"{k:06d}.json").read_text("utf-8")) for k in range(COUNT)]
 
 
-def test_a_set_has_these_files_and_nothing_else(made: Path) -> None:
+def test_a_set_has_these_files_and_nothing_else(made: Path, samples: list[dict[str, Any]]) -> None:
+    """No picture twice, and no face."""
     told = {"README.md", "dataset.json", "index.csv"}
     assert set(content(made)) == told | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
+    assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT
+    assert len({str(sample["controls"]) for sample in samples}) == COUNT
 
 
 def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path) -> None:
@@ -86,25 +90,6 @@ def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path)
         assert labels == alone | {"files": labels["files"], "digest": labels["digest"]}
 
 
-def test_samples_are_of_different_faces(made: Path, samples: list[dict[str, Any]]) -> None:
-    assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT
-    assert len({str(sample["controls"]) for sample in samples}) == COUNT
-
-
-@pytest.mark.slow
-def test_a_set_goes_on_where_it_was_left(made: Path, tmp_path: Path) -> None:
-    """Samples without .json, whatever of them is there, are made anew; then all is as at once."""
-    folder = tmp_path / "left"
-    shutil.copytree(made, folder)
-    (folder / "000001.json").unlink()
-    (folder / "000003.json").unlink()
-    (folder / "000003.png").write_bytes(b"half a picture")
-    (folder / UNFINISHED / "0000034711").mkdir(parents=True)
-    result = run(folder, "--resume")
-    assert "2 of them new" in result.output
-    assert content(folder) == content(made)
-
-
 def test_a_sample_that_is_not_whole_is_made_anew(made: Path, tmp_path: Path) -> None:
     """Whatever stands in the place of one of its files; the set is then as it was."""
     whole = content(made)
@@ -115,8 +100,7 @@ def test_a_sample_that_is_not_whole_is_made_anew(made: Path, tmp_path: Path) -> 
     }  # fmt: skip
     folder = tmp_path / "damaged"
     shutil.copytree(made, folder)
-    request = request_of(folder, seed=SEED, size=SIZE, passes=PASSES)
-    held = SetFolder(request.output)
+    held = SetFolder(folder)
     assert all(held.has(index) for index in range(COUNT))
     for name, instead in damaged.items():
         (folder / name).write_bytes(instead)
@@ -125,6 +109,7 @@ def test_a_sample_that_is_not_whole_is_made_anew(made: Path, tmp_path: Path) -> 
         shutil.copytree(made, folder, dirs_exist_ok=True)
         (folder / f"000001{end}").unlink()
         assert [held.has(index) for index in range(COUNT)] == [k != 1 for k in range(COUNT)]
+    (folder / UNFINISHED / "0000034711").mkdir(parents=True)
     assert "1 of them new" in run(folder, "--resume").output
     assert content(folder) == whole
 
@@ -163,17 +148,8 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
     assert [path.name for path in other.iterdir()] == ["mine.txt"]
 
 
-@pytest.mark.slow
-def test_a_set_without_samples_is_begun_anew(tmp_path: Path) -> None:
-    """What was wrong before the first sample can be put right; a file of that name is no set."""
-    heads = tmp_path / "heads"
-    heads.mkdir()
-    (heads / "one.obj").write_text("no mesh", "utf-8")
-    (heads / "one.json").write_text("[]", "utf-8")
-    folder = tmp_path / "set"
-    failed = run(folder, "--heads", str(heads), count=1)
-    assert failed.exit_code == 2 and "one.obj" in failed.stderr
-    assert run(folder, count=1).exit_code == 0
+def test_what_is_no_set_at_all_is_left_alone(tmp_path: Path) -> None:
+    """A file, and a folder whose dataset.json is somebody else's."""
     mine = tmp_path / "mine"
     mine.mkdir()
     (mine / "dataset.json").write_text("{}", "utf-8")
@@ -271,40 +247,48 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
 
 
+@pytest.fixture(scope="module")
+def face() -> FaceScene:
+    """The built-in head."""
+    return FaceScene()
+
+
+@pytest.fixture
+def heads(face: FaceScene, tmp_path: Path) -> Path:
+    """A folder of a user's heads: a, b, and c, each with its landmarks."""
+    folder = tmp_path / "heads"
+    folder.mkdir()
+    lines = [f"v {x} {y} {z}" for x, y, z in 1.1 * face.head.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in face.head.faces + 1]
+    for name in "abc":
+        (folder / f"{name}.obj").write_text("\n".join(lines), "utf-8")
+        landmarks = json.dumps(face.head.landmarks.tolist())
+        (folder / f"{name}.json").write_text(landmarks, "utf-8")
+    return folder
+
+
 @pytest.mark.slow
-def test_heads_of_a_folder_are_the_persons(tmp_path: Path) -> None:
-    """Each with its landmarks; a head without is told."""
-    heads = tmp_path / "heads"
-    heads.mkdir()
-    head = FaceScene().head
-    lines = [f"v {x} {y} {z}" for x, y, z in 1.1 * head.vertices]
-    lines += [f"f {a} {b} {c}" for a, b, c in head.faces + 1]
-    (heads / "one.obj").write_text("\n".join(lines), "utf-8")
-    result = run(tmp_path / "set", "--heads", str(heads))
-    assert result.exit_code == 2
-    assert "its landmarks are missing, one.json" in result.stderr
-    (heads / "one.json").write_text(json.dumps(head.landmarks.tolist()), "utf-8")
+def test_heads_of_a_folder_are_the_persons(heads: Path, tmp_path: Path) -> None:
+    """Every one of them, by the name of its file."""
     request = request_of(tmp_path, seed=2, size=(64, 64), passes=(), heads=heads)
-    shot = Studio(request).shoot(0)
-    assert shot.known.labels["person"]["head"] == "one.obj"
+    studio = Studio(request)
+    shown = {studio.shoot(index).known.labels["person"]["head"] for index in range(9)}
+    assert shown == {"a.obj", "b.obj", "c.obj"}
 
 
-def test_broken_heads_are_told_before_the_first_sample(tmp_path: Path) -> None:
-    """All in one line, so that the folder can be put right at once."""
-    heads, folder = tmp_path / "heads", tmp_path / "set"
-    heads.mkdir()
-    head = FaceScene().head
-    lines = [f"v {x} {y} {z}" for x, y, z in head.vertices]
-    lines += [f"f {a} {b} {c}" for a, b, c in head.faces + 1]
-    for name in ("a", "b", "c"):
-        (heads / f"{name}.obj").write_text("\n".join(lines), "utf-8")
-        (heads / f"{name}.json").write_text(json.dumps(head.landmarks.tolist()), "utf-8")
+def test_broken_heads_are_told_before_the_first_sample(heads: Path, tmp_path: Path) -> None:
+    """All in one line, so that the folder can be put right at once; the set is begun anew then."""
+    folder = tmp_path / "set"
     (heads / "b.obj").write_text("no mesh", "utf-8")
     (heads / "c.json").write_text("[]", "utf-8")
     result = run(folder, "--heads", str(heads), count=30)
     assert result.exit_code == 2 and len(result.stderr.splitlines()) == 1
     assert "b.obj" in result.stderr and "c.json" in result.stderr
     assert not list(folder.glob("*.png"))
+    assert run(folder, count=1).exit_code == 0
+    (heads / "a.json").unlink()
+    result = run(tmp_path / "other", "--heads", str(heads))
+    assert result.exit_code == 2 and "its landmarks are missing, a.json" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -328,17 +312,6 @@ def test_what_cannot_be_is_told_before_work(
     assert result.exit_code == 2
     assert told in result.stderr
     assert not (tmp_path / "set").exists()
-
-
-def test_the_table_is_printed() -> None:
-    result = CliRunner().invoke(main, ["dataset", "--sample-table"])
-    assert "[expressions]" in result.output
-
-
-@pytest.fixture(scope="module")
-def face() -> FaceScene:
-    """The built-in head."""
-    return FaceScene()
 
 
 @pytest.mark.slow
@@ -369,6 +342,36 @@ def test_speech_is_told_in_units(face: FaceScene) -> None:
         assert units[name] == pytest.approx(0.5 * share, abs=1e-3)
 
 
+def apertures_of(face: FaceScene, pose: dict[str, float]) -> dict[str, float]:
+    """What a label says of mouth and eyes in a pose."""
+    face.reset()
+    face.pose(pose)
+    face.step(1.0)
+    camera = render.OrbitCamera.framing(face.framed)
+    labels = labels_of_face(face, camera, (64, 48), np.ones((48, 64)))
+    found: dict[str, float] = labels["apertures"]
+    return found
+
+
+@pytest.mark.parametrize("shut", ["AU17 AU15 AU4", "AU24", "AU28", "AU12", "AU43 AU6", "AU43 AU51"])
+def test_what_is_shut_has_no_aperture(face: FaceScene, shut: str) -> None:
+    """Lips that roll inward and lids that are squeezed, whose landmarks lie 1 to 4 mm apart."""
+    found = apertures_of(face, dict.fromkeys(shut.split(), 1.0))
+    assert found.pop("mouth") < 0.1
+    assert all((value < 0.1) == ("AU43" in shut) for value in found.values())
+
+
+def test_apertures_grow_with_what_opens(face: FaceScene) -> None:
+    """In proportion from where lips and lids part, each eye for itself, however the head turns."""
+    parted = [apertures_of(face, {"AU25": value})["mouth"] for value in (0.25, 0.5, 0.75, 1.0)]
+    assert parted[0] < 0.3
+    assert np.diff(parted) == pytest.approx(1.1, abs=0.3)
+    turned = apertures_of(face, {"AU25": 1.0, "AU43_left": 0.5, "AU51": 1.0, "AU54": 1.0})
+    assert turned["mouth"] == pytest.approx(parted[-1], abs=0.1)
+    assert turned["eye_left"] == pytest.approx(0.5 * turned["eye_right"], abs=0.5)
+    assert apertures_of(face, {"AU27": 1.0})["mouth"] > 20.0
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
 def test_killed_at_any_moment_nothing_half_written_has_its_name(made: Path, tmp_path: Path) -> None:
@@ -393,21 +396,12 @@ def test_killed_at_any_moment_nothing_half_written_has_its_name(made: Path, tmp_
         number = chance.choice([signal.SIGKILL, signal.SIGINT])
         os.kill(process.pid, number)
         process.communicate(timeout=60)
-        for name, found in content_of_set(folder).items():
-            assert found == whole[name], f"{name} after {number!r}"
-    if not folder.exists():
-        folder.mkdir()
+        for path in folder.glob("[!.]*"):
+            assert path.read_bytes() == whole[path.name], f"{path.name} after {number!r}"
+    folder.mkdir(exist_ok=True)
     wait_for_workers(folder)
     assert run(folder, "--resume").exit_code == 0
     assert content(folder) == whole
-
-
-def content_of_set(folder: Path) -> dict[str, bytes]:
-    """The files that have their final names; a sample's others count where its .json is there."""
-    if not folder.exists():
-        return {}
-    found = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
-    return {name: each for name, each in found.items() if not name.startswith(".")}
 
 
 def wait_for_workers(folder: Path) -> None:

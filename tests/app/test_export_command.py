@@ -24,7 +24,7 @@ OUTPUTS = {
 FULL = """
 import resource, sys
 from pathlib import Path
-from risorius.app.errors import told_in_one_line
+from risorius.app.errors import report_user_errors
 from risorius.app.export.clip import record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.script import load_script
@@ -34,7 +34,7 @@ clip = record(load_script(Path("cloth.toml")), None, 240.0, progress=False)
 chosen = format_for(output, sys.argv[2])
 chosen.load()
 resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))  # [bytes] of any file
-with told_in_one_line():
+with report_user_errors():
     write(clip, output, chosen, Request(progress=False))
 """
 

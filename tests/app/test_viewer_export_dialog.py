@@ -153,7 +153,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(
     assert viewer.session.is_alone("joy")
     xdotool(viewer, "key", "ctrl+q")
     assert "mp4 is being written" in viewer.messages.text and not viewer.surface.should_close
-    process = job.task._crew._all[0].process
+    process = job.task._pool._all[0].process
     process.send_signal(signal.SIGSTOP)  # it takes its time to end
     click(viewer, "export: stop")
     xdotool(viewer, "key", "2")

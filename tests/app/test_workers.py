@@ -95,16 +95,15 @@ def test_what_the_dead_had_half_written_goes(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"film", "film.begun", other.name}
 
 
-@pytest.mark.parametrize("retries", [0, 2])
-def test_what_kills_every_process_fails_alone(retries: int, tmp_path: Path) -> None:
-    """It is given up after so many attempts, in one line; a fault says in the log where it was."""
+def test_what_kills_every_process_fails_alone(tmp_path: Path) -> None:
+    """It is given up after three attempts, in one line; a fault says in the log where it was."""
     names = ["first", "deadly", "last"]
     logs = [tmp_path / name for name in names]
-    found = outcomes(working.die, names, retries=retries, logs=logs)
+    found = outcomes(working.die, names, logs=logs)
     assert [each.result for each in found] == ["first", None, "last"]
-    assert [each.attempts for each in found] == [1, retries + 1, 1]
+    assert [each.attempts for each in found] == [1, 3, 1]
     assert found[1].error is not None
-    assert f"died {retries + 1} times" in found[1].error and "SIGSEGV" in found[1].error
+    assert "died 3 times" in found[1].error and "SIGSEGV" in found[1].error
     assert "working.py" in logs[1].read_text()
 
 

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from ..motion import tally
-from .crew import Crew, Outcome
+from .pool import Outcome, WorkerPool
 
 PAUSE = 0.2  # [s] between two numbers
 
@@ -20,12 +20,12 @@ class Task:
 
     def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):
         """Begin; wake: called when it has ended, from a thread."""
-        self._frame_count, self._crew = frame_count, Crew(1)
+        self._frame_count, self._pool = frame_count, WorkerPool(1)
         handle, log = tempfile.mkstemp(prefix="risorius-", suffix=".log")
         os.close(handle)
         self._log = Path(log)
         thread = ThreadPoolExecutor(1)
-        self._end = thread.submit(self._crew.do, told, 0, work, retries=0, log=self._log)
+        self._end = thread.submit(self._pool.do, count_frames, 0, work, self._log, retries=0)
         self._end.add_done_callback(lambda _: wake())
         thread.shutdown(wait=False)
         self._stopping: threading.Thread | None = None
@@ -56,21 +56,21 @@ class Task:
             self._stopping.join()
 
     def _stop(self) -> None:
-        self._crew.stop()
+        self._pool.stop()
         self._log.unlink(missing_ok=True)
 
 
-def told(work: Callable[[], object]) -> None:
+def count_frames(work: Callable[[], object]) -> None:
     """In that process: do it, and print again and again how many frames were played."""
     before, is_done = tally.frames, threading.Event()
     if hasattr(os, "nice"):
         os.nice(5)  # whoever waits goes first
 
-    def tell() -> None:
+    def report() -> None:
         while not is_done.wait(PAUSE):
             print(tally.frames - before, flush=True)
 
-    threading.Thread(target=tell, daemon=True).start()
+    threading.Thread(target=report, daemon=True).start()
     try:
         work()
     finally:

@@ -17,6 +17,7 @@ from .child import Child, DiedError
 
 LIBRARIES = ("LP_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Who takes as many threads as there are cores, in each process: software OpenGL, and BLAS."""
+RETRIES = 2  # of an item whose process died
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Outcome:
     seconds: float
 
 
-class Crew:
+class WorkerPool:
     """The processes of one run: one for each thread of this process that asks for work."""
 
     def __init__(self, threads: int) -> None:
@@ -50,9 +51,8 @@ class Crew:
         work: Callable[[Any], Any],
         index: int,
         item: Any,
-        *,
-        retries: int,
         log: Path | None,
+        retries: int = RETRIES,
     ) -> Outcome:
         """Work on an item in a process, again where it dies, and say what became of it."""
         request = pickle.dumps((work, item))
@@ -64,12 +64,12 @@ class Crew:
             child = self._child()
             try:
                 child.send((log, request))
-                reply: serving.Reply = child.receive()
+                result, error = child.receive()
             except DiedError as end:
                 why = str(end)
                 _note(log, f"risorius: the process of attempt {attempt} died of {why}")
                 continue
-            return Outcome(index, item, reply.result, reply.error, attempt, reply.seconds)
+            return Outcome(index, item, result, error, attempt, time.monotonic() - start)
         error = f"the process that worked on it died {retries + 1} times, at last of {why}"
         return Outcome(index, item, None, error, retries + 1, time.monotonic() - start)
 

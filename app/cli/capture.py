@@ -1,0 +1,207 @@
+"""`risorius capture`: films, frames, pictures and contact sheets; and `risorius demo`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ..errors import UserError, in_one_line
+from ..recordings.playback import Playback
+from ..refining.looks import STATIC, Refinement
+from .options import (
+    FPS,
+    PATH,
+    SCENE,
+    SCRIPT,
+    SETTINGS,
+    SILENT,
+    SOUND,
+    Drawing,
+    packed,
+    played,
+    with_drawing,
+    with_playback,
+)
+from .parameters import BackgroundName, FiniteRange, Size
+
+if TYPE_CHECKING:
+    from risorius import render
+
+    from ..capture import CaptureOptions
+
+
+@dataclass(frozen=True)
+class Filming:
+    """What capture alone is told."""
+
+    size: tuple[int, int]
+    fps: float
+    compare: str | None
+    captions: bool
+    camera: str | None
+    turntable: bool
+    span: tuple[float, float] | None
+    background: render.Background | None
+    passes: str | None
+    alive: bool
+    still_time: float | None
+    samples: int
+    overwrite: bool
+    quiet: bool
+
+
+with_filming = packed(
+    "filming",
+    Filming,
+    click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told."),
+    FPS,
+    click.option(
+        "--compare",
+        is_flag=False,
+        flag_value=STATIC,
+        metavar="[NAME,...]",
+        help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
+    ),
+    click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
+    click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
+    click.option("--turntable", is_flag=True, help="The camera goes round once."),
+    click.option(
+        "--range",
+        "span",
+        type=FiniteRange(0, 86_400),
+        nargs=2,
+        metavar="FROM TO",
+        help="The part of the script that is seen [s].",
+    ),
+    click.option(
+        "--background",
+        type=BackgroundName(),
+        default="light",
+        help="light, dark, white, black, a colour as #00b140, or transparent.",
+    ),
+    click.option(
+        "--passes",
+        metavar="NAME,...",
+        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
+        "landmarks.",
+    ),
+    click.option(
+        "--alive",
+        is_flag=True,
+        help="What the script leaves alone lives: eyes blink and look at the camera.",
+    ),
+    click.option(
+        "--time",
+        "still_time",
+        type=FiniteRange(0, 86_400),
+        help="When a .png is taken [s]: else in the first named pose, or at the end.",
+    ),
+    click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True),
+    click.option("--overwrite", is_flag=True, help="Replace the frames in a folder."),
+    SILENT,
+)
+
+
+@click.command()
+@SCRIPT
+@SETTINGS
+@click.option(
+    "-o", "--output", type=PATH, help="out.mp4, .mov, .webm, .gif, .webp, a folder, or .png"
+)
+@click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
+@SCENE
+@SOUND
+@with_filming
+@with_playback
+@with_drawing
+def capture(
+    script: Path | None,
+    settings: tuple[str, ...],
+    output: Path | None,
+    sheet: Path | None,
+    scene: str | None,
+    sound: Path | None,
+    filming: Filming,
+    playback: Playback,
+    drawing: Drawing,
+) -> None:
+    """Draw SCRIPT as a film, frames, a picture or a contact sheet.
+
+    A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... Without SCRIPT
+    the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
+    """
+    from ..capture import CaptureOptions
+    from ..capture import capture as film_of
+    from ..capture.formats import HEARD
+    from ..files import check_apart
+    from ..passes.files import beside
+    from ..refining.refiners import parse_comparison
+
+    written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
+    check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
+    if sound is not None and (output is None or output.suffix.lower() not in HEARD):
+        raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
+    performance = played(script, scene, sound, playback, settings, quiet=filming.quiet)
+    refinement = drawing.refinement()
+    refinement.check(performance.scene)
+    options = CaptureOptions(
+        size=filming.size,
+        frames_per_second=filming.fps,
+        refinement=refinement,
+        beside=parse_comparison(filming.compare, refinement),
+        captions=filming.captions,
+        camera=filming.camera or performance.camera,
+        is_turntable=filming.turntable,
+        span=filming.span,
+        style=replace(drawing.style(), background=filming.background),
+        dissection=drawing.dissection(),
+        samples=filming.samples,
+        head=drawing.fitted_head(),
+        is_alive=filming.alive,
+        passes=() if filming.passes is None else tuple(filming.passes.split(",")),
+    )
+    most = film_of(
+        performance,
+        options,
+        output=output,
+        sheet=sheet,
+        time=filming.still_time,
+        overwrite=filming.overwrite,
+        progress=not filming.quiet,
+    )
+    made = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
+    click.echo(f"{made}: {most} triangles at most")
+    if output is not None and not filming.quiet:
+        _tell_size(output, options)
+
+
+def _tell_size(output: Path, options: CaptureOptions) -> None:
+    """Say where a film is larger than was asked for."""
+    from ..capture.formats import size_of_film
+
+    width, height = size_of_film(output, options.size, is_transparent=options.is_transparent)
+    if (width, height) != options.size:
+        click.echo(
+            f"The film has {width}x{height} pixels, the last row or column twice: films of this "
+            "kind have even sizes."
+        )
+
+
+@click.command()
+def demo() -> None:
+    """Draw the built-in head in its expressions.
+
+    Writes out/demo.mp4 and out/demo.png.
+    """
+    from ..capture import CaptureOptions
+    from ..capture import capture as film_of
+    from ..performances import script_for
+
+    script = script_for(None, "face")
+    options = CaptureOptions(beside=(Refinement(refiner=STATIC),), camera=script.camera)
+    film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
+    most = film_of(script, options, output=film, sheet=sheet)
+    click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")

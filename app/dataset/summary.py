@@ -1,0 +1,79 @@
+"""What is told of a whole set, from its samples' labels: index.csv, and the card, README.md."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from .labels import by_number
+from .request import Request
+
+THERE = 0.05  # from which value on a unit counts as there: a quarter of A
+POSE = ("yaw", "pitch", "roll")
+
+
+@dataclass
+class Counts:
+    """In how many samples is what: kinds, persons by number, action units."""
+
+    kinds: Counter[str] = field(default_factory=Counter)
+    persons: Counter[int] = field(default_factory=Counter)
+    units: Counter[str] = field(default_factory=Counter)
+
+
+def write_index(path: Path, samples: Iterable[dict[str, Any]]) -> Counts:
+    """A CSV file with one row for each sample: what it is, the head's pose, every action unit."""
+    counts = Counts()
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        for sample in samples:
+            row = _row(sample)
+            if not counts.kinds:
+                table.writerow(row)
+            table.writerow(row.values())
+            units = sample["action_units"].items()
+            counts.kinds[sample["kind"]] += 1
+            counts.persons[sample["person"]["number"]] += 1
+            counts.units.update(name for name, value in units if value >= THERE)
+    return counts
+
+
+def _row(sample: dict[str, Any]) -> dict[str, Any]:
+    person = {name: value for name, value in sample["person"].items() if name != "measures"}
+    return {
+        "id": sample["id"],
+        "kind": sample["kind"],
+        "name": sample["name"],
+        **{f"person_{name}": value for name, value in person.items()},
+        **{f"head_{name}": sample["head"][name] for name in POSE},
+        **{f"aperture_{name}": value for name, value in sample["apertures"].items()},
+        "visible": sum(sample["landmarks"]["visible"]),
+        **sample["action_units"],
+    }
+
+
+def card_of(request: Request, counts: Counts) -> str:
+    """The card of a set that was made as requested: how it was made, how often what is in it."""
+    samples, persons = counts.kinds.total(), len(counts.persons)
+    units = [(name, counts.units[name]) for name in sorted(counts.units, key=by_number)]
+    text = (files(__package__) / "card.md").read_text("utf-8")
+    return text.format(
+        count=samples,
+        version=request.version,
+        told=request.told,
+        persons=persons,
+        samples_each=samples / persons,
+        there=THERE,
+        kinds=_table("kind", counts.kinds.most_common(), samples),
+        units=_table("action unit", units, samples),
+    )
+
+
+def _table(head: str, counted: Iterable[tuple[str, int]], total: int) -> str:
+    rows = [f"| {name} | {number / total:.1%} |" for name, number in counted]
+    return "\n".join([f"| {head} | of the samples |", "| --- | --- |", *rows])
