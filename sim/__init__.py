@@ -16,8 +16,7 @@ from .anatomy import build_anatomy
 from .cloth import Cloth
 from .face import Simulation, SimulationUnstable
 from .pulling import Pull
-from .rig import Rig
-from .rig_reader import read_rig
+from .rig import Rig, read_rig
 from .trial import Trial
 
 __all__ = ["Cloth", "Pull", "Rig", "Simulation", "SimulationUnstable", "Trial"]

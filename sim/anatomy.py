@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..schema import quoted
 from . import checked
 from .contact import Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
@@ -41,8 +42,7 @@ from .lids import Lids, place_lids
 from .lip_lid_sides import lip_side
 from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import PlacedMuscle, place_muscles, sides_of
-from .rig import Rig
-from .rig_reader import read_rig
+from .rig import Rig, read_rig
 from .skin_model import SkinModel
 from .skull import (
     HEAD_CONTROLS,
@@ -242,7 +242,7 @@ def _eyeballs(head: Any, space: FaceSpace, landmarks: Array | None) -> tuple[Eye
     balls = []
     for eye in checked.several("head.eyes", given, ("name", "centre", "radius")):
         if eye.name not in ("right", "left"):
-            name = checked.quoted(eye.name)
+            name = quoted(eye.name)
             raise ValueError(f"head.eyes: name was {name}, allowed are 'right' and 'left'")
         centre = space.to_standard(checked.numbers("head.eyes: centre", eye.centre, (3,)))
         radius = checked.number("head.eyes: radius", eye.radius)

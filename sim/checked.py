@@ -7,23 +7,15 @@ strings for numbers, cut 0.7 down to vertex 0, and raise one of three other erro
 from __future__ import annotations
 
 import math
-import reprlib
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..schema import quoted
 from .landmarks import Array
 
 Shape = tuple[int | None, ...]  # None: any length
-
-
-def quoted(value: object) -> str:
-    """A value in the text of an error, cut where it is long."""
-    try:
-        return reprlib.repr(value)
-    except ValueError:  # Python writes no number of thousands of digits
-        return f"a very long {type(value).__name__}"
 
 
 def number(what: str, value: Any) -> float:
@@ -37,14 +29,6 @@ def number(what: str, value: Any) -> float:
     if not math.isfinite(result):
         raise ValueError(f"{what}: was {quoted(value)}, must be a finite number")
     return result
-
-
-def number_within(where: str, value: Any, low: float, high: float) -> float:
-    """A finite number from `low` to `high`, and no True or False."""
-    is_one = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_one or not low <= value <= high:  # NaN is not
-        raise ValueError(f"{where}: was {quoted(value)}, must be a number from {low:g} to {high:g}")
-    return float(value)
 
 
 def flag(what: str, value: Any) -> bool:

@@ -21,8 +21,8 @@ from types import MappingProxyType
 import numpy as np
 
 from ..jit import njit
+from ..schema import quoted
 from .checked import number as finite
-from .checked import quoted
 from .landmarks import Array
 from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, share_of_whole
 

@@ -27,6 +27,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from ..schema import quoted
 from . import checked, integrator
 from .anatomy import Anatomy
 from .contact import SEALED
@@ -188,7 +189,7 @@ class Simulation:
     def copy_from(self, other: Simulation) -> None:
         """Take on controls, positions and velocities of a twin; ValueError for any other."""
         if not isinstance(other, Simulation) or other._anatomy is not self._anatomy:
-            raise ValueError(f"other: was {checked.quoted(other)}, must be a twin of this face")
+            raise ValueError(f"other: was {quoted(other)}, must be a twin of this face")
         self._controls.copy_from(other._controls)
         self._state.x[:], self._state.v[:] = other._state.x, other._state.v
         self._positions[:] = other._positions

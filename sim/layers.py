@@ -48,15 +48,15 @@ Differs from FACS: units add, where some of theirs exclude each other.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from .checked import number_within, quoted, several
+from ..schema import OneOf, Record, Rest, Within, question, read
+from .checked import several
 from .landmarks import Array
-from .rig_reader import question
 
 BOTH_SIDES = "Both sides"  # title of the layer that every face with paired muscles has
 SIDES = ("_left", "_right")
@@ -105,12 +105,10 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     reader = _Reader(lowest)
     reader.add_both_sides()
     for layer in several("head.layers", given, ("title", "source", "rows")):
-        if not isinstance(layer.rows, Mapping):
-            raise ValueError(f"{layer.source}: was {quoted(layer.rows)}, must be a table of rows")
         below = dict(reader.shares)  # what a row of this layer may name
         names: list[str] = []
-        for row, table in layer.rows.items():
-            names += reader.row(f"{layer.source}, row '{row}'", str(row), table, below)
+        for name, row in read(dict[str, _Row], layer.rows, str(layer.source)).items():
+            names += reader.add(f"{layer.source}, '{name}'", name, row, below)
         reader.groups[str(layer.title)] = tuple(names)
     count = len(lowest)
     return Layers(
@@ -120,6 +118,24 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
         MappingProxyType(dict(list(reader.floors.items())[count:])),
         MappingProxyType(reader.share_of),
     )
+
+
+@dataclass(frozen=True)
+class _Row(Record):
+    """A row of a table, as the head of this module describes it."""
+
+    entries: Rest[Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]]
+    action: str = ""
+    pair: Annotated[bool | str, OneOf((False, *ENDINGS), 'true, false or "Left Right"')] = False
+    mirror: str | None = None
+    share_of: str | None = None
+    at_least: Mapping[str, Annotated[float, Within(0.0, GREATEST_SHARE)]] = field(
+        default_factory=dict
+    )
+
+    def exchanged(self) -> _Row:
+        """The row with left and right exchanged."""
+        return replace(self, entries=_exchanged(self.entries), at_least=_exchanged(self.at_least))
 
 
 class _Reader:
@@ -145,106 +161,79 @@ class _Reader:
             self.actions[name] = ""
         self.groups[BOTH_SIDES] = names
 
-    def row(self, where: str, name: str, table: Any, below: Mapping[str, Array]) -> list[str]:
+    def add(self, where: str, name: str, row: _Row, below: Mapping[str, Array]) -> list[str]:
         """Take in one row; the names of the controls that it makes."""
-        if not isinstance(table, Mapping):
-            raise ValueError(f"{where}: was {quoted(table)}, must be a table of control = share")
-        entries = dict(table)
-        action, pair = entries.pop("action", ""), entries.pop("pair", False)
-        whole, floors = entries.pop("share_of", None), entries.pop("at_least", {})
-        mirror = entries.pop("mirror", None)
-        if not isinstance(action, str):
-            raise ValueError(f"{where}: 'action' was {quoted(action)}, must be a text")
-        if not isinstance(pair, bool | str) or pair not in (False, *ENDINGS):
-            allowed = 'true, false or "Left Right"'
-            raise ValueError(f"{where}: 'pair' was {quoted(pair)}, must be {allowed}")
-        if whole is not None:
-            self._check_whole(where, whole)
-        if not isinstance(floors, Mapping):
-            allowed = "a table of control = share"
-            raise ValueError(f"{where}: 'at_least' was {quoted(floors)}, must be {allowed}")
-        if mirror is not None and (pair or mirror == name or not isinstance(mirror, str)):
-            allowed = "another name, in a row that is no pair"
-            raise ValueError(f"{where}: 'mirror' was {quoted(mirror)}, must be {allowed}")
-        if pair:
-            self._check_pair(where, name, (*entries, *floors))
-        ends = zip(ENDINGS[pair], SIDES, strict=True) if pair else [("", "")]
-        made = {name + end: self._sums(where, entries, floors, side, below) for end, side in ends}
-        if pair is True:
-            shares, least = zip(*made.values(), strict=True)
-            made = {name: (np.sum(shares, axis=0), np.max(least, axis=0)), **made}
-        if mirror is not None:
-            made[mirror] = self._sums(where, _exchanged(entries), _exchanged(floors), "", below)
+        self._check(where, name, row, below)
+        sides = zip(ENDINGS[row.pair], SIDES, strict=True) if row.pair else [("", "")]
+        made = {name + ending: self._sums(row, side, below) for ending, side in sides}
+        if row.pair is True:
+            shares, floors = zip(*made.values(), strict=True)
+            made = {name: (np.sum(shares, axis=0), np.max(floors, axis=0)), **made}
+        if row.mirror is not None:
+            self._check_entries(where, row.exchanged(), below)
+            made[row.mirror] = self._sums(row.exchanged(), "", below)
         for each, (share, floor) in made.items():
             if each in self.shares:
                 raise ValueError(
                     f"{where}: there is a control called '{each}' already; rename the row"
                 )
-            self.shares[each], self.floors[each], self.actions[each] = share, floor, action
-            if whole is not None:
-                self.share_of[each] = whole
+            self.shares[each], self.floors[each], self.actions[each] = share, floor, row.action
+            if row.share_of is not None:
+                self.share_of[each] = row.share_of
         return list(made)
 
-    def _check_whole(self, where: str, whole: Any) -> None:
-        """ValueError unless `share_of` names a control that has been read."""
-        if not isinstance(whole, str):
-            raise ValueError(
-                f"{where}: 'share_of' was {quoted(whole)}, must be the name of a control"
-            )
-        if whole not in self.shares:
+    def _check(self, where: str, name: str, row: _Row, below: Mapping[str, Array]) -> None:
+        """ValueError for names that a row cannot have, or cannot speak of."""
+        if row.share_of is not None and row.share_of not in self.shares:
             raise ValueError(
                 f"{where}, 'share_of': no row above and no layer below has a control called "
-                f"'{whole}'{question(whole, self.shares)}"
+                f"'{row.share_of}'{question(row.share_of, self.shares)}"
             )
+        if row.mirror is not None and (row.pair or row.mirror == name):
+            raise ValueError(
+                f"{where}, 'mirror': was '{row.mirror}', must be another name, in a row that is no "
+                "pair"
+            )
+        if row.pair:
+            for side in (*SIDES, *ENDINGS["Left Right"]):
+                if name.endswith(side):
+                    raise ValueError(
+                        f"{where}: a pair adds the sides by itself; leave '{side}' away"
+                    )
+            for control in (*row.entries, *row.at_least):
+                if control.endswith(SIDES):
+                    raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
+        self._check_entries(where, row, below)
 
-    def _check_pair(self, where: str, name: str, entries: Sequence[str]) -> None:
-        """ValueError where a row for two sides names a side."""
-        for side in (*SIDES, *ENDINGS["Left Right"]):
-            if name.endswith(side):
-                raise ValueError(f"{where}: a pair adds the sides by itself; leave '{side}' away")
-        for control in entries:
-            if control.endswith(SIDES):
-                raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
+    def _check_entries(self, where: str, row: _Row, below: Mapping[str, Array]) -> None:
+        """ValueError unless a layer below has all controls, and they can be part of a row."""
+        for control in (*row.entries, *row.at_least):
+            if control not in below:
+                hint = question(control, below)
+                raise ValueError(f"{where}: no layer below has a control called '{control}'{hint}")
+            if control in self.share_of:
+                raise ValueError(
+                    f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
+                    "value that is set can be; name what it moves instead"
+                )
 
-    def _sums(
-        self,
-        where: str,
-        entries: Mapping[str, Any],
-        floors: Mapping[str, Any],
-        side: str,
-        below: Mapping[str, Array],
-    ) -> tuple[Array, Array]:
+    def _sums(self, row: _Row, side: str, below: Mapping[str, Array]) -> tuple[Array, Array]:
         """What a row adds and what it makes sure of, shape (C,) each; `side` of a pair, or "".
 
         A side takes its side of each entry. Of what has none it adds half, and makes sure of all.
         """
         share, floor = (np.zeros(len(next(iter(below.values()), ()))) for _ in range(2))
-        for control, value in entries.items():
-            part = number_within(f"{where}, '{control}'", value, -GREATEST_SHARE, GREATEST_SHARE)
-            self._check_entry(where, control, below)
+        for control, part in row.entries.items():
             sided = control + side
             share += part * (below[sided] if sided in below else 0.5 * below[control])
             floor = np.maximum(floor, part * self.floors[sided if sided in below else control])
-        for control, value in floors.items():
-            part = number_within(f"{where}, 'at_least', '{control}'", value, 0.0, GREATEST_SHARE)
-            self._check_entry(where, control, below)
+        for control, part in row.at_least.items():
             floor = np.maximum(floor, part * below.get(control + side, below[control]))
         return share, floor
 
-    def _check_entry(self, where: str, control: str, below: Mapping[str, Array]) -> None:
-        """ValueError unless a layer below has the control, and it can be part of a row."""
-        if control not in below:
-            hint = question(control, below)
-            raise ValueError(f"{where}: no layer below has a control called '{control}'{hint}")
-        if control in self.share_of:
-            raise ValueError(
-                f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
-                "value that is set can be; name what it moves instead"
-            )
 
-
-def _exchanged(entries: Mapping[str, Any]) -> dict[str, Any]:
-    """The entries of a row with left and right exchanged."""
+def _exchanged(entries: Mapping[str, float]) -> dict[str, float]:
+    """Entries of a row with left and right exchanged."""
     other = {**dict(zip(SIDES, SIDES[::-1], strict=True)), "": ""}
     result = {}
     for control, value in entries.items():

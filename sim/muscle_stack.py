@@ -11,7 +11,7 @@ so a point on one muscle goes all the way with it, and one on the border of two 
 The fibre contracts along its points so moved, and skin that hangs on it, contracting or not, is
 carried by o (muscle_forces.py): the relaxed zygomaticus does not hold the cheek back while the
 buccinator bulges under it. A muscle at rest carries nothing. Lines are moved from below, each after
-those that it lies on; rig_reader.py refuses circles.
+those that it lies on; rig.py refuses circles.
 
 Source: Kähler et al. 2001, section 4 (muscles attached to muscles). Who lies on whom: the four
 layers of Freilinger et al. 1987, "Surgical anatomy of the mimic muscle system".

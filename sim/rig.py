@@ -25,198 +25,280 @@ sphincter.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Literal
 
-from .landmarks import LandmarkPoint
+from ..schema import (
+    Flag,
+    Hidden,
+    Kinds,
+    MadeFrom,
+    OneOf,
+    Record,
+    Within,
+    called,
+    question,
+    read,
+)
+from .landmarks import LANDMARK_COUNT, LandmarkPoint
 
-FORMAT = 1
 BONES = ("cranium", "mandible")
 GATES = ("none", "upper_lip", "lower_lip")
 LIDS = ("upper_close", "lower_raise", "upper_raise")  # what a lid muscle does
 
 MOUTH = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
+LANDMARKS = tuple(map(str, range(LANDMARK_COUNT)))  # as keys of tables
+
+Pair = tuple[float, float]
+Triple = tuple[float, float, float]
 
 
-def _number(low: float, high: float, *, default: float | None = None) -> Any:
-    """A number between `low` and `high`; required when it has no default."""
-    rule = {"rule": "number", "low": low, "high": high}
-    return field(metadata=rule) if default is None else field(default=default, metadata=rule)
+Mix = tuple[tuple[int, float], ...]  # numbers of landmarks, and the weight of each
 
 
-def _vector(size: int, low: float, high: float, *, default: tuple[float, ...] | None = None) -> Any:
-    """A list of `size` numbers between `low` and `high`."""
-    rule = {"rule": "vector", "size": size, "low": low, "high": high}
-    return field(metadata=rule) if default is None else field(default=default, metadata=rule)
+def _mix(weights: dict[str, float]) -> Mix:
+    """A table landmark number = weight, as pairs."""
+    if not weights:
+        raise ValueError("is empty, must be a table landmark number = weight")
+    return tuple((int(number), weight) for number, weight in weights.items())
 
 
-def _choice(allowed: tuple[str, ...], *, default: str | None = None) -> Any:
-    """One of the words in `allowed`."""
-    rule = {"rule": "choice", "allowed": allowed}
-    return field(metadata=rule) if default is None else field(default=default, metadata=rule)
-
-
-TEXT, BOOLEAN, POINT = {"rule": "text"}, {"rule": "boolean"}, {"rule": "point"}
-SEEDS, FIBRES, NAMES = {"rule": "seeds"}, {"rule": "fibres"}, {"rule": "names"}
+Landmark = Annotated[str, OneOf(LANDMARKS, f"a landmark, 0 to {LANDMARK_COUNT - 1}")]
+Weights = Annotated[Mix, MadeFrom(dict[Landmark, Annotated[float, Within(-5.0, 5.0)]], _mix)]
+Seeds = Annotated[Mix, MadeFrom(dict[Landmark, Annotated[float, Within(-2.0, 2.0)]], _mix)]
 
 
 @dataclass(frozen=True)
-class Tissue:
+class _PointTable(Record):
+    """{landmark = 54} or {landmarks = {45 = 0.6, 14 = 0.4}}, with an offset or without."""
+
+    landmark: Annotated[int, Within(0, LANDMARK_COUNT - 1)] | None = None
+    landmarks: Weights | None = None
+    offset: Annotated[Triple, Within(-200.0, 200.0)] = (0.0, 0.0, 0.0)
+
+    def point(self) -> LandmarkPoint:
+        """The point of it; ValueError for none, two, or a mix that is not whole."""
+        if (self.landmark is None) == (self.landmarks is None):
+            raise ValueError("give exactly one of 'landmark' and 'landmarks'")
+        mix = self.landmarks or ((self.landmark or 0, 1.0),)
+        total = sum(weight for _, weight in mix)
+        if abs(total - 1.0) > 1e-6:
+            raise ValueError(f"the landmark weights add up to {total:g}, must be 1")
+        return LandmarkPoint(mix, self.offset)
+
+
+Point = Annotated[LandmarkPoint, MadeFrom(_PointTable, _PointTable.point)]
+
+
+@dataclass(frozen=True)
+class Tissue(Record):
     """Uniform skin and soft tissue; stiffness is per skin area and relative to the scale."""
 
-    tangential: float = _number(0.0, 100.0, default=0.19)  # resistance to sliding over the bone
-    normal: float = _number(0.0, 1000.0, default=7.6)  # resistance to sinking in or lifting off
-    membrane: float = _number(0.0, 1e4, default=100.0)  # mm2, edge springs (Van Gelder)
-    shear: float = _number(0.0, 100.0, default=4.0)  # x membrane: neighbours move alike
-    stiffening: float = _number(1.0, 20.0, default=4.0)  # slope of an edge spring beyond the limit
-    stiffening_strain: float = _number(0.0, 2.0, default=0.25)  # strain where it starts (biphasic)
-    modiolus: float = _number(0.0, 50.0, default=0.0)  # how much firmer skin is at mouth corners
-    modiolus_shear: float = _number(0.0, 50.0, default=0.0)  # the same, against turning
-    passive: float = _number(0.0, 1.0, default=0.2)  # share of a muscle's stiffness when relaxed
-    heaviness: float = _number(0.0, 1.0, default=0.1)  # share of weight and inertia that is free
-    lip_seal: float = _number(0.0, 1000.0, default=40.0)  # springs that hold closed lips together
-    drive_power: float = _number(0.3, 1.5, default=1.0)  # pull = activation to this power
-    stiffness_scale: float = _number(1.0, 1e5, default=600.0)  # 1/s2
-    damping: float = _number(0.0, 1000.0, default=8.0)  # 1/s, everywhere
-    damping_ratio: float = _number(
-        0.0, 3.0, default=0.9
-    )  # of critical, for tissue and muscle springs
+    tangential: Annotated[float, Within(0.0, 100.0)] = 0.19  # resistance to sliding over the bone
+    normal: Annotated[float, Within(0.0, 1000.0)] = 7.6  # resistance to sinking in or lifting off
+    membrane: Annotated[float, Within(0.0, 1e4)] = 100.0  # mm2, edge springs (Van Gelder)
+    shear: Annotated[float, Within(0.0, 100.0)] = 4.0  # x membrane: neighbours move alike
+    # slope of an edge spring beyond the limit
+    stiffening: Annotated[float, Within(1.0, 20.0)] = 4.0
+    # strain where it starts (biphasic)
+    stiffening_strain: Annotated[float, Within(0.0, 2.0)] = 0.25
+    modiolus: Annotated[float, Within(0.0, 50.0)] = 0.0  # how much firmer skin is at mouth corners
+    modiolus_shear: Annotated[float, Within(0.0, 50.0)] = 0.0  # the same, against turning
+    passive: Annotated[float, Within(0.0, 1.0)] = 0.2  # share of a muscle's stiffness when relaxed
+    heaviness: Annotated[float, Within(0.0, 1.0)] = 0.1  # share of weight and inertia that is free
+    lip_seal: Annotated[float, Within(0.0, 1000.0)] = 40.0  # springs that hold closed lips together
+    drive_power: Annotated[float, Within(0.3, 1.5)] = 1.0  # pull = activation to this power
+    stiffness_scale: Annotated[float, Within(1.0, 1e5)] = 600.0  # 1/s2
+    damping: Annotated[float, Within(0.0, 1000.0)] = 8.0  # 1/s, everywhere
+    # of critical, for tissue and muscle springs
+    damping_ratio: Annotated[float, Within(0.0, 3.0)] = 0.9
 
 
 @dataclass(frozen=True)
-class Jaw:
+class Jaw(Record):
     """The mandible: it turns about the condyles and glides with them."""
 
-    opening_deg: float = _number(0.0, 45.0, default=22.0)  # hinge angle at jaw_open = 1
-    opening_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, -4.0, 0.0))
-    forward_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, -2.0, 8.0))
-    sideways_glide: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(1.0, 0.0, 0.0))
-    sideways_deg: float = _number(0.0, 20.0, default=6.5)  # yaw about the condyle of that side
-    condyle: tuple[float, float, float] = _vector(3, -100.0, 100.0, default=(0.0, -20.0, -20.0))
-    softness: float = _number(0.0, 1000.0, default=60.0)  # mm2, smooths the mandible weight
-    seeds: tuple[tuple[int, float], ...] = field(default=(), metadata=SEEDS)
+    opening_deg: Annotated[float, Within(0.0, 45.0)] = 22.0  # hinge angle at jaw_open = 1
+    opening_glide: Annotated[Triple, Within(-30.0, 30.0)] = (0.0, -4.0, 0.0)
+    forward_glide: Annotated[Triple, Within(-30.0, 30.0)] = (0.0, -2.0, 8.0)
+    sideways_glide: Annotated[Triple, Within(-30.0, 30.0)] = (1.0, 0.0, 0.0)
+    sideways_deg: Annotated[float, Within(0.0, 20.0)] = 6.5  # yaw about the condyle of that side
+    condyle: Annotated[Triple, Within(-100.0, 100.0)] = (0.0, -20.0, -20.0)
+    softness: Annotated[float, Within(0.0, 1000.0)] = 60.0  # mm2, smooths the mandible weight
+    seeds: Seeds = ()
 
 
 @dataclass(frozen=True)
-class Eyes:
+class Eyes(Record):
     """Eyeballs, and how the lids ride on them."""
 
-    gaze_deg: float = _number(0.0, 60.0, default=30.0)  # eye rotation at gaze = 1
-    upper_lid_follows: tuple[float, float] = _vector(
-        2, 0.0, 1.0, default=(0.55, 0.8)
-    )  # share of the vertical gaze angle: up, down
-    lower_lid_follows: float = _number(0.0, 1.0, default=0.3)
-    lid_reach: float = _number(2.0, 30.0, default=8.0)  # mm from the margin to where the lid ends
-    lid_plateau: float = _number(0.0, 20.0, default=2.0)  # mm from the margin that move as one
-    lid_stiffness: float = _number(0.0, 1000.0, default=120.0)  # of the tarsal plate on the eyeball
-    blink_meeting: float = _number(
-        0.0, 0.5, default=0.12
-    )  # share of the way the lower lid comes up
-    blink_slide: tuple[float, float] = _vector(2, -5.0, 5.0, default=(0.0, 0.0))  # mm to the nose
-    raise_slide: float = _number(-10.0, 10.0, default=0.0)  # the same, for each rad of raising
-    lids_follow_sideways: float = _number(0.0, 1.0, default=0.0)  # share of the horizontal gaze
-    fold_plateau: float = _number(0.0, 30.0, default=2.0)  # mm from the upper margin: the skin that
-    fold_reach: float = _number(2.0, 40.0, default=8.0)  # goes with it in full and at all, if open
-    fold_stiffness: float = _number(0.0, 1000.0, default=0.0)  # of what is not lid, while it moves
+    gaze_deg: Annotated[float, Within(0.0, 60.0)] = 30.0  # eye rotation at gaze = 1
+    # share of the vertical gaze angle: up, down
+    upper_lid_follows: Annotated[Pair, Within(0.0, 1.0)] = (0.55, 0.8)
+    lower_lid_follows: Annotated[float, Within(0.0, 1.0)] = 0.3
+    lid_reach: Annotated[float, Within(2.0, 30.0)] = 8.0  # mm from the margin to where the lid ends
+    lid_plateau: Annotated[float, Within(0.0, 20.0)] = 2.0  # mm from the margin that move as one
+    # of the tarsal plate on the eyeball
+    lid_stiffness: Annotated[float, Within(0.0, 1000.0)] = 120.0
+    # share of the way the lower lid comes up
+    blink_meeting: Annotated[float, Within(0.0, 0.5)] = 0.12
+    blink_slide: Annotated[Pair, Within(-5.0, 5.0)] = (0.0, 0.0)  # mm to the nose
+    raise_slide: Annotated[float, Within(-10.0, 10.0)] = 0.0  # the same, for each rad of raising
+    lids_follow_sideways: Annotated[float, Within(0.0, 1.0)] = 0.0  # share of the horizontal gaze
+    # mm from the upper margin: the skin that
+    fold_plateau: Annotated[float, Within(0.0, 30.0)] = 2.0
+    # goes with it in full and at all, if open
+    fold_reach: Annotated[float, Within(2.0, 40.0)] = 8.0
+    # of what is not lid, while it moves
+    fold_stiffness: Annotated[float, Within(0.0, 1000.0)] = 0.0
 
 
 @dataclass(frozen=True)
-class Head:
+class Head(Record):
     """The head turns as a whole about the joint between skull and spine."""
 
-    pitch_deg: float = _number(0.0, 90.0, default=30.0)  # at head_pitch = 1, up
-    yaw_deg: float = _number(0.0, 90.0, default=45.0)  # at head_yaw = 1, to the subject's left
-    roll_deg: float = _number(0.0, 90.0, default=30.0)  # at head_roll = 1, to the left shoulder
-    joint: tuple[float, float, float] = _vector(
-        3, -200.0, 200.0, default=(0.0, -15.0, -20.0)
-    )  # mm from the middle between the condyles
+    pitch_deg: Annotated[float, Within(0.0, 90.0)] = 30.0  # at head_pitch = 1, up
+    yaw_deg: Annotated[float, Within(0.0, 90.0)] = 45.0  # at head_yaw = 1, to the subject's left
+    roll_deg: Annotated[float, Within(0.0, 90.0)] = 30.0  # at head_roll = 1, to the left shoulder
+    # mm from the middle between the condyles
+    joint: Annotated[Triple, Within(-200.0, 200.0)] = (0.0, -15.0, -20.0)
 
 
 @dataclass(frozen=True)
-class Fibre:
+class Fibre(Record):
     """One fibre from its origin (on bone, fixed) to its insertion (in the skin, moving)."""
 
-    origin: LandmarkPoint = field(metadata=POINT)
-    insertion: LandmarkPoint = field(metadata=POINT)
-    weight: float = _number(0.0, 3.0, default=1.0)  # how firmly skin around it is attached
-    gain: float = _number(0.0, 6.0, default=1.0)  # of its pull against the other fibres
-    width_factor: float = _number(0.1, 4.0, default=1.0)  # x the muscle's width
-    convergence: float = _number(-2.0, 2.0, default=0.0)  # skin drawn towards the fibre line
-    lift: float = _number(-20.0, 20.0, default=0.0)  # mm outward all along; below 0 a crease
+    origin: Point
+    insertion: Point
+    weight: Annotated[float, Within(0.0, 3.0)] = 1.0  # how firmly skin around it is attached
+    gain: Annotated[float, Within(0.0, 6.0)] = 1.0  # of its pull against the other fibres
+    width_factor: Annotated[float, Within(0.1, 4.0)] = 1.0  # x the muscle's width
+    convergence: Annotated[float, Within(-2.0, 2.0)] = 0.0  # skin drawn towards the fibre line
+    lift: Annotated[float, Within(-20.0, 20.0)] = 0.0  # mm outward all along; below 0 a crease
 
 
 @dataclass(frozen=True)
-class Muscle:
+class Muscle(Record):
     """What all kinds of muscle share."""
 
-    name: str
-    action: str = field(metadata=TEXT)  # what it does to the face, with the action units
-    group: str = field(metadata=TEXT)  # title under which a panel lists it
-    stiffness: float = _number(0.0, 500.0, default=30.0)  # of its hold on the skin, per area
-    pair: bool = field(default=True, metadata=BOOLEAN)  # one on each side, or one in the middle
-    halves: bool = field(default=False, metadata=BOOLEAN)  # a pair with a control for both, too
-    crosses: bool = field(default=False, metadata=BOOLEAN)  # a pair, each also on the other side
-    drive: float = _number(0.5, 2.0, default=1.0)  # x drive_power of the tissue
-    tone: bool = field(default=True, metadata=BOOLEAN)  # holds the skin when relaxed, too
-    bone: str = _choice(BONES, default="cranium")  # where the origin is fixed
-    gate: str = _choice(GATES, default="none")  # which lip it may move
-    opens_lips: float = _number(0.0, 1.0, default=0.0)  # how far it breaks the lip seal
-    lies_on: tuple[str, ...] = field(default=(), metadata=NAMES)  # muscles that carry it
+    name: Hidden[str] = field(default="", kw_only=True)  # the key of its table
+    action: str  # what it does to the face, with the action units
+    group: str  # title under which a panel lists it
+    stiffness: Annotated[float, Within(0.0, 500.0)] = 30.0  # of its hold on the skin, per area
+    pair: Flag = True  # one on each side, or one in the middle
+    halves: Flag = False  # a pair with a control for both, too
+    crosses: Flag = False  # a pair, each also on the other side
+    drive: Annotated[float, Within(0.5, 2.0)] = 1.0  # x drive_power of the tissue
+    tone: Flag = True  # holds the skin when relaxed, too
+    bone: Annotated[str, OneOf(BONES)] = "cranium"  # where the origin is fixed
+    gate: Annotated[str, OneOf(GATES)] = "none"  # which lip it may move
+    opens_lips: Annotated[float, Within(0.0, 1.0)] = 0.0  # how far it breaks the lip seal
+    lies_on: tuple[str, ...] = ()  # muscles that carry it
 
 
 @dataclass(frozen=True)
 class LinearMuscle(Muscle):
     """Fibres that contract along their own arc and drag the skin around them."""
 
-    width: float = _number(1.0, 60.0, default=10.0)  # mm across the fibre
-    beyond: float = _number(1.0, 60.0, default=10.0)  # mm past the insertion
-    contraction: float = _number(
-        0.0, 0.95, default=0.3
-    )  # share of its length lost at full activation
-    fixed_at: float = _number(0.0, 0.5, default=0.0)  # where it stays: 0 bone, more slides there
-    wrap: float = _number(0.0, 1.5, default=0.7)  # 0 straight .. 1 bent to follow the skin
-    bulge: float = _number(0.0, 20.0, default=0.0)  # mm of thickening at full activation
-    bulge_at: float = _number(0.0, 1.0, default=0.5)  # where along the fibre
-    fibres: tuple[Fibre, ...] = field(default=(), metadata=FIBRES)
+    width: Annotated[float, Within(1.0, 60.0)] = 10.0  # mm across the fibre
+    beyond: Annotated[float, Within(1.0, 60.0)] = 10.0  # mm past the insertion
+    # share of its length lost at full activation
+    contraction: Annotated[float, Within(0.0, 0.95)] = 0.3
+    fixed_at: Annotated[float, Within(0.0, 0.5)] = 0.0  # where it stays: 0 bone, more slides there
+    wrap: Annotated[float, Within(0.0, 1.5)] = 0.7  # 0 straight .. 1 bent to follow the skin
+    bulge: Annotated[float, Within(0.0, 20.0)] = 0.0  # mm of thickening at full activation
+    bulge_at: Annotated[float, Within(0.0, 1.0)] = 0.5  # where along the fibre
+    fibres: Annotated[tuple[Fibre, ...], called("fibre")] = ()
 
 
 @dataclass(frozen=True)
 class RingMuscle(Muscle):
     """A sphincter or a part of one: skin on an elliptic ring is drawn to a centre and flared."""
 
-    centre: LandmarkPoint = field(default=MOUTH, metadata=POINT)
-    shape: LandmarkPoint | None = field(default=None, metadata=POINT)  # middle of the ring
-    radii: tuple[float, float, float] = _vector(3, 1.0, 100.0, default=(20.0, 10.0, 10.0))
-    edge: tuple[float, float] = _vector(
-        2, 0.05, 10.0, default=(0.7, 1.0)
-    )  # falloff outside, inside
-    contraction: tuple[float, float, float] = _vector(3, -2.0, 2.0, default=(0.2, 0.2, 0.2))
-    push: tuple[float, float, float] = _vector(3, -30.0, 30.0, default=(0.0, 0.0, 0.0))
-    bulge: float = _number(0.0, 40.0, default=0.0)  # mm outward along the skin's normal
-    flare: float = _number(-30.0, 30.0, default=0.0)  # mm up for the upper, down for the lower lip
-    turn_deg: tuple[float, float] = _vector(
-        2, -90.0, 90.0, default=(0.0, 0.0)
-    )  # about the centre: what lies above it goes forward, what lies before it to the side
-    opening: tuple[float, float] = _vector(
-        2, 0.0, 30.0, default=(0.0, 0.0)
-    )  # mm, half width and half height of the oval mouth drawn to; both 0: to the centre
-    arc_deg: tuple[float, float, float] = _vector(3, -360.0, 360.0, default=(0.0, 180.0, 1.0))
+    centre: Point = MOUTH
+    shape: Point | None = None  # middle of the ring
+    radii: Annotated[Triple, Within(1.0, 100.0)] = (20.0, 10.0, 10.0)
+    edge: Annotated[Pair, Within(0.05, 10.0)] = (0.7, 1.0)  # falloff outside, inside
+    contraction: Annotated[Triple, Within(-2.0, 2.0)] = (0.2, 0.2, 0.2)
+    push: Annotated[Triple, Within(-30.0, 30.0)] = (0.0, 0.0, 0.0)
+    bulge: Annotated[float, Within(0.0, 40.0)] = 0.0  # mm outward along the skin's normal
+    # mm up for the upper, down for the lower lip
+    flare: Annotated[float, Within(-30.0, 30.0)] = 0.0
+    # about the centre: what lies above it goes forward, what lies before it to the side
+    turn_deg: Annotated[Pair, Within(-90.0, 90.0)] = (0.0, 0.0)
+    # mm, half width and half height of the oval mouth drawn to; both 0: to the centre
+    opening: Annotated[Pair, Within(0.0, 30.0)] = (0.0, 0.0)
+    arc_deg: Annotated[Triple, Within(-360.0, 360.0)] = (0.0, 180.0, 1.0)
 
 
 @dataclass(frozen=True)
 class LidMuscle(Muscle):
     """A muscle that turns an eyelid over the eyeball."""
 
-    lid: str = _choice(LIDS, default="upper_close")
-    travel: float = _number(0.0, 2.0, default=1.0)  # x the lid aperture at full activation
+    lid: Annotated[str, OneOf(LIDS)] = "upper_close"
+    travel: Annotated[float, Within(0.0, 2.0)] = 1.0  # x the lid aperture at full activation
+
+
+KINDS: dict[str, type[Muscle]] = {"linear": LinearMuscle, "ring": RingMuscle, "lid": LidMuscle}
+
+
+def _muscles(tables: dict[str, Muscle]) -> tuple[Muscle, ...]:
+    """Muscles with their names, if all of them can be, and lie on each other."""
+    for name, muscle in tables.items():
+        if not name.isidentifier() or name != name.lower():
+            raise ValueError(f"'{name}': a name is lower case letters, digits and underscores")
+        if name.endswith(("_left", "_right")):
+            raise ValueError(f"'{name}': the side is added by itself, leave '_left'/'_right' away")
+        if isinstance(muscle, LinearMuscle) and not muscle.fibres:
+            raise ValueError(
+                f"'{name}': a linear muscle needs at least one [[muscle.{name}.fibre]]"
+            )
+    muscles = {name: replace(muscle, name=name) for name, muscle in tables.items()}
+    for muscle in muscles.values():
+        _check_what_carries(muscle, muscles)
+    return tuple(muscles.values())
+
+
+def _check_what_carries(muscle: Muscle, muscles: Mapping[str, Muscle]) -> None:
+    """Refuse a muscle on one that is not there, on or under a lid, or at last on itself."""
+    where = f"'{muscle.name}', 'lies_on'"
+    if muscle.lies_on and isinstance(muscle, LidMuscle):
+        raise ValueError(f"{where}: a lid lies on the eyeball; leave the key away")
+    for name in muscle.lies_on:
+        if name not in muscles:
+            raise ValueError(f"{where}: there is no muscle '{name}'{question(name, muscles)}")
+        if isinstance(muscles[name], LidMuscle):
+            raise ValueError(f"{where}: '{name}' is a lid, which carries nothing; take it out")
+    _refuse_circle(muscles, (muscle.name,))
+
+
+def _refuse_circle(muscles: Mapping[str, Muscle], way: tuple[str, ...]) -> None:
+    """Go down from the last muscle of a way and refuse to meet its first one again."""
+    for name in muscles[way[-1]].lies_on:
+        if name == way[0]:
+            circle = " on ".join((*way, name))
+            raise ValueError(f"'{name}', 'lies_on': {circle} is a circle; take one out")
+        if name in muscles and name not in way:
+            _refuse_circle(muscles, (*way, name))
 
 
 @dataclass(frozen=True)
-class Rig:
+class Rig(Record):
     """A whole rig; `Rig()` is plain tissue with a jaw and no muscles."""
 
     tissue: Tissue = Tissue()
     jaw: Jaw = Jaw()
     eyes: Eyes = Eyes()
     head: Head = Head()
-    muscles: tuple[Muscle, ...] = ()
+    muscles: Annotated[
+        tuple[Muscle, ...],
+        called("muscle"),
+        MadeFrom(dict[str, Annotated[Muscle, Kinds(KINDS)]], _muscles),
+    ] = ()
+    format: Literal[1] = 1
+
+
+def read_rig(document: Mapping[str, Any]) -> Rig:
+    """Read a rig from the parsed rig file; ValueError names the muscle and key that is wrong."""
+    return read(Rig, document, "rig")

@@ -55,7 +55,7 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
 @pytest.mark.parametrize(
     ("folder", "allowed"),
     [
-        ("risorius", {"click", "numba", "numpy", "pyvista", "tqdm"}),
+        ("risorius", {"click", "numba", "numpy", "pydantic", "pydantic_core", "pyvista", "tqdm"}),
         ("refine", {"numpy"}),
         ("sim", {"numpy", "scipy"}),
         ("render", {"glfw", "moderngl", "numpy", "pyrr"}),

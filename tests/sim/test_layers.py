@@ -175,30 +175,30 @@ def test_groups_end_with_the_layers() -> None:
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
-        ({"X": {"pullr": 1.0}}, r"X.toml, row 'X': no layer below .* 'pullr'; did you mean 'pull"),
-        ({"X": {"middle": "1"}}, r"X.toml, row 'X', 'middle': was '1', must be a number from -2"),
-        ({"X": {"middle": True}}, r"row 'X', 'middle': was True, must be a number"),
-        ({"X": {"middle": 2.5}}, r"row 'X', 'middle': was 2.5, .* from -2 to 2"),
-        ({"X": {"middle": float("nan")}}, r"row 'X', 'middle': was nan, must be a number"),
-        ({"X": 3}, r"row 'X': was 3, must be a table"),
-        ({"X": {"action": 3}}, r"row 'X': 'action' was 3, must be a text"),
-        ({"X": {"pair": 1}}, r"row 'X': 'pair' was 1, must be true, false or \"Left Right\""),
-        ({"X": {"pair": "Left"}}, r"row 'X': 'pair' was 'Left', must be true, false or \"Left R"),
-        ({"X": {"pair": ["Left"]}}, r"row 'X': 'pair' was \['Left'\], must be true, false or"),
-        ({"XLeft": {"pair": "Left Right"}}, r"row 'XLeft': a pair adds the .*; leave 'Left' away"),
-        ({"X": {"mirror": 1}}, r"row 'X': 'mirror' was 1, must be another name, in a row that"),
-        ({"X": {"mirror": "Y", "pair": True}}, r"row 'X': 'mirror' was 'Y', must be another name"),
-        ({"X": {"mirror": "middle"}}, r"row 'X': there is a control called 'middle' already"),
-        ({"X": {"at_least": 0.2}}, r"row 'X': 'at_least' was 0.2, must be a table of control"),
-        ({"X": {"at_least": {"slide": -1}}}, r"row 'X', 'at_least', 'slide': was -1, .* 0 to 2"),
-        ({"X": {"at_least": {"slid": 1.0}}}, r"row 'X': no layer below .* 'slid'; did you mean"),
-        ({"X": {"share_of": 1.0}}, r"row 'X': 'share_of' was 1.0, must be the name of a control"),
+        ({"X": {"pullr": 1.0}}, r"X.toml, 'X': no layer below .* 'pullr'; did you mean 'pull"),
+        ({"X": {"middle": "1"}}, r"X.toml, 'X', 'middle': was '1', must be a number from -2"),
+        ({"X": {"middle": True}}, r"'X', 'middle': was True, must be a number"),
+        ({"X": {"middle": 2.5}}, r"'X', 'middle': was 2.5, .* from -2 to 2"),
+        ({"X": {"middle": float("nan")}}, r"'X', 'middle': was nan, must be a number"),
+        ({"X": 3}, r"'X': was 3, must be a table"),
+        ({"X": {"action": 3}}, r"'X', 'action': was 3, must be a text"),
+        ({"X": {"pair": 1}}, r"'X', 'pair': was 1, must be true, false or \"Left Right\""),
+        ({"X": {"pair": "Left"}}, r"'X', 'pair': was 'Left', must be true, false or \"Left R"),
+        ({"X": {"pair": ["Left"]}}, r"'X', 'pair': was \['Left'\], must be true, false or"),
+        ({"XLeft": {"pair": "Left Right"}}, r"'XLeft': a pair adds the .*; leave 'Left' away"),
+        ({"X": {"mirror": 1}}, r"'X', 'mirror': was 1, must be a text"),
+        ({"X": {"mirror": "Y", "pair": True}}, r"'X', 'mirror': was 'Y', must be another name"),
+        ({"X": {"mirror": "middle"}}, r"'X': there is a control called 'middle' already"),
+        ({"X": {"at_least": 0.2}}, r"'X', 'at_least': was 0.2, must be a table"),
+        ({"X": {"at_least": {"slide": -1}}}, r"'X', 'at_least', 'slide': was -1, .* 0 to 2"),
+        ({"X": {"at_least": {"slid": 1.0}}}, r"'X': no layer below .* 'slid'; did you mean"),
+        ({"X": {"share_of": 1.0}}, r"'X', 'share_of': was 1.0, must be a text"),
         ({"X": {"share_of": "midle"}}, r"'share_of': no row above .* 'midle'; did you mean 'mid"),
         ({"X": {"share_of": "X"}}, r"'share_of': no row above and no layer below .* called 'X'"),
         ({"X": {"pair": True, "puller_left": 1.0}}, r"in a pair leave the side of 'puller_left'"),
-        ({"X_left": {"pair": True, "puller": 1.0}}, r"row 'X_left': a pair adds the sides"),
-        ({"middle": {"slide": 1.0}}, r"row 'middle': there is a control called 'middle' already"),
-        ({"A": {}, "B": {"A": 1.0}}, r"row 'B': no layer below has a control called 'A'"),
+        ({"X_left": {"pair": True, "puller": 1.0}}, r"'X_left': a pair adds the sides"),
+        ({"middle": {"slide": 1.0}}, r"'middle': there is a control called 'middle' already"),
+        ({"A": {}, "B": {"A": 1.0}}, r"'B': no layer below has a control called 'A'"),
     ],
 )
 def test_a_wrong_row_is_named(rows: dict[str, Any], message: str) -> None:
@@ -209,7 +209,7 @@ def test_a_wrong_row_is_named(rows: dict[str, Any], message: str) -> None:
 
 def test_a_row_cannot_hold_what_is_a_share() -> None:
     """A share counts by the values that are set, which a row above does not know."""
-    with pytest.raises(ValueError, match=r"row 'above', 'part': is a share of 'whole', which"):
+    with pytest.raises(ValueError, match=r"'above', 'part': is a share of 'whole', which"):
         controls(SHARED, layer("Y", above={"part": 1.0}))
 
 

@@ -1,0 +1,303 @@
+"""Tables of files, read into typed records: what is allowed stands in the types of their fields.
+
+A record is a frozen dataclass that is also a `Record`; its fields are the keys of a table. pydantic
+checks; what it finds is told in one line:
+
+    face.toml, 'muscle', 'frontalis', 'width': was 99, must be a number from 1 to 60
+
+Below every package, because rigs, scripts, landmarks, recordings and settings are all read here.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import reprlib
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from functools import cache, partial
+from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type_hints
+
+from pydantic import (
+    AllowInfNan,
+    Field,
+    GetCoreSchemaHandler,
+    Strict,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+)
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, ErrorDetails, core_schema
+
+Read = TypeVar("Read")
+
+# What fits instead, by pydantic's names of what can be wrong.
+MUST_BE = {
+    "bool_type": "true or false",
+    "dataclass_type": "a table",
+    "dict_type": "a table",
+    "finite_number": "a finite number",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "list_type": "a list",
+    "literal_error": "one of {expected}",
+    "string_type": "a text",
+    "too_long": "a list of {max_length}",
+    "tuple_type": "a list",
+}
+LENIENT = "unknown keys are passed by"  # of another version of the program
+OWN = "("  # keys that begin so are put in by readers; no file has them
+REST, HIDDEN = f"{OWN}rest)", f"{OWN}hidden)"
+
+
+class Record:
+    """A table of a file; see the head of this module. A key that is no field is a mistake.
+
+    A field of the type `Rest[...]`, of which there may be one, takes all other keys instead.
+    """
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: type[Any], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """The check of pydantic, before which unknown keys are told or go to the rest."""
+        check = partial(_known_keys_of, _keys(cls))
+        return core_schema.with_info_before_validator_function(check, handler(source))
+
+
+@dataclass(frozen=True)
+class Within:
+    """Of a number, or of each in a tuple: finite, from `low` to `high`; True and False are none."""
+
+    low: float
+    high: float
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Numbers of the kinds that are annotated."""
+        if get_origin(source) is tuple:
+            schema = core_schema.tuple_schema(
+                list(map(self._of_one, get_args(source))), strict=True
+            )
+            return core_schema.no_info_before_validator_function(
+                lambda given: tuple(given) if isinstance(given, list) else given, schema
+            )
+        return self._of_one(source)
+
+    def _of_one(self, source: Any) -> CoreSchema:
+        limits: dict[str, Any] = {"ge": self.low, "le": self.high, "strict": True}
+        is_whole = source is int
+        schema = (
+            core_schema.int_schema(**limits)
+            if is_whole
+            else core_schema.float_schema(**limits, allow_inf_nan=False)
+        )
+        kind = "a whole number" if is_whole else "a number"
+        message = f"{kind} from {self.low:g} to {self.high:g}"
+        return core_schema.custom_error_schema(schema, "must_be", custom_error_message=message)
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """One of these texts; told: as errors name them, where they are many."""
+
+    allowed: Iterable[Any]
+    told: str = ""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Exactly one of them."""
+        message = self.told or f"one of {', '.join(self.allowed)}"
+        schema = core_schema.no_info_plain_validator_function(self._one)
+        return core_schema.custom_error_schema(schema, "must_be", custom_error_message=message)
+
+    def _one(self, given: Any) -> Any:
+        if not any(type(given) is type(each) and given == each for each in self.allowed):
+            raise ValueError
+        return given
+
+
+@dataclass(frozen=True)
+class MadeFrom:
+    """Of any type: made by a function, which may raise ValueError, from what files have for it."""
+
+    table: Any
+    make: Callable[[Any], Any]
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """The check of the table, then the function."""
+        return core_schema.no_info_after_validator_function(
+            self.make, handler.generate_schema(self.table)
+        )
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """A record of one of several classes: of that which the key `kind` of the table names."""
+
+    records: Mapping[str, type[Record]]
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """A choice by that key, which the records do not have."""
+        return core_schema.tagged_union_schema(
+            {
+                OWN + name: core_schema.no_info_before_validator_function(
+                    lambda table: {key: table[key] for key in table if key != "kind"},
+                    handler.generate_schema(record),
+                )
+                for name, record in self.records.items()
+            },
+            lambda table: f"{OWN}{table.get('kind')}" if isinstance(table, Mapping) else None,
+            custom_error_type="must_be",
+            custom_error_message=f"a table whose 'kind' is one of {', '.join(self.records)}",
+        )
+
+
+def called(key: str) -> Any:
+    """Of a field: the key that files have for it."""
+    return Field(alias=key)
+
+
+Number = Annotated[float, Strict(), AllowInfNan(False)]
+Flag = Annotated[bool, Strict()]
+Rest = Annotated[dict[str, Read], called(REST)]  # of a field: it has all other keys
+Hidden = Annotated[Read, called(HIDDEN)]  # of a field: no file has a key for it
+
+
+_adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
+
+
+def read(
+    kind: type[Read],
+    document: Any,
+    where: str,
+    *,
+    error: type[Exception] = ValueError,
+) -> Read:
+    """A record, or any other type, made of what was found in a file.
+
+    where: what it is called in errors, a file or a part of one.
+
+    Raises `error` with one line: where, what it was, what is allowed.
+    """
+    try:
+        return cast(Read, _adapter(kind).validate_python(document))
+    except ValidationError as problem:
+        raise error(_line(where, problem.errors(include_url=False)[0])) from None
+
+
+def read_what_fits(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
+    """A record of those entries of a table that are allowed, and a line for each that is not.
+
+    For settings: what another version of the program wrote, or a hand, must not stop this one.
+    Every field has a default; an entry is a key of the table, or of a table within it.
+    """
+    found: list[str] = []
+    while True:
+        try:
+            return cast(Read, _adapter(kind).validate_python(document, context=LENIENT)), found
+        except ValidationError as problem:
+            first = problem.errors(include_url=False)[0]
+            found.append(_line("", first).removeprefix(": "))
+            document = _without(document, first["loc"])
+
+
+def quoted(value: object) -> str:
+    """A value in the text of an error, cut where it is long."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # Python writes no number of thousands of digits
+        return f"a very long {type(value).__name__}"
+
+
+def question(name: str, known: Iterable[str]) -> str:
+    """The nearest known name, as a question at the end of an error; nothing if none is near."""
+    near = difflib.get_close_matches(str(name), list(known), n=1)
+    return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def parsed_toml(text: str) -> dict[str, Any]:
+    """What a TOML file says; ValueError with the reason if it is none."""
+    return cast(dict[str, Any], _parsed(tomllib.loads, text, "TOML"))
+
+
+def parsed_json(text: str | bytes) -> Any:
+    """What a JSON file says; ValueError with the reason if it is none."""
+    return _parsed(json.loads, text, "JSON")
+
+
+def _parsed(loads: Callable[[Any], Any], text: str | bytes, language: str) -> Any:
+    try:
+        return loads(text)
+    except RecursionError:
+        reason = "brackets are nested too deep"
+    except ValueError as error:
+        is_long = "set_int_max_str_digits" in str(error)  # advice for programmers
+        reason = "a number has thousands of digits" if is_long else str(error)
+    raise ValueError(f"not valid {language}: {reason}")
+
+
+def _keys(record: type[Any]) -> tuple[str, ...]:
+    """What files call the fields of a record."""
+    hints = get_type_hints(record, include_extras=True)
+    names = []
+    for each in fields(record):
+        marks = getattr(hints[each.name], "__metadata__", ())
+        aliases = [mark.alias for mark in marks if isinstance(mark, FieldInfo)]
+        names.append(next(filter(None, aliases), each.name))
+    return tuple(names)
+
+
+def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> Any:
+    """A table whose unknown keys are in that of the rest; ValueError where there is none."""
+    if not isinstance(table, Mapping):
+        return table
+    plain = [key for key in known if not key.startswith(OWN)]
+    found = {key: value for key, value in table.items() if key in plain}
+    others = {key: value for key, value in table.items() if key not in plain}
+    if REST in known:
+        return {**found, REST: {str(key): value for key, value in others.items()}}
+    for key in () if info.context is LENIENT else others:
+        allowed = ", ".join(each for each in known if not each.startswith(OWN))
+        raise ValueError(
+            f"unknown key {quoted(key)}{question(key, known) or '.'} Allowed: {allowed}"
+        )
+    return found
+
+
+def _line(where: str, problem: ErrorDetails) -> str:
+    """Where something is wrong, what it was, and what is allowed."""
+    place = where
+    for key in problem["loc"]:
+        if isinstance(key, int):
+            place += f" {key + 1}"
+        elif not key.startswith(OWN) and key != "[key]":
+            place += f", {quoted(key)}"
+    place, kind, context = place.removeprefix(", "), problem["type"], problem.get("ctx", {})
+    if kind == "missing":
+        return f"{place}: is missing; it must be there"
+    if kind == "value_error":
+        return f"{place}: {context['error']}"
+    allowed = MUST_BE[kind].format(**context) if kind in MUST_BE else problem["msg"]
+    return f"{place}: was {quoted(problem['input'])}, must be {allowed}"
+
+
+def _without(document: Any, place: Sequence[int | str]) -> Any:
+    """A table without the entry at this place, as deep as there are tables."""
+    keys = [key for key in place if not str(key).startswith(OWN)]
+    if not isinstance(document, Mapping) or not keys or keys[0] not in document:
+        return {}
+    left = dict(document)
+    if len(keys) > 1 and isinstance(left[keys[0]], Mapping) and keys[1] in left[keys[0]]:
+        left[keys[0]] = _without(left[keys[0]], keys[1:])
+    else:
+        del left[keys[0]]
+    return left
