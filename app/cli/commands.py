@@ -222,18 +222,18 @@ def open_window(
 
     performance: None for the face's own, which is read while the window shows a picture already.
     """
-    from ..viewer.opening import Opening, settings_path
+    from ..viewer.window.splash_screen import SplashScreen, settings_path
 
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
         script = performance or played(None, None, None, Playback(), quiet=True)
         head = drawing.fitted_head() if mesh is None else None
-        import risorius.app.viewer.window  # noqa: F401
+        import risorius.app.viewer.window.window  # noqa: F401
 
         return script, head
 
     if listening is not None and performance is not None:
-        from ..viewer.live_commands import check_scene
+        from ..viewer.session.live_commands import check_scene
 
         check_scene(performance.scene)
     told_of = (drawing.refinement(), drawing.dissection()) if drawing.is_told else None
@@ -244,8 +244,8 @@ def open_window(
     path = settings_path()
     is_face = performance is None or performance.scene == "face"
     is_own = not is_face or drawing.head is not None or drawing.person is not None
-    with Opening(size, path, is_own=is_own) as opening:
-        script, head = opening.during(load)
+    with SplashScreen(size, path, is_own=is_own) as splash:
+        script, head = splash.during(load)
         from ..viewer import Viewer
         from ..viewer.settings import display_of
 
@@ -253,7 +253,7 @@ def open_window(
         if told_of is not None:
             refinement, dissection = told_of
             display = display_of(refinement, script.scene, dissection, **drawing.style_options)
-        viewer = Viewer(script, size, display, head=head, settings_path=path, opening=opening)
+        viewer = Viewer(script, size, display, head=head, settings_path=path, splash=splash)
         with viewer:
             if listening is not None:
                 line = viewer.live.start(listening)

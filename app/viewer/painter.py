@@ -8,7 +8,7 @@ from risorius import render
 
 from .level_of_detail import FULL, LevelOfDetail
 from .messages import Messages
-from .physics import CALM
+from .session.physics import CALM
 from .settings import Display
 from .view import View
 

@@ -11,7 +11,7 @@ from typing import Any, get_type_hints
 from risorius import render
 
 from ..refining.looks import LOOKS, STATIC
-from .command import chord
+from .interface.commands import chord
 
 Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError or KeyError if not
 

@@ -14,21 +14,61 @@ import time
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 from risorius import render
 
 from ..anatomy import OPACITY, SIDES, SOLIDS, Dissection
+from ..capture.formats import FORMATS as FILMS
 from ..errors import UserError, in_one_line
+from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text
 from ..refining.looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
 from ..refining.refiners import refiner_for
 from ..scenes import Scene
 from . import setting_rules as rules
 from .colours import COLOURS
-from .export_kinds import KINDS, SOURCES
-from .gui import THEMES
+from .interface.gui import THEMES
 from .overlays import OVERLAYS, overlays_of
+
+
+@dataclass
+class PanelState:
+    """Commands change it, panels follow."""
+
+    are_hidden: bool = False  # all but the picture
+    is_help_open: bool = False
+    wanted_tab: str = ""  # to be brought to the front, by its title
+
+    def toggle_hidden(self) -> str | None:
+        """Hide all but the picture, or show it again."""
+        self.are_hidden = not self.are_hidden
+        return "Menus are at the upper edge" if self.are_hidden else None
+
+
+FRAMES, SHEET = "frames", "sheet"  # pictures in a folder, and a contact sheet
+SOURCES = {"script": "The whole script", "part": "A part of it", "pose": "The face as it is"}
+
+
+class Kind(NamedTuple):
+    """One kind of file. suffix: of its name, "" for a folder. fastest: [frames/s]."""
+
+    title: str
+    suffix: str
+    is_drawn: bool = True  # else it is motion
+    can_be_transparent: bool = False
+    fastest: float = 240.0
+
+
+KINDS = {
+    end[1:]: Kind(f"Film ({end})", end, True, bool(each.transparent), each.fastest)
+    for end, each in FILMS.items()
+}
+KINDS[FRAMES] = Kind("Pictures in a folder (.png)", "", True, True)
+KINDS[SHEET] = Kind("Contact sheet of named poses (.png)", ".png")
+for _each in MOTION:
+    _end = (*_each.suffixes, "")[0]
+    KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)
 
 MOST_RECENT = 10  # files that are remembered
 LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand

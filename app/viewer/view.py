@@ -13,8 +13,8 @@ from risorius import render
 
 from ..capture.cameras import whole_scene
 from ..pipeline import Viewport
-from .gui import THEMES, em
-from .session import Session
+from .interface.gui import THEMES, em
+from .session.session import Session
 from .setting_rules import BACKGROUNDS
 from .settings import Display, Settings
 

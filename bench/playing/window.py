@@ -22,8 +22,8 @@ from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES
 from risorius.app.viewer.level_of_detail import LEVELS, LevelOfDetail
-from risorius.app.viewer.panel_cache import REFRESH
 from risorius.app.viewer.settings import Display
+from risorius.app.viewer.window.window import REFRESH
 
 from ..report import processor, table
 

@@ -24,8 +24,8 @@ from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.picture.skin_drag import SkinDrag
 from risorius.app.viewer.settings import Display
-from risorius.app.viewer.skin_drag import SkinDrag
 from risorius.assets.fitting.guess import FIRST
 from risorius.bench.canvas import without_noise
 

@@ -12,8 +12,8 @@ import pytest
 from risorius.app import process_cache
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.files import Files
-from risorius.app.viewer.session import Session
+from risorius.app.viewer.documents.file_dialogs import FileDialogs
+from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display
 
 from .driving import SIZE, replace_state, settle, xdotool
@@ -39,7 +39,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.session.scene.reset()
     viewer.settings.display, viewer.face_panel.search = Display(), ""
     viewer.settings.folds.clear()
-    replace_state(viewer.files, Files(is_native=False))
+    replace_state(viewer.files, FileDialogs(is_native=False))
     viewer.messages.text = ""
     viewer.panel_state.wanted_tab = "Face"
     viewer.view.fit_scene()

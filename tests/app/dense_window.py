@@ -15,7 +15,7 @@ from Xlib import Xatom, display
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.files import Files
+from risorius.app.viewer.documents.file_dialogs import FileDialogs
 
 from .driving import (
     click,
@@ -44,7 +44,7 @@ def main() -> None:
         return
     with _screen_of(DOTS_PER_INCH), Viewer(script_for(None, "face"), SIZE) as viewer:
         first = viewer.view.viewport[0]
-        replace_state(viewer.files, Files(is_native=False))
+        replace_state(viewer.files, FileDialogs(is_native=False))
         settle(viewer)
         is_settled = viewer.view.viewport[0] == first
         print(json.dumps({**_findings(viewer), "is_settled": is_settled}))

@@ -17,8 +17,8 @@ from risorius.app.performances import limits_of, script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
 from risorius.app.viewer.frame_times import FrameTimes
-from risorius.app.viewer.physics import SEEN, STEP, Physics
-from risorius.app.viewer.session import Session
+from risorius.app.viewer.session.physics import SEEN, STEP, Physics
+from risorius.app.viewer.session.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 

@@ -17,11 +17,7 @@ from risorius.app.live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, LiveFace
 from risorius.app.live.frame import MOST_BYTES
 from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST_AFTER
 from risorius.app.live.receiver import MOST_WAITING, STILL_THERE
-from risorius.app.viewer.panels.live import (
-    advice_in_words,
-    packets_in_words,
-    state_in_words,
-)
+from risorius.app.viewer.panels.live import advice_in_words, packets_in_words, state_in_words
 
 from .live_packets import live_link, osc, vmc
 

@@ -27,9 +27,9 @@ from risorius.app.scenes import PlaneScene
 from risorius.app.script import Script, load_script, parse_script, save_script, script_text
 from risorius.app.sound import Player, Sound, load_sound, player
 from risorius.app.sound.peaks import Peaks
-from risorius.app.viewer.physics import STEP, Clock
-from risorius.app.viewer.session import Session
-from risorius.app.viewer.soundtrack import Soundtrack
+from risorius.app.viewer.session.physics import STEP, Clock
+from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.session.soundtrack import Soundtrack
 
 from .sounds import noise, write_wav
 
@@ -327,10 +327,10 @@ def test_the_picture_keeps_to_the_sound(
         played.append(Player(sound, clock=lambda: device.now))
         return played[0]
 
-    monkeypatch.setattr("risorius.app.viewer.soundtrack.Player", play)
+    monkeypatch.setattr("risorius.app.viewer.session.soundtrack.Player", play)
     sound = ramp(30.0)
     sound = replace(sound, samples=np.tile(sound.samples, (3, 1)))
-    monkeypatch.setattr("risorius.app.viewer.soundtrack.load_sound", lambda file: sound)
+    monkeypatch.setattr("risorius.app.viewer.session.soundtrack.load_sound", lambda file: sound)
     session = Session(PlaneScene(), Script("", 80.0, "s", "plane", sound=Path("ramp")))
     soundtrack, clock = Soundtrack(session), Clock()
     soundtrack.refresh()
@@ -382,10 +382,12 @@ def player_of(soundtrack: Soundtrack) -> Player:
 def ramp_with(device: HandDevice, monkeypatch: pytest.MonkeyPatch) -> tuple[Session, Soundtrack]:
     """A script of 20 s with a ramp to be heard, on the device."""
     monkeypatch.setattr(
-        "risorius.app.viewer.soundtrack.Player",
+        "risorius.app.viewer.session.soundtrack.Player",
         lambda sound: Player(sound, clock=lambda: device.now),
     )
-    monkeypatch.setattr("risorius.app.viewer.soundtrack.load_sound", lambda file: ramp(30.0))
+    monkeypatch.setattr(
+        "risorius.app.viewer.session.soundtrack.load_sound", lambda file: ramp(30.0)
+    )
     session = Session(PlaneScene(), Script("", 20.0, "s", "plane", sound=Path("ramp")))
     soundtrack = Soundtrack(session)
     soundtrack.refresh()
@@ -435,7 +437,7 @@ def test_a_real_device_asks_and_the_position_goes_on(monkeypatch: pytest.MonkeyP
 
 def test_without_a_device_all_is_silent_and_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """No library, or no device: no error, the waveform is there, doctor says it."""
-    monkeypatch.setattr("risorius.app.viewer.soundtrack.load_sound", lambda file: ramp(3.0))
+    monkeypatch.setattr("risorius.app.viewer.session.soundtrack.load_sound", lambda file: ramp(3.0))
     session = Session(PlaneScene(), Script("", 2.0, "s", "plane", sound=Path("ramp")))
     for name, value in (("backends", lambda: []), ("miniaudio", None)):
         with monkeypatch.context() as lacking:

@@ -17,7 +17,7 @@ from PIL import Image
 
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.panels.help import COLUMNS, NARROW_COLUMNS
-from risorius.app.viewer.physics import MOST_STEPS
+from risorius.app.viewer.session.physics import MOST_STEPS
 from risorius.app.viewer.settings import Display, Settings, load_settings
 
 from .driving import (

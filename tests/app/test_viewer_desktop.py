@@ -23,8 +23,8 @@ from Xlib.protocol import event
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.placement import FIRST_SIZE
 from risorius.app.viewer.settings import load_settings
+from risorius.app.viewer.window.placement import FIRST_SIZE
 
 from .driving import (
     DEADLINE,

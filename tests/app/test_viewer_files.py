@@ -12,7 +12,7 @@ import pytest
 from risorius.app.scenes import build_scene
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.files import UNSEEN, Files
+from risorius.app.viewer.documents.file_dialogs import UNSEEN, FileDialogs
 from risorius.app.viewer.settings import Display
 from tests.heads import stranger
 from tests.render.test_release import counting
@@ -119,7 +119,7 @@ def test_native_dialogs_are_used_where_they_work(
     dialog.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
     monkeypatch.delenv("XDG_SESSION_DESKTOP", raising=False)  # by which kdialog may be preferred
-    replace_state(viewer.files, Files())
+    replace_state(viewer.files, FileDialogs())
     xdotool(viewer, "key", "ctrl+o")
     assert viewer.files.is_waiting
     if not comes_up:

@@ -8,10 +8,10 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.app.script import parse_script
-from risorius.app.viewer.physics import STEP
-from risorius.app.viewer.session import Session
+from risorius.app.viewer.picture.skin_drag import SkinDrag
+from risorius.app.viewer.session.physics import STEP
+from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Settings
-from risorius.app.viewer.skin_drag import SkinDrag
 
 MAJOR = "zygomaticus_major_left"
 SCRIPT = f"duration = 4\n[tracks]\n{MAJOR} = [{{time = 0, value = 0}}, {{time = 4, value = 1}}]"

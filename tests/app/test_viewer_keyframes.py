@@ -23,9 +23,9 @@ from risorius.app.script import (
 )
 from risorius.app.script.keyframes import FRAME, POSES
 from risorius.app.script.places import KeyPlace, Places
-from risorius.app.viewer.session import Session
-from risorius.app.viewer.time_axis import LEAST_SPAN, TimeAxis
-from risorius.app.viewer.tracks import all_tracks, described
+from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.timeline.time_axis import LEAST_SPAN, TimeAxis
+from risorius.app.viewer.timeline.tracks import all_tracks, described
 
 HELLO = Path("docs/hello.toml")
 JOY = KeyPlace(POSES, 1.0)

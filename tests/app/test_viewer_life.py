@@ -9,8 +9,7 @@ import pytest
 
 from risorius.app.motion.life import LID
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.idle_life import ASLEEP_AFTER
-from risorius.app.viewer.physics import STEP
+from risorius.app.viewer.session.physics import ASLEEP_AFTER, STEP
 
 from .driving import (
     NEEDS_A_SCREEN,

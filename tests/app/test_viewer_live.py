@@ -19,10 +19,11 @@ from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, State
 from risorius.app.live.sender import Sender
 from risorius.app.recordings.calibration import Calibration
 from risorius.app.scenes import build_scene
-from risorius.app.viewer import Viewer, live_commands
-from risorius.app.viewer.live_commands import LiveCommands
-from risorius.app.viewer.panel_state import PanelState
+from risorius.app.viewer import Viewer
 from risorius.app.viewer.panels.live import shown_of
+from risorius.app.viewer.session import live_commands
+from risorius.app.viewer.session.live_commands import LiveCommands
+from risorius.app.viewer.settings import PanelState
 
 from .driving import NEEDS_A_SCREEN, click, moved, settle, until, xdotool
 

@@ -8,7 +8,6 @@ import pytest
 
 from risorius.app.controls.vocabulary import filters, pads, title_of
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.controls import Controls
 from risorius.assets.loading import read_words
 
 from .driving import (
@@ -203,7 +202,7 @@ def test_one_side_is_copied_to_the_other(viewer: Viewer) -> None:
 
 def test_words_are_of_controls_that_there_are(viewer: Viewer) -> None:
     """Names, synonyms and filters of the table all mean something."""
-    controls: Controls = viewer.session.controls
+    controls = viewer.session.controls
     limits, words = controls.limits, read_words()
 
     def is_known(name: str) -> bool:

@@ -12,7 +12,7 @@ import pytest
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.panel_cache import REFRESH
+from risorius.app.viewer.window.window import REFRESH
 
 from .driving import clear_search, drag, middle, settle, show_controls, until, xdotool
 

@@ -27,14 +27,14 @@ from risorius.app.script import (
 )
 from risorius.app.script.places import Places
 from risorius.app.script.recorder import Recorder
-from risorius.app.viewer import picking
-from risorius.app.viewer.control_rows import rows_of, search_rows
-from risorius.app.viewer.document import Document
-from risorius.app.viewer.history import MOST_GROWTH, History
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.overlays import LINES, overlays_of
-from risorius.app.viewer.physics import EARLIEST, MOST_STEPS, STEP, Clock
-from risorius.app.viewer.session import Session
+from risorius.app.viewer.panels.rows import rows_of, search_rows
+from risorius.app.viewer.picture import picking
+from risorius.app.viewer.session.document import Document
+from risorius.app.viewer.session.history import MOST_GROWTH, History
+from risorius.app.viewer.session.physics import EARLIEST, MOST_STEPS, STEP, Clock
+from risorius.app.viewer.session.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
@@ -397,16 +397,16 @@ def test_a_lead_wins_by_its_share_over_what_it_names(session: Session) -> None:
     session.set("jaw_open", 0.2)
     session.set("zygomaticus_major_left", 0.4)
     session.note()
-    session.live.take({"jaw_open": 7.0, "head_yaw": -0.5, "no_control": 1.0}, 1.0)
+    session.live_override.take({"jaw_open": 7.0, "head_yaw": -0.5, "no_control": 1.0}, 1.0)
     assert session.current["jaw_open"] == 1.0 and session.current["head_yaw"] == -0.5
     assert session.current["zygomaticus_major_left"] == 0.4
     assert session.current.keys() == session.controls.limits.keys()
     run(session, 30)
     assert session.scene.values["jaw_open"] == 1.0
-    session.live.take({"jaw_open": 1.0}, 0.25)
+    session.live_override.take({"jaw_open": 1.0}, 0.25)
     assert session.current["jaw_open"] == pytest.approx(0.4)
     assert session.current["head_yaw"] == 0.0
-    session.live.take({"jaw_open": 1.0}, 0.0)
+    session.live_override.take({"jaw_open": 1.0}, 0.0)
     assert session.current == session.values and session.values["jaw_open"] == 0.2
     session.undo()
     assert session.values["jaw_open"] == 0.0
@@ -416,7 +416,7 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
     session: Session, tmp_path: Path
 ) -> None:
     """They take what is seen, not what sliders say beneath it."""
-    session.live.take({"jaw_open": 0.5}, 1.0)
+    session.live_override.take({"jaw_open": 0.5}, 1.0)
     session.save_pose(tmp_path / "pose.toml")
     assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5
     session.begin_script()
@@ -425,7 +425,7 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
     session.neutral()
     session.toggle_recording()
     for step in range(30):
-        session.live.take({"jaw_open": step / 30.0}, 1.0)
+        session.live_override.take({"jaw_open": step / 30.0}, 1.0)
         session.advance(STEP)
     session.toggle_recording()
     assert session.script.at(0.25)["jaw_open"] == pytest.approx(0.5, abs=0.05)

@@ -9,8 +9,7 @@ import pytest
 
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.panels.poses import PoseGrid
-from risorius.app.viewer.poses import Poses
+from risorius.app.viewer.panels.pose_grid import PoseGrid, PoseLibrary
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -76,12 +75,12 @@ def test_a_pose_is_kept_with_a_picture(viewer: Viewer, tmp_path: Path) -> None:
         viewer.settings.zoom = 1.0
     assert values_of(viewer) == {"jaw_open": 0.6}
     assert load_script(folder / "Pose 1.toml").at(0.0)["jaw_open"] == 0.6
-    assert set(Poses(viewer.session.scene, folder).own) == {"Pose 1"}
+    assert set(PoseLibrary(viewer.session.scene, folder).own) == {"Pose 1"}
 
 
 def test_pictures_show_their_poses(viewer: Viewer) -> None:
     """Each another; and the window's own picture is not disturbed."""
-    poses = Poses(viewer.session.scene, None)
+    poses = PoseLibrary(viewer.session.scene, None)
     try:
         joy, anger = (poses.picture({name: 1.0}).astype(int) for name in ("joy", "anger"))
         assert np.abs(joy - anger).max() > 60

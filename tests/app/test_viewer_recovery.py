@@ -20,10 +20,10 @@ from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, keyframes, load_script
 from risorius.app.script.places import Places
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.physics import STEP
-from risorius.app.viewer.recovery import LONGEST, QUIET, Recovery
-from risorius.app.viewer.session import Session
-from risorius.app.viewer.unsaved import Work, WorkFiles
+from risorius.app.viewer.session.physics import STEP
+from risorius.app.viewer.session.recovery import LONGEST, QUIET, Recovery
+from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.session.unsaved import Work, WorkFiles
 from risorius.assets.staging import PREFIX
 
 from .driving import DEADLINE, NEEDS_A_SCREEN, SIZE, click, settle, wait_for, xdotool

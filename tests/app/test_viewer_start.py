@@ -19,9 +19,9 @@ from Xlib.protocol.event import ClientMessage
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.gui import THEMES
-from risorius.app.viewer.opening import COMPILING, LOADING, picture
+from risorius.app.viewer.interface.gui import THEMES
 from risorius.app.viewer.settings import Settings, load_settings, save_settings
+from risorius.app.viewer.window.splash_screen import COMPILING, LOADING, picture
 
 from .driving import (
     DEADLINE,

@@ -10,17 +10,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from risorius.app.controls.vocabulary import readable
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.app.script import Channel, Key, Pose, Script, load_script, parse_script
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.recorder import Recorder
-from risorius.app.viewer.control_rows import change_of, readable
-from risorius.app.viewer.key_selection import KeySelection
-from risorius.app.viewer.panel_state import PanelState
-from risorius.app.viewer.physics import STEP
-from risorius.app.viewer.session import Session
+from risorius.app.viewer.session.physics import STEP
+from risorius.app.viewer.session.scene_controls import change_of
+from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.settings import PanelState
+from risorius.app.viewer.timeline.key_selection import KeySelection
 
 HELLO = Path("docs/hello.toml")
 TAKE = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1}]\njaw_open=[{time=0,value=0.5}]"

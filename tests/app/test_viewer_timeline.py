@@ -12,7 +12,7 @@ from risorius.app.script import Channel, Script, load_script, save_script
 from risorius.app.script.keyframes import POSES, on_frame, places_of
 from risorius.app.script.places import NOWHERE, KeyPlace, Places
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.panels.dope_sheet import ROW
+from risorius.app.viewer.timeline.dope_sheet import ROW
 
 from .driving import (
     NEEDS_A_SCREEN,

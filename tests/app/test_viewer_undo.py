@@ -10,11 +10,11 @@ import pytest
 
 from risorius.app.scenes import FaceScene
 from risorius.app.script import load_script
-from risorius.app.viewer.command import Command, set_keys
-from risorius.app.viewer.physics import STEP
-from risorius.app.viewer.session import Session
+from risorius.app.viewer.interface.commands import Command, set_keys
+from risorius.app.viewer.picture.skin_drag import SkinDrag
+from risorius.app.viewer.session.physics import STEP
+from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display, Settings
-from risorius.app.viewer.skin_drag import SkinDrag
 
 HELLO = Path("docs/hello.toml")
 CORNER = 48  # a landmark: of the mouth

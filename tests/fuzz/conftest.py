@@ -19,7 +19,7 @@ LONG_WORK = (
     "risorius.bench.reproduce.figure_claims.figure_8_outcome",
     "risorius.bench.reproduce.figure_claims.figure_9_outcome",
     "risorius.bench.reproduce.figure_claims.figure_10_outcome",
-    "risorius.app.viewer.opening.Opening",
+    "risorius.app.viewer.window.splash_screen.SplashScreen",
     "risorius.bench.reproduce.frame_rate.measure",
     "risorius.bench.simulation.gaps.measure",
     "risorius.bench.scans.motion.measure",

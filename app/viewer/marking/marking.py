@@ -27,9 +27,9 @@ from risorius.sim.landmarks import MIRRORED
 
 from ...errors import UserError
 from ...files import save_text
-from ..files import Files
-from ..history import History
+from ..documents.file_dialogs import FileDialogs
 from ..messages import Message, Task
+from ..session.history import History
 from .marks import GROUP_OF, ORDER, Marks, Place, name_of
 
 SEEN_RADIUS = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
@@ -43,7 +43,7 @@ FloatArray = npt.NDArray[np.float64]
 class Marking:
     """Marks on one mesh. `current` is the landmark that is asked for, or was chosen."""
 
-    def __init__(self, path: Path, files: Files) -> None:
+    def __init__(self, path: Path, files: FileDialogs) -> None:
         """Read a mesh; UserError where no head can be made of it, whatever is marked."""
         self.path, self._files = path, files
         with _for_users():

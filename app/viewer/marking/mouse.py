@@ -9,10 +9,10 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ..gui import LEFT, em
+from ..interface.gui import LEFT, em
 from ..messages import Messages
-from ..mouse import CameraMouse
-from ..picking import Ray, skin_under
+from ..picture.mouse import CameraMouse
+from ..picture.picking import Ray, skin_under
 from .marking import Marking
 from .picture import MarkingView, are_facing, places_in
 

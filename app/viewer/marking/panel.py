@@ -9,11 +9,10 @@ from imgui_bundle import imgui
 
 from risorius.assets.fitting.guess import FIRST
 
-from ..command import Command
-from ..gui import PANEL, Gui, colour, em, fixed_panel, ink_of
+from ..interface.commands import Command, MenuBar
+from ..interface.gui import PANEL, Gui, colour, em, fixed_panel, ink_of
+from ..interface.widgets import button, muted
 from ..messages import Messages
-from ..panels.menu_bar import MenuBar
-from ..panels.widgets import button, muted
 from .marks import GROUP_OF, GROUPS, Colour, name_of, side_of
 from .picture import MarkingPicture, MarkingView, Spot, are_facing, places_in
 

@@ -10,14 +10,13 @@ import numpy as np
 from risorius import render
 from risorius.assets.fitting.upright import axes_turned
 
-from ..command import Command, set_keys
-from ..file_drop import FileDrop
-from ..gui import Gui
+from ..documents.file_drop import FileDrop
+from ..documents.scripts import Question
+from ..interface.commands import Command, MenuBar, set_keys
+from ..interface.gui import Gui
 from ..messages import Message, Messages, Task
 from ..painter import Painter
-from ..panels.menu_bar import MenuBar
-from ..question import Question
-from ..session import Session
+from ..session.session import Session
 from ..settings import Settings
 from .marking import Marking
 from .mouse import MarkingMouse
@@ -29,7 +28,7 @@ SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size", "Ke
 
 
 class Window(Protocol):
-    """What is needed of the window (parts.py)."""
+    """What is needed of the window (window/context.py)."""
 
     surface: render.WindowSurface
     gui: Gui
@@ -57,7 +56,7 @@ class Room:
         self.commands = self._commands()
         set_keys(self.commands, window.settings.keys)
         by_label = {command.label: command for command in self.commands}
-        menus = MenuBar(window.gui, window.session, messages, self.commands)
+        menus = MenuBar(window.gui, messages, self.commands, lambda: window.session.unsaved)
         self.panel = MarkingPanel(window.gui, messages, self.picture, menus, by_label)
         self._was_upright = marking.is_upright
 

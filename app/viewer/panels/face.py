@@ -1,4 +1,7 @@
-"""The controls of the face: pads, a group for each layer and region, a row for each control."""
+"""The controls of the face: pads, a group for each layer and region, a row for each control.
+
+The muscle that is clicked in the picture has its slider beside the mouse, too.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +9,124 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import imgui
 
-from ...controls.vocabulary import filters
-from ..control_rows import Row, search_rows
-from ..gui import Gui, colour, em
-from ..session import Session
+from ...controls.mirror import twin_of
+from ...controls.vocabulary import Pad, called, filters, pads
+from ..interface.gui import LEFT, NOTE_FLAGS, RIGHT, Gui, colour, em, ink_of
+from ..interface.widgets import Sliders, button, button_width, heading, hint, muted, stay_in_line
+from ..session.session import Session
 from ..settings import Settings
 from ..view import View
-from .pads import Pads
-from .poses import PoseGrid
-from .rows import ControlRows
-from .widgets import button, button_width, heading, hint, muted, stay_in_line
+from .pose_grid import PoseGrid
+from .rows import ControlRows, Row, search_rows
+
+PAD_HEIGHT, DOT = 4.6, 0.32  # [em] of a field, and half of the dot in it
+
+
+class Pads:
+    """Draws those for which the scene has controls."""
+
+    def __init__(self, gui: Gui, session: Session) -> None:
+        self._gui, self._session = gui, session
+        self._is_reset = False  # by the press that goes on
+
+    def draw(self) -> None:
+        """All of them beside each other."""
+        known, spacing = self._session.controls.limits.keys(), imgui.get_style().item_spacing.x
+        shown = [pad for pad in pads() if {pad.across, pad.along} <= known]
+        room = imgui.get_content_region_avail().x + spacing
+        for index, pad in enumerate(shown):
+            if index:
+                imgui.same_line()
+            self._draw_pad(pad, max(room / len(shown) - spacing, 1.0))
+
+    def _draw_pad(self, pad: Pad, width: float) -> None:
+        imgui.invisible_button(f"pad {pad.title}", (width, em(PAD_HEIGHT)))
+        self._gui.remember(f"pad {pad.title}")
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        mouse = imgui.get_mouse_pos()
+        is_held, is_back = imgui.is_item_active(), imgui.is_item_clicked(RIGHT)
+        if imgui.is_item_clicked(LEFT):
+            self._is_reset = imgui.get_mouse_clicked_count(LEFT) > 1
+        if is_back or (is_held and self._is_reset):
+            self._move(pad, 0.0, 0.0)
+        elif is_held:
+            down = min(max((mouse.y - low.y) / (high.y - low.y), 0.0), 1.0)
+            across = 2.0 * (mouse.x - low.x) / (high.x - low.x) - 1.0
+            self._move(pad, across, pad.top + down * (pad.bottom - pad.top))
+        else:
+            hint(f"{pad.title}: {pad.meaning}\na double click takes it back")
+        if is_back or imgui.is_item_deactivated():
+            self._session.note()
+        self._paint(pad, low, high)
+
+    def _move(self, pad: Pad, across: float, along: float) -> None:
+        self._session.set(pad.across, across)
+        self._session.set(pad.along, along)
+
+    def _paint(self, pad: Pad, low: imgui.ImVec2, high: imgui.ImVec2) -> None:
+        theme, paper, current = self._gui.theme, imgui.get_window_draw_list(), self._session.current
+        is_lit, margin = imgui.is_item_hovered() or imgui.is_item_active(), em(DOT)
+        across, along = current[pad.across], current[pad.along]
+        ink = theme.accent if across or along else theme.muted
+        inks = ((theme.raised if is_lit else theme.field, 1.0), (theme.muted, 0.35), (ink, 1.0))
+        back, faint, full = (ink_of(*shade) for shade in inks)
+
+        def place(across: float, along: float) -> tuple[float, float]:
+            down = (along - pad.top) / (pad.bottom - pad.top)
+            x = low.x + margin + (0.5 + 0.5 * across) * (high.x - low.x - 2.0 * margin)
+            return x, low.y + margin + down * (high.y - low.y - 2.0 * margin)
+
+        rest, now = place(0.0, 0.0), place(across, along)
+        paper.add_rect_filled(low, high, back, imgui.get_style().frame_rounding)
+        paper.add_line((rest[0], low.y), (rest[0], high.y), faint)
+        paper.add_line((low.x, rest[1]), (high.x, rest[1]), faint)
+        paper.add_text((low.x + margin, high.y - em(1.2)), full, pad.title)
+        paper.add_line(rest, now, full, em(0.12))
+        paper.add_circle_filled(now, margin, full)
+
+
+NOTE_WIDTH = 12.0  # [em] of the slider
+
+
+class MuscleNote:
+    """A note that a click elsewhere or Escape takes away."""
+
+    def __init__(self, gui: Gui, session: Session, settings: Settings, view: View) -> None:
+        self._gui, self._session, self._settings, self._view = gui, session, settings, view
+        self._sliders = Sliders(gui)
+        self.name = ""  # of the muscle, "" for none
+
+    def draw(self) -> None:
+        """Draw the note, if there is one; it comes up below the mouse."""
+        session, name, twin = self._session, self.name, twin_of(self.name)
+        if name not in session.values:
+            return
+        mouse, display = imgui.get_mouse_pos(), imgui.get_io().display_size
+        place = min(mouse.x + em(), display.x - em(NOTE_WIDTH + 2.0)), mouse.y + em()
+        imgui.set_next_window_pos(place, imgui.Cond_.appearing)
+        imgui.begin("##muscle", None, NOTE_FLAGS)
+        values, limits = session.current, session.controls.limits[name]
+        is_linked = self._settings.is_linked and twin != name and values[name] == values[twin]
+        names = (name, twin) if is_linked else (name,)
+        imgui.text_unformatted(called(*names).capitalize())
+        slid = self._sliders.draw(name, values[name], limits, width=em(NOTE_WIDTH))
+        self._gui.places["note"] = self._gui.places[name]
+        if slid.is_changed:
+            session.set(name, slid.value, linked=is_linked)
+        if slid.is_done:
+            session.note()
+        imgui.push_text_wrap_pos(em(NOTE_WIDTH + 0.5))
+        muted(self._gui, session.scene.actions.get(name, ""))
+        imgui.pop_text_wrap_pos()
+        is_on = imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
+        imgui.end()
+        if is_on or not self._view.pointed:  # as long as the note is there
+            self._view.pointed = dict.fromkeys(names, 1.0)
+        is_left = imgui.is_mouse_clicked(LEFT) and not is_on
+        is_typing = imgui.get_io().want_text_input
+        if is_left or (imgui.is_key_pressed(imgui.Key.escape) and not is_typing):
+            self.name = ""
+
 
 FLASH = 90  # frames for which a selected slider is marked
 LEAST_ROOM = 20.0  # [em] below buttons and search
@@ -56,7 +167,7 @@ class FacePanel:
         if not self.search and self.filter != IN_USE and {"Jaw", "Gaze"} & {*shown}:
             self._pads.draw()
         if not (self.search or self.filter) and session.scene.expressions:
-            if heading(self._gui, self._settings, "Pose pictures", "Poses"):
+            if heading(self._gui, self._settings.folds, "Pose pictures", "Poses"):
                 self.poses.draw()
         counts = [self._draw_group(title, groups[title]) for title in groups if title in shown]
         if not any(counts):
@@ -113,9 +224,8 @@ class FacePanel:
         if not rows:
             return 0
         label = f"{title}  ({active})" if active else title
-        if heading(
-            self._gui, self._settings, title, label, must_open=bool(self.search or self.filter)
-        ):
+        must_open = bool(self.search or self.filter)
+        if heading(self._gui, folds, title, label, must_open=must_open):
             for row in rows:
                 self._draw_row(row)
         return len(rows)

@@ -10,13 +10,21 @@ from imgui_bundle import imgui
 from ...controls.vocabulary import sentence
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
 from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
-from ..command import Command
-from ..control_rows import rows_of
-from ..gui import Gui, colour, em
-from ..live_commands import LiveCommands
+from ..interface.commands import Command
+from ..interface.gui import Gui, colour, em
+from ..interface.widgets import (
+    LabelledRows,
+    button,
+    button_width,
+    heading,
+    hint,
+    muted,
+    stay_in_line,
+)
 from ..messages import Messages
+from ..session.live_commands import LiveCommands
 from ..settings import Settings
-from .widgets import LabelledRows, button, button_width, heading, hint, muted, stay_in_line
+from .rows import rows_of
 
 LABEL_SHARE = 0.38  # of a row
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
@@ -57,9 +65,9 @@ class LivePanel:
         self._draw_state(face)
         if face is not None:
             self._draw_buttons(face)
-            if heading(self._gui, self._settings, "Strength"):
+            if heading(self._gui, self._settings.folds, "Strength"):
                 self._draw_gains(face)
-            if heading(self._gui, self._settings, "What comes"):
+            if heading(self._gui, self._settings.folds, "What comes"):
                 self._draw_channels(face)
         imgui.end_child()
 

@@ -19,16 +19,16 @@ from ...refining.looks import FIRST_LOOK, LOOKS, STATIC, THRESHOLDS, named, word
 from ...refining.refiners import DETAIL, can_detail
 from ...scenes import BUILT_IN, OWN
 from ..colours import COLOURS
-from ..file_drop import FileDrop
+from ..documents.file_drop import FileDrop
 from ..frame_times import PHASES, FrameTimes
-from ..gui import Gui, em
+from ..interface.gui import Gui, em
+from ..interface.widgets import LabelledRows, button, heading, muted
 from ..messages import Messages
 from ..overlays import overlays_of
 from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
 from ..settings import Display, Settings, switch
 from ..stage import Stage
 from ..view import View
-from .widgets import LabelledRows, button, heading, muted
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -114,7 +114,7 @@ class MechanismPanel:
             ("Light and person", "", self._draw_light_and_person),
             ("Milliseconds", times_label, self._draw_times),
         ):
-            if heading(self._gui, self._settings, title, label):
+            if heading(self._gui, self._settings.folds, title, label):
                 draw()
         display = self._display
         display.options = {name: told for name, told in display.options.items() if told}

@@ -1,0 +1,197 @@
+"""What menus and questions do with scripts: begin, open, record, save."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Protocol
+
+from ...errors import UserError
+from ...performances import read_performance
+from ...script import Script, is_pose
+from ...sound import with_sound
+from ..messages import Message, Task
+from ..session.session import Session
+from .file_dialogs import SUFFIX, FileDialogs
+
+RECORDINGS = (".csv", ".json", ".tsv", ".txt")  # how their names may end; content tells what it is
+SOUNDS = (
+    *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
+    *(".mov", ".mp4", ".mkv", ".webm"),  # films that are heard: a phone's, beside its take
+)
+
+
+class Unsaved(Protocol):
+    """Work that is not the session's."""
+
+    @property
+    def unsaved(self) -> str:
+        """What would be lost, in words; "" for nothing."""
+
+    def save(self, then: Task) -> Message:
+        """Save it, and go on."""
+
+
+class Question:
+    """Asks before unsaved work is lost: save it, lose it, or go back."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.task: Task | None = None  # what waits for the answer
+        self.verb = ""  # for it, as "Close"
+        self.other: Unsaved | None = None  # whose work is in danger, in place of the session's
+
+    @property
+    def is_open(self) -> bool:
+        """Whether an answer is awaited."""
+        return self.task is not None
+
+    @property
+    def unsaved(self) -> str:
+        """What would be lost, in words; "" for nothing."""
+        return (self.other or self._session).unsaved
+
+    def before(self, verb: str, task: Task, other: Unsaved | None = None) -> Message:
+        """Go on with `task` at once, or when what is unsaved was saved or given up."""
+        self.other = other
+        if not self.unsaved:
+            return task()
+        self.task, self.verb = task, verb
+        return None
+
+
+class ScriptCommands:
+    """Opens and saves the session's script and pose, and asks where that needs an answer.
+
+    A command's `then` is what to do after saving; it is not done where nothing was saved.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        files: FileDialogs,
+        question: Question,
+        note_recent: Callable[..., object],
+    ) -> None:
+        """note_recent: is told what files were opened together, or saved."""
+        self._session, self._files, self._question = session, files, question
+        self.note_recent = note_recent
+
+    def new(self) -> Message:
+        """Begin with an empty script, unless work would be lost: then ask first."""
+
+        def begin() -> Message:
+            """Do so."""
+            self._session.begin_script()
+            return "A new script; K keys the face as it is"
+
+        return self._question.before("Begin", begin)
+
+    def ask_open(self) -> None:
+        """Ask for a script, a pose or a recording, and show it."""
+        self._files.ask(
+            "Open script, pose or recording",
+            self.open,
+            saving=False,
+            kind="Scripts, poses and recordings",
+            suffixes=(SUFFIX, *RECORDINGS),
+        )
+
+    def open(self, path: Path, remark: str = "") -> Message:
+        """Show the script, pose or recording of a file; if work would be lost, ask first.
+
+        remark: what else there is to say when it is opened.
+        """
+        session = self._session
+        limits = session.controls.limits if session.scene.name == "face" else None
+        script, report = read_performance(path, limits=limits)
+        self._check(script)
+
+        def show() -> Message:
+            """Do so."""
+            session.open(script)
+            self.note_recent(path)
+            return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
+
+        if is_pose(script) and not self._session.has_unsaved_pose:
+            return show()  # whatever else is unsaved stays
+        return self._question.before("Open", show)
+
+    def _check(self, script: Script) -> None:
+        """UserError says why a script or pose cannot be opened here."""
+        here = self._session.script.scene
+        if script.scene != here:
+            raise UserError(
+                f"{script.source}: is for the scene '{script.scene}', and this window shows "
+                f"'{here}': `risorius view --scene {script.scene} --script {script.source}`"
+            )
+        script.check(self._session.controls.limits)
+
+    def save(self, then: Task = lambda: None) -> Message:
+        """Write the script to its own file, or ask for one."""
+        file = self._session.file
+        if file.path is not None and not file.objection:
+            return self._write(file.path, then)
+        self.save_as(then)
+        if file.path is None:
+            return None
+        return f"{file.path.name}: {file.objection}; replace it, or choose another name"
+
+    def save_as(self, then: Task = lambda: None) -> None:
+        """Ask for a name, and write the script."""
+        path, script = self._session.file.path, self._session.script
+        name = f"{Path(script.source).stem}{SUFFIX}" if script.is_converted else "script.toml"
+        self._files.ask(
+            "Save script",
+            lambda chosen: self._write(chosen, then),
+            saving=True,
+            proposed=str(path.absolute()) if path is not None else name,
+        )
+
+    def _write(self, path: Path, then: Task) -> Message:
+        self._session.save_script(path)
+        self.note_recent(path)
+        apart = self._session.has_unsaved_pose
+        rest = "; the pose is not part of it: K makes it a key" if apart else ""
+        return then() or f"{path}: script written{rest}"
+
+    def save_pose(self, then: Task = lambda: None) -> None:
+        """Ask for a name, and write the pose."""
+
+        def write(path: Path) -> Message:
+            """Do so."""
+            self._session.save_pose(path)
+            self.note_recent(path)
+            return then() or f"{path}: pose written"
+
+        self._files.ask("Save pose", write, saving=True, proposed="pose.toml")
+
+    def ask_sound(self) -> None:
+        """Ask for a sound file, and put it beside the script."""
+        self._files.ask("Open sound", self.set_sound, saving=False, kind="Sounds", suffixes=SOUNDS)
+
+    def set_sound(self, path: Path) -> Message:
+        """Put a sound file beside the script; UserError where nothing is heard in it."""
+        self._session.edit(with_sound(self._session.script, path), f"Sound {path.name}")
+        self.note_recent(path)
+        return f"{path.name}: opened; Space plays it with the script"
+
+    @property
+    def has_sound(self) -> bool:
+        """Whether a sound is beside the script."""
+        return self._session.script.sound is not None
+
+    def remove_sound(self) -> None:
+        """The script without its sound."""
+        self._session.edit(replace(self._session.script, sound=None), "Remove sound")
+
+    def toggle_recording(self) -> Message:
+        """Record the sliders into the script, or end that."""
+        line = self._session.toggle_recording()
+        return line if self._session.is_recording else f"{line}; [Save script] saves it"
+
+    def save_recording(self, then: Task) -> Message:
+        """End the recording, and save it."""
+        line = self.toggle_recording()
+        return self.save(then) or line

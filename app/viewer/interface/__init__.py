@@ -1,0 +1,1 @@
+"""What all panels are drawn with: Dear ImGui in the window, commands, small widgets."""

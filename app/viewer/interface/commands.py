@@ -1,0 +1,144 @@
+"""Commands, which menus and keys carry out: the menu bar, and the answer to pressed keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from ..messages import Messages, Task
+from .gui import Gui
+from .widgets import muted
+
+_MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
+# All others by their names, but those that change others or have a use everywhere.
+_RESERVED = ("Escape", "Tab", "Lock", "Ctrl", "Shift", "Alt", "Super")
+_KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
+         if imgui.Key.tab <= key < imgui.Key.gamepad_start
+         and not imgui.get_key_name(key).endswith(_RESERVED)}  # fmt: skip
+# Ctrl keys that a line of text takes for itself while one writes.
+_WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
+_CHANGING = ("Edit", "Keys", "Expression")  # menus of what ends a drag of the mouse first
+_WALKING = ("Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "PageUp", "PageDown")
+
+
+@dataclass
+class Command:
+    """One thing to do: where it stands, its key, what it does, and whether it is switched on."""
+
+    menu: str
+    label: str
+    key: str  # "" for none
+    run: Task
+    is_on: Callable[[], bool] | None = None
+    can_run: Callable[[], bool] = lambda: True
+    other_key: str = ""
+    submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
+    chosen_key: str = ""  # in place of both
+    reads: Callable[[], str] | None = None  # its label now, where that changes
+    by_key: Task | None = None  # what its key does, where that is not the same
+
+    @property
+    def displayed_keys(self) -> str:
+        """All keys as people know them."""
+        words = {"Equal": "=", "Minus": "-", "Keypad": "Num "}
+        keys = ", ".join(self.keys)
+        for name, word in words.items():
+            keys = keys.replace(name, word)
+        return keys
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All keys that do it."""
+        keys = (self.chosen_key,) if self.chosen_key else (self.key, self.other_key)
+        return tuple(filter(None, keys))
+
+
+def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> dict[str, str]:
+    """Give commands another key alone, by their labels; by these, all keys as told."""
+    doing = [command for command in commands if command.submenu is None]
+    for command in doing:
+        command.chosen_key = changed.get(command.label, "")
+    return {command.label: command.displayed_keys for command in doing}
+
+
+def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:
+    """Carry out the commands whose keys were pressed in this frame."""
+    if gui.has_popup:  # whose keys they are
+        return
+    is_writing = imgui.get_io().want_text_input
+    for command in commands:
+        for key in command.keys:
+            is_for_text = is_writing and ("Ctrl" not in key or key in _WRITING)
+            is_taken = is_for_text or (gui.owns_keys and key in _WALKING)
+            if is_taken or not imgui.is_key_chord_pressed(chord(key)):
+                continue
+            if command.menu in _CHANGING and imgui.is_any_mouse_down():
+                gui.let_go_before(_KEYS[key.rpartition("+")[2]])
+            elif command.can_run():
+                messages.attempt(command.by_key or command.run)
+
+
+def chord(key: str) -> int:
+    """A key as imgui counts it; KeyError for none."""
+    *modifiers, last = key.split("+")
+    return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
+
+
+def pressed_key() -> str:
+    """The key that was pressed in this frame and may be a command's, "" for none."""
+    held = [name for name, key in _MODIFIERS.items() if imgui.get_io().key_mods & key]
+    for name, key in _KEYS.items():
+        if imgui.is_key_pressed(key, repeat=False):
+            return "+".join((*held, name))
+    return ""
+
+
+class MenuBar:
+    """Draws menus and carries out what is chosen in them."""
+
+    def __init__(
+        self, gui: Gui, messages: Messages, commands: Sequence[Command], unsaved: Callable[[], str]
+    ) -> None:
+        """unsaved: what work would be lost now, in words; "" for none."""
+        self._gui, self._messages = gui, messages
+        self._commands, self._unsaved = commands, unsaved
+
+    def draw(self) -> float:
+        """Draw the bar; returns its height [window units]."""
+        if not imgui.begin_main_menu_bar():
+            return 0.0
+        height = float(round(imgui.get_window_size().y))
+        for title in dict.fromkeys(command.menu for command in self._commands):
+            is_open = imgui.begin_menu(title)
+            self._gui.remember(f"menu {title}")
+            if is_open:
+                self.draw_menu(title)
+                imgui.end_menu()
+        if unsaved := self._unsaved():
+            muted(self._gui, f"   Unsaved: {unsaved}")
+        imgui.end_main_menu_bar()
+        return height
+
+    def draw_menu(self, title: str) -> None:
+        """What a menu offers, inside it."""
+        for command in self._commands:
+            if command.menu != title:
+                continue
+            if command.submenu is not None:
+                rows = tuple(command.submenu())
+                if imgui.begin_menu(command.label, bool(rows)):
+                    MenuBar(self._gui, self._messages, rows, self._unsaved).draw_menu(title)
+                    imgui.end_menu()
+                self._gui.remember(f"menu {title}: {command.label}")
+                continue
+            is_on = command.is_on is not None and command.is_on()
+            name = f"menu {title}: {command.label}"
+            label = f"{command.reads()}###{name}" if command.reads else command.label
+            is_clicked, _ = imgui.menu_item(label, command.displayed_keys, is_on, command.can_run())
+            self._gui.remember(name)
+            if is_clicked:
+                self._messages.attempt(command.run)
+        if imgui.is_key_pressed(imgui.Key.escape):  # the mouse may be on what opens a submenu again
+            imgui.close_current_popup()

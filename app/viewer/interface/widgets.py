@@ -1,0 +1,266 @@
+"""Small things that panels are made of: headings, buttons, sliders, hints, words that fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple
+
+from imgui_bundle import imgui
+
+from ...controls.vocabulary import readable, sentence
+from .gui import BACK, Gui, colour, em, ink_of
+
+# Knob and number of imgui's own sliders; bars have others.
+HIDDEN = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text)
+
+
+class SliderState(NamedTuple):
+    """What happened to a slider in this frame."""
+
+    value: float
+    is_changed: bool
+    is_done: bool  # let go, or typed: a change is complete
+    is_hovered: bool
+
+
+class Sliders:
+    """All sliders of a window; at most one of them is a line to type in."""
+
+    def __init__(self, gui: Gui) -> None:
+        self._gui = gui
+        self._typed: str | None = None
+        self._is_new = False
+
+    def draw(
+        self,
+        name: str,
+        value: float,
+        limits: tuple[float, float],
+        *,
+        width: float,
+        neutral: float = 0.0,
+        digits: int = 2,
+        mark: str = "",
+    ) -> SliderState:
+        """Draw the slider `name`; a double or Ctrl click types a number, a right click resets.
+
+        mark: what stands at its beginning.
+        """
+        imgui.set_next_item_width(width)
+        if self._typed == name:
+            return self._draw_line(name, value, limits)
+        low, high = limits
+        imgui.push_style_var(imgui.StyleVar_.grab_min_size, 1.0)
+        for index in HIDDEN:
+            imgui.push_style_color(index, 0)
+        changed, now = imgui.slider_float(f"##{name}", value, low, high, f"%.{digits}f")
+        imgui.pop_style_color(len(HIDDEN))
+        imgui.pop_style_var()
+        self._gui.remember(name)
+        self._paint(now, limits, mark, digits)
+        is_done = imgui.is_item_deactivated_after_edit()
+        is_hovered = imgui.is_item_hovered()
+        if is_hovered and imgui.is_mouse_double_clicked(0):
+            self._typed, self._is_new = name, True
+        if is_hovered and imgui.is_mouse_clicked(1):
+            return SliderState(neutral, neutral != value, True, True)
+        return SliderState(now, changed, is_done, is_hovered or imgui.is_item_active())
+
+    def _paint(self, value: float, limits: tuple[float, float], mark: str, digits: int) -> None:
+        """The slider drawn last as a bar that is filled from 0, with its number at the end."""
+        theme, paper, padding = self._gui.theme, imgui.get_window_draw_list(), em(0.3)
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        least, most = limits
+        ends = sorted((value, min(max(0.0, least), most)))
+        first, last = (low.x + (high.x - low.x) * (end - least) / (most - least) for end in ends)
+        fill = ink_of(theme.accent, 0.6 if first < last else 0.0)
+        paper.add_rect_filled(
+            (first, low.y), (last, high.y), fill, imgui.get_style().frame_rounding
+        )
+        number = f"{value:.{digits}f}" if value else "0"
+        end = high.x - padding - imgui.calc_text_size(number).x
+        ink = ink_of(theme.text if value else theme.muted)
+        paper.push_clip_rect(low, high, True)
+        if low.x + 2.0 * padding + imgui.calc_text_size(mark).x > end:
+            mark = ""
+        for text, x in ((number, end), (mark, low.x + padding)):
+            paper.add_text((x, low.y + imgui.get_style().frame_padding.y), ink, text)
+        paper.pop_clip_rect()
+
+    def _draw_line(self, name: str, value: float, limits: tuple[float, float]) -> SliderState:
+        if self._is_new:
+            imgui.set_keyboard_focus_here()
+        _, typed = imgui.input_float(
+            f"##type {name}", value, 0.0, 0.0, "%.3f", imgui.InputTextFlags_.auto_select_all
+        )
+        self._gui.remember(name)
+        is_over = imgui.is_item_deactivated() and not self._is_new
+        is_done = imgui.is_item_deactivated_after_edit()
+        self._is_new = False
+        if is_over:
+            self._typed = None
+        now = min(max(typed, limits[0]), limits[1])
+        return SliderState(now, now != value, is_done, True)
+
+
+# Headings that are open as long as nobody has folded them.
+FIRST_OPEN = frozenset(
+    {"Expressions", "Wave", "Cloth", "Ball", "Refinement", "Style", "Overlays", "Milliseconds"}
+    | {"Strength", "What comes", "Light and person"}
+)
+
+
+def heading(
+    gui: Gui, folds: dict[str, bool], title: str, label: str = "", *, must_open: bool = False
+) -> bool:
+    """Draw a heading, which stays folded as it was left; whether what belongs to it is displayed.
+
+    folds: which headings are open, by title, where somebody has opened or folded them.
+    label: what it reads, where that is more than the title. must_open: for now, as in a search.
+    """
+    was_open = must_open or folds.get(title, title in FIRST_OPEN)
+    imgui.set_next_item_open(was_open)
+    is_open = imgui.collapsing_header(f"{label or title}###{title}")
+    gui.remember(title)
+    if is_open != was_open and not must_open:
+        folds[title] = is_open
+    return is_open
+
+
+def button(
+    gui: Gui,
+    label: str,
+    *,
+    name: str = "",
+    width: float = 0.0,
+    meaning: str = "",
+    highlight: Any = None,
+) -> bool:
+    """Draw a button; whether it was clicked.
+
+    name: under which its place is remembered, where that is not its label. width: [window units],
+    0 for as much as the label takes. meaning: a hint, see `Gui.with_keys`.
+    highlight: its colour while it is on.
+    """
+    if highlight is not None:
+        imgui.push_style_color(imgui.Col_.button, highlight)
+    is_clicked = imgui.button(label, (width, 0.0))
+    if highlight is not None:
+        imgui.pop_style_color()
+    gui.remember(name or label)
+    hint(gui.with_keys(meaning))
+    return bool(is_clicked)
+
+
+def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
+    """Draw a list to choose from, as wide as was asked for; what was chosen in it now."""
+    chosen = None
+    flags = imgui.ComboFlags_.height_largest
+    is_open = imgui.begin_combo(f"##{label}", readable(present), flags)
+    gui.remember(label)
+    if is_open:
+        for choice in choices:
+            if imgui.selectable(readable(choice), choice == present)[0]:
+                chosen = choice
+            gui.remember(f"{label}: {choice}")
+        imgui.end_combo()
+    return chosen
+
+
+class LabelledRows:
+    """Rows of a panel: labels with hints in a column, and beside each a list, a slider or else."""
+
+    def __init__(self, gui: Gui, share: float, hints: Mapping[str, str]) -> None:
+        """share: of the panel, that labels take. hints: by label."""
+        self._gui, self._share, self._hints = gui, share, hints
+        self._sliders = Sliders(gui)
+        self.resets: Mapping[str, Callable[[], object]] = {}  # of rows not as at first, by label
+
+    @property
+    def second(self) -> float:
+        """Where the second column begins, from the left edge of the panel [window units]."""
+        return float(self._share * imgui.get_window_width())
+
+    def begin(self, label: str) -> None:
+        """Draw a label; what comes next takes the rest of the row."""
+        imgui.align_text_to_frame_padding()
+        imgui.text(readable(label))
+        self.end(label, self.second - em(1.5))
+        imgui.same_line(self.second)
+        imgui.set_next_item_width(-1.0)
+
+    def end(self, label: str, place: float = 0.0) -> None:
+        """The hint of what was drawn last, and the mark that sets it back, if there is one."""
+        hint(self._gui.with_keys(self._hints.get(label, "")))
+        if label not in self.resets:
+            return
+        imgui.same_line(place)
+        imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
+        imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
+        is_clicked = imgui.small_button(f"{BACK}##{label}")
+        imgui.pop_style_color(2)
+        self._gui.remember(f"reset {label}")
+        hint("changed; a click sets it back")
+        if is_clicked:
+            self.resets[label]()
+
+    def choose(self, label: str, present: str, choices: Iterable[str]) -> str | None:
+        """Draw a row with a list; what was chosen in it now."""
+        self.begin(label)
+        return choose(self._gui, label, present, choices)
+
+    def slide(
+        self,
+        label: str,
+        name: str,
+        value: float,
+        limits: tuple[float, float],
+        neutral: float,
+        *,
+        digits: int = 2,
+    ) -> float | None:
+        """Draw a row with a slider; what it was moved to, None if it was not."""
+        self.begin(label)
+        slid = self._sliders.draw(name, value, limits, width=-1.0, neutral=neutral, digits=digits)
+        return slid.value if slid.is_changed else None
+
+
+def button_width(label: str) -> float:
+    """Of a button that reads so [window units]."""
+    return float(imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x)
+
+
+def hint(text: str, *, is_above: bool = False) -> None:
+    """Tell more about the item drawn last while the mouse is on it; beside the mouse, or above."""
+    if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
+        if is_above:
+            left, top = imgui.get_item_rect_min()
+            imgui.set_next_window_pos((left, top - em(0.3)), 0, (0.0, 1.0))
+        imgui.begin_tooltip()
+        imgui.push_text_wrap_pos(em(24))
+        imgui.text_unformatted(sentence(text))
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
+
+
+def muted(gui: Gui, text: str) -> None:
+    """Text of less weight."""
+    imgui.text_colored(colour(gui.theme.muted), text)
+
+
+def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
+    """The text, or as much of its beginning (or end) as fits into the room [window units]."""
+    cut = text
+    for lost in range(1, len(text) + 1):
+        if imgui.calc_text_size(cut).x <= room:
+            return cut
+        cut = f"..{text[lost:]}" if keeps_end else f"{text[:-lost]}.."
+    return ""
+
+
+def stay_in_line(width: float) -> None:
+    """Go on beside the item drawn last, if the next one has room there."""
+    spacing = imgui.get_style().item_spacing.x
+    right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
+    if imgui.get_item_rect_max().x + spacing + width <= right:
+        imgui.same_line()

@@ -1,0 +1,1 @@
+"""The picture of the scene, and the mouse in it."""

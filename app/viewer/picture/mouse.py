@@ -1,0 +1,185 @@
+"""The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
+
+Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
+wheel zooms. What a finger does to the skin is in skin_drag.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from imgui_bundle import imgui
+
+from risorius import render
+
+from ..interface.gui import LEFT, MIDDLE, RIGHT, em
+from ..messages import Messages
+from ..stage import Stage
+from ..view import View
+from .picking import Ray, skin_under
+from .skin_drag import SkinDrag
+
+Grab = Callable[..., SkinDrag]
+Select = Callable[[str], None]
+
+DEGREES_PER_EM = 5.5
+ZOOM_PER_NOTCH = 1.1
+CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
+
+
+class CameraMouse:
+    """Turns and moves a camera by the mouse, from press to release; the left button may do more."""
+
+    def __init__(self, view: View, surface: render.WindowSurface) -> None:
+        self._view, self._surface = view, surface
+        self.forget()
+
+    def forget(self) -> None:
+        """Hold on to nothing any more: what it was on is not there."""
+        self._doing = ""  # orbit, pan, or what the left button does
+        self._pressed_at = (0.0, 0.0)
+
+    @property
+    def is_dragging(self) -> bool:
+        """Whether the mouse holds on to something in the picture."""
+        return bool(self._doing)
+
+    def follow(self) -> None:
+        """Carry out what the mouse did since the last frame."""
+        io = imgui.get_io()
+        if self._doing:
+            self._drag(io)
+            if not any(imgui.is_mouse_down(button) for button in (LEFT, RIGHT, MIDDLE)):
+                self._release(io)
+        elif not io.want_capture_mouse:
+            self._hover(io)
+            for button in (LEFT, RIGHT, MIDDLE):
+                if imgui.is_mouse_clicked(button):
+                    self._press(io, button)
+            if io.mouse_wheel:
+                self._view.camera.zoom(ZOOM_PER_NOTCH**io.mouse_wheel)
+
+    def _hover(self, io: Any) -> None:
+        """The mouse is over the picture, and does nothing."""
+
+    def _take(self, io: Any) -> str:
+        """What the left button does, pressed here."""
+        return "orbit"
+
+    def _press(self, io: Any, button: int) -> None:
+        self._pressed_at = (io.mouse_pos.x, io.mouse_pos.y)
+        if button == MIDDLE or io.key_shift:
+            self._doing = "pan"
+        elif button == RIGHT or io.key_alt:
+            self._doing = "orbit"
+        else:
+            self._doing = self._take(io)
+
+    def _drag(self, io: Any) -> None:
+        camera, delta = self._view.camera, io.mouse_delta
+        if self._doing == "orbit":
+            degrees = DEGREES_PER_EM / em()
+            camera.orbit(-delta.x * degrees, delta.y * degrees)
+        elif self._doing == "pan":
+            height = max(self._view.area[3], 1.0)
+            camera.pan(-delta.x / height, delta.y / height)
+
+    def _release(self, io: Any) -> None:
+        self.forget()
+
+    def _has_moved(self, io: Any) -> bool:
+        x, y = self._pressed_at
+        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
+
+    def _place(self, io: Any) -> tuple[float, float]:
+        """Where the mouse is [pixels from the lower left corner of the surface]."""
+        width, height = self._surface.size
+        return (
+            io.mouse_pos.x * width / max(io.display_size.x, 1.0),
+            height - io.mouse_pos.y * height / max(io.display_size.y, 1.0),
+        )
+
+
+class Mouse(CameraMouse):
+    """The mouse on a face: it drags the skin, and the line between two halves."""
+
+    skin_drag: SkinDrag | None = None
+    _was_pulled = False  # a moment ago: muscles hold the skin where it was let go
+
+    def __init__(
+        self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
+    ) -> None:
+        """grab: makes a finger. select_muscle: called with the name of one that was clicked."""
+        super().__init__(view, stage.surface)
+        self._stage, self._messages = stage, messages
+        self._grab, self._select_muscle = grab, select_muscle
+
+    def forget(self) -> None:
+        super().forget()
+        if self.skin_drag is not None:  # or the skin would hang there
+            self.skin_drag.drop()
+        self.skin_drag = None
+
+    @property
+    def is_dragging_skin(self) -> bool:
+        """Whether the skin is being dragged."""
+        return self.skin_drag is not None and bool(self.skin_drag.offset.any())
+
+    @property
+    def gestures(self) -> tuple[bool, bool]:
+        """Whether skin was pulled that stays, and whether the line between halves is dragged."""
+        is_line = self._doing == "divider" and self._has_moved(imgui.get_io())
+        return self._was_pulled, is_line
+
+    def follow(self) -> None:
+        self._was_pulled = False
+        super().follow()
+
+    def _hover(self, io: Any) -> None:
+        if self._is_at_divider(io.mouse_pos.x):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+
+    def _take(self, io: Any) -> str:
+        if self._is_at_divider(io.mouse_pos.x):
+            return "divider"
+        scene = self._stage.scene
+        if not hasattr(scene, "simulation"):
+            return "orbit"
+        ray = self._ray(io)
+        point = skin_under(ray, scene.positions, scene.faces)
+        if point is None:
+            return "orbit"
+        self.skin_drag = self._grab(point, ray.direction, poses=not io.key_ctrl)
+        return "skin"
+
+    def _drag(self, io: Any) -> None:
+        super()._drag(io)
+        left, _, width, _ = self._view.area
+        if self._doing == "divider":
+            self._view.display.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
+        elif self.skin_drag is not None and (self._has_moved(io) or self.is_dragging_skin):
+            across = self._view.camera.axes()[2]
+            self.skin_drag.to(self._ray(io).at_depth_of(self.skin_drag.point, across))
+
+    def _release(self, io: Any) -> None:
+        if self.skin_drag is not None:
+            self._messages.attempt(self.skin_drag.let_go)
+            self._was_pulled = self.skin_drag.is_held
+            if not self.is_dragging_skin and not self._has_moved(io):
+                name = self.skin_drag.muscle()
+                if name is not None:
+                    self._select_muscle(name)
+        self.forget()
+
+    def _is_at_divider(self, x: float) -> bool:
+        display = self._view.display
+        left, _, width, _ = self._view.area
+        return display.compare == "wipe" and abs(x - left - display.divider * width) < 0.4 * em()
+
+    def _ray(self, io: Any) -> Ray:
+        """Through the mouse, in the viewport that it is in."""
+        place = self._place(io)
+        shots = self._stage.shots(self._view.display, self._view.viewport)
+        under = [shot for shot in shots if place[0] >= shot.clip[0]] or shots[:1]
+        return Ray.through(self._view.camera, under[-1].viewport, place)

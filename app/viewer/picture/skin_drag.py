@@ -1,0 +1,130 @@
+"""A finger on the skin: it pulls, and the muscles that hold the skin there are solved meanwhile.
+
+Dragged skin hangs on springs between the vertices under the mouse and where it drags. Muscles and
+jaw follow (sim.Pull), and hold it when the springs go.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import sim
+
+from ...controls.mirror import OPPOSITE, TURNED, parted, twin_of
+from ...controls.vocabulary import called
+from ...errors import counted
+from ..messages import Message
+from ..session.session import Session
+from ..settings import Settings
+from .picking import muscle_at
+
+FINGER = 16.0  # [mm] the finger's radius
+FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
+DENSE = 10_000  # triangles of a head whose muscles are solved only when it is let go
+NOT_PULLED = ("gaze_", "head_", "tongue_", "lips_closed")  # controls that no finger on skin means
+
+Array = npt.NDArray[np.float64]
+
+
+class SkinDrag:
+    """A finger that holds on to the skin."""
+
+    def __init__(
+        self, session: Session, settings: Settings, point: Array, sight: Array, poses: bool
+    ) -> None:
+        """sight: direction in which the point is seen. poses: whether muscles shall hold it."""
+        self._session, self._sight, self.point = session, sight, point
+        self._simulation: Any = session.scene.simulation  # type: ignore[attr-defined]
+        positions = self._simulation.positions
+        distance = np.linalg.norm(positions - point, axis=1)
+        self._vertices = np.flatnonzero(distance < FINGER)
+        if not len(self._vertices):
+            self._vertices = distance.argmin(keepdims=True)
+        self._from = positions[self._vertices].copy()
+        near = np.minimum(distance[self._vertices] / FINGER, 1.0)
+        self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
+        self.offset = np.zeros(3)
+        self.is_held = False  # by muscles, since it was let go
+        poses = poses and not session.live_override.is_on  # which leads where it wants
+        rest = self._simulation.rest_positions[self._vertices]
+        is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
+        self._candidates = (
+            _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
+        )
+        self._own: dict[str, float] = {}  # what solved controls had before
+        self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
+
+    def to(self, point: Array) -> None:
+        """Drag to a point, or toward it if that is too far; once in each frame."""
+        if self._pull is None and self._candidates:
+            finger = self._vertices, self._firmness
+            self._pull = sim.Pull(self._simulation, *finger, self._candidates, self._sight)
+            self._at_rest = self._pull.targets
+        offset = point - self.point
+        length = float(np.linalg.norm(offset))
+        self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
+        self._simulation.drag(self._vertices, self._from + self.offset, self._firmness)
+        if self._pull is not None:
+            self._pull.targets = self._at_rest + offset
+            if len(self._simulation.faces) < DENSE:
+                self._pull.follow()
+                self._obey(self._pull)
+
+    def muscle(self) -> str | None:
+        """The one under the finger, if any."""
+        return muscle_at(self.point, self._simulation.fibres())
+
+    def let_go(self) -> Message:
+        """The skin stays where muscles hold it, and else swings back; what was solved."""
+        self.drop()
+        pull = self._pull
+        if pull is None:
+            return None
+        pull.solve()
+        self._obey(pull)
+        self.is_held = bool(pull.changes)
+        names = [name for names in pull.changes for name in names]
+        muscles = sum(not name.startswith("jaw_") for name in names)
+        parts = counted(muscles, "muscle") if muscles else "", "jaw" * (muscles < len(names))
+        self._session.note(f"Pull ({', '.join(filter(None, parts))})")
+        if not pull.changes:
+            return "No muscle draws the skin this way: it swings back"
+        told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
+        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short of the mouse"
+
+    def drop(self) -> None:
+        """Hold on to the skin no longer."""
+        self._simulation.end_drag()
+
+    def _obey(self, pull: sim.Pull) -> None:
+        """Set what was solved, and put back what was set before and is needed no more."""
+        solved = {name: value for names, value in pull.changes.items() for name in names}
+        present = self._session.values  # others may move meanwhile, by a script that is recorded
+        self._own = {name: present[name] for name in solved} | self._own
+        for name, value in {**self._own, **solved}.items():
+            if value != present[name]:
+                self._session.set(name, value)
+
+
+def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple[str, ...]]:
+    """The controls that a finger on the skin may move, in one tuple those that go together.
+
+    Beside the middle (`is_aside`) linked sides move alike, so nothing goes to one of them.
+    """
+    found, values = list[tuple[str, ...]](), session.values
+    lowest = session.scene.simulation.controls  # type: ignore[attr-defined]
+    for name in lowest:
+        twin, is_whole = twin_of(name), f"{name}_left" in lowest
+        if is_whole or name.startswith(NOT_PULLED):
+            continue
+        if linked and is_aside and (name in TURNED or parted(name)[0] in OPPOSITE):
+            continue
+        is_pair = linked and twin != name and values[name] == values[twin]
+        if not is_pair or parted(name)[0] in OPPOSITE:
+            found.append((name,))
+        elif name < twin:
+            found.append((name, twin))
+    return found

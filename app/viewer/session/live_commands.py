@@ -1,0 +1,150 @@
+"""A live face in the window: begin and end it, calibrate it, and let it override the session.
+
+It wins over sliders and script; controls that it does not name stay as these have them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from ...errors import UserError
+from ...live import LOST_AFTER, Listening, LiveFace, State, own_address
+from ...recordings.calibration import Calibration
+from ..messages import Message
+from .session import Session
+
+PACING = 0.008  # [s] that a frame waits for a packet: half a frame of the phone's
+LONGEST_STEP = 0.1  # [s] of easing in one frame, however long that took
+
+
+def check_scene(name: str) -> None:
+    """UserError for a scene that no live face can move."""
+    if name != "face":
+        raise UserError(f"a live face moves the scene 'face', not '{name}'")
+
+
+class LiveCommands:
+    """What menus and panels do with a live face, and what the window asks of it.
+
+    wanted: what `toggle` listens to; settable.
+    face: the live face, None while nothing is listened to.
+    own_address: what a phone must send to, "" without a network.
+    """
+
+    def __init__(
+        self, session: Session, show_panel: Callable[[], None], wake: Callable[[], None]
+    ) -> None:
+        """show_panel: is called when a live face begins, which a panel tells of.
+
+        wake: makes a window that waits for events go on; it is called from another thread.
+        """
+        self._session, self._show_panel, self._wake = session, show_panel, wake
+        self.wanted = Listening("livelink")
+        self.face: LiveFace | None = None
+        self.own_address = ""
+        self.has_changed = False  # what can be said of who sends, in the last `advance`
+        self._told: object = None
+        self._kept: tuple[str, Calibration] | None = None  # of whom, when `stop` ended it
+
+    # Commands
+
+    @property
+    def is_on(self) -> bool:
+        """Whether packets are listened to."""
+        return self.face is not None
+
+    def start(self, wanted: Listening) -> Message:
+        """Listen from now on, and show the panel that tells of it; UserError if that cannot be."""
+        check_scene(self._session.scene.name)
+        self.stop()
+        face = LiveFace(wanted, wake=self._wake)
+        try:
+            face.table.check(self._session.controls.limits)
+        except UserError:
+            face.close()
+            raise
+        self.face, self.wanted, self.own_address = face, wanted, own_address()
+        self._show_panel()
+        return f"{wanted.protocol.title}: listening on {wanted.address}, port {face.port}"
+
+    def stop(self) -> None:
+        """Listen no longer; the face is where sliders or script have it."""
+        if self.face is not None:
+            self._kept = self.face.listening.kind, self.face.calibration
+            self.face.close()
+        self.face = None
+        self._session.live_override.take({}, 0.0)
+
+    def toggle(self) -> Message:
+        """Begin, with neutral face and gains as they were left for this protocol, or end."""
+        if self.is_on:
+            self.stop()
+            return None
+        line = self.start(self.wanted)
+        if self.face is not None and self._kept is not None and self._kept[0] == self.wanted.kind:
+            self.face.calibration = self._kept[1]
+        return line
+
+    @property
+    def can_calibrate(self) -> bool:
+        """Whether a face is seen whose neutral state can be learned."""
+        return self.face is not None and self.face.state is State.RECEIVING
+
+    def calibrate(self) -> Message:
+        """The face as it is in the next half second is neutral."""
+        if self.face is not None:
+            self.face.calibrate()
+        return "Hold a neutral face, eyes on the camera ..."
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether left and right change places."""
+        return self.face is not None and self.face.calibration.mirror
+
+    def toggle_mirror(self) -> None:
+        """Exchange left and right, or no longer."""
+        if self.face is not None:
+            calibration = self.face.calibration
+            self.face.calibration = replace(calibration, mirror=not calibration.mirror)
+
+    # What the window asks
+
+    def advance(self, seconds: float) -> Message:
+        """Take in what has come, which overrides the session's controls."""
+        face = self.face
+        if face is None:
+            self.has_changed = False
+            return None
+        was_calibrating = face.is_calibrating
+        face.advance(min(seconds, LONGEST_STEP))
+        told = face.state, face.received > 0
+        self.has_changed, self._told = told != self._told, told
+        self._session.live_override.take(face.controls(), face.presence)
+        if was_calibrating and not face.is_calibrating:
+            return "This face is neutral now"
+        return None
+
+    @property
+    def is_urgent(self) -> bool:
+        """Whether the face has just moved."""
+        return self.face is not None and self.face.has_news
+
+    @property
+    def has_frame(self) -> bool:
+        """Whether a frame has come that woke the window, and that `advance` has not taken in."""
+        return self.face is not None and self.face.has_frame
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether something is about to change without a packet."""
+        return self.face is not None and (self.face.is_easing or self.face.is_calibrating)
+
+    @property
+    def is_receiving(self) -> bool:
+        """Whether another packet can be expected soon."""
+        return self.face is not None and self.face.state is State.RECEIVING
+
+    def due_in(self) -> float:
+        """How long the window may sleep [s]: until the face is lost, if nothing comes."""
+        return LOST_AFTER - self.face.silence if self.face and self.is_receiving else float("inf")

@@ -1,0 +1,194 @@
+"""When the simulation takes its steps: as real time goes, and none for a face at rest.
+
+Real time is cut into steps of the same length, which no frame rate can upset. Source: Fiedler 2004,
+"Fix your timestep!". While nobody moves the face, and somebody may look, it lives by itself: that
+adds to controls that are 0, and to no other. No slider moves, nothing is recorded, saved or undone;
+that it begins and ends softly is left to the muscles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import sim
+
+from ...errors import UserError
+from ...motion.idle import Idle
+from ...motion.life import Values
+from ...scenes import FaceScene
+from ..frame_times import FrameTimes
+from .session import Session
+
+STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
+MOST_STEPS = 6  # a tenth of a second: what a stalled window catches up
+EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz that is now a little
+# late and now early gets one step for each of its frames, and motion does not judder
+EARLIEST = 0.95  # the same for what a live face has just sent, which must not wait a frame
+CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
+STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
+LEFT_ALONE = 0.5  # [s] after which a face that nobody moved any more only lives
+SEEN = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
+EYE_RADIUS = 12.0  # [mm] about: of how far a turning eye moves
+
+
+Life = Callable[[float], Mapping[str, float]]  # what a face adds to its controls, so much [s] later
+
+
+class Clock:
+    """Says how many steps are due; what is left over waits for the next time."""
+
+    def __init__(self) -> None:
+        self._owed = 0.0
+
+    def steps(self, elapsed: float, early: float = EARLY) -> int:
+        """How many steps to take after `elapsed` more seconds; the rest of a stall is forgotten.
+
+        early: of a step that may be taken before it is due.
+        """
+        self._owed += max(elapsed, 0.0)
+        due = max(int(self._owed / STEP + early), 0)
+        if due > MOST_STEPS:
+            self._owed = 0.0
+            return MOST_STEPS
+        self._owed -= due * STEP
+        return due
+
+
+class Physics:
+    """Lets time pass in a session."""
+
+    def __init__(self, session: Session, times: FrameTimes) -> None:
+        self._session, self._times = session, times
+        self._clock = Clock()
+        self.begin_anew()
+
+    def begin_anew(self) -> None:
+        """Another scene may be about to move."""
+        self.has_stepped = False  # in this frame
+        self.has_moved = False  # since the last frame in which it had, as far as one can see
+        self._seen = self._session.scene.positions.copy()  # in that frame
+        self._seen_bones = self._session.scene.bone_transforms()
+        self._left_for = 0.0  # [s] that nobody has moved the face
+        self._posed: dict[str, float] = {}  # the values at the last step
+        self._still_for = 0.0  # [s] that no vertex has moved
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether nothing has moved for some time."""
+        return self._still_for > CALM
+
+    @property
+    def is_left_alone(self) -> bool:
+        """Whether nobody has moved the face for some time, and it does no more than live."""
+        return self._left_for > LEFT_ALONE
+
+    def advance(
+        self,
+        seconds: float,
+        *,
+        is_skin_dragged: bool,
+        is_urgent: bool = False,
+        life: Life | None = None,
+    ) -> None:
+        """As many steps as are due; none for a face at rest that nobody moves and that has no life.
+
+        is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
+        moved. UserError where the simulation gave up.
+        """
+        steps = self._clock.steps(seconds, EARLIEST if is_urgent else EARLY)
+        session, scene = self._session, self._session.scene
+        wanted = dict(session.current)
+        is_driven = session.is_playing or session.is_recording or is_skin_dragged
+        is_driven = is_driven or wanted != self._posed
+        self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP
+        if is_driven:  # even in a frame too short for a step: the window must not go to sleep
+            self._still_for = 0.0
+        self.has_stepped = steps > 0 and (life is not None or not self.is_at_rest)
+        if not self.has_stepped:
+            self.has_moved = False
+            return
+        self._posed = wanted
+        self._times.next_frame()
+        before = scene.positions
+        with self._times.timed("simulation"):
+            try:
+                for _ in range(steps):
+                    before = scene.positions.copy()
+                    session.advance(STEP, life(STEP) if life is not None else {})
+            except sim.SimulationUnstable as error:
+                session.neutral()
+                scene.reset()
+                self._still_for = 0.0
+                raise UserError(str(error)) from None
+        moved = float(np.abs(scene.positions - before).max(initial=0.0))
+        # Muscles follow late: what has not moved yet may still be about to.
+        self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
+        self.has_moved = not self.is_left_alone or self._is_to_be_seen()
+        if self.has_moved:
+            self._seen, self._seen_bones = scene.positions.copy(), scene.bone_transforms()
+
+    def _is_to_be_seen(self) -> bool:
+        """Whether the face has moved enough since it was last seen to move."""
+        scene = self._session.scene
+        if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > SEEN:
+            return True
+        turns = (
+            float(np.abs(matrix[:3, :3] - self._seen_bones[name][:3, :3]).max())
+            for name, matrix in scene.bone_transforms().items()
+        )
+        return max(turns, default=0.0) * EYE_RADIUS > SEEN
+
+
+ASLEEP_AFTER = 600.0  # [s] without input: whoever looked has gone, and the machine may rest
+
+
+class IdleLife:
+    """The life of the face in a window."""
+
+    def __init__(
+        self,
+        session: Session,
+        is_wanted: Callable[[], bool],
+        eye: Callable[[], npt.NDArray[np.float64]],
+    ) -> None:
+        """is_wanted: whether the user wants it. eye: where the viewer's is, shape (3,) [mm]."""
+        self._session, self._is_wanted, self._eye = session, is_wanted, eye
+        self._idle = Idle(session.scene)
+        self._time = 0.0  # of its life [s]
+        self._without_input = 0.0  # [s]
+
+    def note_input(self) -> None:
+        """Somebody is there."""
+        self._without_input = 0.0
+
+    @property
+    def is_on(self) -> bool:
+        """Whether the face lives now.
+
+        A script that is played, recorded or looked through moves it alone, until it has ended, and
+        so does a live face, until it is lost.
+        """
+        session = self._session
+        if not self._is_wanted() or not isinstance(session.scene, FaceScene):
+            return False
+        is_in_script = session.is_following and session.time < session.script.duration
+        is_moved = session.is_playing or session.is_recording or is_in_script
+        return not (is_moved or session.live_override.is_on) and self._without_input < ASLEEP_AFTER
+
+    def after(self, seconds: float, *, is_held: bool) -> Values:
+        """What to add to the controls, `seconds` later than the last time.
+
+        is_held: the user has hold of something, so that the face does no more than look at him.
+        """
+        if not self.is_on:
+            return {}
+        if self._idle.scene is not self._session.scene:
+            self._idle = Idle(self._session.scene)
+        self._time += seconds
+        self._without_input += seconds
+        viewer, session = self._eye(), self._session
+        moved = session.controls.moved_by(session.values)
+        return self._idle.beneath(moved, viewer, self._time, is_still=is_held)

@@ -1,0 +1,397 @@
+"""What a user does with a face: controls, a script in time, a recording, undo, unsaved work.
+
+Knows the scene, which adds up all of `values`, and nothing of windows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...controls.mirror import copied, mirrored, twin_of
+from ...controls.vocabulary import readable
+from ...errors import UserError, counted
+from ...motion import SETTLING
+from ...scenes import Scene
+from ...script import Pose, Script, is_pose, keyframes, pose_script, rounded, save_script
+from ...script.recorder import Recorder
+from ..messages import Message
+from .document import Document, ScriptFile
+from .history import History
+from .scene_controls import LiveOverride, SceneControls, change_of
+from .unsaved import Work
+
+NEW_SECONDS = 4.0  # that a script begun from nothing lasts
+
+
+class Session:
+    """The controls of a scene and the script that may move them."""
+
+    def __init__(self, scene: Scene, script: Script) -> None:
+        script.check(scene.limits)
+        self.scene, self.controls = scene, SceneControls(scene)
+        self.values = self.controls.pose(script.at(0.0))
+        self.script = script
+        self.file = ScriptFile.of(script)
+        self.time, self.speed = 0.0, 1.0
+        self.is_playing = self.is_looping = self.is_keying = False  # keying: hands set keys at once
+        self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
+        self.is_following = any(self.values.values())  # the script; a neutral face need not yet
+        self._is_touched = False  # by hand, since something was noted
+        self._recorder: Recorder | None = None
+        self.live_override = LiveOverride()  # leaves no trace in what can be undone
+        self.display: object = None  # how the scene is drawn, see `show`
+        self.history = History(self._document(), lambda before, after: after.new_keys(before))
+
+    def move_to(self, scene: Scene) -> None:
+        """Go on with another scene, all else as it is; UserError if it has other controls."""
+        if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
+            raise UserError(f"this window shows a {self.scene.name}, which has other controls")
+        self.script.check(scene.limits)
+        self.scene, self.controls = scene, SceneControls(scene)
+        self.values = self.controls.pose(self.values)
+
+    # Controls by hand
+
+    def set(self, name: str, value: float, *, linked: bool = False) -> None:
+        """Set a control within its limits, and if `linked` its twin; a script that plays stops."""
+        for each in {name, twin_of(name)} if linked else {name}:
+            low, high = self.controls.limits[each]
+            self.values[each] = min(max(rounded(value), low), high)
+            if self._recorder is not None:  # the script goes on, and this is held
+                self._recorder.held[each] = self.values[each]
+        if not self.is_recording:
+            self.is_playing = self.is_following = False
+            self.pose_is_unsaved = self._is_touched = True
+
+    def blend(self, first: Mapping[str, float], last: Mapping[str, float], share: float) -> None:
+        """Be this share of the way from a pose to another, both with a value for each control."""
+        for name in first:
+            value = first[name] + share * (last[name] - first[name])
+            if value != self.values[name]:
+                self.set(name, value)
+
+    def toggle_alone(self, name: str) -> None:
+        """This control alone at its most, or neutral if it is so already."""
+        pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
+        self._set_pose(pose, f"Show {name.replace('_', ' ')}", is_unsaved=False)
+
+    def is_alone(self, name: str) -> bool:
+        """Whether this control alone is not 0, and at its most."""
+        return self.values == self.controls.alone(name)
+
+    def neutral(self) -> None:
+        """All controls to zero; the skin swings back by itself."""
+        self._set_pose(self.controls.pose({}), "Neutral", is_unsaved=False)
+
+    def mirror(self, source: str = "") -> None:
+        """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
+        pose = copied(self.values, source) if source else mirrored(self.values)
+        self._set_pose(pose, f"Mirror {source}".rstrip())
+
+    def randomise(self, generator: np.random.Generator | None = None) -> None:
+        """A few muscles of each group by chance, both sides alike; layers stay at zero."""
+        self._set_pose(self.controls.random(generator or np.random.default_rng()), "Random")
+
+    def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
+        if self._recorder is not None:
+            self._recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
+        else:
+            self.is_playing = self.is_following = False
+            self.pose_is_unsaved, self._is_touched = is_unsaved, True
+        self.values = pose
+        self.note(label)
+
+    @property
+    def current(self) -> dict[str, float]:
+        """Where each control is now: by hand or script, and over it what a live face leads."""
+        return self.live_override.over(self.values, self.controls.limits)
+
+    @property
+    def differing(self) -> frozenset[str]:
+        """The controls that hands moved away from the script; it takes a look into every track."""
+        if self.is_following or self.is_recording:
+            return frozenset()
+        limits = self.controls.limits
+        return frozenset(keyframes.differing(self.script, self.time, self.values, limits))
+
+    # Undo
+
+    def _document(self) -> Document:
+        values = None if self.is_following else {n: v for n, v in self.values.items() if v}
+        return Document(values, self.script, self.file, self.display, self.time)
+
+    def show(self, display: object) -> None:
+        """Draw the scene in another way: what nobody changes any more, and equals its like."""
+        present = self.history.present  # the script may move the rest
+        state = replace(present, display=display)
+        if self.display is None:
+            self.history.amend(state)
+        else:
+            label = present.view_change(display)
+            self.history.note(state, label, lambda each: each.redrawn(present.display, display))
+        self.display = display
+
+    def note(self, label: str = "") -> None:
+        """A change is complete (a slider let go, a button pressed): it can be undone.
+
+        label: what was done, as "Mirror"; "" for controls that were set, which are told.
+        """
+        if self.is_recording:
+            return  # that is one change, when it ends
+        if not label:
+            before = self.history.present.values
+            label = change_of(self.script.at(self.time) if before is None else before, self.values)
+        is_touched, self._is_touched = self._is_touched, False
+        if is_touched and self.is_keying and self.differing:
+            label = f"{label}, key at {self._key(self.values):.2f} s"
+        self.history.note(self._document(), label)
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is something to undo."""
+        return self.history.can_undo or self._document() != self.history.present
+
+    def undo(self) -> None:
+        """Back to before the last change, or to it, if the face has changed since."""
+        present, place = self.history.present, self.history.place
+        is_view = self.history.go(place - 1).differs_in_view(present)
+        self.history.go(place)
+        self.go_to(place - (is_view or self._document() == present))
+
+    def redo(self) -> None:
+        """Forward again."""
+        self.go_to(self.history.place + 1)
+
+    def go_to(self, place: int) -> None:
+        """To the state of this number in the history."""
+        self._refuse_while_recording()
+        present, document = self.history.present, self.history.go(place)
+        self.display = document.display
+        if document.differs_in_view(present):
+            return
+        self.is_playing = self._is_touched = False
+        self.script, self.file = document.script, document.file
+        if document.values is None:
+            self._go_to(self.time)
+        else:  # a pose is seen where it was made
+            self.time = min(document.time, self.script.duration)
+            self.values, self.is_following = self.controls.pose(document.values), False
+        self.pose_is_unsaved = bool(document.values)
+
+    # Time
+
+    def toggle_playing(self) -> Message:
+        """Play or pause; at the end of the script, play it again."""
+        self.is_playing = not self.is_playing
+        line = self.let_go() if self.is_playing else None
+        is_over = self.time >= self.script.duration and not self.is_recording
+        if self.is_playing and (is_over or self.time == 0.0):
+            self.start_over()
+        return line
+
+    def start_over(self) -> None:
+        """The first pose, as if it had been held for a while: each replay begins alike."""
+        self.time = 0.0
+        self._follow_script()
+        self.scene.reset()
+        self.scene.pose(self.current)
+        if any(self.current.values()):
+            self.scene.step(SETTLING)  # as in a film
+
+    def seek(self, time: float) -> Message:
+        """Go to a time of the script and take its pose; a line says what is let go for that."""
+        self._refuse_while_recording()
+        line = self.let_go()
+        self._go_to(time)
+        return line
+
+    def _go_to(self, time: float) -> None:
+        self.time = min(max(time, 0.0), self.script.duration)
+        self._follow_script()
+        self.pose_is_unsaved = False
+
+    def let_go(self) -> Message:
+        """Back to the script; what was set by hand and is no key can be undone, as a line says."""
+        if self.is_following or self.is_recording:
+            return None
+        self.note()
+        names = self.differing
+        self._go_to(self.time)
+        if not names:
+            self.history.amend(self._document())
+            return None
+        what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
+        self.history.note(self._document(), f"Let go of {what}", lambda later: later)
+        return f"{what} not keyed, so let go; [Undo] brings the pose back"
+
+    def seek_key(self, direction: int) -> Message:
+        """Pause at the next time at which the script has a key, or with -1 at the one before."""
+        line = self.seek(keyframes.time_beyond(self.script, self.time, direction))
+        self.is_playing = False
+        return line
+
+    def edit(self, script: Script, label: str = "Edit", *, is_done: bool = True) -> None:
+        """Take the script as it was changed; a face that follows it follows the change.
+
+        label: what was done. is_done: False while something is dragged, which is no step yet.
+        """
+        self._refuse_while_recording()
+        self.script = script
+        self.time = min(self.time, script.duration)
+        if self.is_following:
+            self._follow_script()
+        if is_done:
+            self.note(label)
+
+    def _refuse_while_recording(self) -> None:
+        if self.is_recording:
+            raise UserError("stop the recording first ([Record]): it goes into the script as it is")
+
+    def set_key(self, *, is_whole: bool = False) -> float:
+        """The face as it is becomes a key, is_whole: of all tracks, whatever differs; its time."""
+        self._refuse_while_recording()
+        time = self._key(self.current, is_whole=is_whole)
+        self.note(f"Key at {time:.2f} s")
+        return time
+
+    def _key(self, values: Mapping[str, float], *, is_whole: bool = False) -> float:
+        time, limits = keyframes.key_time(self.script, self.time), self.controls.limits
+        self.script = keyframes.keyed(self.script, time, values, limits, is_whole=is_whole)
+        self.is_playing = False
+        self._go_to(time)
+        return time
+
+    def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
+        """Let time pass: the script moves the controls, the scene follows them.
+
+        beneath: what else moves the scene, at controls that are 0; no script ever has it.
+        """
+        if self.is_playing:
+            self.time += self.speed * seconds
+            if self.time >= self.script.duration and (self.is_looping or not self.is_recording):
+                self.time = 0.0 if self.is_looping else self.script.duration
+                self.is_playing = self.is_looping
+            self._follow_script()
+        current = self.current
+        if self._recorder is not None:
+            self._recorder.add(self.time, current)
+        self.scene.pose({**current, **(beneath or {})})
+        self.scene.step(seconds)
+
+    def _follow_script(self) -> None:
+        self.is_following = True
+        held = self._recorder.held if self._recorder is not None else {}
+        self.values = self.controls.pose({**self.script.at(self.time), **held})
+
+    @property
+    def is_recording(self) -> bool:
+        """Whether movements are being recorded."""
+        return self._recorder is not None
+
+    def toggle_recording(self) -> Message:
+        """Record what is moved into the script, which plays from the time shown, or end that.
+
+        Nothing is recorded while it is paused, or goes through a part again.
+        """
+        if self._recorder is None:
+            held = {name: self.values[name] for name in self.differing}
+            start = self.time % self.script.duration if self.is_looping else self.time
+            self._recorder = Recorder(self.script, start, self.controls.limits, held)
+            self.time, self.pose_is_unsaved = self._recorder.start, False
+            if not self.is_playing:
+                self.toggle_playing()
+            return f"Recording from {self.time:.2f} s: what you move replaces the script there"
+        recorder, self._recorder = self._recorder, None
+        recording, self.is_playing = recorder.script(), False
+        if recording is not None:
+            self.script = recording
+            self._go_to(rounded(self.time))  # which is the end, where the recording is the last
+        self.values, self.is_following = self.values | recorder.missed, False
+        missed = self.differing  # a pose by hand
+        self.is_following, self.pose_is_unsaved = not missed, bool(missed)
+        what = counted(len(recorder.samples), "control")
+        self.note(f"Record {what}" if recording else "")
+        if recording is None:
+            raise UserError("nothing was recorded: no control moved")
+        apart = f"; {counted(len(missed), 'control')} moved after that, not keyed" if missed else ""
+        return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s{apart}"
+
+    @property
+    def recording_so_far(self) -> Script | None:
+        """What would be the script if the recording was stopped now."""
+        return self._recorder.script() if self._recorder is not None else None
+
+    @property
+    def recorded_seconds(self) -> float:
+        """How long the recording is so far."""
+        return self._recorder.time - self._recorder.start if self._recorder is not None else 0.0
+
+    @property
+    def has_moved_in_pause(self) -> bool:
+        """Whether controls were moved while the recording is paused, which it has not."""
+        return self._recorder is not None and not self.is_playing and bool(self._recorder.missed)
+
+    # Files
+
+    def open(self, script: Script) -> None:
+        """A pose to show, which a recording takes in, or a script to play, which ends it."""
+        label = f"Open {Path(script.source).name}"
+        if is_pose(script):
+            self._set_pose(self.controls.pose(script.at(0.0)), label, is_unsaved=False)
+        else:
+            self._replace_script(script, ScriptFile.of(script), label)
+
+    def begin_script(self) -> None:
+        """An empty script: the neutral face, to which keys can be added."""
+        scene, camera = self.script.scene, self.script.camera
+        script = Script("", NEW_SECONDS, "a new script", scene, camera, poses=(Pose(0.0),))
+        self._replace_script(script, ScriptFile(None, script), "New script")
+
+    def _replace_script(self, script: Script, file: ScriptFile, label: str) -> None:
+        """Another script in place of this one."""
+        self._recorder, self._is_touched = None, False
+        self.script, self.file, self.is_playing = script, file, False
+        self._go_to(0.0)
+        self.note(label)
+
+    def recover(self, work: Work, when: float) -> None:
+        """Go on with unsaved work of another session, as it was at a time [s since 1970]."""
+        for script in filter(None, (work.script, work.recording)):
+            self._replace_script(script, ScriptFile.recovered(work.path, when), "Recover")
+        if work.pose is not None:
+            self._set_pose(self.controls.pose(work.pose.at(0.0)), "Recover the pose")
+
+    def save_script(self, path: Path) -> None:
+        """Write the script to a file; UserError where it cannot be written."""
+        self.file.save(self.script, path)
+
+    def save_pose(self, path: Path) -> None:
+        """Write the controls as they are to a file; UserError where it cannot be written."""
+        save_script(path, pose_script(self.current, title=path.stem, scene=self.script.scene))
+        self.pose_is_unsaved = False
+
+    @property
+    def unsaved(self) -> str:
+        """What would be lost by closing, in words; "" for nothing."""
+        lost = {"the pose": self.has_unsaved_pose, "the script": self.script_is_unsaved}
+        lost["the recording"] = self.is_recording
+        return " and ".join(what for what, is_lost in lost.items() if is_lost)
+
+    @property
+    def script_is_unsaved(self) -> bool:
+        """Whether the script says what its file does not."""
+        return self.file.differs(self.script)
+
+    @property
+    def name(self) -> str:
+        """What the script is called: by its file, if there is one, else by its title."""
+        return self.file.path.name if self.file.path else self.script.title or "Untitled"
+
+    @property
+    def has_unsaved_pose(self) -> bool:
+        """Whether there is a pose made by hand that no file has."""
+        return self.pose_is_unsaved and any(self.values.values())

@@ -1,0 +1,102 @@
+"""The script's sound in the window: heard while the script plays, and what the picture keeps to.
+
+The picture follows the sound: a device keeps the time of its own clock, and what is heard must not
+jump. So a little more or less time passes for the picture, until both agree, and a window that was
+stalled skips what was heard meanwhile. The sound follows where the user goes, or a loop begins.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...errors import UserError
+from ...sound import Player, Sound, load_sound
+from ...sound.player import NoDeviceError
+from .physics import MOST_STEPS, STEP
+from .session import Session
+
+APART = 0.05  # [s] by which the picture is late before it skips
+LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more was not the script's own
+CATCHING_UP = 0.3  # [s] in which most of a drift is gone
+SNIPPET = 0.07  # [s] that are heard of each place while the time is dragged
+
+
+class Soundtrack:
+    """Plays the sound of a session's script; silent where there is no device."""
+
+    sound: Sound | None
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._file: Path | None = None
+        self._player: Player | None = None
+        self._time, self._was_playing = session.time, False  # in the last frame
+        self.sound = None  # what is in the script's file; None as long as it has none
+
+    def refresh(self) -> None:
+        """Read the script's sound if it has another one now; UserError, once, if it cannot be."""
+        file = self._session.script.sound
+        if file == self._file:
+            return
+        self.close()
+        self._file, self._time = file, self._session.time
+        if file is None:
+            return
+        try:
+            self.sound = load_sound(file)
+            self._player = Player(self.sound)
+        except NoDeviceError:
+            pass
+        except UserError as error:
+            raise UserError(f"{error}; the script plays without") from None
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether there is something to be heard just now."""
+        return self._player is not None and self._player.is_heard
+
+    def elapsed(self, seconds: float) -> float:
+        """How much time shall pass for the picture [s], where `seconds` went by."""
+        session, player = self._session, self._player
+        if player is None or self.sound is None:
+            return seconds
+        was_playing, self._was_playing = self._was_playing, session.is_playing
+        before, self._time = self._time, session.time
+        if session.time >= self.sound.duration:
+            player.stop()
+        elif session.is_playing:
+            return self._in_step(player, seconds, session.time - before)
+        elif was_playing:
+            player.stop()
+        elif session.time != before:
+            player.play(session.time, seconds=SNIPPET)
+        return seconds
+
+    def _in_step(self, player: Player, seconds: float, went: float) -> float:
+        """How much time shall pass for the picture, that it is where the sound is.
+
+        went: how far the script went in the last frame [s].
+        """
+        session = self._session
+        has_jumped = not 0.0 <= went <= LONGEST_FRAME * session.speed
+        if has_jumped or player.speed != session.speed:
+            player.play(session.time, session.speed)
+        if player.is_stuck:
+            return seconds
+        late = (player.position - session.time) / session.speed - seconds
+        if late > APART and session.time < session.script.duration:  # a recording goes beyond
+            session.time = min(session.time + late * session.speed, session.script.duration)
+            self._time = session.time
+            return seconds
+        return max(seconds + late * min(seconds / CATCHING_UP, 1.0), 0.0)
+
+    def rest(self) -> None:
+        """Be silent, as long as the window waits."""
+        if self._player is not None:
+            self._player.rest()
+
+    def close(self) -> None:
+        """Let go of sound and device."""
+        if self._player is not None:
+            self._player.close()
+        self.sound = self._player = self._file = None

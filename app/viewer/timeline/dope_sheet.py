@@ -1,0 +1,387 @@
+"""The keys in time: a ruler to scrub in, below it rows of keys, or their values as curves.
+
+As in every dope sheet: a click selects a key and goes there, a drag moves what is selected, Shift
+adds, a drag over nothing draws a box, the wheel zooms. Where keys are too dense to be told apart,
+only those that are selected are dragged, and a drag over others draws a box.
+"""
+
+from __future__ import annotations
+
+import bisect
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from imgui_bundle import imgui
+
+from ...errors import counted
+from ...script import Script, keyframes
+from ...script.places import NOWHERE, Places
+from ..interface.commands import MenuBar
+from ..interface.gui import LEFT, MIDDLE, RIGHT, Gui, em, ink_of
+from ..interface.widgets import shortened
+from ..messages import Message, Messages, Task
+from ..session.session import Session
+from ..settings import Settings
+from . import key_marks
+from .graph import Graph
+from .key_selection import KeySelection, PoseNameLine
+from .time_axis import TimeAxis
+from .tracks import Track, all_tracks, described
+from .waveform import Waveform
+
+ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
+GUTTER, GUTTER_SHARE = 9.5, 0.2  # [em] for the rows' names, and of the width at most
+MOST_ROWS = 6  # that are seen at once; the rest is scrolled to
+REACH = 0.5  # [em] beside a key that still mean it
+CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
+ZOOM_PER_NOTCH = 0.8
+SCROLL_PER_NOTCH = 0.12  # of the visible time
+GRAPH = 14.0  # [em] of its height, as long as nobody changes that
+MOST_CURVES = 24  # that are displayed at once, unless somebody wants more
+VALUES = 2.2  # [em] for the labels of values
+SNAP = 0.4  # [em] beside a key of another track that draws a dragged one there
+
+
+@dataclass
+class Drag:
+    """What the mouse holds on to."""
+
+    doing: str  # keys, box, scrub, end, pan, slope
+    began: tuple[float, float]  # [window units]
+    script: Script  # as it was then
+    selected: Places  # then
+    has_moved: bool = False
+
+
+class DopeSheet:
+    """Draws ruler and rows, and carries out what the mouse does in them."""
+
+    def __init__(
+        self,
+        gui: Gui,
+        session: Session,
+        settings: Settings,
+        messages: Messages,
+        selection: KeySelection,
+        axis: TimeAxis,
+        menus: MenuBar,
+        waveform: Waveform,
+    ) -> None:
+        self._gui, self._session, self.settings = gui, session, settings
+        self._messages, self._menus = messages, menus
+        self.selection, self.axis, self._waveform = selection, axis, waveform
+        self.graph = Graph(gui, selection, axis)
+        self._drag: Drag | None = None
+        self._number: float | None = None  # the time [s] whose number was pressed on in the ruler
+        self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
+        self._all: tuple[Track, ...] = ()
+        self.rows: tuple[Track, ...] = ()  # of these the ones that are not folded away
+        self._known: Script | None = None  # of which the tracks are
+        self._are_dense: dict[str, bool] = {}  # by name: keys cannot be told apart
+        self._bottom = 0.0  # of all of it [window units]
+        self._tops = [0.0]  # of each row, and of what would come below the last [window units]
+        self._gutter = 0.0  # the width of their names [window units]
+        self._name_line = PoseNameLine(gui, session, messages, selection)
+        self._wants_menu = False
+
+    def _is_open(self, name: str) -> bool:
+        """Whether what is folded into this row is displayed; at first, of many groups one."""
+        is_few = len(self._session.script.tracks) <= MOST_CURVES or name == self._all[1].name
+        return self.settings.folds.get(name, is_few if ":" in name else self.settings.shows_curves)
+
+    def height(self, room: float) -> float:
+        """Of ruler and rows [window units], no more than there is room for."""
+        self._refresh()
+        rows = em(ROW) * sum(track.height for track in self.rows[:MOST_ROWS])
+        wanted = em(GRAPH) if self.settings.shows_curves else rows
+        above = em(RULER) + self._waveform.height
+        return above + max(min(wanted, room - above), em(ROW))
+
+    def _refresh(self) -> None:
+        """Bring rows and selection up to date with script and settings."""
+        script = self._session.script
+        self.axis.counts_frames = self.settings.counts_frames
+        if self._known is not script:
+            self._known = script
+            self._all = all_tracks(script, self._session.controls.groups)
+            self.selection.places &= keyframes.places_of(script)
+        self.rows = tuple(track for track in self._all if all(map(self._is_open, track.parents)))
+        self.graph.take(self.rows)
+
+    def draw(self, height: float) -> None:
+        """Draw everything, inside the timeline's window, so high [window units]."""
+        self._refresh()
+        session, axis, io = self._session, self.axis, imgui.get_io()
+        place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        self._bottom = place.y + height
+        self._gutter = min(em(GUTTER), GUTTER_SHARE * room.x)
+        inset, values = em(0.7), em(VALUES) if self.settings.shows_curves else 0.0
+        left = self._gutter + inset + values
+        axis.place(place.x + left, room.x - left - inset - em(0.6))
+        duration = session.script.duration
+        if self._drag is None:
+            lasts = (times[-1] for row in self.rows for times in row.places.times.values())
+            axis.fit(float(max([duration, session.time, self._waveform.duration, *lasts])))
+            if session.is_playing:
+                axis.follow(session.time)
+        imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
+        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER) + self._waveform.height))
+        self._gui.remember("time")
+        if imgui.is_item_hovered():
+            self._press_in_ruler(io)
+            self._turn_wheel(io)
+        edges = place.y, place.y + em(RULER)
+        key_marks.draw_ruler(self._gui.theme, axis, session.time, duration, edges)
+        self._waveform.draw(session.time, duration, (place.x, edges[1]))
+        imgui.set_cursor_screen_pos((place.x, edges[1] + self._waveform.height))
+        self._draw_rows(io)
+        if self.settings.shows_curves:
+            self._draw_graph(io, place.x)
+        if self._drag is not None:
+            self._follow(io, self._drag)
+        if self._wants_menu:
+            imgui.open_popup("key menu")
+            self._wants_menu = False
+        if imgui.begin_popup("key menu"):
+            self._menus.draw_menu("Keys")
+            imgui.end_popup()
+        self._name_line.draw()
+
+    def _draw_rows(self, io: Any) -> None:
+        """The rows, or of curves their names alone."""
+        flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
+        least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(ROW))
+        has_keys = not self.settings.shows_curves
+        imgui.begin_child("keys", (0.0 if has_keys else self._gutter, least), 0, flags)
+        place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        heights = [em(ROW) * (track.height if has_keys else 1.0) for track in self.rows]
+        self._tops = list(itertools.accumulate(heights, initial=place.y))
+        imgui.invisible_button("##keys", (room.x, self._tops[-1] - place.y))
+        self._gui.remember("keys")
+        is_hovered = imgui.is_item_hovered()
+        theme, duration = self._gui.theme, self._session.script.duration
+        painter = key_marks.TrackPainter(theme, self.axis, self.selection.places, duration)
+        for track, (top, bottom) in zip(self.rows, itertools.pairwise(self._tops), strict=True):
+            if imgui.is_rect_visible((place.x, top), (place.x + room.x, bottom)):
+                if has_keys:
+                    self._are_dense[track.name] = painter.draw(track, top, em(ROW))
+                self._draw_name(track, (place.x, bottom - em(ROW)), room.x)
+        if has_keys:
+            self._draw_over(io, (place.y, self._tops[-1]))
+        if has_keys and self._session.differing:
+            middle = self._tops[1] - 0.5 * em(ROW)
+            key_marks.draw_unkeyed(theme, self.axis, self._session.time, middle)
+        if is_hovered and self._drag is None:
+            self._hover(io, place.x)
+        imgui.end_child()
+
+    def _draw_name(self, track: Track, corner: key_marks.Point, room: float) -> None:
+        arrow, indent = em(0.9) if track.is_sum else 0.0, em(0.5) * len(track.parents)
+        x, y = corner[0] + indent, corner[1] + 0.5 * (em(ROW) - em())
+        self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
+        room = min(room, self._gutter) - indent - arrow - em(0.3)
+        label = shortened(track.label, room, keeps_end=not track.is_sum)  # which tells the side
+        is_curve, muted = self.settings.shows_curves and track.control, self._gui.theme.muted
+        ink = self.graph.colour(track) if is_curve else ink_of(muted)
+        key_marks.draw_label(label, (x, y), ink, arrow, is_open=self._is_open(track.name))
+
+    def _draw_over(self, io: Any, edges: tuple[float, float]) -> None:
+        key_marks.draw_playhead(self._gui.theme, self.axis, self._session.time, edges)
+        if self._drag is not None and self._drag.doing == "box" and self._drag.has_moved:
+            key_marks.draw_box(self._gui.theme, self._drag.began, io.mouse_pos)
+
+    def _draw_graph(self, io: Any, left: float) -> None:
+        imgui.same_line(0.0, 0.0)
+        top, width = imgui.get_cursor_screen_pos().y, imgui.get_content_region_avail().x
+        edges = top, top + max(self._bottom - top, em(ROW))
+        imgui.invisible_button("##graph", (max(width, 1.0), edges[1] - top))
+        if imgui.is_item_hovered() and self._drag is None:
+            self._hover(io, left)
+        is_held = self._drag is not None and self._drag.doing == "keys"
+        self.graph.draw(edges, self._session.script.duration, is_held=is_held)
+        self._draw_over(io, edges)
+
+    # The mouse
+
+    def _hover(self, io: Any, left: float) -> None:
+        """The mouse is over rows or curves and holds nothing yet."""
+        selection, axis, (x, y) = self.selection, self.axis, io.mouse_pos
+        row, hit, under, graph = self._row_at(y), None, NOWHERE, self.graph
+        track = self.rows[row] if 0 <= row < len(self.rows) else None
+        if x < left + self._gutter:
+            if track is not None:
+                imgui.set_tooltip(track.label)
+                if imgui.is_mouse_clicked(LEFT) and track.is_sum:
+                    self.settings.folds[track.name] = not self._is_open(track.name)
+                elif imgui.is_mouse_clicked(LEFT):
+                    selection.places = track.places
+            imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
+            return
+        if self.settings.shows_curves:
+            graph.handle = graph.handle_at(x, y)
+            hit = None if graph.handle else graph.at(x, y)
+            under = hit.key if hit else NOWHERE
+        elif track is not None:
+            under = track.places.near(axis.time(x), axis.seconds(em(REACH)))
+        line = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
+        if (under or line) and not imgui.is_mouse_down(LEFT):
+            imgui.set_tooltip(described(self._session.script, under) if under else line)
+        if self.settings.shows_curves and graph.handle is not None:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ns)
+            if imgui.is_mouse_clicked(LEFT):
+                self._begin("slope", io)
+        elif imgui.is_mouse_clicked(LEFT):
+            graph.held = hit
+            is_dense = hit is None and track is not None and self._are_dense.get(track.name, False)
+            self._press(io, under, is_dense=is_dense)
+        elif imgui.is_mouse_clicked(RIGHT):
+            if under and not under <= selection.places:
+                selection.places = under
+            self._wants_menu = True
+        self._turn_wheel(io)
+
+    def _row_at(self, y: float) -> int:
+        return bisect.bisect_right(self._tops, y) - 1
+
+    def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
+        """Hold on to something; selected: from now on, where that is not what is selected."""
+        places = self.selection.places if selected is None else selected
+        self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, places)
+
+    def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
+        selection = self.selection
+        if under and imgui.is_mouse_double_clicked(LEFT) and selection.can_rename:
+            selection.rename()
+        elif not under or (is_dense and not under <= selection.places):
+            self._grabbed = under
+            self._begin("box", io, selection.places if io.key_shift else NOWHERE)
+        else:
+            places = selection.places
+            if io.key_shift:
+                selection.places = places - under if under <= places else places | under
+            elif not under <= places:
+                selection.places = under
+            self._begin("keys", io)
+            self._grabbed = under
+
+    def _press_in_ruler(self, io: Any) -> None:
+        end = self.axis.x(self._session.script.duration)
+        is_at_end = end < io.mouse_pos.x < end + em(key_marks.FLAG)
+        if is_at_end:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+            if self._drag is None:
+                imgui.set_tooltip("drag the script's end")
+        if self._drag is None and imgui.is_mouse_clicked(LEFT):
+            self._begin("end" if is_at_end else "scrub", io)
+            is_above = io.mouse_pos.y < imgui.get_item_rect_min().y + em()
+            self._number = key_marks.number_at(self.axis, io.mouse_pos.x) if is_above else None
+
+    def _turn_wheel(self, io: Any) -> None:
+        """Zoom about the mouse; Shift, or a sideways wheel: scroll; Ctrl: values; middle: pan."""
+        if self._drag is None and imgui.is_mouse_clicked(MIDDLE):
+            self._begin("pan", io)
+        sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
+        if sideways:
+            self.axis.scroll(-SCROLL_PER_NOTCH * self.axis.span * sideways)
+        elif io.mouse_wheel and io.key_ctrl and self.settings.shows_curves:
+            self.graph.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.y)
+        elif io.mouse_wheel:
+            self.axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
+
+    def _follow(self, io: Any, drag: Drag) -> None:
+        """Carry out what the mouse does until it lets go; Escape takes back what it did."""
+        (x, y), axis, session = io.mouse_pos, self.axis, self._session
+        distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
+        drag.has_moved = drag.has_moved or distance > CLICK
+        number = None if drag.has_moved else self._number
+        act: dict[str, Task] = {
+            "keys": lambda: self._move_keys(io, drag),
+            "box": lambda: self._select_box(io, drag),
+            "scrub": lambda: session.seek(
+                self._snapped(axis.time(x), io) if number is None else number
+            ),
+            "end": lambda: session.edit(
+                keyframes.lasting(drag.script, axis.time(x)), is_done=False
+            ),
+            "pan": lambda: self.graph.scroll(*io.mouse_delta),
+            "slope": lambda: self._bend(y, drag),
+        }
+        if drag.has_moved or drag.doing in ("scrub", "pan"):
+            self._messages.attempt(act[drag.doing])
+        if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end", "slope"):
+            self._drag = None
+            self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
+            self.selection.places = drag.selected
+        elif not imgui.is_mouse_down(MIDDLE if drag.doing == "pan" else LEFT):
+            self._drag = None
+            self._messages.attempt(lambda: self._release(io, drag))
+
+    def _snapped(self, time: float, io: Any) -> float:
+        """The time of the nearest frame; with Ctrl just that time [s]."""
+        return time if io.key_ctrl else keyframes.on_frame(time)
+
+    def _move_keys(self, io: Any, drag: Drag) -> None:
+        right, down = io.mouse_pos.x - drag.began[0], io.mouse_pos.y - drag.began[1]
+        if not io.key_ctrl:  # either way begins with a step
+            right, down = (0.0 if abs(way) < CLICK else way for way in (right, down))
+        time = self._grabbed.first
+        target = time + self.axis.seconds(right)
+        target = min(max(target, 0.0), self.axis.end)  # further right it would not be seen
+        magnets = keyframes.places_of(drag.script).times | {"now": np.array([self._session.time])}
+        for name in drag.selected.times:  # where a key would be replaced
+            del magnets[name]
+        near = Places(magnets).near(target, self.axis.seconds(em(SNAP)))
+        snapped = near.first if near and not io.key_ctrl else self._snapped(target, io)
+        offset = snapped - time if right else 0.0
+        script, places = keyframes.moved(drag.script, drag.selected, offset)
+        line, held = self.axis.told(time + offset), self.graph.held
+        if held is not None:
+            amount = down / self.graph.slope
+            if amount and not io.key_ctrl:
+                amount = round(held.value + amount, 2) - held.value
+            limits, posed = self._session.controls.limits, {held.curve.control}
+            script = keyframes.raised(script, places, amount, limits, posed)
+            line += f", {held.curve.label} {held.value + amount:.2f}"
+        self._session.edit(script, is_done=False)
+        self.selection.places = places
+        imgui.set_tooltip(line)
+
+    def _bend(self, y: float, drag: Drag) -> None:
+        assert self.graph.handle is not None
+        easing = self.graph.bent(self.graph.handle, y)
+        script = keyframes.eased(drag.script, self.graph.handle.key, easing)
+        self._session.edit(script, is_done=False)
+        imgui.set_tooltip(f"slopes {easing}")
+
+    def _select_box(self, io: Any, drag: Drag) -> None:
+        corner, inside = (io.mouse_pos.x, io.mouse_pos.y), NOWHERE
+        if self.settings.shows_curves:
+            inside = self.graph.inside(drag.began, corner)
+        else:
+            times = sorted(self.axis.time(x) for x in (drag.began[0], corner[0]))
+            rows = sorted(self._row_at(y) for y in (drag.began[1], corner[1]))
+            for track in self.rows[max(rows[0], 0) : max(rows[1] + 1, 0)]:
+                inside |= track.places.between(*times)
+        self.selection.places = drag.selected | inside
+
+    def _release(self, io: Any, drag: Drag) -> Message:
+        """The mouse has let go; what there is to say about it."""
+        session, line = self._session, None
+        if drag.doing == "keys" and drag.has_moved:
+            lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
+            line = f"{counted(lost, 'key')} replaced; [Undo] brings back" if lost > 0 else None
+        elif drag.doing in ("keys", "box") and not drag.has_moved:
+            if drag.doing == "box":
+                self.selection.places = drag.selected | self._grabbed
+            if self._grabbed and not io.key_shift:
+                self.selection.places = self._grabbed
+                session.is_playing = False
+                line = session.seek(self._grabbed.first)
+        if drag.doing in ("keys", "end") and drag.has_moved:
+            keys = counted(len(drag.selected), "key")
+            session.note(f"Move {keys if drag.doing == 'keys' else 'the end'}")
+        elif drag.doing == "slope" and drag.has_moved:
+            session.note("Drag a handle")
+        return line

@@ -1,0 +1,228 @@
+"""Keys as curves: the value of each control over time, just as the script plays it.
+
+A curve belongs to a track, or to one control of the poses: there a key that is dragged up changes
+that value of its pose. The way to a selected key has two handles, at its control points as a Bezier
+curve, that are dragged up and down. What the mouse does is in dope_sheet.py, as for rows of keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from imgui_bundle import imgui
+
+from ...script import EASING_NAMES
+from ...script.easing import SLOPES, free_easing
+from ...script.keyframes import SAME
+from ...script.places import NOWHERE, KeyPlace, Places, among
+from ..interface.gui import Gui, em, ink_of
+from .key_marks import Point, draw_line
+from .key_selection import KeySelection
+from .time_axis import TimeAxis
+from .tracks import Track
+
+PADDING = 0.8  # [em] between the highest value and the edge
+LABEL_ROOM = 1.6  # [em] between two labels of values
+STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (1.0, 2.0, 5.0))
+REACH = 0.55  # [em] from a key or a curve that still mean it
+MOST_POINTS = 4000  # of all curves, in columns
+KEY = 0.27  # [em] from a key's middle to its corners
+FAINT = 0.3  # a curve that has no selected key, beside others that have
+
+
+class Hit(NamedTuple):
+    """What a place in the graph means: a curve, and its key if one is there."""
+
+    curve: Track
+    value: float
+    key: Places = NOWHERE
+
+
+class Handle(NamedTuple):
+    """A third of the way to a key, from the key before or to it: what sets the slope there."""
+
+    key: Places
+    number: int  # 0: at the start of the way, 1: at its end
+    slopes: tuple[float, float]  # in mean speeds
+    ends: tuple[float, float]  # the values there and at the other end of the way
+    place: Point
+    root: Point  # where its key is
+
+
+class Graph:
+    """Draws curves between a time axis and one of values, and knows what is where."""
+
+    def __init__(self, gui: Gui, selection: KeySelection, axis: TimeAxis) -> None:
+        self._gui, self._selection, self._axis = gui, selection, axis
+        self.curves: list[Track] = []
+        self.held: Hit | None = None  # what the mouse was pressed on
+        self.handle: Handle | None = None  # that it was pressed on
+        self._low, self._high, self._bottom = 0.0, 1.0, 0.0  # values, and where the low one is
+        self.slope = -1.0  # how far down 1 is from 0 [window units]
+
+    def take(self, rows: Iterable[Track]) -> None:
+        """Display the curves of these rows, those of which keys are selected in front."""
+        self.curves = sorted((row for row in rows if row.control), key=self._is_selected)
+
+    def colour(self, curve: Track, opacity: float = 1.0) -> int:
+        """Of a curve and its name; by the golden ratio neighbours differ most."""
+        light = (0.55, 0.95) if self._gui.theme.is_dark else (0.9, 0.6)
+        hue = (0.58 + 0.618034 * curve.number) % 1.0
+        return ink_of(imgui.color_convert_hsv_to_rgb(hue, *light), opacity)
+
+    def _is_selected(self, curve: Track) -> bool:
+        return curve.track in self._selection.places.times
+
+    def y(self, value: Any) -> Any:
+        """Where a value is, or each of an array of values [window units]."""
+        return self._bottom + self.slope * (value - self._low)
+
+    def zoom(self, factor: float, y: float) -> None:
+        """Show `factor` times as many values; what is at `y` stays there."""
+        fixed = self._low + (y - self._bottom) / self.slope
+        low, high = (fixed + factor * (end - fixed) for end in (self._low, self._high))
+        if 0.02 < high - low < 100.0:
+            self._axis.values = low, high
+
+    def scroll(self, right: float, down: float) -> None:
+        """Move the curves [window units]; up and down once they are zoomed."""
+        self._axis.scroll(-self._axis.seconds(right))
+        if self._axis.values is not None:
+            low, high = self._axis.values
+            self._axis.values = low - down / self.slope, high - down / self.slope
+
+    # What is where
+
+    def at(self, x: float, y: float) -> Hit | None:
+        """The key there, or else the curve; of keys that cannot be told apart, selected ones."""
+        axis, reach, hits = self._axis, em(REACH), list[tuple[float, Hit]]()
+        for curve in self.curves[::-1]:
+            channel, value = curve.channel, curve.channel.value(axis.time(x))
+            hits.append((reach + abs(self.y(value) - y), Hit(curve, value)))
+            ends = np.searchsorted(channel.times, (axis.time(x - reach), axis.time(x + reach)))
+            times, values = channel.times[slice(*ends)], channel.values[slice(*ends)]
+            away = np.hypot(axis.x(times) - x, self.y(values) - y)
+            if len(away) and away.min() < reach:
+                number = int(away.argmin())
+                key = Places.of(KeyPlace(curve.track, float(times[number])))
+                if not self._is_dense(curve) or key <= self._selection.places:
+                    hits.append((away[number], Hit(curve, float(values[number]), key)))
+        distance, hit = min(hits, key=lambda each: each[0], default=(0.0, None))
+        return hit if distance < 2.0 * reach else None
+
+    def handles(self) -> Iterator[Handle]:
+        """Of the ways to selected keys, where there is room for them."""
+        axis = self._axis
+        for curve in self.curves:
+            channel = curve.channel
+            chosen = self._selection.places.times.get(curve.track, channel.times[:0])
+            if not len(chosen) or self._is_dense(curve):
+                continue
+            begin, end = np.searchsorted(channel.times, (axis.start, axis.end))
+            visible = np.arange(max(begin, 1), min(end + 1, len(channel)))
+            for number in visible[among(channel.times[visible], chosen)].tolist():
+                slopes = SLOPES.get(EASING_NAMES[channel.easings[number]])
+                times, values = (
+                    part[number - 1 : number + 1] for part in (channel.times, channel.values)
+                )
+                (x, right), (y, there) = axis.x(times).tolist(), self.y(values).tolist()
+                if slopes is None or right - x < 3.0 * em(REACH) or abs(there - y) < em(REACH):
+                    continue  # held, or no room
+                key = Places.of(KeyPlace(curve.track, float(times[1])))
+                across, rise = (right - x) / 3.0, (there - y) / 3.0
+                first = x + across, y + slopes[0] * rise
+                last = right - across, there - slopes[1] * rise
+                low, high = values.tolist()
+                yield Handle(key, 0, slopes, (low, high), first, (x, y))
+                yield Handle(key, 1, slopes, (high, low), last, (right, there))
+
+    def handle_at(self, x: float, y: float) -> Handle | None:
+        """The handle there, if there is one."""
+        away = [(float(np.hypot(h.place[0] - x, h.place[1] - y)), h) for h in self.handles()]
+        distance, handle = min(away, key=lambda each: each[0], default=(0.0, None))
+        return handle if distance < em(REACH) else None
+
+    def bent(self, handle: Handle, y: float) -> str:
+        """The easing that the way has if its handle is dragged to a height."""
+        slopes, (own, other) = list(handle.slopes), map(self.y, handle.ends)
+        slopes[handle.number] = 3.0 * (y - own) / (other - own)
+        return free_easing(*slopes)
+
+    def inside(self, first: Point, last: Point) -> Places:
+        """The keys in a box."""
+        (begin, end), (top, bottom) = (sorted(each) for each in zip(first, last, strict=True))
+        places = NOWHERE
+        for curve in self.curves:
+            heights = self.y(curve.channel.values)
+            times = curve.channel.times[(heights >= top) & (heights <= bottom)]
+            places |= Places({curve.track: times})
+        return places.between(self._axis.time(begin), self._axis.time(end))
+
+    def _is_dense(self, curve: Track) -> bool:
+        """Whether its visible keys cannot be told apart."""
+        axis, times = self._axis, curve.channel.times
+        count = np.diff(np.searchsorted(times, (axis.start, axis.end)))[0]
+        return bool(1.5 * em(KEY) * count > axis.x(axis.end) - axis.x(axis.start))
+
+    # How it looks
+
+    def draw(self, edges: Point, duration: float, *, is_held: bool) -> None:
+        """Draw all of it, between an upper and a lower edge [window units].
+
+        duration: of the script [s]. is_held: by the mouse, so that values stay where they are.
+        """
+        axis, theme, lines = self._axis, self._gui.theme, imgui.get_window_draw_list()
+        if not is_held:
+            ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
+            self._low, self._high = axis.values or (min(ends), max(ends))
+            self._bottom = edges[1] - em(PADDING)
+            height = max(self._bottom - edges[0] - em(PADDING), 1.0)
+            self.slope = -height / (self._high - self._low)
+        left, right = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
+        end = min(max(axis.x(duration), left), right)
+        lines.add_rect_filled((left, edges[0]), (right, edges[1]), ink_of(theme.field, 0.45))
+        lines.add_rect_filled((left, edges[0]), (end, edges[1]), ink_of(theme.field))
+        step = next((each for each in STEPS if -each * self.slope >= em(LABEL_ROOM)), STEPS[-1])
+        first, last = int(np.ceil(self._low / step - SAME)), int(self._high / step + SAME)
+        for number in range(first, last + 1):
+            y, label = round(self.y(number * step)) + 0.5, f"{number * step:g}"
+            lines.add_line((left, y), (right, y), ink_of(theme.muted, 0.2 if number else 0.5))
+            place = left - em(0.3) - imgui.calc_text_size(label).x, y - 0.5 * em()
+            lines.add_text(place, ink_of(theme.muted), label)
+        lines.push_clip_rect((left, edges[0]), (right, edges[1]), True)
+        columns = round(min(0.5 * (right - left), MOST_POINTS / (len(self.curves) + 1)))
+        for curve in self.curves:
+            is_front = self._is_selected(curve) or not self._is_selected(self.curves[-1])
+            ink = self.colour(curve, 1.0 if is_front else FAINT)
+            times, values = curve.channel.outline(axis.start, axis.end, max(columns, 8))
+            draw_line(axis.x(times), self.y(values), ink, em(0.12))
+            self._draw_keys(curve, ink)
+        accent = ink_of(theme.accent)
+        for handle in self.handles():
+            lines.add_line(handle.root, handle.place, accent)
+            lines.add_circle_filled(handle.place, em(0.8 * KEY), accent)
+        lines.pop_clip_rect()
+
+    def _draw_keys(self, curve: Track, ink: int) -> None:
+        """The visible keys; before selected ones the way that the script takes to them."""
+        axis, channel, accent = self._axis, curve.channel, ink_of(self._gui.theme.accent)
+        begin, end = np.searchsorted(channel.times, (axis.start, axis.end))
+        visible, lines = slice(begin, end + 1), imgui.get_window_draw_list()
+        times = channel.times[visible]
+        selected = self._selection.places.times.get(curve.track, times[:0])
+        are_chosen, is_dense = among(times, selected), self._is_dense(curve)
+        chosen = times[are_chosen]
+        befores = channel.times[np.maximum(np.searchsorted(channel.times, chosen) - 1, 0)]
+        if is_dense:  # all ways at once
+            befores, chosen = befores[:1], chosen[-1:]
+        for before, time in zip(befores.tolist(), chosen.tolist(), strict=True):
+            points, values = channel.outline(max(before, axis.start), time, 400 if is_dense else 50)
+            draw_line(axis.x(points), self.y(values), accent, em(0.16))
+        if is_dense:
+            return
+        xs, ys = axis.x(times).tolist(), self.y(channel.values[visible]).tolist()
+        for x, y, is_chosen in zip(xs, ys, are_chosen.tolist(), strict=True):
+            reach, fill = (1.4 * KEY, accent) if is_chosen else (KEY, ink)
+            lines.add_ngon_filled((x, y), em(reach), fill, 4)

@@ -1,0 +1,195 @@
+"""How ruler, rows and keys of the timeline look; what they do is in dope_sheet.py."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from imgui_bundle import imgui
+
+from ...script import Floats
+from ...script.keyframes import FRAME
+from ...script.places import Places
+from ..interface.gui import Theme, em, ink_of
+from ..interface.widgets import shortened
+from .time_axis import TimeAxis
+from .tracks import Track
+
+LABEL_ROOM = 4.2  # [em] between two labels of the ruler
+FLAG = 0.7  # [em] of the handle at the script's end
+KEY = 0.36  # [em] from a key's middle to its corners
+LEAST_NAME = 2.4  # [em] of a pose's name: less would be no name
+CLOSEST = 2.0  # [window units] keys nearer than that are drawn as one
+MOST_COVERED = 0.5  # of a row by keys that are drawn one by one
+
+Point = tuple[float, float]
+
+
+def draw_ruler(
+    theme: Theme, axis: TimeAxis, time: float, duration: float, edges: tuple[float, float]
+) -> None:
+    """Ticks with seconds, the script's end, and at the time shown what is dragged to scrub.
+
+    time, duration: [s]. edges: the upper and the lower one [window units].
+    """
+    lines, (top, bottom) = imgui.get_window_draw_list(), edges
+    ink = ink_of(theme.muted)
+    for tick in axis.ticks(em(LABEL_ROOM)):
+        x = round(axis.x(tick.time)) + 0.5
+        height = em(0.45) if tick.has_label else em(0.22)
+        lines.add_line((x, bottom - height), (x, bottom), ink)
+        if tick.has_label:
+            label = number_of(axis, tick.time)
+            lines.add_text((x - 0.5 * imgui.calc_text_size(label).x, top), ink, label)
+    end = axis.x(duration)
+    if end <= axis.x(axis.end):
+        tip = end + em(FLAG), bottom - 0.5 * em(FLAG)
+        lines.add_triangle_filled((end, bottom - em(FLAG)), tip, (end, bottom), ink)
+    if axis.start <= time <= axis.end:  # below the numbers
+        x, half = axis.x(time), em(0.4)
+        left, right = (x - half, bottom - 1.3 * half), (x + half, bottom - 1.3 * half)
+        lines.add_triangle_filled(left, right, (x, bottom), ink_of(theme.accent))
+
+
+def number_at(axis: TimeAxis, x: float) -> float | None:
+    """The time [s] whose number in the ruler is there [window units], if there is one."""
+    told = (time for time, has_label in axis.ticks(em(LABEL_ROOM)) if has_label)
+    widths = {time: imgui.calc_text_size(number_of(axis, time)).x for time in told}
+    return next((t for t, width in widths.items() if abs(axis.x(t) - x) <= 0.5 * width), None)
+
+
+def number_of(axis: TimeAxis, time: float) -> str:
+    """Seconds as short as they can be told, minutes where there are some; or frames."""
+    if axis.counts_frames:
+        return f"{time / FRAME:.0f}"
+    if time < 60.0:
+        return f"{time:.3g} s" if time == 0.0 else f"{time:.3g}"
+    minutes, seconds = divmod(round(time, 2), 60.0)
+    fraction = f"{seconds % 1.0:.2f}"[1:].rstrip("0").rstrip(".")
+    return f"{minutes:.0f}:{seconds // 1.0:02.0f}{fraction}"
+
+
+def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float, float]) -> None:
+    """The line at the time shown [s], from one edge to the other [window units]."""
+    if axis.start <= time <= axis.end:
+        x = round(axis.x(time)) + 0.5
+        ink, width = ink_of(theme.accent), max(em(0.09), 1.0)
+        imgui.get_window_draw_list().add_line((x, edges[0]), (x, edges[1]), ink, width)
+
+
+def draw_unkeyed(theme: Theme, axis: TimeAxis, time: float, y: float) -> None:
+    """A hollow key at a time [s], where one would be set for what differs from the script."""
+    lines, size, x = imgui.get_window_draw_list(), em(1.2 * KEY), axis.x(time)
+    corners = (x - size, y), (x, y - size), (x + size, y), (x, y + size)
+    lines.add_quad_filled(*corners, ink_of(theme.panel))
+    lines.add_quad(*corners, ink_of(theme.accent), em(0.12))
+
+
+def draw_label(
+    text: str, corner: Point, ink: int, arrow: float = 0.0, *, is_open: bool = False
+) -> None:
+    """The name of a row from its upper left corner on, with an arrow where it folds."""
+    lines, (left, top) = imgui.get_window_draw_list(), corner
+    if arrow:
+        direction = imgui.Dir.down if is_open else imgui.Dir.right
+        imgui.internal.render_arrow(lines, (left, top + em(0.15)), ink, direction, 0.7)
+    lines.add_text((left + arrow, top), ink, text)
+
+
+class TrackPainter:
+    """Draws tracks along an axis, with the selected keys of a script that lasts so long."""
+
+    def __init__(self, theme: Theme, axis: TimeAxis, selected: Places, duration: float) -> None:
+        """duration: of the script [s]."""
+        self._theme, self._axis, self._selected = theme, axis, selected
+        self._lines = imgui.get_window_draw_list()
+        self._low, self._high = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
+        margin = axis.seconds(em(0.5))
+        count = max(round((self._high - self._low) / CLOSEST), 2)
+        self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
+        self._script_end = min(max(axis.x(duration), self._low), self._high)
+
+    def draw(self, track: Track, top: float, unit: float) -> bool:
+        """A row of `unit` times its height: its ground, where nothing moves, keys, names.
+
+        Returns whether the keys that are visible are too dense to be drawn one by one.
+        """
+        lines, theme, axis = self._lines, self._theme, self._axis
+        bottom, low, high = top + track.height * unit, self._low, self._high
+        middle = bottom - 0.5 * unit
+        first, last = (low, top + 1.0), (high, bottom - 1.0)
+        lines.add_rect_filled(first, last, ink_of(theme.field, 0.45), em(0.2))
+        lines.add_rect_filled(first, (self._script_end, last[1]), ink_of(theme.field), em(0.2))
+        for begin, finish in track.held:
+            if finish > axis.start and begin < axis.end:
+                ends = (max(axis.x(begin), low), middle), (min(axis.x(finish), high), middle)
+                lines.add_line(*ends, ink_of(theme.muted, 0.45), em(0.22))
+        if len(track.channel):
+            edges, (least, most) = self._edges, track.channel.ends
+            times, values = track.channel.outline(edges[0], edges[-1], len(edges))
+            least, most = min(least, 0.0), max(most, 1.0)
+            heights = bottom - unit * (0.15 + 0.7 * (values - least) / (most - least))
+            draw_line(axis.x(times), heights, ink_of(theme.muted))
+        self._draw_names(track, top)
+        return self._draw_keys(track, middle, unit)
+
+    def _draw_keys(self, track: Track, middle: float, unit: float) -> bool:
+        """The visible keys, selected ones on top: one by one, or if they are dense as bars.
+
+        In rows with a curve, which tells more, bars show what is selected only.
+        """
+        size = em(KEY if track.is_whole else 0.8 * KEY)
+        ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
+        names = track.places.times
+        marks, chosen = (
+            self._axis.x(places.latest_in(self._edges, names))
+            for places in (track.places, self._selected)
+        )
+        is_dense = len(marks) * 2.0 * size > MOST_COVERED * (self._high - self._low)
+        if not is_dense:
+            accent = ink_of(self._theme.accent)
+            for xs, reach, fill in ((marks, size, ink), (chosen, 1.2 * size, accent)):
+                for x in xs.tolist():
+                    self._lines.add_ngon_filled((x, middle), reach, fill, 4)
+        elif not len(track.channel):
+            self._draw_bars(marks, size, (middle - 0.5 * size, middle + 0.5 * size), ink)
+            bar = middle - 0.6 * size, middle + 0.6 * size
+            self._draw_bars(chosen, size, bar, ink_of(self._theme.accent))
+        else:
+            row = middle - 0.5 * unit + 1.0, middle + 0.5 * unit - 1.0
+            self._draw_bars(chosen, size, row, ink_of(self._theme.accent, 0.35))
+        return is_dense
+
+    def _draw_bars(self, marks: Floats, reach: float, edges: Point, fill: int) -> None:
+        """A bar for all marks of which each is near the next, between an upper and a lower edge."""
+        if not len(marks):
+            return
+        ends = np.flatnonzero(np.diff(marks) > 4.0 * reach)
+        lasts = marks[np.append(ends, -1)].tolist()
+        for first, last in zip(marks[np.append(0, ends + 1)].tolist(), lasts, strict=True):
+            left, right = max(first - reach, self._low), min(last + reach, self._high)
+            self._lines.add_rect_filled((left, edges[0]), (right, edges[1]), fill, 0.5 * reach)
+
+    def _draw_names(self, track: Track, top: float) -> None:
+        """The names of poses above them, as much of each as there is room for before the next."""
+        axis, ink = self._axis, ink_of(self._theme.muted)
+        ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
+        for (time, name), end in zip(track.names, ends, strict=False):
+            if axis.start <= time <= axis.end:
+                x = axis.x(time) - em(KEY)
+                room = min(end, self._high) - x
+                if room >= min(em(LEAST_NAME), imgui.calc_text_size(name).x):
+                    self._lines.add_text((x, top), ink, shortened(name, room))
+
+
+def draw_line(xs: Floats, ys: Floats, ink: int, width: float = 1.0) -> None:
+    """A line through points."""
+    points: Any = np.stack([xs, ys], axis=1).tolist()
+    imgui.get_window_draw_list().add_polyline(points, ink, width, 0)
+
+
+def draw_box(theme: Theme, first: Point, last: Point) -> None:
+    """What a drag over nothing encloses."""
+    lines = imgui.get_window_draw_list()
+    lines.add_rect_filled(first, last, ink_of(theme.accent, 0.15))
+    lines.add_rect(first, last, ink_of(theme.accent, 0.8))

@@ -1,0 +1,105 @@
+"""Which part of the script the timeline displays, and where in it a time is."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeVar
+
+from ...script import Floats
+from ...script.keyframes import FRAME
+
+MARGIN = 1.06  # of the script: room behind its end, to drag keys there
+LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
+CLOSEST_TICKS = 0.12  # of the room for a label
+COUNTS = 1, 5, 15, 30, 60, 150, 300, 900, 1800, 18_000, 108_000  # frames between labels
+STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
+
+Number = TypeVar("Number", float, Floats)
+
+
+class Tick(NamedTuple):
+    """A mark on the ruler."""
+
+    time: float
+    has_label: bool
+
+
+class TimeAxis:
+    """From `start` on, `span` seconds; the whole script as long as nobody zooms in."""
+
+    counts_frames = False  # instead of seconds
+    values: tuple[float, float] | None = None  # the lowest and the highest of curves; None: all
+
+    def __init__(self) -> None:
+        self.start = 0.0
+        self.span = 1.0
+        self.is_whole = True
+        self._left, self._width = 0.0, 1.0
+
+    def show_whole(self) -> None:
+        """All of the script, however long it is, and all values."""
+        self.is_whole, self.values = True, None
+
+    def place(self, left: float, width: float) -> None:
+        """Where it is drawn [window units]."""
+        self._left, self._width = left, max(width, 1.0)
+
+    def fit(self, end: float) -> None:
+        """The script ends at `end` [s] now: stay inside it."""
+        whole = max(end * MARGIN, LEAST_SPAN)
+        self.is_whole = self.is_whole or self.span >= whole
+        if self.is_whole:
+            self.start, self.span = 0.0, whole
+        self.start = min(max(self.start, 0.0), whole - self.span)
+
+    @property
+    def end(self) -> float:
+        """The last time that is visible [s]."""
+        return self.start + self.span
+
+    def x(self, time: Number) -> Number:
+        """Where a time is, or each of an array of times [window units]."""
+        return self._left + self._width * (time - self.start) / self.span
+
+    def time(self, x: float) -> float:
+        """The time there [s], 0 or more."""
+        return max(self.start + self.seconds(x - self._left), 0.0)
+
+    def seconds(self, distance: float) -> float:
+        """How long a distance [window units] lasts."""
+        return distance / self._width * self.span
+
+    def zoom(self, factor: float, x: float) -> None:
+        """Show `factor` times as much time; what is at `x` stays there."""
+        fixed = self.time(x)
+        self.span = max(self.span * factor, LEAST_SPAN)
+        self.is_whole = False
+        self.start = fixed - self.seconds(x - self._left)
+
+    def scroll(self, seconds: float) -> None:
+        """Show what comes later."""
+        self.start += seconds
+
+    def follow(self, time: float) -> None:
+        """Turn the page if a time is not to be seen."""
+        if not self.start <= time <= self.end:
+            self.start = time - 0.1 * self.span
+
+    def told(self, time: float) -> str:
+        """A time as the ruler has it."""
+        return f"frame {time / FRAME:.0f}" if self.counts_frames else f"{time:.2f} s"
+
+    def ticks(self, label_width: float) -> list[Tick]:
+        """The marks of the visible part, with labels no closer than their width."""
+        steps = tuple(FRAME * count for count in COUNTS) if self.counts_frames else STEPS
+        labelled = next((s for s in steps[1:] if s >= self.seconds(label_width)), steps[-1])
+        least = self.seconds(CLOSEST_TICKS * label_width)
+        parts = ((s, labelled / s) for s in steps if least <= s < labelled)
+        finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # none is left over
+        marked = finer[0] if finer else labelled
+        count = round(labelled / marked)
+        first, last = (int(t / marked) for t in (self.start, self.end))
+        return [
+            Tick(number * marked, number % count == 0)
+            for number in range(first, last + 1)
+            if number * marked >= self.start
+        ]

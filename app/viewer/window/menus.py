@@ -1,0 +1,238 @@
+"""Everything that a key or a menu does, as data, a function for each menu.
+
+Menus, the keyboard and the overview of keys are all made from these tables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from ...controls.vocabulary import readable
+from ...refining.looks import FIRST_LOOK, PAPERS_LOOK
+from ...script.easing import EASINGS
+from ..documents.export import Exporter
+from ..documents.file_drop import FileDrop
+from ..documents.scripts import ScriptCommands
+from ..interface.commands import Command
+from ..messages import Message, Task
+from ..session.live_commands import LiveCommands
+from ..session.session import Session
+from ..settings import PanelState, Settings, switch
+from ..timeline.key_selection import KeySelection
+from ..timeline.time_axis import TimeAxis
+from ..view import View
+from .placement import Placement
+
+Menu = tuple[Command, ...]
+VIEW_KEYS = {
+    **{"Front": "Keypad1", "Three-quarter": "Keypad2", "Three-quarter right": "Ctrl+Keypad2"},
+    **{"Profile": "Keypad3", "Profile right": "Ctrl+Keypad3", "Top": "Keypad7"},
+}
+
+
+def file_menu(
+    scripts: ScriptCommands,
+    file_drop: FileDrop,
+    exporter: Exporter,
+    settings: Settings,
+    close: Task,
+) -> Menu:
+    """Files that come and go, and the end."""
+    command = partial(Command, "File")
+
+    def recent() -> Iterator[Command]:
+        """What was opened or saved lately, and can be opened again."""
+        for paths in (each.split("\n") for each in settings.recent):
+            first = Path(paths[0])
+            label = f"{first.name}   {first.parent}".replace("##", "# #")
+            yield command(label, "", partial(file_drop.open, paths))
+
+    other = partial(command, can_run=lambda: file_drop.has_other_head)
+    export = partial(command, can_run=lambda: exporter.job is None)
+    return (
+        command("New script", "Ctrl+N", scripts.new),
+        command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
+        command("Recent", "", lambda: None, submenu=recent),
+        command("Open head ...", "Ctrl+H", file_drop.ask_head),
+        command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
+        other("Built-in head", "", partial(file_drop.show_person, None)),
+        command("Open sound ...", "Ctrl+U", scripts.ask_sound),
+        command("Remove sound", "", scripts.remove_sound, can_run=lambda: scripts.has_sound),
+        command("Save script", "Ctrl+S", scripts.save),
+        command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
+        command("Save pose ...", "Ctrl+P", scripts.save_pose),
+        command("Screenshot", "F12", exporter.screenshot),
+        export("Export ...", "Ctrl+E", exporter.ask, other_key="F10"),
+        command("Quit", "Ctrl+Q", close),
+    )
+
+
+def edit_menu(session: Session) -> Menu:
+    """Undo, and whole faces."""
+    command = partial(Command, "Edit")
+
+    def states() -> Menu:
+        """What was done, the latest first, and the way there."""
+        now, rows = session.history.place, list(enumerate(session.history.labels))[::-1]
+        return tuple(
+            command(f"{label}##{i}", "", partial(session.go_to, i), partial(now.__eq__, i))
+            for i, label in rows
+        )
+
+    def named(verb: str, further: int) -> str:
+        """The command, with what it takes back or does again."""
+        place = session.history.place + further
+        label = "".join(session.history.labels[max(place, 1) : place + 1])
+        return f"{verb} {label[:1].lower()}{label[1:]}".rstrip()
+
+    undo = partial(command, reads=partial(named, "Undo", 0))
+    redo = partial(command, reads=partial(named, "Redo", 1))
+    return (
+        undo("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
+        redo(
+            "Redo", "Ctrl+Y", session.redo, None, lambda: session.history.can_redo, "Ctrl+Shift+Z"
+        ),
+        command("History", "", lambda: None, submenu=states),
+        command("Neutral", "N", session.neutral),
+        command("Mirror", "M", session.mirror),
+        command("Left to right", "Shift+M", partial(session.mirror, "left")),
+        command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
+        command("Random", "X", session.randomise),
+    )
+
+
+def time_menu(session: Session, scripts: ScriptCommands, axis: TimeAxis) -> Menu:
+    """Playing, recording, and ways through the script."""
+    command = partial(Command, "Time")
+    return (
+        command("Play", "Space", session.toggle_playing, lambda: session.is_playing),
+        command("Record", "Ctrl+R", scripts.toggle_recording, lambda: session.is_recording),
+        switch_of(lambda: session, "Time", "Loop", "L", "is_looping"),
+        command("To the start", "Home", partial(session.seek, 0.0)),
+        command("To the key before", "Left", partial(session.seek_key, -1)),
+        command("To the next key", "Right", partial(session.seek_key, 1)),
+        command("Show the whole script", "Shift+F", axis.show_whole),
+    )
+
+
+def switch_of(
+    part: Callable[[], object],
+    menu: str,
+    label: str,
+    key: str,
+    field: str,
+    on: object = True,
+    off: object = False,
+) -> Command:
+    """A command that gives a field of some part one value or the other."""
+    return Command(
+        menu,
+        label,
+        key,
+        lambda: switch(part(), field, on, off),
+        lambda: bool(getattr(part(), field) == on),
+    )
+
+
+def keys_menu(session: Session, selection: KeySelection) -> Menu:
+    """What is done with the keys that are selected in the timeline."""
+    command = partial(Command, "Keys")
+    edit = partial(command, can_run=lambda: selection.can_edit)
+    change = partial(command, can_run=lambda: selection.can_change)
+    name = partial(command, can_run=lambda: selection.can_rename)
+    ease, is_eased = selection.ease, selection.is_eased
+    return (
+        edit("Set key", "K", selection.set_key),
+        edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
+        command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
+        switch_of(lambda: session, "Keys", "Auto-key", "", "is_keying"),
+        name("Name of the pose ...", "Ctrl+K", selection.rename),
+        change("Copy", "Ctrl+C", selection.copy),
+        command("Paste", "Ctrl+V", selection.paste, can_run=lambda: bool(selection.copied)),
+        change("Duplicate", "Ctrl+D", selection.duplicate),
+        change("Delete", "Delete", selection.delete, by_key=selection.delete_if_meant),
+        change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
+        change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
+        command("Select all keys", "Ctrl+A", selection.select_all),
+        *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
+    )
+
+
+def view_menu(settings: Settings, view: View, placement: Placement, panels: PanelState) -> Menu:
+    """How the scene is drawn, and what is around it."""
+    command = partial(Command, "View")
+    display_switch = partial(switch_of, lambda: settings.display, "View")
+    setting = partial(switch_of, lambda: settings, "View")
+
+    def toggle_look() -> Message:
+        """The paper's own rule, or the look that is first; either as it is."""
+        display = settings.display
+        display.choose_look(FIRST_LOOK if display.look == PAPERS_LOOK else PAPERS_LOOK)
+        return f"Look: {display.look}"
+
+    def toggle_full() -> Message:
+        """Fill the screen, or go back."""
+        placement.toggle_full()
+        return "[Full screen] leaves the full screen" if placement.is_full else None
+
+    muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
+    views = (  # Alt: where there is no number pad
+        command(name, key, partial(view.look_from, name), other_key=key.replace("Keypad", "Alt+"))
+        for name, key in VIEW_KEYS.items()
+    )
+    full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
+    return (
+        display_switch("Refine", "R", "is_refined"),
+        command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_LOOK),
+        display_switch("Compare: wipe", "D", "compare", "wipe", "off"),
+        display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
+        display_switch("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
+        display_switch("Wireframe", "W", "wireframe"),
+        display_switch("Colour by splits", "C", "colours", "splits", "none"),
+        command("Next shading", "S", lambda: settings.display.next_shading()),
+        display_switch("Texture", "T", "skin", "textured", "plain"),
+        muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
+        setting("Idle life", "A", "is_alive"),
+        setting("Curves", "G", "shows_curves"),
+        setting("Frame numbers", "", "counts_frames"),
+        command("Frame the face", "F", view.fit_scene),
+        *views,
+        replace(display_switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
+        command("Hide panels", "H", panels.toggle_hidden, lambda: panels.are_hidden),
+        full("Full screen", "F11", toggle_full),
+        setting("Dark theme", "F2", "theme", "dark", "light"),
+        command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
+        command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
+        command("Usual size", "Ctrl+0", partial(setattr, settings, "zoom", 1.0)),
+    )
+
+
+def expression_menu(session: Session) -> Menu:
+    """Keys 1 to 9 show the first expressions of the scene."""
+    command, show, is_on = partial(Command, "Expression"), session.toggle_alone, session.is_alone
+    return tuple(
+        command(readable(name), str(number), partial(show, name), partial(is_on, name))
+        for number, name in enumerate(session.scene.expressions[:9], start=1)
+    )
+
+
+def live_menu(live: LiveCommands) -> Menu:
+    """A face that is sent while it moves."""
+    command = partial(Command, "Live")
+    mirrored = partial(getattr, live, "is_mirrored")
+    return (
+        command("Listen", "Ctrl+L", live.toggle, lambda: live.is_on),
+        command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.can_calibrate),
+        command("Mirrored", "", live.toggle_mirror, mirrored, lambda: live.is_on),
+    )
+
+
+def help_menu(panels: PanelState, begin_steps: Task) -> Menu:
+    """The overview of keys, and how to begin."""
+    return (
+        Command("Help", "First steps", "", begin_steps),
+        switch_of(lambda: panels, "Help", "Keys and mouse", "F1", "is_help_open"),
+    )

@@ -1,0 +1,284 @@
+"""The window as it runs: one turn of its loop, and when that rests. Its parts: context.py.
+
+Physics goes in steps of its own, apart from frames (physics.py). The scene is drawn only when
+something in it has changed, with less detail while it moves if the machine is slow (painter.py);
+panels are drawn around it less often then. A window in which nothing happens waits for events.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from imgui_bundle import imgui
+
+from ...stopping import cleaned_up_if_stopped
+from ..documents.file_drop import LANDMARKS
+from ..documents.questions import draw_question, draw_recovery
+from ..interface.commands import run_pressed
+from ..interface.gui import on_drop
+from ..painter import Painter
+from ..panels.layout import draw_message
+from ..session.live_commands import PACING
+from .context import ApplicationContext
+
+REFRESH = 0.1  # [s] that a picture of the panels may be old while the face moves
+
+
+class PanelCache:
+    """Says whether panels are due; the window tells when it has drawn them."""
+
+    def __init__(self) -> None:
+        self.refresh = REFRESH
+        self._age = math.inf  # [s]
+        self._size = (0, 0)
+        self._is_over_scene = True
+
+    def age(self, seconds: float) -> None:
+        """Time has passed."""
+        self._age += seconds
+
+    def are_due(self, size: tuple[int, int], *, is_moving: bool, has_input: bool) -> bool:
+        """Whether to draw them in this frame, in a window of `size` pixels.
+
+        is_moving: whether the scene has changed; else there is time. has_input: from the user.
+        """
+        return (
+            not is_moving
+            or has_input
+            or self._is_over_scene
+            or self._age >= self.refresh
+            or size != self._size
+        )
+
+    def note_drawn(self, size: tuple[int, int], *, is_over_scene: bool) -> None:
+        """They were drawn in a window of `size` pixels, some of it over the scene or nothing."""
+        self._age, self._size, self._is_over_scene = 0.0, size, is_over_scene
+
+
+IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
+WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
+LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no more than live
+FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
+
+
+class Viewer(ApplicationContext):
+    """The window with everything in it, as it runs; a context manager."""
+
+    _last: float  # when the last frame began [s]
+    _awake: int  # frames that are drawn yet, whatever happens
+
+    def __enter__(self) -> Viewer:
+        self._last, self._awake = time.perf_counter(), FRAMES_AFTER_EVENT
+        self.panel_cache = PanelCache()
+        on_drop(self.surface.handle, self.drop)
+        for _ in range(2):  # panels and tabs find their places before the first picture
+            self._draw_gui(is_visible=False)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def run(self, *, playing: bool = False, once: bool = False) -> None:
+        """Show the window until it is closed (with `once`: until the script has ended)."""
+        if playing:
+            self.session.toggle_playing()
+        self._last = time.perf_counter()
+        stopping = cleaned_up_if_stopped(self.exporter.close)  # when the work is safe
+        with stopping, self.recovery.guarding(self.session), cleaned_up_if_stopped(self.remember):
+            while True:
+                if self.placement.is_minimised:  # time stands still, and nothing is drawn
+                    self._wait()
+                else:
+                    self.frame()
+                self.messages.attempt(partial(self.recovery.watch, self.session))
+                if self.surface.should_close:
+                    self.surface.should_close = False
+                    self.ask_to_close()
+                    if self.surface.should_close:
+                        break
+                    self.placement.restore()  # to be asked
+                is_over = playing and not self.session.is_playing
+                if once and is_over and not self.session.unsaved:
+                    break
+                self.pause()
+
+    def wait_for_frame(self) -> None:
+        """Wait until something happens, or it is time to look around; then show a frame."""
+        self.pause()
+        self.frame()
+
+    # One turn of the loop
+
+    def frame(self) -> None:
+        """Input, time, picture, panels."""
+        if self.gui.look():
+            self._awake = FRAMES_AFTER_EVENT
+            self.life.note_input()
+        for _ in self.gui.turns():
+            self._draw_gui(is_visible=False)
+        if self.exporter.has_news:
+            self._awake = max(self._awake, 1)
+        announced = [self.file_drop.do_announced] if self.file_drop.has_announced else []
+        now = time.perf_counter()
+        elapsed, self._last = now - self._last, now
+        room = self.room
+        name = self.session.name if room is None else room.marking.path.name
+        is_unsaved = self.session.unsaved if room is None else room.marking.unsaved
+        self.placement.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
+        is_moving = self._move_face(elapsed) if room is None else room.paint(elapsed)
+        is_calm = self.physics.is_at_rest or self.physics.is_left_alone
+        self.times.note_frame(elapsed if is_moving or not is_calm else 0.0)
+        if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
+            return  # what is shown stays as it is; of a line of text the cursor blinks
+        self._show_panels(elapsed, is_moving=is_moving)
+        self.surface.end()
+        for task in announced:
+            self.messages.text = ""
+            self.messages.attempt(task)
+            self._last = time.perf_counter()
+        if is_moving and not self.is_left_alone:
+            self.shown_painter.level_of_detail.note(time.perf_counter() - now)
+        self._awake = max(self._awake - 1, 0)
+
+    def _move_face(self, elapsed: float) -> bool:
+        """Let time pass for the face, and draw it; whether the picture has changed."""
+        self.messages.attempt(self.soundtrack.refresh)
+        seconds = self.soundtrack.elapsed(elapsed)
+        is_skin_dragged = self.mouse.is_dragging_skin
+        self.messages.attempt(partial(self.live.advance, elapsed))
+        if self.live.has_changed:
+            self._awake = FRAMES_AFTER_EVENT
+        is_held = is_skin_dragged or imgui.is_any_item_active()
+        life = partial(self.life.after, is_held=is_held) if self.life.is_on else None
+        advance = partial(self.physics.advance, seconds, is_skin_dragged=is_skin_dragged)
+        self.messages.attempt(partial(advance, is_urgent=self.live.is_urgent, life=life))
+        return self.painter.paint(
+            elapsed, has_moved=self.physics.has_moved, is_alive=self.physics.is_left_alone
+        )
+
+    @property
+    def shown_painter(self) -> Painter:
+        """That of what is shown: the face, or a mesh that is marked."""
+        return self.painter if self.room is None else self.room.painter
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing moves, and nothing is about to."""
+        is_settled = (
+            self._awake == 0 and self.shown_painter.is_complete and not self.messages.is_fading
+        )
+        if self.room is not None:
+            return is_settled
+        return (
+            is_settled
+            and self.physics.is_at_rest
+            and not self.life.is_on
+            and not self.session.is_recording
+            and not self.live.is_busy
+            and not self.soundtrack.is_heard
+        )
+
+    @property
+    def is_left_alone(self) -> bool:
+        """Whether the face does no more than live, and nothing else happens."""
+        return (
+            self.room is None
+            and self.physics.is_left_alone
+            and self._awake == 0
+            and not self.messages.is_fading
+            and not self.files.is_waiting
+        )
+
+    def pause(self) -> None:
+        """Sleep where nothing happens, and between frames where the face only lives.
+
+        The latter half of the time at least, however long a frame takes. A live face that has just
+        been shown is waited for: a frame that begins with what it sent shows that at once.
+        """
+        if self.is_idle:
+            self._wait()
+        elif self.is_left_alone:
+            spent = time.perf_counter() - self._last
+            self.gui.look(max(LIFE_WAIT - spent, spent))
+        elif self.live.is_receiving and not self.live.has_frame:
+            self.gui.look(PACING)
+
+    def _wait(self) -> None:
+        """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
+        is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
+        patience = WATCHFUL_WAIT if is_watching or self.exporter.job is not None else IDLE_WAIT
+        due_in = min(self.recovery.due_in(), self.live.due_in())
+        patience = min(patience, max(due_in, 0.0))
+        self.soundtrack.rest()
+        begin = time.perf_counter()
+        self.gui.look(patience)
+        self._last = time.perf_counter()
+        if self._last - begin < patience and not self.live.has_frame:
+            self._awake = FRAMES_AFTER_EVENT
+
+    def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
+        """Draw the panels around the scene where their image is not stored."""
+        size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
+        if not self.is_left_alone:  # what the face does by itself moves no slider
+            self.panel_cache.age(elapsed)
+        # What is dragged in the scene moves no slider.
+        has_input = self.room is not None or (is_answering and not self.mouse.is_dragging)
+        if not self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input):
+            return
+        self.surface.resolve()
+        if self.room is not None:
+            self.surface.fill(self.room.view.panel, self.gui.theme.panel)
+        elif not self.panel_state.are_hidden:
+            left, bottom, width, _ = self.view.viewport
+            self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
+            self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
+        self._draw_gui(is_visible=True)
+        self.panel_cache.note_drawn(size, is_over_scene=self.gui.covers(self.view.area))
+
+    def _draw_gui(self, *, is_visible: bool) -> None:
+        """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
+        messages, gui = self.messages, self.gui
+        room, view, commands = self.room, self.view, self.commands
+        if room is not None:
+            view, commands = room.view, room.commands
+        with gui.frame(is_visible=is_visible):
+            gui.set_theme(self.settings.theme, self.settings.zoom)
+            if room is None:
+                self.layout.draw(view)
+                self.first_steps.draw()
+                self.muscle_note.draw()
+            else:
+                room.panel.draw(room.view)
+            messages.age(imgui.get_io().delta_time, self.session.history.present.values)
+            draw_message(gui, messages, view)
+            if imgui.is_any_mouse_down():
+                view.pointed = {}
+            dialogs = self.chooser.draw, self.export_dialog.draw
+            for draw in (
+                partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
+                self.files.poll,
+                *(() if self.question.is_open else dialogs),  # which wait for the answer
+                partial(draw_question, gui, self.question, self.session, self.scripts),
+            ):
+                messages.attempt(draw)
+            self.help.draw(commands)
+            if room is None:  # before a key undoes anything
+                view.follow_history(is_held=self.mouse.is_dragging or imgui.is_any_item_active())
+            if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
+                run_pressed(commands, messages, gui)
+                (self if room is None else room).mouse.follow()
+
+    def drop(self, paths: Sequence[str]) -> None:
+        """Open files that were dropped onto the window."""
+        self._awake = FRAMES_AFTER_EVENT
+        open_files = partial(self.file_drop.open, paths)
+        if self.room is None:
+            self.messages.attempt(open_files)
+        elif [Path(path).suffix for path in paths] == [LANDMARKS]:
+            self.messages.attempt(partial(self.room.marking.open, Path(paths[0])))
+        else:
+            self.messages.attempt(partial(self.room.leave, open_files))
