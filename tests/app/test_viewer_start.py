@@ -105,7 +105,7 @@ def test_a_face_is_seen_before_anything_is_compiled(
         for index, image in enumerate(wanted):
             is_like[index] |= bool(np.abs(shown - image).max() <= 8)
         if not is_like[0]:
-            assert not list((tmp_path / "compiled").rglob("*.code"))
+            assert not list((tmp_path / "compiled").rglob("*.nbc"))
         if all(is_like):
             break
     assert all(is_like)
