@@ -170,6 +170,7 @@ class Pipeline:
             "values": values,
             "texture": self.texture if drawn.has_uv else None,
             "wrinkles": self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
+            "fade": self.scene.fade,
         }
 
 

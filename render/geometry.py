@@ -19,6 +19,15 @@ def value_texture(gl: moderngl.Context, values: npt.NDArray[np.uint8]) -> modern
     return gl.texture((VALUES_PER_ROW, len(rows)), 1, rows.tobytes(), dtype="u1", alignment=1)
 
 
+def check_columns(columns: int) -> None:
+    """Raise ValueError where rows of a mesh have no texture coordinates, but a texture comes."""
+    if columns != 8:
+        raise ValueError(
+            f"a texture meets a stream of {columns} columns; it needs texture coordinates: "
+            "lend a stream of 8 columns (position, normal, u v), or draw without texture"
+        )
+
+
 def checked_values(
     values: npt.NDArray[np.uint8] | None, triangle_count: int
 ) -> npt.NDArray[np.uint8]:

@@ -26,7 +26,7 @@ COLOUR_DEFINES: dict[ColourBy, tuple[str, ...]] = {
 }
 
 
-def skin_shader(style: Style, has_texture: bool, has_wrinkles: bool) -> list[str]:
+def skin_shader(style: Style, has_texture: bool, has_wrinkles: bool, fades: bool) -> list[str]:
     """The file and the defines of the program of a mesh."""
     return [
         "surface.glsl",
@@ -37,6 +37,7 @@ def skin_shader(style: Style, has_texture: bool, has_wrinkles: bool) -> list[str
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),
         *(["WRINKLES"] if has_wrinkles else []),
+        *(["FADED"] if fades else []),
     ]
 
 
@@ -49,8 +50,8 @@ def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
     return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
 
 
-def set_skin(program: moderngl.Program, style: Style) -> None:
-    """How skin of this style takes light."""
+def set_skin(program: moderngl.Program, style: Style, view: CameraView, line_scale: float) -> None:
+    """How skin of this style takes light, and its wireframe and colours by values."""
     set_light(program, style.light)
     if "albedo" in program:  # not where a texture takes its place
         program["albedo"] = linear(style.albedo)
@@ -59,6 +60,14 @@ def set_skin(program: moderngl.Program, style: Style) -> None:
     program["subsurface"] = style.scattering
     program["gloss"] = 0.26 * style.gloss
     program["sharpness"] = SKIN_SHARPNESS
+    if style.wireframe:
+        program["viewport_size"] = view.viewport[2:]
+        program["wire_half_width"] = 0.5 * style.wire_width * line_scale
+        program["wire_colour"] = *style.wire_colour, style.wire_opacity
+    if style.colour_by is ColourBy.SPLITS:
+        write_uniform(program, "split_palette", _PALETTE)
+    elif style.colour_by is not ColourBy.NONE:
+        write_uniform(program, "ramp", _RAMPS[style.colour_by])
 
 
 def set_inside(program: moderngl.Program, style: Style) -> None:
@@ -94,11 +103,3 @@ def set_light(program: moderngl.Program, light: Light) -> None:
     program["to_key"], program["to_fill"] = light.to_key, light.to_fill
     program["key_light"], program["fill_light"] = light.key, light.fill
     program["rim_light"], program["sky"], program["ground"] = light.rim, light.sky, light.ground
-
-
-def set_palette(program: moderngl.Program, kind: ColourBy) -> None:
-    """What triangles are coloured in by their values."""
-    if kind is ColourBy.SPLITS:
-        write_uniform(program, "split_palette", _PALETTE)
-    else:
-        write_uniform(program, "ramp", _RAMPS[kind])

@@ -18,10 +18,10 @@ import numpy.typing as npt
 from .backdrop import Backdrop
 from .camera import OrbitCamera
 from .camera_view import CameraView, box_corners
-from .geometry import checked_values, line_segments, value_texture
+from .geometry import check_columns, checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .materials import part_shader, set_light, set_palette, set_part, set_skin, skin_shader
+from .materials import part_shader, set_light, set_part, set_skin, skin_shader
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
@@ -31,7 +31,7 @@ from .stream import Share, Stream
 from .style import Colour, ColourBy, Shading, Style
 from .surface import Image, Surface
 from .texture import Texture, WrinkleMap
-from .translucency import SUNK, Plane, blending, draw_nearest, set_cut, set_translucency
+from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
 Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
@@ -105,6 +105,7 @@ class Renderer:
         texture: Texture | None = None,
         wrinkles: WrinkleMap | None = None,
         cut: Plane | None = None,
+        fade: Plane | None = None,
     ) -> None:
         """Draw what `stream` last uploaded.
 
@@ -115,16 +116,12 @@ class Renderer:
         wrinkles: furrows of the skin, as far as the style and the amounts of wrinkling that were
             uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
         cut: in front of it skin is opaque. Draw before it what is to be seen through the skin.
+        fade: what a x + b y + c z + d is at a place of the skin, from 0 to 1, shows of it there.
         """
-        columns = stream.vertices.shape[1]
-        if columns != 8 and (texture is not None or wrinkles is not None):
-            raise ValueError(
-                f"a texture meets a stream of {columns} columns; it needs texture coordinates: "
-                "lend a stream of 8 columns (position, normal, u v), or draw without texture"
-            )
+        if texture is not None or wrinkles is not None:
+            check_columns(stream.vertices.shape[1])
         if not (style.shows_wrinkles and stream.has_wrinkles):
             wrinkles = None
-        texture = texture if style.textured else None
         is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         view = self._camera_view(camera, viewport, clip)
         if is_coloured:
@@ -132,17 +129,18 @@ class Renderer:
         if style.shadows and self._shadow_of is not stream:
             self._cast([stream], view, style)
         self._shadow_of = None
-        shares = [Share.ALL] if wrinkles is None or is_coloured else [Share.WRINKLED, Share.SMOOTH]
+        fade = fade_seen(fade, stream, view)
+        shares = {Share.ALL: wrinkles}
+        if wrinkles is not None and not is_coloured:
+            shares = {Share.WRINKLED: wrinkles, Share.SMOOTH: None}
         drawn = []
-        for share in shares:
-            share_wrinkles = None if share is Share.SMOOTH else wrinkles
-            program = self._surface_program(style, texture, share_wrinkles)
-            if not self._set_view(program, view, stream.corners):
+        for share, relief in shares.items():
+            program = self._skin_program(view, stream, style, texture, relief, fade)
+            if program is None:
                 return
-            self._set_surface(program, view, style, texture, share_wrinkles)
             drawn.append((program, share))
-        if style.opacity < 1.0:
-            for program, _ in drawn:
+        if style.opacity < 1.0 or fade is not None:
+            for program, _ in drawn if style.opacity < 1.0 else ():
                 set_translucency(program, style, view, cut)
             draw_nearest(self._gl, stream, drawn)
         elif not self.surface.is_software:
@@ -188,6 +186,7 @@ class Renderer:
         viewport: Viewport | None = None,
         clip: Viewport | None = None,
         texture: Texture | None = None,
+        fade: Plane | None = None,
     ) -> None:
         """Smooth the edges of a mesh that was drawn just now, where pixels have a single sample.
 
@@ -196,41 +195,41 @@ class Renderer:
         is_smooth = style.shading is not Shading.FLAT and not style.wireframe
         if not is_smooth or style.colour_by is not ColourBy.NONE or not stream.triangle_count:
             return
-        texture = texture if style.textured else None
         view = self._camera_view(camera, viewport, clip)
         rows = fringes(
             stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], view
         )
         if not len(rows):
             return
-        program = self._surface_program(style, texture, None, "FRINGE")
-        if self._set_view(program, view, stream.corners):
-            self._set_surface(program, view, style, texture, None)
+        seen = fade_seen(fade, stream, view)
+        program = self._skin_program(view, stream, style, texture, None, seen, "FRINGE")
+        if program is not None:
             with blending(self._gl):
                 draw_fringes(self._gl, program, rows)
 
-    def _surface_program(
-        self, style: Style, texture: Texture | None, wrinkles: WrinkleMap | None, *more: str
-    ) -> moderngl.Program:
-        has_wrinkles, has_texture = wrinkles is not None, texture is not None
-        return self._program(*skin_shader(style, has_texture, has_wrinkles), *more)
-
-    def _set_surface(
+    def _skin_program(
         self,
-        program: moderngl.Program,
         view: CameraView,
+        stream: Stream,
         style: Style,
         texture: Texture | None,
         wrinkles: WrinkleMap | None,
-    ) -> None:
-        """Set what the mesh's program asks for beside matrices."""
-        set_skin(program, style)
+        fade: Plane | None,
+        *more: str,
+    ) -> moderngl.Program | None:
+        """The program of a mesh, with all that it asks for; None where the mesh is not seen."""
+        texture = texture if style.textured else None
+        has = texture is not None, wrinkles is not None, fade is not None
+        program = self._program(*skin_shader(style, *has), *more)
+        write_uniform(program, "model_view", view.world_to_view)
+        write_uniform(program, "projection", view.projection)
+        if not self._use_layer(view, stream.corners):
+            return None
+        if fade is not None:
+            program["fade"] = fade
+        set_skin(program, style, view, self._line_scale)
         if style.shadows and self._shadow is not None:
             self._shadow.set_uniforms(program, view, _SHADOW_UNIT)
-        if style.wireframe:
-            program["viewport_size"] = view.viewport[2:]
-            program["wire_half_width"] = 0.5 * style.wire_width * self._line_scale
-            program["wire_colour"] = *style.wire_colour, style.wire_opacity
         if texture is not None:
             texture.set_uniforms(program, _ALBEDO_UNIT, float(style.occlusion))
         if wrinkles is not None:
@@ -239,7 +238,7 @@ class Renderer:
             assert self._values is not None
             self._values.use(_VALUE_UNIT)
             program["triangle_values"] = _VALUE_UNIT
-            set_palette(program, style.colour_by)
+        return program
 
     def draw_parts(
         self,
@@ -381,14 +380,6 @@ class Renderer:
                 self._gl, name, *defines, has_geometry_stage=has_geometry_stage
             )
         return self._programs[key]
-
-    def _set_view(
-        self, program: moderngl.Program, view: CameraView, corners: npt.NDArray[np.float64]
-    ) -> bool:
-        """Set matrices and drawing area for what is in a box in the world; False if unseen."""
-        write_uniform(program, "model_view", view.world_to_view)
-        write_uniform(program, "projection", view.projection)
-        return self._use_layer(view, corners)
 
     def _use_layer(
         self, view: CameraView, corners: npt.NDArray[np.float64], padding: float = 2.0

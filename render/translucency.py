@@ -69,5 +69,21 @@ def set_translucency(
 
 def set_cut(program: moderngl.Program, view: CameraView, cut: Plane, width: float) -> None:
     """Where skin is cut, and how far from there that is seen [of the scene's radius]."""
-    program["cut"] = tuple(np.linalg.inv(view.world_to_view) @ cut)
+    program["cut"] = in_view(cut, view)
     program["cut_width"] = width * view.camera.scene_radius
+
+
+def in_view(plane: Plane, view: CameraView) -> Plane:
+    """A plane of the world in view space."""
+    a, b, c, d = np.linalg.inv(view.world_to_view) @ plane
+    return a, b, c, d
+
+
+def fade_seen(fade: Plane | None, stream: Stream, view: CameraView) -> Plane | None:
+    """Where a mesh fades, in view space; None where nothing of that is inside the frame."""
+    if fade is None:
+        return None
+    places = stream.vertices[: stream.vertex_count, :3]
+    faded = places[places @ np.array(fade[:3], np.float32) + fade[3] < 1.0].astype(np.float64)
+    is_seen = len(faded) and min(view.covered_pixels(faded, 0.0)[2:]) > 0
+    return in_view(fade, view) if is_seen else None

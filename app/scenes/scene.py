@@ -49,6 +49,7 @@ class Scene:
     face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None = None  # the texture (H, W, 3), sRGB
     wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
+    fade: tuple[float, float, float, float] | None = None  # see render.Renderer.draw_mesh
     in_tone: Callable[[float], npt.NDArray[np.uint8]] | None = None  # the texture by ITA [deg]
 
     @property
@@ -134,6 +135,7 @@ class FaceScene(Scene):
         )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
+        self.fade = head.fade() if isinstance(head, FittedHead) else None  # others have a shirt
         is_known = isinstance(head, assets.Head)
         self.called = BUILT_IN if is_known else getattr(head, "called", "") or OWN
         self.in_tone = recoloured if is_known else getattr(head, "in_tone", None)

@@ -161,7 +161,8 @@ class Stage:
         skin, solids = self._pipeline.skin_of(shot.drawn, values), self._pipeline.solids
         solids.draw(self.renderer, stream, camera, style, dissection, where=where, skin=skin)
         if not (self.surface.samples or dissection.is_on(self.scene)):
-            self.renderer.draw_outline(stream, camera, style, texture=skin["texture"], **where)
+            texture, fade = skin["texture"], skin["fade"]
+            self.renderer.draw_outline(stream, camera, style, texture=texture, fade=fade, **where)
 
     def _overlays(self, view: View, pointed: Mapping[str, float]) -> list[Lines]:
         edges, names = self.static.refiner.edges, view.display.overlays

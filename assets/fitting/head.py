@@ -36,7 +36,7 @@ from ..model import (
     SingleArray,
     Wrinkles,
 )
-from ..topology import vertex_normals
+from ..topology import boundary_loops, vertex_normals
 from ..user_files import named
 from .coarser import coarser
 from .collars import with_collars
@@ -58,6 +58,7 @@ MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a fra
 ATTEMPTS = 8  # to simplify a mesh and keep it a surface
 MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
 NECK = "neck"  # what hangs there, a shirt, is the built-in head's: another may have its shoulders
+CHIN, FADE = 8, 25.0  # landmark, and [mm] above a neck's edge, half the way to the chin at most
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -90,6 +91,26 @@ class FittedHead:
     to_millimetres: Similarity
     file_vertices: IndexArray
     notes: tuple[str, ...] = field(default=(), kw_only=True)
+
+    def fade(self) -> tuple[float, float, float, float] | None:
+        """A x + b y + c z + d is 0 along the neck's edge, 1 FADE above; None: there is no edge.
+
+        Skin that ends in the middle of a picture may fade so toward its end.
+        """
+        chin = self.vertices[self.landmarks[CHIN]]
+        edges = [self.vertices[loop] for loop in boundary_loops(self.faces)]
+        ways = [np.roll(edge, -1, axis=0) - edge for edge in edges]
+        points, along = (np.vstack([np.empty((0, 3)), *each]) for each in (edges, ways))
+        is_level = np.abs(along[:, 1]) < 0.5 * np.linalg.norm(along, axis=1)  # else of a mask
+        points = points[is_level & (points[:, 1] < chin[1])]
+        if len(points) < 3:
+            return None
+        up = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2][2]
+        up = up * np.sign(up[1]) if abs(up[1]) > 0.5 else np.array([0.0, 1.0, 0.0])
+        bottom = float((points @ up).max())
+        height = min(FADE, 0.5 * (float(chin @ up) - bottom))
+        a, b, c = (up / max(height, 1e-9)).tolist()
+        return (a, b, c, -bottom / height) if height > 0.0 else None
 
 
 def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:

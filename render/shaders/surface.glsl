@@ -4,7 +4,7 @@
 // a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), FRINGE (fading fringes along
 // contours, see outline.py), HAIR (thin cones, never drawn thinner than a pixel: they fade instead),
 // FIBRES (striation of muscle), TRANSLUCENT (skin that shows what is under it), SUNK (what is under
-// it, hidden where skin is whole).
+// it, hidden where skin is whole), FADED (skin that fades toward a plane).
 
 #include "lighting.glsl"
 
@@ -255,6 +255,9 @@ const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 #else
 #define IS_FRONT gl_FrontFacing
 #endif
+#if defined(FADED)
+uniform vec4 fade;  // view space: at a place it says how much of the skin shows, from 0 to 1
+#endif
 out vec4 pixel_colour;
 
 // How open to light from all around.
@@ -305,6 +308,11 @@ vec3 shading_normal() {
 #endif
 
 void main() {
+    float solid = 1.0;
+#if defined(FADED)
+    solid = smoothstep(0.0, 1.0, dot(fade, vec4(surface.position, 1.0)));
+    if (!IS_FRONT && solid < 1.0) discard;
+#endif
 #if defined(GOURAUD)
     Lit lit = Lit(surface.key, surface.rest, surface.specular);
     vec3 inner = surface.inner;
@@ -374,7 +382,7 @@ void main() {
     shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
 #endif
 #if defined(FRINGE) || defined(HAIR)
-    pixel_colour = vec4(shown, surface.coverage);
+    pixel_colour = vec4(shown, solid * surface.coverage);
 #elif defined(TRANSLUCENT)
     // Where it is seen from the side there is more of it: so the outline of the face reads.
     float from_cut = dot(cut, vec4(surface.position, 1.0));
@@ -384,9 +392,9 @@ void main() {
     float shown_share = from_cut > 0.0 ? 1.0 : mix(opacity, 1.0, veil);
     // The edge of the cut is as thick as skin.
     if (from_cut > 0.0) shown = mix(display(FAT * (0.35 + 0.65 * light)), shown, smoothstep(0.7, 1.0, from_cut / cut_width));
-    pixel_colour = vec4(shown, shown_share);
+    pixel_colour = vec4(shown, solid * shown_share);
 #else
-    pixel_colour = vec4(shown, 1.0);
+    pixel_colour = vec4(shown, solid);
 #endif
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.painting import is_behind_others
 from risorius.assets.fitting.warp import Similarity, Warp, nearest_on
 from risorius.assets.meshes import Mesh
-from risorius.assets.topology import edge_faces
+from risorius.assets.topology import boundary_loops, edge_faces
 from risorius.bench.simulation.lines_of_sight import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
@@ -82,6 +83,20 @@ def test_the_built_in_head_fits_itself(tmp_path: Path) -> None:
     for eye, own in zip(same.eyes, head.eyes, strict=True):
         assert np.abs(eye.centre - own.centre).max() < 0.2
         assert eye.radius == pytest.approx(own.radius, rel=0.01)
+
+
+def test_the_edge_of_the_neck_fades(fitted: FittedHead) -> None:
+    """Nothing shows of a head where it ends, all of it at the chin; a closed neck has no end."""
+    plane = fitted.fade()
+    assert plane is not None
+    shown = fitted.vertices @ plane[:3] + plane[3]
+    edge = max(boundary_loops(fitted.faces), key=lambda x: -fitted.vertices[x, 1].mean())
+    assert shown[edge].max() < 0.05 and shown[fitted.landmarks].min() > 1.0
+    middle = len(fitted.vertices)
+    cap = [(b, a, middle) for a, b in zip(edge, np.roll(edge, -1), strict=True)]
+    points = np.vstack([fitted.vertices, fitted.vertices[edge].mean(axis=0)])
+    closed = replace(fitted, vertices=points, faces=np.vstack([fitted.faces, cap]))
+    assert closed.fade() is None
 
 
 def test_teeth_lie_behind_the_skin(fitted: FittedHead) -> None:

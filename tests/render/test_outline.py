@@ -100,3 +100,22 @@ def test_what_lies_behind_the_eye_has_no_fringes() -> None:
         CameraView(camera, (0, 0, 64, 64)),
     )
     assert np.isfinite(rows).all()
+
+
+def test_skin_fades_toward_a_plane() -> None:
+    """All of it at 1, half where the way is half done, nothing at 0; also its smoothed outline."""
+    with render.open_offscreen((96, 96), samples=0) as surface:
+        renderer = render.Renderer(surface)
+        stream = lent(renderer, square(30.0))
+        pictures = []
+        for fade in (None, (0.0, 1.0 / 60.0, 0.0, 0.5)):  # from the lower edge to the upper one
+            surface.begin()
+            renderer.draw_background(PLAIN)
+            renderer.draw_mesh(stream, facing(), PLAIN, fade=fade)
+            renderer.draw_outline(stream, facing(), PLAIN, fade=fade)
+            surface.end()
+            pictures.append(255.0 - surface.read().astype(np.float64).mean(axis=2))
+    whole, faded = pictures
+    rows = np.flatnonzero(whole[:, 48] > 1.0)
+    top, middle, bottom = (faded[rows, 48] / whole[rows, 48])[[1, len(rows) // 2, -2]]
+    assert top > 0.98 and abs(middle - 0.5) < 0.05 and bottom < 0.02
