@@ -19,6 +19,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.normals import vertex_normals
+
 from .errors import AssetError
 from .files import write_image
 from .generator.bones import bone_depth, jaw_axis, mandible_weight
@@ -40,7 +42,6 @@ from .generator.wrinkling import paint_wrinkles
 from .loading import HEAD_FILE, load_head
 from .model import Head
 from .staging import StagingFolder
-from .topology import vertex_normals
 
 SMALLEST, LARGEST = 64, 8192  # [texels] of picture and wrinkles
 HAIRS = {"lashes": THICKNESS}

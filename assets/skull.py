@@ -17,9 +17,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius.geometry.normals import vertex_normals
+
 from .generator.fields import smooth_maximum, smooth_minimum
 from .model import Part
-from .topology import vertex_normals
 
 Floats = npt.NDArray[np.float64]
 Field = npt.NDArray[np.float32]  # half as wide: what is done to grids is as quick as memory

@@ -12,9 +12,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.normals import vertex_normals
+
 from .model import Part
 from .skull import origin_and_scale
-from .topology import boundary_loops, halved, quads_between, vertex_normals
+from .topology import boundary_loops, halved, quads_between
 
 Floats = npt.NDArray[np.float64]
 ASIDE, HIGH, LOW = 40.0, -26.0, -100.0  # of the throat: to the jaw, from the skull to its floor

@@ -60,22 +60,6 @@ def unique_points(points: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArra
     return first[order], np.argsort(order)[number.reshape(-1)]
 
 
-def cross_products(vertices: FloatArray, faces: npt.NDArray[np.integer]) -> FloatArray:
-    """Face normals times twice the area, shape (F, 3)."""
-    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
-    return np.cross(b - a, c - a)
-
-
-def vertex_normals(vertices: FloatArray, faces: npt.NDArray[np.integer]) -> FloatArray:
-    """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero where none is."""
-    cross, corners = cross_products(vertices, faces), faces.T.ravel()
-    total = np.stack(
-        [np.bincount(corners, np.tile(each, 3), len(vertices)) for each in cross.T], axis=1
-    )
-    normals: FloatArray = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
-    return normals
-
-
 def places_in_triangle(parts: int) -> FloatArray:
     """Shares of the corners all over a triangle whose edges are in so many parts, shape (n, 3)."""
     whole = range(parts + 1)

@@ -18,7 +18,8 @@ turns, `attributes` what rides along. Schemes, criteria and refiners of somebody
 `register_scheme`, `register_criterion`, `register`, or an entry point; `Scheme`, `Criterion` and
 `BaseRefiner` are to derive from.
 
-One room for each subject; each may import from those above it, and jit.py, which compiles it all:
+One room for each subject; each may import from those above it, and from jit.py, which compiles it
+all, and geometry/, which lie beside this folder:
 
     mesh/       what a refiner is bound to: connectivity, seams, normals
     border/     what goes in and out: plugin.py says what a refiner is

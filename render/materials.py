@@ -3,18 +3,20 @@
 import moderngl
 import numpy as np
 
+from risorius.geometry.colour import to_linear
+
 from .camera_view import CameraView
 from .light import Light
 from .parts import Part
 from .programs import write_uniform
-from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style, linear
+from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 HEAD_BONES = ("cranium", "mandible", "eye_right", "eye_left")
 HAIR_PIXELS = 1.4  # that a hair is drawn wide at least: a triangle seen from its side is narrower
-_PALETTE = np.array([linear(colour) for colour in SPLIT_PALETTE], np.float32)
+_PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
-    kind: np.array([(*linear(colour), cover) for colour, cover in ramp], np.float32)
+    kind: np.array([(*to_linear(colour), cover) for colour, cover in ramp], np.float32)
     for kind, ramp in ((ColourBy.AMOUNT, AMOUNT_RAMP), (ColourBy.SIGNED, SIGNED_RAMP))
 }
 # Of surface.glsl.
@@ -54,9 +56,9 @@ def set_skin(program: moderngl.Program, style: Style, view: CameraView, line_sca
     """How skin of this style takes light, and its wireframe and colours by values."""
     set_light(program, style.light)
     if "albedo" in program:  # not where a texture takes its place
-        program["albedo"] = linear(style.albedo)
+        program["albedo"] = tuple(to_linear(style.albedo))
     if "inner_albedo" in program:  # fringes along contours have no inner side
-        program["inner_albedo"] = linear(style.inside)
+        program["inner_albedo"] = tuple(to_linear(style.inside))
     program["subsurface"] = style.scattering
     program["gloss"] = 0.26 * style.gloss
     program["sharpness"] = SKIN_SHARPNESS
@@ -72,7 +74,7 @@ def set_skin(program: moderngl.Program, style: Style, view: CameraView, line_sca
 
 def set_inside(program: moderngl.Program, style: Style) -> None:
     """How the inner side of skin of this style takes light, for inside.glsl."""
-    program["inner_albedo"], program["to_key"] = linear(style.inside), style.light.to_key
+    program["inner_albedo"], program["to_key"] = tuple(to_linear(style.inside)), style.light.to_key
     program["sky"], program["ground"] = style.light.sky, style.light.ground
 
 

@@ -7,9 +7,10 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.colour import to_linear
+
 from .camera_view import CameraView, box_corners
 from .outline import fringes
-from .style import linear
 
 # What is striped: by which attribute of a part, and its kind, layout and attributes in OpenGL.
 STRIPED = {
@@ -88,7 +89,7 @@ class PartBuffers:
             [
                 vertices,
                 part.normals,
-                linear(part.colours),
+                to_linear(part.colours),
                 *([] if self._more is None else [self._more]),
             ]
         ).astype(np.float32)

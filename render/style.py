@@ -7,10 +7,6 @@ All colours are sRGB, 0..1; the shaders turn them into linear light.
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
 
 from .light import LIGHTS, Light
 
@@ -130,10 +126,3 @@ class Style:
     def _warmth(self) -> float:
         red, _, blue = self.albedo
         return min(max((red - blue) / 0.25, 0.0), 1.0)
-
-
-def linear(srgb: Colour | npt.NDArray[Any]) -> Any:
-    """sRGB 0..1 -> linear light 0..1: a tuple for a colour, an array (n, 3) for an array."""
-    values = np.asarray(srgb, np.float64)
-    light = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
-    return tuple(light.tolist()) if isinstance(srgb, tuple) else light

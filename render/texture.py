@@ -11,7 +11,8 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .style import linear
+from risorius.geometry.colour import to_linear
+
 from .surface import Image, is_software
 
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
@@ -58,9 +59,8 @@ class Texture(_Mipmaps):
             )
         self.redness = _median_redness(albedo)
         alpha = np.full(wanted, 255, np.uint8) if openness is None else openness
-        texels = np.dstack(
-            [linear(np.arange(256) / 255.0).astype(np.float32)[albedo], alpha / np.float32(255.0)]
-        )
+        light = to_linear(np.arange(256) / 255.0).astype(np.float32)[albedo]
+        texels = np.dstack([light, alpha / np.float32(255.0)])
         super().__init__(gl, _roots(texels))
         for level in range(1, max(self.size).bit_length()):
             texels = _halved(texels)
@@ -136,7 +136,7 @@ def _halved(values: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
 def _median_redness(image: Image) -> float:
     """The median of red over green light of an image (H, W, 3)."""
     every = max(1, image.shape[0] * image.shape[1] // _SAMPLED_TEXELS)
-    light = linear(image.reshape(-1, 3)[::every] / 255.0)
+    light = to_linear(image.reshape(-1, 3)[::every] / 255.0)
     return float(np.median(light[:, 0] / np.maximum(light[:, 1], 1e-3)))
 
 

@@ -20,6 +20,8 @@ from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse import linalg as sparse_linalg
 
+from ..geometry.normals import cross_products, vertex_normals
+
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
@@ -104,14 +106,9 @@ class Surface:
 def build_surface(positions: Array, faces: Indices) -> Surface:
     """Edges, areas, stiffness and smoothed normals of a triangle mesh [mm]."""
     count = len(positions)
-    corners = positions[faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    face_areas = np.linalg.norm(cross, axis=1) / 2.0
-    areas, normals = np.zeros(count), np.zeros((count, 3))
-    for corner in range(3):
-        np.add.at(areas, faces[:, corner], face_areas / 3.0)
-        np.add.at(normals, faces[:, corner], cross)
-    areas = np.maximum(areas, LEAST_AREA)
+    face_areas = np.linalg.norm(cross_products(positions, faces), axis=1) / 2.0
+    shares = np.bincount(faces.T.ravel(), np.tile(face_areas / 3.0, 3), count)
+    areas: Array = np.maximum(shares, LEAST_AREA)
 
     half_edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     unique, inverse = np.unique(half_edges, axis=0, return_inverse=True)
@@ -127,8 +124,7 @@ def build_surface(positions: Array, faces: Indices) -> Surface:
     weights = sparse.coo_array((np.tile(stiffness, 2), both), shape=(count, count)).tocsr()
     degree = np.asarray(weights.sum(axis=1)).ravel()
     laplacian = (sparse.diags_array(degree) - weights).tocsc()
-    unit = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    smooth = _smooth(unit, NORMAL_SMOOTHING, areas, laplacian)
+    smooth = _smooth(vertex_normals(positions, faces), NORMAL_SMOOTHING, areas, laplacian)
     length = np.linalg.norm(smooth, axis=1, keepdims=True)
     directions = np.where(length > 1e-9, smooth / np.maximum(length, 1e-9), [0.0, 0.0, 1.0])
     return Surface(positions, faces, edges, lengths, stiffness, areas, directions, laplacian)

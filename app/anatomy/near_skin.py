@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 from risorius.jit import njit
 
 Floats = npt.NDArray[np.float64]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 from ..refining.looks import Refinement
 from .clip import Clip, Floats, Indices, Singles, Surface

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import render
-from risorius.render.style import linear
+from risorius.geometry.colour import to_linear
 
 from ..scenes import FaceScene
 from .clip import Clip, Surface
@@ -96,7 +96,7 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         texels = top_down[coordinates].astype(np.float32)
         attributes["TEXCOORD_0"] = glb.accessor(texels, ARRAY_BUFFER)
     if surface.colours is not None:
-        attributes["COLOR_0"] = of_vertices(linear(_colours(clip, surface)))
+        attributes["COLOR_0"] = of_vertices(to_linear(_colours(clip, surface)))
     if share is not None:
         none = np.zeros_like(share)
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
@@ -138,7 +138,7 @@ def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:
     material["doubleSided"] = True
     scene = clip.scene
     if scene.albedo is None or surface.uv is None:
-        rough["baseColorFactor"] = [*linear(render.CLAY), 1.0]
+        rough["baseColorFactor"] = [*to_linear(render.CLAY), 1.0]
         return glb.add("materials", material)
     rough["baseColorTexture"] = {"index": glb.texture(scene.albedo)}
     openness = scene.openness()

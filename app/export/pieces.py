@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 from ..scenes import FaceScene, Scene
 from .clip import Clip, Surface

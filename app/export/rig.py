@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 from ..errors import UserError
 from ..motion import SETTLING

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 import PIL.Image
 
-from risorius.assets.topology import vertex_normals
-from risorius.render.style import linear
+from risorius.geometry.colour import to_linear
+from risorius.geometry.normals import vertex_normals
 
 from ..errors import needed
 from .clip import Clip, Surface
@@ -99,7 +99,7 @@ def _add_surface(mesh: Any, surface: Surface, request: Request) -> None:
     if surface.colours is not None:
         kind = Sdf.ValueTypeNames.Color3fArray
         colours = _primvar(mesh, "displayColor", kind, UsdGeom.Tokens.vertex)
-        colours.Set(Vt.Vec3fArray.FromNumpy(linear(surface.colours).astype(np.float32)))
+        colours.Set(Vt.Vec3fArray.FromNumpy(to_linear(surface.colours).astype(np.float32)))
 
 
 def _add_refined(mesh: Any, clip: Clip, request: Request) -> None:

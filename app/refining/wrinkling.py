@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from risorius import assets, refine, render
 from risorius.assets.model import HIGHEST_FOLD
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 from ..scenes import Scene
 from .looks import Refinement

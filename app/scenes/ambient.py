@@ -29,7 +29,8 @@ from risorius import assets, sim
 from risorius.assets.fitting.coarser import coarser
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import HEAD_FILE, load_head
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
+from risorius.geometry.texels import Texels
 from risorius.jit import njit
 
 from ..errors import report_user_errors
@@ -85,8 +86,7 @@ def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
     between = np.setdiff1d(np.arange(count, len(ends)), steep)
     values[between] = values[ends[between]].mean(axis=1)
     shades = values**DEPTH
-    height, width = head.albedo.shape[:2]
-    places = (head.uv * [width, -height] + [-0.5, height - 0.5])[head.face_uv]
+    places = head.uv.astype(np.float64)[head.face_uv]
     if len(faces) < len(simulation.faces):
         normals = vertex_normals(simulation.positions, simulation.faces)
         near = nearest_on(simulation.positions, normals, at_rest, faces)
@@ -97,9 +97,8 @@ def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
         colours = _quartered(shades[faces], shades[count + edge_of_side.reshape(-1, 3)])
     # What is meant lies over what overlaps; and folds that another head's texture shows twice, such
     # as the inside of a nostril, must not darken the open skin there: the more open one counts.
-    around, inside = np.zeros((2, height, width), np.float32)
-    _paint(places, colours, MARGIN, around)
-    _paint(places, colours, 0.0, inside)
+    size = head.albedo.shape[:2]
+    around, inside = (_painted(places, colours, margin, size) for margin in (MARGIN, 0.0))
     image = np.where(inside > 0.0, inside, np.where(around > 0.0, around, 1.0))
     return np.round(255.0 * image).astype(np.uint8)
 
@@ -215,36 +214,15 @@ def _nearest(ray: Values, near: Values, count: int) -> float:
     return float(nearest)
 
 
-@njit
-def _paint(places: Points, values: Values, margin: float, image: Values) -> None:
-    """Paint texels in triangles and a margin beside them, straight between values at corners.
+def _painted(places: Points, values: Values, margin: float, size: tuple[int, int]) -> Values:
+    """An image of triangles and a margin beside them, straight between values at corners.
 
-    Where they overlap the greatest value counts.
+    Where they overlap the greatest value counts; 0 where no triangle is.
     """
-    height, width = image.shape
-    for t in range(len(places)):
-        a, b, c = places[t]
-        at_a, at_b, at_c = values[t]
-        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-        if abs(area) < 1e-9:
-            continue
-        least, most = min(at_a, at_b, at_c), max(at_a, at_b, at_c)
-        # How much of a corner's weight is lost within a margin beyond the side opposite to it.
-        slack_a = margin * np.hypot(c[0] - b[0], c[1] - b[1]) / abs(area) + 1e-9
-        slack_b = margin * np.hypot(a[0] - c[0], a[1] - c[1]) / abs(area) + 1e-9
-        slack_c = margin * np.hypot(b[0] - a[0], b[1] - a[1]) / abs(area) + 1e-9
-        left = max(int(np.floor(min(a[0], b[0], c[0]) - margin)), 0)
-        right = min(int(np.ceil(max(a[0], b[0], c[0]) + margin)), width - 1)
-        top = max(int(np.floor(min(a[1], b[1], c[1]) - margin)), 0)
-        bottom = min(int(np.ceil(max(a[1], b[1], c[1]) + margin)), height - 1)
-        for y in range(top, bottom + 1):
-            for x in range(left, right + 1):
-                of_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
-                of_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
-                of_a = 1.0 - of_b - of_c
-                if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
-                    value = of_a * at_a + of_b * at_b + of_c * at_c
-                    image[y, x] = max(image[y, x], min(max(value, least), most))
+    texels = Texels.within(places, size, margin)
+    image = np.zeros(size, np.float32)
+    np.maximum.at(image, (texels.rows, texels.columns), texels.interpolate(values))
+    return image
 
 
 def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:

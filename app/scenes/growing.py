@@ -7,14 +7,15 @@ the triangle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from risorius.assets.fitting.warp import SurfacePoints, nearest_on
-from risorius.assets.topology import vertex_normals
+from risorius.assets.fitting.warp import nearest_on
+from risorius.geometry.closest import SurfacePoints
+from risorius.geometry.normals import vertex_normals
 
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
@@ -52,7 +53,7 @@ class Growing:
         feet = nearest_on(rest[roots], _unit(ahead), skin, faces)
         is_around = np.isin(faces, feet.corners).any(axis=1)
         near, around = np.unique(faces[is_around], return_inverse=True)
-        feet = SurfacePoints(np.searchsorted(near, feet.corners).astype(np.int32), feet.weights)
+        feet = replace(feet, corners=np.searchsorted(near, feet.corners).astype(np.int32))
         grown = cls(
             part.name, part.vertices, part.normals, part.faces, part.colours, part.bone,
             part.shine, part.hair, near.astype(np.int64), around.reshape(-1, 3).astype(np.int32),

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.generator.ambient import INCISORS, in_mouth_light
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
 

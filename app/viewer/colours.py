@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 from risorius.render.style import AMOUNT_RAMP, SIGNED_RAMP
 
 from ..capture.captions import SPLITS_BAR, ColourBar

@@ -11,8 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from risorius.geometry.normals import vertex_normals
+
 from ..model import Eye, FloatArray, IndexArray, Part
-from ..topology import boundary_loops, quads_between, vertex_normals
+from ..topology import boundary_loops, quads_between
 
 FLESH = "eye_corners"  # the part that collars belong to: they have its colour
 FARTHEST = 1.6  # radii of the ball from its centre: the edge around an eye is nearer

@@ -18,11 +18,12 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius.geometry.normals import cross_products, vertex_normals
+
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
 from ..model import FloatArray, Head, IndexArray
-from ..topology import cross_products, vertex_normals
 from .soundness import pieces_of
 from .warp import Similarity, Warp, nearest_on
 

@@ -22,6 +22,8 @@ from typing import Any
 import numpy as np
 import scipy
 
+from risorius.geometry.normals import vertex_normals
+
 from ..errors import AssetError
 from ..files import Image
 from ..loading import load
@@ -36,7 +38,8 @@ from ..model import (
     SingleArray,
     Wrinkles,
 )
-from ..topology import boundary_loops, vertex_normals
+from risorius.geometry.normals import vertex_normals
+from ..topology import boundary_loops
 from ..user_files import named
 from .coarser import coarser
 from .collars import with_collars

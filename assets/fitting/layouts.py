@@ -12,13 +12,14 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius.geometry.texels import Texels
+
 from ..errors import AssetError
 from ..files import Image
 from ..model import FloatArray, Head, IndexArray, Segment, SingleArray, Wrinkles
 from ..pictures import LARGEST, Texture
 
 SIZE = 1024  # [texels] each way of maps that are drawn anew
-MOST_TRIED = 60_000_000  # texels tried for all triangles: a fair layout needs two for each it has
 STEEPEST = 99.9  # [percent] of slopes that a map of wrinkles holds as they are
 
 
@@ -35,56 +36,18 @@ class Layout:
         return self.uv.astype(np.float64)[self.face_uv]
 
 
-@dataclass(frozen=True)
-class Texels:
-    """Texels within triangles: rows, columns, triangles, and barycentric coordinates in them."""
+def texels_within(layout: Layout, size: tuple[int, int]) -> Texels:
+    """The texels of a picture of (height, width) that triangles lie over, and one beside them.
 
-    rows: npt.NDArray[np.int64]
-    columns: npt.NDArray[np.int64]
-    faces: npt.NDArray[np.int64]
-    weights: FloatArray
-
-    @classmethod
-    def within(cls, corners: FloatArray, size: tuple[int, int]) -> Texels:
-        """Those of triangles with corners (F, 3, 2) in a picture of (height, width).
-
-        Raises AssetError where triangles cover the picture many times over.
-        """
-        height, width = size
-        places = corners * [width, -height] + [-0.5, height - 0.5]
-        low = np.ceil(places.min(axis=1) - 1.0).clip(0, [width, height]).astype(np.int64)
-        high = np.floor(places.max(axis=1) + 1.0).clip(-1, [width - 1, height - 1])
-        spans = np.maximum(high.astype(np.int64) - low + 1, 0)
-        counts = spans.prod(axis=1)
-        if counts.sum() > MOST_TRIED:
-            raise AssetError(
-                "its texture coordinates cover the picture many times over; unwrap it anew, or "
-                "remove its materials"
-            )
-        faces = np.repeat(np.arange(len(corners)), counts)
-        number = np.arange(len(faces)) - np.repeat(np.cumsum(counts) - counts, counts)
-        row, column = np.divmod(number, np.maximum(spans[faces, 0], 1))
-        point = low[faces] + np.stack([column, row], axis=1)
-        a, b, c = places[faces].transpose(1, 0, 2)
-        area = _cross(b - a, c - a)
-        weights = np.stack([_cross(b - point, c - point), _cross(c - point, a - point)], axis=1)
-        weights /= np.where(area == 0.0, np.inf, area)[:, None]
-        weights = np.column_stack([weights, 1.0 - weights.sum(axis=1)])
-        # A bit of margin, for what is blended across edges.
-        slack = 1.0 / np.maximum(np.sqrt(abs(area)), 1.0)
-        inside = (weights > -slack[:, None]).all(axis=1) & (area != 0.0)
-        order = np.flatnonzero(inside)
-        order = order[np.argsort(weights[order].min(axis=1), kind="stable")]  # margins below
-        return cls(point[order, 1], point[order, 0], faces[order], weights[order])
-
-    def interpolate(self, values: FloatArray) -> FloatArray:
-        """What corners have, (F, 3, k), at the texels, shape (n, k)."""
-        found: FloatArray = np.einsum("nc,nck->nk", self.weights, values[self.faces])
-        return found
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    Raises AssetError where triangles cover the picture many times over.
+    """
+    try:
+        return Texels.within(layout.corners, size, margin=1.0)  # for what is blended across edges
+    except ValueError:
+        raise AssetError(
+            "its texture coordinates cover the picture many times over; unwrap it anew, or remove "
+            "its materials"
+        ) from None
 
 
 def sampled(picture: npt.NDArray[np.uint8], uv: FloatArray) -> npt.NDArray[np.uint8]:
@@ -109,7 +72,7 @@ def drawn_over(picture: Image, layout: Layout, colours: FloatArray | tuple[Image
 
     colours: of each corner, shape (F, 3, 3), or another picture and where they lie in it.
     """
-    texels = Texels.within(layout.corners, picture.shape[:2])
+    texels = texels_within(layout, picture.shape[:2])
     if isinstance(colours, tuple):
         found = sampled(colours[0], texels.interpolate(colours[1].corners))
     else:
@@ -124,7 +87,7 @@ def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image]:
 
     theirs: where the same triangles lie in the built-in layout.
     """
-    texels = Texels.within(own.corners, (SIZE, SIZE))
+    texels = texels_within(own, (SIZE, SIZE))
     place = texels.interpolate(theirs.corners)
     segments = np.full((SIZE, SIZE), Segment.SKIN, np.uint8)
     segments[texels.rows, texels.columns] = sampled(known.segments, place)

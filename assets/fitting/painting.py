@@ -16,10 +16,11 @@ from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse.linalg import cg
 
+from risorius.geometry.closest import SurfacePoints
+from risorius.geometry.normals import cross_products
+
 from ..files import Image
 from ..model import FloatArray, Head, IndexArray, Segment, SingleArray
-from ..topology import cross_products
-from .warp import SurfacePoints
 
 BoolArray = npt.NDArray[np.bool_]
 

@@ -16,12 +16,11 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-import scipy
+
+from risorius.geometry.closest import SurfacePoints, closest_points
 
 from ..model import FloatArray, IndexArray
-from ..topology import cross_products
 
-CANDIDATES = 12  # triangles whose centres are nearest: the nearest triangle is one of them
 WRONG_SIDE = 12.0  # [mm] that a point seems farther away where the surface faces the other way
 
 
@@ -119,21 +118,6 @@ def _distances(a: FloatArray, b: FloatArray) -> FloatArray:
     return distances
 
 
-@dataclass(frozen=True)
-class SurfacePoints:
-    """For each of n points, where on a triangle mesh it lies nearest."""
-
-    corners: IndexArray  # (n, 3) vertices of the triangle
-    weights: FloatArray  # (n, 3) barycentric coordinates in it
-
-    def interpolate(self, values: npt.NDArray[np.floating]) -> FloatArray:
-        """Values of the mesh's vertices, (V,) or (V, k), at the points."""
-        carried: FloatArray = np.einsum(
-            "nc,nc...->n...", self.weights, np.asarray(values, dtype=np.float64)[self.corners]
-        )
-        return carried
-
-
 def nearest_on(
     points: FloatArray, normals: FloatArray, vertices: FloatArray, faces: IndexArray
 ) -> SurfacePoints:
@@ -141,61 +125,4 @@ def nearest_on(
 
     So the lower lip's points find the lower lip though the upper one is nearer.
     """
-    corners = vertices[faces]
-    directions = cross_products(vertices, faces)
-    directions /= np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), 1e-12)
-    count = min(CANDIDATES, len(faces))
-    near = (
-        scipy.spatial.cKDTree(corners.mean(axis=1))
-        .query(points, k=count)[1]
-        .reshape(len(points), count)
-    )
-    best = np.full(len(points), np.inf)
-    chosen = np.zeros(len(points), dtype=np.int64)
-    weights = np.zeros((len(points), 3))
-    for column in near.T:
-        found = _barycentric(points, corners[column])
-        foot = np.einsum("nc,ncd->nd", found, corners[column])
-        facing = (directions[column] * normals).sum(axis=1)
-        cost = np.linalg.norm(points - foot, axis=1) + WRONG_SIDE * np.clip(0.3 - facing, 0.0, 1.0)
-        is_better = cost < best
-        best = np.where(is_better, cost, best)
-        chosen = np.where(is_better, column, chosen)
-        weights = np.where(is_better[:, None], found, weights)
-    return SurfacePoints(faces[chosen], weights)
-
-
-def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:
-    """Coordinates of the nearest point of one triangle (n, 3, 3) for each point, shape (n, 3)."""
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    inside = _in_plane(points, a, b - a, c - a)
-    edges = [_on_edge(points, corners, i, (i + 1) % 3) for i in range(3)]
-    distances = np.stack(
-        [np.linalg.norm(points - np.einsum("nc,ncd->nd", w, corners), axis=1) for w in edges]
-    )
-    on_edge = np.stack(edges)[distances.argmin(axis=0), np.arange(len(points))]
-    is_inside = (inside >= 0.0).min(axis=1, keepdims=True)
-    return np.where(is_inside, inside, on_edge)
-
-
-def _in_plane(points: FloatArray, a: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:
-    """Barycentric coordinates of the foot in the triangle's plane; slivers are left to edges."""
-    to = points - a
-    uu, uv, vv = (u * u).sum(axis=1), (u * v).sum(axis=1), (v * v).sum(axis=1)
-    tu, tv = (to * u).sum(axis=1), (to * v).sum(axis=1)
-    area = uu * vv - uv * uv
-    is_sliver: npt.NDArray[np.bool_] = area <= 1e-12 * np.maximum(uu * vv, 1e-30)
-    area = np.where(is_sliver, 1.0, area)
-    second = np.where(is_sliver, -1.0, (vv * tu - uv * tv) / area)
-    third = np.where(is_sliver, -1.0, (uu * tv - uv * tu) / area)
-    return np.stack([1.0 - second - third, second, third], axis=1)
-
-
-def _on_edge(points: FloatArray, corners: FloatArray, start: int, end: int) -> FloatArray:
-    """Barycentric coordinates of the nearest point of one edge."""
-    along = corners[:, end] - corners[:, start]
-    length = np.maximum((along * along).sum(axis=1), 1e-30)
-    share = np.clip(((points - corners[:, start]) * along).sum(axis=1) / length, 0.0, 1.0)
-    weights = np.zeros((len(points), 3))
-    weights[:, start], weights[:, end] = 1.0 - share, share
-    return weights
+    return closest_points(points, vertices, faces, normals, WRONG_SIDE)

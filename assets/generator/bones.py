@@ -15,7 +15,9 @@ import scipy
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from ..topology import cross_products, edge_faces
+from risorius.geometry.normals import cross_products
+
+from ..topology import edge_faces
 from .fields import Points, Values
 from .form import from_front
 from .mouth_rows import BORDER_ROW, COLUMNS, SEAM_ROW

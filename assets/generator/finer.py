@@ -18,8 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.normals import cross_products, vertex_normals
+
 from ..subdivision import quarter
-from ..topology import Faces, cross_products, edge_faces, edge_key, vertex_normals
+from ..topology import Faces, edge_faces, edge_key
 from .fields import Points, Values, gradient, project, unit
 from .form import broad_distance as distance
 from .intersections import self_intersections

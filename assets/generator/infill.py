@@ -13,7 +13,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from ..topology import Edge, Faces, cross_products, edge_faces, edge_key
+from risorius.geometry.normals import cross_products
+
+from ..topology import Edge, Faces, edge_faces, edge_key
 from .fields import Points, Values, smooth_step, unit
 from .form import from_axis, from_below, from_front
 

@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius.geometry.colour import to_linear, to_screen
+
 from ..files import Image
 from ..model import Head
 from . import lips
@@ -16,7 +18,7 @@ from .fields import Points, Values, bump, smooth_step
 from .form import fold_side
 from .grain import SEED, blotches, crop, freckles, pores
 from .noise import noise
-from .pigments import MELANIN, OWN, Complexion, reflectance, to_linear, to_screen
+from .pigments import MELANIN, OWN, Complexion, reflectance
 from .regions import alar_groove, beard, blood, red, scalp, tan
 from .texels import Texels, left_texels
 

@@ -42,15 +42,3 @@ def reflectance(melanin: Values, blood: Values, shadow: Values) -> Points:
     """Linear light 0..1 that skin with these amounts of pigment throws back, shape (n, 3)."""
     density = PALE + melanin[:, None] * MELANIN + blood[:, None] * BLOOD + shadow[:, None] * SHADOW
     return np.asarray(np.exp(-np.maximum(density, 0.0)), dtype=np.float64)
-
-
-def to_linear(colour: tuple[float, float, float] | Points) -> Points:
-    """Screen colours (sRGB, 0..1) as linear light."""
-    values = np.asarray(colour, dtype=np.float64)
-    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
-
-
-def to_screen(light: Points) -> Points:
-    """Linear light as screen colours (sRGB, 0..1)."""
-    light = np.clip(light, 0.0, 1.0)
-    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1.0 / 2.4) - 0.055)

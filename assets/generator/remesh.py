@@ -10,7 +10,9 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from ..topology import Edge, Faces, cross_products, edge_faces, edge_key
+from risorius.geometry.normals import cross_products
+
+from ..topology import Edge, Faces, edge_faces, edge_key
 from .fields import Points, Values, normals, project
 from .form import distance
 from .infill import wanted_length

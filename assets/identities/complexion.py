@@ -23,16 +23,18 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius.geometry.colour import to_linear, to_screen
+from risorius.geometry.normals import vertex_normals
+
 from ..errors import AssetError
 from ..files import Image, read_arrays_of
 from ..fitting.head import FittedHead
 from ..generator.eyeballs import IRISES, eyeball
 from ..generator.painting import BEARD_SHADOW
-from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW, to_linear, to_screen
+from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
-from ..topology import vertex_normals
 from .hair import CUTS, HAIR, bared, grown, shaded
 from .person import Person
 from .traits import Identity, Sex

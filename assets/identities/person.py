@@ -16,6 +16,8 @@ from functools import lru_cache
 import numpy as np
 import scipy
 
+from risorius.geometry.normals import cross_products, vertex_normals
+
 from ..errors import AssetError
 from ..files import Image
 from ..fitting.head import FittedHead
@@ -27,7 +29,6 @@ from ..generator.regions import HAIRLINE, line_height
 from ..generator.sections import direction_coordinates
 from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
-from ..topology import cross_products, vertex_normals
 from .shaping import Field, Shaper, lids_on_eyes, measures_of
 from .traits import SHAPES, Identity, Sex
 

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 from risorius.refine.mesh.rings import BORDER_RING, warren_weight
 
 from .sparse_loop import subdivision

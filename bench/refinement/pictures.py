@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 from ..subjects import Subject
 

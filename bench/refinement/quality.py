@@ -18,9 +18,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.closest import closest_points
+from risorius.geometry.normals import vertex_normals
 
-from ..nearest import nearest_points
 from ..subjects import Points, PosePair, Subject
 from .flicker import largest_jump
 from .methods import SCHEMES, Key, Method, methods_for
@@ -113,10 +113,10 @@ def _score(
 def _nearness(mesh: Mesh, pose: PosePair, subject: Subject) -> tuple[float, float]:
     """Distance [mm] and angle [degrees] of the dense pose from a mesh."""
     positions, mesh_normals, triangles = mesh[:3]
-    found = nearest_points(pose.dense, positions, triangles)
-    near = np.einsum("ni,nij->nj", found.weights, mesh_normals[triangles[found.triangle]])
+    found = closest_points(pose.dense, positions, triangles)
+    near = found.interpolate(mesh_normals)
     length = np.maximum(np.linalg.norm(near, axis=1), 1e-300)
     normals = vertex_normals(pose.dense, subject.dense_faces)
     cosine = np.einsum("ni,ni->n", near, normals) / length
     angles = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-    return float(np.sqrt(np.mean(found.distance**2))), float(np.median(angles))
+    return float(np.sqrt(np.mean(found.distances**2))), float(np.median(angles))

@@ -13,8 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius.app.errors import UserError, needed
-
-from ..nearest import nearest_points
+from risorius.geometry.closest import closest_points
 
 BORDER_WEIGHT = 10.0
 """How much a border counts: eyes and mouth keep their outlines. With more, the rest gets worse."""
@@ -59,14 +58,13 @@ def decimated(
     collapse.SetBoundaryWeightFactor(BORDER_WEIGHT)
     collapse.Update()
     result = collapse.GetOutput()
-    found = nearest_points(
+    found = closest_points(
         vtk_to_numpy(result.GetPoints().GetData()).astype(np.float64), vertices, triangles
     )
-    places = np.einsum("ni,nij->nj", found.weights, vertices[triangles[found.triangle]])
     corners = vtk_to_numpy(result.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     return Coarse(
         corners.astype(np.int32),
-        found.triangle.astype(np.int32),
+        found.triangles.astype(np.int32),
         found.weights.astype(np.float32),
-        places.astype(np.float32),
+        found.interpolate(vertices).astype(np.float32),
     )

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
-from risorius.assets.topology import cross_products
+from risorius.geometry.normals import cross_products
 
 from ..report import Target, at_most, table
 from ..subjects import settled_positions

@@ -29,6 +29,7 @@ the finer mesh's but those of the refined surface (surface_normals.py), which ha
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.normals import vertex_normals
 from ...jit import njit
 from ..kahler.frame import CENTRES, ROWS, FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
@@ -37,9 +38,8 @@ from ..mesh.validation import checked_indices, checked_positions
 from ..mesh.vectors import HALF, ONE, THIRD, ZERO, Vector, plus, row_of, times
 from .axes import FOUR, find_middles, middle_axes, quarter_axes, slide_middle, triangle_axes
 from .blending import FOUR_NINTHS
-from .closest import SearchSurface
 from .cubic import CubicScheme
-from .fit import ALONE, END, MIDDLE, START, Points, fit, middles_of
+from .fit import ALONE, END, MIDDLE, START, FinerSurface, Points, fit, middles_of
 
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
@@ -62,7 +62,8 @@ class DetailScheme(CubicScheme):
         faces = checked_indices("detail[1]", finer[1], len(positions), "detail[0]")
         if len(faces) == 0:
             raise ValueError("detail[1] must have triangles, got none")
-        self._finer: SearchSurface | None = SearchSurface(positions, faces.astype(np.uint32))
+        normals = vertex_normals(positions, faces)
+        self._finer: FinerSurface | None = FinerSurface(positions, normals, faces)
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats

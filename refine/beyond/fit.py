@@ -18,11 +18,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.closest import closest_points
 from ..kahler.table import CENTRE, CONFIGURATIONS, Patterns
 from ..mesh.arrays import Doubles, Floats, Wide
 from ..mesh.connectivity import Connectivity
 from .blending import FANS
-from .closest import SearchSurface
 
 ROUNDS, ONCE_ROUNDS = 4, 2
 """Times that closest triangles are found anew, for all points and for those of edges split once;
@@ -41,6 +41,20 @@ START, MIDDLE, END, ALONE = 0, 1, 2, 3
 """Points of an edge: two quarters and the middle if it is split twice, the middle if once."""
 TOO_FAR = 1.0
 """A finer vertex farther away than this, in edge lengths, belongs nowhere on the coarse mesh."""
+WRONG_SIDE = 10.0
+"""How much farther away, in edge lengths, a surface seems that looks the other way: lips that touch
+at rest do not take each other's points."""
+
+
+class FinerSurface(NamedTuple):
+    """The finer mesh at rest."""
+
+    positions: Doubles
+    """Shape (V, 3)."""
+    normals: Doubles
+    """Of its vertices, shape (V, 3)."""
+    faces: Wide
+    """Shape (F, 3)."""
 
 
 class Points(NamedTuple):
@@ -64,7 +78,7 @@ class Points(NamedTuple):
 
 
 def fit(
-    surface: SearchSurface, mesh: Connectivity, positions: Doubles, normals: Floats,
+    surface: FinerSurface, mesh: Connectivity, positions: Doubles, normals: Floats,
     edges: tuple[Doubles, Doubles], middles: tuple[Doubles, Doubles],
 ) -> Points:  # fmt: skip
     """Fit everything to the finer mesh `surface`.
@@ -74,14 +88,15 @@ def fit(
     lie, as shares of the corners, and normals there, shape (F, 3).
     """
     shares, middle_ups = middles[0], np.repeat(middles[1][:, None], 2, axis=1)
-    of_edges = closest_places(surface, *edges)
+    away = WRONG_SIDE * _mean_length(mesh, positions)
+    of_edges = closest_places(surface, *edges, away)
     corner_ups = np.repeat(normals[mesh.faces].sum(axis=1)[:, None], 2, axis=1)
     centres = middles_of(of_edges, mesh, positions, np.full_like(shares, 1.0 / 3.0))
-    start = Points(of_edges, closest_places(surface, centres, corner_ups))
+    start = Points(of_edges, closest_places(surface, centres, corner_ups, away))
     places = fitted(surface, mesh, positions, start, mesh.vertex_count)
     first_middle = mesh.vertex_count + 4 * len(mesh.edges)
     centres = middles_of(places.of_edges, mesh, positions, shares)
-    start = Points(places.of_edges, closest_places(surface, centres, middle_ups))
+    start = Points(places.of_edges, closest_places(surface, centres, middle_ups, away))
     return fitted(surface, mesh, positions, start, first_middle)
 
 
@@ -102,26 +117,29 @@ def middles_of(
     return middles
 
 
-def closest_places(surface: SearchSurface, points: Doubles, normals: Doubles) -> Doubles:
+def closest_places(
+    surface: FinerSurface, points: Doubles, normals: Doubles, wrong_side: float
+) -> Doubles:
     """Closest points on the finer mesh that look the way of `normals`, in the shape of `points`."""
-    triangles, weights = surface.closest(points.reshape(-1, 3), normals.reshape(-1, 3))
-    return surface.at(surface.positions, triangles, weights).reshape(points.shape)
+    queries, ways = points.reshape(-1, 3), normals.reshape(-1, 3)
+    found = closest_points(queries, surface.positions, surface.faces, ways, wrong_side)
+    return found.interpolate(surface.positions).reshape(points.shape)
 
 
 def fitted(
-    surface: SearchSurface, mesh: Connectivity, positions: Doubles, points: Points, first: int
+    surface: FinerSurface, mesh: Connectivity, positions: Doubles, points: Points, first: int
 ) -> Points:
     """Return points that fit better.
 
     `points`: where to begin; `first`: the first that may move, of vertices and points stacked.
     """
-    reach = _reach(mesh, positions)
+    length = _mean_length(mesh, positions)
     places = points.stacked(positions)
     shapes = [split_everywhere(mesh, *row) for row in (TWICE, *ONCE)]
     for k in range(ROUNDS if len(shapes[0]) else 0):
         if k == ONCE_ROUNDS:
             shapes = shapes[:1]
-        corners, weights, residuals = _residuals(surface, places, shapes, reach)
+        corners, weights, residuals = _residuals(surface, places, shapes, length)
         places[first:] += _solved(corners - first, weights, residuals, len(places) - first)
     return Points.unstacked(places, mesh)
 
@@ -142,14 +160,14 @@ def split_everywhere(mesh: Connectivity, patterns: Patterns, row: int) -> Wide:
     return local[:, patterns.subtriangles[row, : patterns.counts[row]]].reshape(-1, 3)
 
 
-def _reach(mesh: Connectivity, positions: Doubles) -> float:
-    """How far a finer vertex may be away."""
+def _mean_length(mesh: Connectivity, positions: Doubles) -> float:
+    """Mean length of the edges of the coarse mesh; 0 if there are none."""
     lengths = np.linalg.norm(np.diff(positions[mesh.edges], axis=1)[:, 0], axis=1)
-    return TOO_FAR * float(lengths.mean()) if len(lengths) else 0.0
+    return float(lengths.mean()) if len(lengths) else 0.0
 
 
 def _residuals(
-    surface: SearchSurface, places: Doubles, shapes: list[Wide], reach: float
+    surface: FinerSurface, places: Doubles, shapes: list[Wide], length: float
 ) -> tuple[Wide, Doubles, Doubles]:
     """What the finer vertices want of the triangles that they are closest to, in every shape.
 
@@ -158,11 +176,12 @@ def _residuals(
     """
     terms = []
     for triangles in shapes:
-        refined = SearchSurface(places, triangles.astype(np.uint32))
-        hit, weights = refined.closest(surface.positions, surface.normals.astype(np.float64))
-        away = surface.positions - refined.at(places, hit, weights)
-        is_near = np.linalg.norm(away, axis=1, keepdims=True) <= reach
-        terms.append((triangles[hit], is_near * weights, is_near * away))
+        found = closest_points(
+            surface.positions, places, triangles, surface.normals, WRONG_SIDE * length
+        )
+        away = surface.positions - found.interpolate(places)
+        is_near = found.distances[:, None] <= TOO_FAR * length
+        terms.append((found.corners, is_near * found.weights, is_near * away))
     corners, weights, residuals = (np.concatenate(part) for part in zip(*terms, strict=True))
     return corners, weights, residuals
 

@@ -19,12 +19,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Doubles, Wide
+from ...geometry.closest import places_on_curve
+from .arrays import Wide
 from .seams import number_by_first_use
 from .validation import checked_indices, checked_positions
-
-BITS = 20
-"""Of the grid along one axis that the curve runs through; 3 x 20 fit a number of 64."""
 
 
 class Order(NamedTuple):
@@ -54,18 +52,3 @@ def reorder(faces: npt.ArrayLike, positions: npt.ArrayLike) -> Order:
     used = walked[first_uses]
     unused = np.setdiff1d(np.arange(len(points)), used)
     return Order(np.concatenate([used, unused]), triangles, numbers.reshape(-1, 3))
-
-
-def places_on_curve(positions: Doubles) -> Wide:
-    """How far along a curve that fills space each position lies, shape (V,)."""
-    if len(positions) == 0:
-        return np.zeros(0, dtype=np.int64)
-    low = positions.min(axis=0)
-    size = float((positions.max(axis=0) - low).max())
-    scale = (2**BITS - 1) / size if size > 0.0 else 0.0
-    cells = ((positions - low) * scale).astype(np.int64)
-    places = np.zeros(len(positions), dtype=np.int64)
-    for bit in range(BITS):  # of x, y and z in turn
-        for axis in range(3):
-            places |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return places

@@ -35,7 +35,7 @@ from risorius.app.export.rig import fit
 from risorius.app.performances import script_for
 from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 from .glb_player import Player
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from risorius import assets
 from risorius.assets.generator.eyeballs import IRISES
 from risorius.assets.generator.painting import paint_skin
-from risorius.assets.generator.pigments import COMPLEXIONS, Complexion, to_linear
+from risorius.assets.generator.pigments import COMPLEXIONS, Complexion
 from risorius.assets.identities import (
     DARKEST,
     LIGHTEST,
@@ -29,6 +29,7 @@ from risorius.assets.identities import (
     typology_angle,
 )
 from risorius.assets.model import Head, Segment
+from risorius.geometry.colour import to_linear
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
 ANGLES = st.floats(DARKEST, LIGHTEST)

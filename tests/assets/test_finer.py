@@ -16,7 +16,8 @@ from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import FineMesh, Head
 from risorius.assets.subdivision import quarter
-from risorius.assets.topology import boundary_loops, cross_products
+from risorius.assets.topology import boundary_loops
+from risorius.geometry.normals import cross_products
 from tests.assets import checks
 
 MOST_FINER_DATA = 1_500_000  # bytes

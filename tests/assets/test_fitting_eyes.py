@@ -9,7 +9,8 @@ import pytest
 from risorius import assets
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.meshes import Mesh
-from risorius.assets.topology import boundary_loops, cross_products
+from risorius.assets.topology import boundary_loops
+from risorius.geometry.normals import cross_products
 from tests.heads import shape
 
 Array = npt.NDArray[np.float64]

@@ -37,12 +37,12 @@ from risorius.assets.generator.sections import base_radius, direction_coordinate
 from risorius.assets.generator.solids import Solid, grid_faces, joined, mix, welded
 from risorius.assets.topology import (
     boundary_loops,
-    cross_products,
     edge_faces,
     halved,
     quads_between,
     smallest_angles,
 )
+from risorius.geometry.normals import cross_products
 
 Points = npt.NDArray[np.float64]
 

@@ -28,7 +28,7 @@ from risorius.assets.identities import (
 )
 from risorius.assets.identities.hair import bared, grown
 from risorius.assets.model import Part
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 
 COLOUR = np.array([0.3, 0.2, 0.15])
 LONG = ("bob", "waves", "short")

@@ -12,7 +12,8 @@ from risorius.assets.generator import form
 from risorius.assets.generator.fields import gradient
 from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.model import Head
-from risorius.assets.topology import boundary_loops, cross_products, smallest_angles
+from risorius.assets.topology import boundary_loops, smallest_angles
+from risorius.geometry.normals import cross_products
 from tests.assets import checks
 
 TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")

@@ -17,7 +17,7 @@ from scipy import ndimage
 from risorius import assets, refine
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
-from risorius.assets.fitting.layouts import Layout, Texels, drawn_over, maps_in, sampled
+from risorius.assets.fitting.layouts import Layout, drawn_over, maps_in, sampled, texels_within
 from risorius.assets.meshes import Mesh, read_mesh
 from tests.heads import Stranger, stranger
 
@@ -216,9 +216,10 @@ def test_a_missing_library_paints_nothing(other: Stranger, tmp_path: Path) -> No
 
 def test_layouts_that_cover_a_picture_many_times_are_refused() -> None:
     """A small file must not ask for hours."""
-    corners = np.tile([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], (100_000, 1, 1))
+    uv = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], np.float32)
+    layout = Layout(uv, np.tile(np.arange(3, dtype=np.int32), (100_000, 1)))
     with pytest.raises(AssetError, match="many times over"):
-        Texels.within(corners, (1024, 1024))
+        texels_within(layout, (1024, 1024))
 
 
 def test_pictures_are_drawn_from_one_layout_to_another() -> None:

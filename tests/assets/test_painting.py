@@ -14,10 +14,11 @@ from risorius import assets
 from risorius.assets.generator import brows, form
 from risorius.assets.generator.noise import noise
 from risorius.assets.generator.painting import paint_skin
-from risorius.assets.generator.pigments import COMPLEXIONS, reflectance, to_linear, to_screen
+from risorius.assets.generator.pigments import COMPLEXIONS, reflectance
 from risorius.assets.generator.texels import Texels, corner_values, left_texels, rasterise
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Head
+from risorius.geometry.colour import to_linear, to_screen
 
 Colours = npt.NDArray[np.float64]
 LARGEST_IMAGE_FILE = 1_250_000  # bytes

@@ -6,7 +6,7 @@ import pytest
 from risorius import assets
 from risorius.assets.generator import form
 from risorius.assets.model import Head, Part
-from risorius.assets.topology import cross_products
+from risorius.geometry.normals import cross_products
 
 BONES = {"cranium", "mandible", "eye_left", "eye_right", "neck"}
 IN_MOUTH = ("teeth", "gums", "tongue", "oral_cavity")

@@ -22,7 +22,7 @@ from risorius.assets.fitting.soundness import check_manifold
 from risorius.assets.fitting.upright import upright
 from risorius.assets.fitting.warp import Similarity, nearest_on
 from risorius.assets.meshes import read_mesh
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 from risorius.sim.landmarks import MIRRORED
 
 from ...errors import UserError

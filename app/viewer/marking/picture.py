@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, render
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 from risorius.sim.landmarks import MIRRORED
 
 from ...passes.camera_labels import CameraLabels

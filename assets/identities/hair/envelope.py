@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
+from risorius.geometry.normals import vertex_normals
+
 from ...generator.fields import Points, Values
 from ...generator.sections import TOP, direction_coordinates
 from ...model import IndexArray
-from ...topology import places_in_triangle, vertex_normals
+from ...topology import places_in_triangle
 
 RISE, FALL = 0.26, 0.16  # how fast hair comes out above ears, and in again below [mm for each mm]
 HANGING = 60.0  # [mm] height below which it does

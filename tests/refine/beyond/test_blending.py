@@ -9,7 +9,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from risorius import refine
-from risorius.assets.topology import vertex_normals
+from risorius.geometry.normals import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced, Needed, surface_at
 

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.refine.beyond.closest import SearchSurface
+from risorius.geometry.closest import closest_points
+from risorius.geometry.normals import vertex_normals
 from tests import meshes
 from tests.refine import plain_twin
 from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
@@ -32,9 +33,7 @@ COARSE, FINE = bumpy(8, 6), bumpy(48, 36)
 
 def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Distance of each point from a mesh."""
-    surface = SearchSurface(positions.astype(np.float64), triangles.astype(np.uint32))
-    hit, weights = surface.closest(points, np.zeros_like(points))
-    return np.linalg.norm(surface.at(surface.positions, hit, weights) - points, axis=1)
+    return closest_points(points, positions, triangles).distances
 
 
 def angles(some: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -56,35 +55,6 @@ def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.Ref
     return mesh
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_closest_points(seed: int) -> None:
-    """Nothing that lies on the mesh is closer than the point that is found, near the mesh."""
-    mesh = meshes.irregular(seed)
-    generator = np.random.default_rng(seed)
-    picked = mesh.faces[generator.integers(len(mesh.faces), size=60)]
-    shares = generator.dirichlet([1, 1, 1], 60)
-    points = np.einsum("nik,ni->nk", mesh.vertices[picked], shares)
-    points += 0.05 * generator.standard_normal(points.shape)
-    found = distances(points, mesh.vertices, mesh.faces)
-    samples = np.random.default_rng(9).dirichlet([0.6, 0.6, 0.6], 300)
-    cloud = np.einsum("fik,si->fsk", mesh.vertices[mesh.faces], samples).reshape(-1, 3)
-    nearest = np.array([np.linalg.norm(cloud - point, axis=1).min() for point in points])
-    assert (found <= nearest + 1e-12).all()
-    assert (nearest - found).max() < 0.2
-
-
-def test_closest_looks_the_same_way() -> None:
-    """Of two grids that almost touch, each point finds the one that looks its way."""
-    grid = meshes.open_grid(6, 6)
-    count = len(grid.vertices)
-    below = grid.vertices - [0.0, 0.0, 0.01]
-    vertices = np.concatenate([grid.vertices, below])
-    faces = np.concatenate([grid.faces, grid.faces[:, ::-1] + count]).astype(np.uint32)
-    points = np.tile([[3.3, 2.2, -0.005]], (2, 1))
-    hit, _ = SearchSurface(vertices, faces).closest(points, np.array([[0, 0, 1.0], [0, 0, -1.0]]))
-    assert hit[0] < len(grid.faces) <= hit[1]
-
-
 @pytest.mark.parametrize("blend", [False, True])
 def test_lies_on_the_finer_mesh(blend: bool) -> None:
     """At rest, with all edges split, the detail scheme is much closer to the finer mesh."""
@@ -99,13 +69,12 @@ def test_lies_on_the_finer_mesh(blend: bool) -> None:
 
 def test_normals_of_the_surface_are_the_finer_ones() -> None:
     """What the surface of all splits shows is far nearer to the finer normals than a mean is."""
-    surface = SearchSurface(FINE.vertices, FINE.faces.astype(np.uint32))
+    fine_normals = vertex_normals(FINE.vertices, FINE.faces)
     off = {}
     for normals in ("linear", "refined"):
         mesh = refined("detail", COARSE.vertices, normals=normals)
         places = mesh.positions.astype(np.float64)
-        hit, weights = surface.closest(places, np.zeros_like(places))
-        expected = surface.at(surface.normals, hit, weights)
+        expected = closest_points(places, FINE.vertices, FINE.faces).interpolate(fine_normals)
         expected /= np.linalg.norm(expected, axis=1, keepdims=True)
         off[normals] = np.median(angles(expected, mesh.normals))
     assert off["refined"] < 0.4 * off["linear"]

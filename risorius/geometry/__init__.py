@@ -1,0 +1,7 @@
+"""What several rooms compute on triangles and colours, below all of them; numpy and numba only.
+
+closest.py      the closest points of a triangle mesh
+normals.py      cross products of triangles, normals of vertices
+texels.py       the texels of a picture that triangles lie over
+colour.py       screen colours (sRGB) and linear light
+"""

@@ -1,0 +1,26 @@
+"""Cross products of triangles, and normals of vertices, in double precision.
+
+What refiners need in every frame, in single precision, is a kernel of theirs
+(refine/mesh/normals.py).
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+Doubles = npt.NDArray[np.float64]
+
+
+def cross_products(vertices: Doubles, faces: npt.NDArray[np.integer]) -> Doubles:
+    """Face normals times twice the area, shape (F, 3)."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    return np.cross(b - a, c - a)
+
+
+def vertex_normals(vertices: Doubles, faces: npt.NDArray[np.integer]) -> Doubles:
+    """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero where none is."""
+    cross, corners = cross_products(vertices, faces), faces.T.ravel()
+    total = np.stack(
+        [np.bincount(corners, np.tile(each, 3), len(vertices)) for each in cross.T], axis=1
+    )
+    normals: Doubles = total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+    return normals

@@ -1,0 +1,87 @@
+"""The texels of a picture that triangles lie over, and where in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..jit import njit
+
+Doubles = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+MOST_TRIED = 60_000_000
+"""Texels tried for all triangles: a fair layout needs two for each that it has."""
+
+
+@dataclass(frozen=True)
+class Texels:
+    """Texels within triangles; one that several triangles have is there several times."""
+
+    rows: Integers
+    """From the top, shape (n,)."""
+    columns: Integers
+    """From the left, shape (n,)."""
+    faces: Integers
+    """The triangle, shape (n,)."""
+    weights: Doubles
+    """Barycentric coordinates in it, shape (n, 3); beside it those of a place on its border."""
+
+    @classmethod
+    def within(cls, corners: Doubles, size: tuple[int, int], margin: float = 0.0) -> Texels:
+        """Those in triangles with `corners` (F, 3, 2), or within a margin [texels] beside them.
+
+        corners: texture coordinates, from the left and from below, 0..1. size: height and width.
+        What lies deepest in its triangle comes last, so that it is drawn over margins. Raises
+        ValueError where triangles cover the picture many times over.
+        """
+        height, width = size
+        places = corners * [width, -height] + [-0.5, height - 0.5]
+        low = np.ceil(places.min(axis=1) - margin).clip(0, [width, height]).astype(np.int64)
+        high = np.floor(places.max(axis=1) + margin).clip(-1, [width - 1, height - 1])
+        boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
+        if np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0).prod(axis=1).sum() > MOST_TRIED:
+            raise ValueError("texture coordinates cover the picture many times over")
+        found, weights = np.empty((0, 3), np.int64), np.empty((0, 3))
+        count = _walk(places, boxes, margin, found, weights)
+        found, weights = np.empty((count, 3), np.int64), np.empty((count, 3))
+        _walk(places, boxes, margin, found, weights)
+        order = np.argsort(weights.min(axis=1), kind="stable")
+        inside = np.maximum(weights[order], 0.0)
+        rows, columns, faces = found[order].T
+        return cls(rows, columns, faces, inside / inside.sum(axis=1, keepdims=True))
+
+    def interpolate(self, values: npt.NDArray[np.floating]) -> Doubles:
+        """What corners have, (F, 3, ...), at the texels, shape (n, ...)."""
+        found: Doubles = np.einsum("nc,nc...->n...", self.weights, values[self.faces])
+        return found
+
+
+@njit
+def _walk(
+    places: Doubles, boxes: Integers, margin: float, found: Integers, weights: Doubles
+) -> int:
+    """Write row, column and triangle of texels, and weights, as far as there is room; count all."""
+    count = 0
+    for t in range(places.shape[0]):
+        a, b, c = places[t]
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if abs(area) < 1e-9:
+            continue
+        # How much of a corner's weight is lost within a margin beyond the side opposite to it.
+        slack_a = margin * np.hypot(c[0] - b[0], c[1] - b[1]) / abs(area) + 1e-9
+        slack_b = margin * np.hypot(a[0] - c[0], a[1] - c[1]) / abs(area) + 1e-9
+        slack_c = margin * np.hypot(b[0] - a[0], b[1] - a[1]) / abs(area) + 1e-9
+        for y in range(boxes[t, 1], boxes[t, 3] + 1):
+            for x in range(boxes[t, 0], boxes[t, 2] + 1):
+                of_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
+                of_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
+                of_a = 1.0 - of_b - of_c
+                if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
+                    if count < found.shape[0]:
+                        found[count, 0], found[count, 1], found[count, 2] = y, x, t
+                        weights[count, 0], weights[count, 1], weights[count, 2] = of_a, of_b, of_c
+                    count += 1
+    return count

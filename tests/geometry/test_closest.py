@@ -1,0 +1,50 @@
+"""The search for closest points against brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from risorius.geometry.closest import closest_points
+from tests import meshes
+
+
+@pytest.mark.parametrize("name", ["triangle", "octahedron", "open_grid", "with_debris"])
+def test_equals_brute_force(name: str) -> None:
+    """No point of a dense sampling of the mesh is closer, and the point found is on the mesh."""
+    mesh = meshes.NAMED[name]()
+    generator = np.random.default_rng(3)
+    points = generator.uniform(-2.0, 4.0, (100, 3))
+    found = closest_points(points, mesh.vertices, mesh.faces)
+    there = found.interpolate(mesh.vertices)
+    np.testing.assert_allclose(np.linalg.norm(there - points, axis=1), found.distances, atol=1e-12)
+    assert (found.corners == mesh.faces[found.triangles]).all()
+    assert (found.weights >= -1e-12).all()
+    weights = generator.dirichlet([0.5, 0.5, 0.5], 1000)
+    samples = np.einsum("wi,fij->fwj", weights, mesh.vertices[mesh.faces]).reshape(-1, 3)
+    sampled = np.linalg.norm(points[:, None] - samples[None], axis=2).min(axis=1)
+    assert (found.distances <= sampled + 1e-12).all()
+    assert (sampled - found.distances).max() < 0.2
+
+
+def test_points_on_the_mesh() -> None:
+    """Points of the mesh are at distance zero, also in a large mesh of uneven triangles."""
+    mesh = meshes.irregular(4, 60, 40)
+    generator = np.random.default_rng(5)
+    chosen = generator.integers(0, len(mesh.faces), 500)
+    weights = generator.dirichlet([1.0, 1.0, 1.0], 500)
+    points = np.einsum("ni,nij->nj", weights, mesh.vertices[mesh.faces[chosen]])
+    found = closest_points(points, mesh.vertices, mesh.faces)
+    assert found.distances.max() < 1e-12
+    assert (found.triangles == chosen).mean() > 0.99
+
+
+def test_finds_what_looks_the_same_way() -> None:
+    """Of two grids that almost touch, each point finds the one that looks its way."""
+    grid = meshes.open_grid(6, 6)
+    count = len(grid.vertices)
+    vertices = np.concatenate([grid.vertices, grid.vertices - [0.0, 0.0, 0.01]])
+    faces = np.concatenate([grid.faces, grid.faces[:, ::-1] + count])
+    points, ways = np.tile([[3.3, 2.2, -0.005]], (2, 1)), np.array([[0, 0, 1.0], [0, 0, -1.0]])
+    found = closest_points(points, vertices, faces, ways, wrong_side=1.0)
+    assert found.triangles[0] < len(grid.faces) <= found.triangles[1]
