@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..errors import in_one_line
-from ..export.formats import RIGS, Request, check_request, format_for, names
+from ..export.formats import FORMATS, RIGS, Request, check_request, format_for
 from ..export.formats import export as write
 from ..recordings.playback import Playback
 from .options import (
@@ -44,7 +44,7 @@ with_exporting = packed(
     click.option(
         "--as",
         "name",
-        type=click.Choice(names()),
+        type=click.Choice([each.name for each in FORMATS]),
         help="The format, where a suffix does not tell: obj is a folder of one file a frame; "
         "of a .csv, arkit is meant unless told.",
     ),

@@ -26,6 +26,7 @@ from ..script import Script
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
 Indices = npt.NDArray[np.int32]
+METRES = 0.001  # a millimetre; programs for animation take bare numbers for metres
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,7 @@ def record(
     most = round(end * frames_per_second) + 1
     positions = np.empty((most, *scene.positions.shape), np.float32)
     bones: list[Mapping[str, Floats]] = []
-    parts = [_Part(part, most) for part in scene.parts]
+    shapes: list[list[Singles]] = [[] for _ in scene.parts]
     simulation = scene.simulation if isinstance(scene, FaceScene) else None
     controls, activations = list[Floats](), list[Floats]()
     for now in play(scene, script, frames_per_second, until=end, progress=progress):
@@ -142,8 +143,8 @@ def record(
             continue
         positions[len(bones)] = scene.positions
         bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
-        for each in parts:
-            each.add_frame()
+        for kept, part in zip(shapes, scene.parts, strict=True):
+            kept.append(part.vertices)
         controls.append(np.array([*scene.values.values()]))
         activations.append(np.array([*simulation.sums.values()] if simulation else []))
     matrices = {name: np.stack([each[name] for each in bones]) for name in bones[0]}
@@ -159,7 +160,7 @@ def record(
         scene,
         script,
         frames_per_second,
-        (skin, *(each.surface(matrices) for each in parts)),
+        (skin, *(_surface_of(*each, matrices) for each in zip(scene.parts, shapes, strict=True))),
         matrices,
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
         dict(
@@ -168,36 +169,15 @@ def record(
     )
 
 
-class _Part:
-    """A part of a scene in all frames, each once in memory."""
-
-    def __init__(self, part: Any, most: int) -> None:
-        """most: frames."""
-        self._part, self._most, self._count = part, most, 0
-        self._first: Singles = part.vertices
-        self._shapes: Singles | None = None  # as long as it is rigid
-
-    def add_frame(self) -> None:
-        """Keep the part as it is now; it has a new array where it is bent in another way."""
-        shape = self._part.vertices
-        if not self._count:
-            self._first = shape
-        if self._shapes is None and shape is not self._first:
-            self._shapes = np.empty((self._most, *shape.shape), np.float32)
-            self._shapes[: self._count] = self._first
-        if self._shapes is not None:
-            self._shapes[self._count] = shape
-        self._count += 1
-
-    def surface(self, matrices: Mapping[str, Floats]) -> Surface:
-        """What was kept; matrices: of the bones."""
-        part = self._part
-        return Surface(
-            part.name,
-            self._first.astype(np.float64),
-            part.faces,
-            None if self._shapes is None else self._shapes[: self._count],
-            matrices[part.bone],
-            colours=part.colours,
-            shine=part.shine,
-        )
+def _surface_of(part: Any, shapes: list[Singles], matrices: Mapping[str, Floats]) -> Surface:
+    """A part of a scene whose vertices were these, a new array where it was bent in another way."""
+    is_rigid = all(each is shapes[0] for each in shapes)
+    return Surface(
+        part.name,
+        shapes[0].astype(np.float64),
+        part.faces,
+        None if is_rigid else np.stack(shapes),
+        matrices[part.bone],
+        colours=part.colours,
+        shine=part.shine,
+    )

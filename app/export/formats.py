@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -99,10 +99,10 @@ FORMATS = (
     Format("gltf", "glTF", (".glb",), "gltf:write_gltf", rigs=True),
     Format("usd", "USD", (".usdc", ".usda", ".usd"), "usd:write_usd", True, beside=("_skin.png",)),
     Format("usdz", "USD in one file", (".usdz",), "usd:write_usdz", True),
-    Format("pc2", "PC2 point cache", (".pc2",), "point_caches:write_pc2", beside=MESH),
-    Format("obj", "OBJ sequence", (), "sequences:write_obj", True),
+    Format("pc2", "PC2 point cache", (".pc2",), "obj:write_pc2", beside=MESH),
+    Format("obj", "OBJ sequence", (), "obj:write_obj", True),
     Format("vtkhdf", "VTKHDF", (".vtkhdf", ".hdf"), "vtkhdf:write_vtkhdf", True),
-    Format("npz", "numpy arrays", (".npz",), "arrays:write_npz"),
+    Format("npz", "numpy arrays", (".npz",), "tables:write_npz"),
     Format("arkit", "ARKit shapes over time", (".csv",), "tables:write_arkit"),
     Format("units", "action units over time", (".csv",), "tables:write_units"),
     Format("muscles", "muscles over time", (".csv",), "tables:write_muscles"),
@@ -197,8 +197,3 @@ def export(
     clip = record(script, scene_of(script, head), frames_per_second, span=span, progress=progress)
     remark = write(clip, output, chosen, request)
     return f"{output}: {chosen.title}, {counted(clip.frame_count, 'frame')}", remark
-
-
-def names() -> Sequence[str]:
-    """What `--as` may say."""
-    return [each.name for each in FORMATS]

@@ -12,7 +12,6 @@ from risorius.geometry.normals import vertex_normals
 from ..refining.looks import Refinement
 from .clip import Clip, Floats, Indices, Singles, Surface
 
-METRES = 0.001  # a millimetre; programs for animation take bare numbers for metres
 GREY = 0.8  # of what has neither colours nor a texture
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import json
 import struct
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,11 @@ JPEG_QUALITY = 92  # chosen by eye: no blocks in skin, a sixth of the PNG
 class Glb:
     """What goes into one file, in the order in which it is added."""
 
-    def __init__(self) -> None:
+    def __init__(self, times: npt.NDArray[np.float64]) -> None:
+        """Times of the keyframes [s], shape (N,); between them values change evenly."""
+        self._times = times
+        self._input: int | None = None
+        self._tracks: dict[str, list[dict[str, Any]]] = {"channels": [], "samplers": []}
         self._parts: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": f"Risorius {risorius.__version__}"},
             "scene": 0,
@@ -67,8 +72,22 @@ class Glb:
         source = self.add("images", {"bufferView": view, "mimeType": "image/jpeg"})
         return self.add("textures", {"source": source})
 
-    def to_bytes(self) -> bytes:
-        """The whole file."""
+    def animate(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
+        """Add the "translation", "rotation" or "weights" of a node at each time, first axis N."""
+        if self._input is None:
+            self._input = self.accessor(self._times.astype(np.float32), is_bounded=True)
+        rows = values.ravel() if path == "weights" else values
+        sampler = {"input": self._input, "output": self.accessor(rows.astype(np.float32))}
+        target = {"node": node, "path": path}
+        channel = {"sampler": len(self._tracks["samplers"]), "target": target}
+        self._tracks["samplers"].append(sampler)
+        self._tracks["channels"].append(channel)
+
+    def to_bytes(self, title: str, roots: Sequence[int]) -> bytes:
+        """The whole file; title: of its motion. roots: nodes that hang on no other."""
+        if self._input is not None:
+            self.add("animations", {"name": title, **self._tracks})
+        self.add("scenes", {"nodes": roots})
         numbers = _padded(bytes(self._numbers), b"\0")
         parts = {**self._parts, "buffers": [{"byteLength": len(numbers)}]}
         text = json.dumps(parts, separators=(",", ":"), allow_nan=False).encode()
@@ -86,30 +105,3 @@ class Glb:
 
 def _padded(data: bytes, filler: bytes) -> bytes:
     return data + filler * (-len(data) % ALIGNMENT)
-
-
-class Animation:
-    """Tracks over the same times, each of one property of one node."""
-
-    def __init__(self, glb: Glb, times: npt.NDArray[np.float64]) -> None:
-        """Times of the keyframes [s], shape (N,); between them values change evenly."""
-        self._glb = glb
-        self._times = times
-        self._input: int | None = None
-        self._tracks: dict[str, list[dict[str, Any]]] = {"channels": [], "samplers": []}
-
-    def add(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
-        """Add the "translation", "rotation" or "weights" of a node at each time, first axis N."""
-        if self._input is None:
-            self._input = self._glb.accessor(self._times.astype(np.float32), is_bounded=True)
-        rows = values.ravel() if path == "weights" else values
-        sampler = {"input": self._input, "output": self._glb.accessor(rows.astype(np.float32))}
-        target = {"node": node, "path": path}
-        channel = {"sampler": len(self._tracks["samplers"]), "target": target}
-        self._tracks["samplers"].append(sampler)
-        self._tracks["channels"].append(channel)
-
-    def finish(self, name: str) -> None:
-        """Put it into the file, unless nothing moves."""
-        if self._tracks["channels"]:
-            self._glb.add("animations", {"name": name, **self._tracks})

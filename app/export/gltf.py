@@ -16,13 +16,13 @@ from risorius import render
 from risorius.geometry.colour import to_linear
 
 from ..scenes import FaceScene
-from .clip import Clip, Surface
+from .clip import METRES, Clip, Surface
 from .formats import Request
-from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Animation, Glb
+from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 from .morphs import TOLERANCE, Floats
 from .pieces import Piece, moving_pieces
 from .rig import rigged_pieces
-from .skeleton import METRES, Skeleton
+from .skeleton import Skeleton
 
 LONGEST_SHORT = 65535  # vertices that 16 bits can number
 SKIN_ROUGHNESS, DULL, WET = 0.55, 0.75, 0.12  # chosen by eye; parts from dull to wet by their shine
@@ -47,10 +47,9 @@ def write_gltf(clip: Clip, part: Path, request: Request) -> str | None:
 
 def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
     """The whole file."""
-    glb = Glb()
-    animation = Animation(glb, clip.times)
+    glb = Glb(clip.times)
     bones = {piece.bone for piece in pieces if piece.bone is not None}
-    skeleton = Skeleton(clip, bones, glb, animation)
+    skeleton = Skeleton(clip, bones, glb)
     roots = list(skeleton.roots)
     for piece in pieces:
         node: dict[str, Any] = {"name": piece.surface.name}
@@ -64,10 +63,8 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
         else:
             skeleton.hang(number, piece.bone)
         if piece.names:
-            animation.add(number, "weights", piece.weights)
-    animation.finish(clip.script.title or "motion")
-    glb.add("scenes", {"nodes": roots})
-    return glb.to_bytes()
+            glb.animate(number, "weights", piece.weights)
+    return glb.to_bytes(clip.script.title or "motion", roots)
 
 
 def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats | None) -> int:

@@ -15,12 +15,11 @@ import numpy as np
 import scipy
 
 from ..scenes import FaceScene
-from .clip import Clip
-from .glb import Animation, Glb
+from .clip import METRES, Clip
+from .glb import Glb
 from .morphs import Floats
 from .pieces import HEAD
 
-METRES = 0.001
 NECK = "neck"
 STILL = 1e-7  # [m, or of a quaternion] by which a node that does not move may be off
 
@@ -32,8 +31,8 @@ class Skeleton:
     skin: number of the glTF skin of a face, None for what is none.
     """
 
-    def __init__(self, clip: Clip, used: set[str], glb: Glb, animation: Animation) -> None:
-        self._glb, self._animation = glb, animation
+    def __init__(self, clip: Clip, used: set[str], glb: Glb) -> None:
+        self._glb = glb
         self._bones = {NECK: np.broadcast_to(np.eye(4), (clip.frame_count, 4, 4)), **clip.bones}
         self._nodes: dict[str, dict[str, Any]] = {}
         self._pivots: dict[str, Floats] = {}
@@ -71,7 +70,7 @@ class Skeleton:
         node = self._glb.add("nodes", self._nodes[bone])
         translations = METRES * local[:, :3, 3]
         if np.abs(translations - shift).max() > STILL:
-            self._animation.add(node, "translation", translations)
+            self._glb.animate(node, "translation", translations)
         rotations = scipy.spatial.transform.Rotation.from_matrix(local[:, :3, :3]).as_quat(
             canonical=True
         )
@@ -79,7 +78,7 @@ class Skeleton:
             # q and -q turn alike, but not what lies between two keyframes.
             is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0
             rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]
-            self._animation.add(node, "rotation", rotations)
+            self._glb.animate(node, "rotation", rotations)
         if parent is not None:
             self.hang(node, parent)
         return node

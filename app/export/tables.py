@@ -1,6 +1,7 @@
-"""Curves as CSV: muscles, action units, or the shapes of ARKit as Live Link Face writes them.
+"""Numbers: a clip as numpy arrays [mm], or its curves as CSV.
 
-They tell the face that is seen. Muscles, eyes and head follow late what they are asked, each in its
+Curves are muscles, action units, or the shapes of ARKit as Live Link Face writes them. They tell
+the face that is seen. Muscles, eyes and head follow late what they are asked, each in its
 own time, so that what was asked of them is written so much later.
 """
 
@@ -9,6 +10,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..recordings.conversion import lead_of
 from ..recordings.names import ARKIT
 from ..recordings.playback import LEAD
-from .clip import Clip, Floats
+from .clip import Clip, Floats, Surface
 from .formats import Request
 
 DECIMALS = 6  # of numbers, whose zeros at the end are left out: three quarters of a table
@@ -41,6 +43,35 @@ ANGLES = {
     "RightEyePitch": ("gaze_vertical_right", -np.radians(30.0)),
     "RightEyeRoll": ("", 0.0),
 }
+
+
+def write_npz(clip: Clip, part: Path, _: Request) -> None:
+    """Write what a clip holds; docs/export.md lists the names."""
+    arrays: dict[str, Any] = {
+        "positions": clip.skin.shapes,
+        "rest_positions": clip.skin.rest,
+        "faces": clip.skin.faces,
+        "times": clip.times,
+        "frames_per_second": clip.frames_per_second,
+        **{name: array for name, array in _rest_of(clip.skin).items() if name.endswith("uv")},
+    }
+    for surface in clip.surfaces[1:]:
+        arrays[f"parts/{surface.name}/rest_positions"] = surface.rest
+        arrays[f"parts/{surface.name}/faces"] = surface.faces
+        for name, array in _rest_of(surface).items():
+            arrays[f"parts/{surface.name}/{name}"] = array
+    for kind in ("bones", "controls", "activations"):
+        for name, values in getattr(clip, kind).items():
+            arrays[f"{kind}/{name}"] = values
+    with part.open("wb") as file:
+        np.savez_compressed(file, **arrays)
+
+
+def _rest_of(surface: Surface) -> dict[str, Any]:
+    """What not every surface has, by name."""
+    names = ("shapes", "matrices", "colours", "uv", "face_uv")
+    own = {name: getattr(surface, name) for name in names}
+    return {name: array for name, array in own.items() if array is not None}
 
 
 def write_muscles(clip: Clip, part: Path, _: Request) -> None:

@@ -19,7 +19,7 @@ from risorius.geometry.colour import to_linear
 from risorius.geometry.normals import vertex_normals
 
 from ..errors import needed
-from .clip import Clip, Surface
+from .clip import METRES, Clip, Surface
 from .formats import Request
 
 Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
@@ -27,7 +27,6 @@ Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
     for name in ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
 )
 
-MILLIMETRE = 0.001  # metres per unit
 DULL, WET = 0.6, 0.1  # roughness
 UNWRITTEN = "USD did not get to its end; the disk may be full"
 ALWAYS = Usd.TimeCode.Default()
@@ -59,7 +58,7 @@ def write_usdz(clip: Clip, part: Path, request: Request) -> None:
 def _fill(stage: Any, clip: Clip, request: Request, picture: str) -> None:
     """Put the clip on the stage: a time code for each frame."""
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
-    UsdGeom.SetStageMetersPerUnit(stage, MILLIMETRE)
+    UsdGeom.SetStageMetersPerUnit(stage, METRES)
     stage.SetTimeCodesPerSecond(clip.frames_per_second)
     stage.SetFramesPerSecond(clip.frames_per_second)
     stage.SetStartTimeCode(0)

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 
-from risorius.__main__ import command
+from .command_line import refusal, risorius
 
 WRITERS = {
     "film": ("capture", "--set", "joy", "-o", "x.mp4"),
@@ -18,19 +17,6 @@ WRITERS = {
     "figure": ("reproduce", "figure9", "-o", "x.png"),
     "table": ("bench", "refine", "--json", "x.json"),
 }
-
-
-def risorius(*arguments: str) -> Result:
-    """Run the command in this process."""
-    return CliRunner().invoke(command(), list(arguments))
-
-
-def told(result: Result) -> str:
-    """The one line that a refusal is, beside the one that says that something is compiled."""
-    assert result.exit_code == 2, result.output
-    lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
-    assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
-    return lines[0]
 
 
 @pytest.fixture(autouse=True)
@@ -64,7 +50,7 @@ def test_a_place_that_cannot_be_written(command: str, tmp_path: Path) -> None:
         (f"{'x' * 300}{name}", "cannot be written: File name too long"),
         (f"pipe{Path(name).suffix}", "is a device, not a file"),
     ):
-        line = told(risorius(*arguments, target))
+        line = refusal(risorius(*arguments, target))
         assert line.startswith(f"risorius: {target}: ") and words in line
     assert Path("file").read_text() == "mine"
     assert len(list(tmp_path.iterdir())) == 4
@@ -84,7 +70,7 @@ def test_outputs_are_apart(outputs: tuple[str, ...], message: str, tmp_path: Pat
     script.write_text("[[pose]]\ntime = 1\nname = 'joy'\njoy = 1\n")
     Path("link.png").symlink_to(script)
     named = [word.format(folder=tmp_path.name) for word in outputs]
-    assert message in told(risorius("capture", "smile.png", *named))
+    assert message in refusal(risorius("capture", "smile.png", *named))
     assert script.read_text().startswith("[[pose]]")
 
 
@@ -92,14 +78,14 @@ def test_outputs_are_apart(outputs: tuple[str, ...], message: str, tmp_path: Pat
 def test_a_script_that_is_a_circle_of_links(arguments: tuple[str, ...]) -> None:
     """A link to itself is one line, as is a name that would break the line."""
     Path("circle").symlink_to("circle")
-    assert "circle: cannot be read: Too many levels" in told(risorius(*arguments))
-    line = told(risorius(*(word.replace("circle", "no\nscript\x1b[31m") for word in arguments)))
+    assert "circle: cannot be read: Too many levels" in refusal(risorius(*arguments))
+    line = refusal(risorius(*(word.replace("circle", "no\nscript\x1b[31m") for word in arguments)))
     assert line == r"risorius: no\nscript\x1b[31m: no such script"
 
 
 def test_a_folder_for_frames_that_is_a_circle_of_links() -> None:
     """Nothing is replaced."""
     Path("circle").symlink_to("circle")
-    line = told(risorius("capture", "--set", "joy", "-o", "circle", "--quiet"))
+    line = refusal(risorius("capture", "--set", "joy", "-o", "circle", "--quiet"))
     assert line == "risorius: circle: is a link that leads back to itself; choose another name"
     assert Path("circle").is_symlink()

@@ -13,11 +13,11 @@ import imageio_ffmpeg
 import numpy as np
 import numpy.typing as npt
 import pytest
-from click.testing import CliRunner, Result
 from PIL import Image
 
-from risorius.__main__ import command
 from tests.heads import stranger
+
+from .command_line import refusal, risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
@@ -30,11 +30,6 @@ time = 0.4
 name = "joy"
 joy = 1.0
 """
-
-
-def risorius(*arguments: object) -> Result:
-    """Run the command in this process."""
-    return CliRunner().invoke(command(), [str(argument) for argument in arguments])
 
 
 @pytest.fixture
@@ -231,11 +226,7 @@ def test_mistakes_are_one_line(
     """Bad input ends with exit code 2 and a text that says what is allowed; nothing is written."""
     monkeypatch.chdir(smile.parent)
     result = risorius(*[smile if word == "SMILE" else word for word in words.split()])
-    assert result.exit_code == 2
-    assert message in result.output
-    assert "Traceback" not in result.output
-    told = [line for line in result.output.splitlines() if not line.startswith("Compiling")]
-    assert len(told) == 1 and told[0].startswith("risorius: ")
+    assert message in refusal(result)
     assert list(smile.parent.iterdir()) == [smile]
 
 

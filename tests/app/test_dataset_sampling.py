@@ -8,11 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.cli import main
 from risorius.app.dataset.sampling import MOST_UNITS, Sample, draw
 from risorius.app.dataset.table import (
     SampleTable,
@@ -22,6 +20,8 @@ from risorius.app.dataset.table import (
 )
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
+
+from .command_line import risorius
 
 TABLE = load_table(None)
 
@@ -132,7 +132,7 @@ def read(tmp_path: Path, text: str) -> SampleTable:
 
 def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
     """The one that is printed changes nothing; of some sections rows that are left out stay."""
-    printed = CliRunner().invoke(main, ["dataset", "--sample-table"]).output
+    printed = risorius("dataset", "--sample-table").output
     assert read(tmp_path, printed) == TABLE
     own = read(tmp_path, "[units]\nAU12 = 1.0\n[kinds]\nunit = 1\n[persons]\ncount = 3\n")
     assert {draw(own, 0, index).name for index in range(20)} == {"AU12"}

@@ -6,10 +6,12 @@ import itertools
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
 
 from risorius import render
-from risorius.app.cli import doctor, main
+from risorius.app.cli import doctor
+
+from .command_line import risorius
 
 
 @pytest.fixture
@@ -35,7 +37,7 @@ def ill(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
 
 def ask(*options: str) -> Result:
     """Run the command."""
-    return CliRunner().invoke(main, ["doctor", *options])
+    return risorius("doctor", *options)
 
 
 PARTS = ("offscreen", "window", "films")

@@ -7,10 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
 
-from risorius.__main__ import command
 from risorius.app.export.formats import FORMATS
+
+from .command_line import refusal, risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
@@ -48,25 +49,17 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def risorius(*arguments: str) -> Result:
+def export(*arguments: str) -> Result:
     """Run the command in this process."""
-    return CliRunner().invoke(command(), [*arguments, "--quiet"])
-
-
-def told(result: Result) -> str:
-    """The one line that a refusal is."""
-    assert result.exit_code == 2, result.output
-    lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
-    assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
-    return lines[0]
+    return risorius("export", *arguments, "--quiet")
 
 
 @pytest.mark.parametrize("name", OUTPUTS)
 def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path) -> None:
     """What the table of formats says lies beside the script, and may be written again."""
     for _ in range(2):
-        arguments = ("export", "cloth.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
-        result = risorius(*arguments)
+        arguments = ("cloth.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
+        result = export(*arguments)
         assert result.exit_code == 0, result.output
         assert "7 frames" in result.output
     chosen = next(each for each in FORMATS if each.name == name)
@@ -80,11 +73,9 @@ def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path
 @pytest.mark.parametrize("name", ["arkit", "units", "muscles"])
 def test_curves_need_muscles(name: str, folder: Path) -> None:
     """A face has them; a cloth is told in one line, and leaves no file."""
-    assert "take the scene face" in told(
-        risorius("export", "cloth.toml", "--as", name, "-o", "x.csv")
-    )
+    assert "take the scene face" in refusal(export("cloth.toml", "--as", name, "-o", "x.csv"))
     assert not Path("x.csv").exists()
-    result = risorius("export", "face.toml", "--as", name, "-o", "x.csv")
+    result = export("face.toml", "--as", name, "-o", "x.csv")
     assert result.exit_code == 0 and Path("x.csv").stat().st_size > 1000
 
 
@@ -105,33 +96,33 @@ def test_what_cannot_be_is_one_line(
     arguments: tuple[str, ...], words: str | None, folder: Path
 ) -> None:
     """It names what is allowed, and nothing is written."""
-    result = risorius("export", "cloth.toml", *arguments)
+    result = export("cloth.toml", *arguments)
     if words is None:
         assert result.exit_code == 2
     else:
-        assert words in told(result)
+        assert words in refusal(result)
     assert {item.name for item in folder.iterdir()} == {"cloth.toml", "face.toml"}
 
 
 def test_files_of_somebody_else_stay(folder: Path) -> None:
     """What would lie beside the output, a head of the user's, and what is in a folder."""
     Path("x.obj").write_text("mine")
-    line = told(risorius("export", "cloth.toml", "-o", "x.pc2"))
+    line = refusal(export("cloth.toml", "-o", "x.pc2"))
     assert "x.obj: is there, and x.pc2 would come with such a file" in line
     Path("frames").mkdir()
     Path("frames/notes.txt").write_text("mine")
-    line = told(risorius("export", "cloth.toml", "--as", "obj", "-o", "frames"))
+    line = refusal(export("cloth.toml", "--as", "obj", "-o", "frames"))
     assert (
         line == "risorius: frames: is there and not empty; name another folder, or add --overwrite"
     )
     Path("frames/frame_00099.obj").write_text("of an earlier time")
-    result = risorius("export", "cloth.toml", "--as", "obj", "-o", "frames", "--overwrite")
+    result = export("cloth.toml", "--as", "obj", "-o", "frames", "--overwrite")
     assert result.exit_code == 0, result.output
     assert Path("frames/notes.txt").read_text() == Path("x.obj").read_text() == "mine"
     assert not Path("frames/frame_00099.obj").exists()
     Path("head.json").write_text("{}")
     head = ("--head", "head.obj", "--landmarks", "head.json")
-    line = told(risorius("export", "face.toml", "-o", "head.pc2", *head))
+    line = refusal(export("face.toml", "-o", "head.pc2", *head))
     assert "head.obj: is read and would be written" in line
 
 
@@ -147,7 +138,7 @@ def test_a_missing_library_is_named(
     writer = next(each for each in FORMATS if output[1:] in each.suffixes)
     name = f"risorius.app.export.{writer.writer.partition(':')[0]}"
     monkeypatch.delitem(sys.modules, name, raising=False)
-    line = told(risorius("export", "cloth.toml", "-o", output))
+    line = refusal(export("cloth.toml", "-o", output))
     assert line.endswith(f" needs {package}; install it: pip install 'risorius[export]'")
 
 

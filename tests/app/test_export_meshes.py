@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import struct
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +24,8 @@ from risorius.app.refining.looks import Refinement
 from risorius.app.scenes import FaceScene, build_scene
 from risorius.app.script import parse_script
 
+from .command_line import positions_in_blender
+
 Points = npt.NDArray[np.float64]
 
 RATE = 24.0  # frames a second
@@ -46,7 +45,6 @@ gaze_horizontal = 0.5
 head_yaw = 0.4
 """
 REFINED = Refinement()
-IN_BLENDER = Path(__file__).with_name("positions_in_blender.py")
 
 
 @pytest.fixture(scope="module")
@@ -349,14 +347,9 @@ def test_scenes_without_a_face(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["face.usdc", "face.usdz", "fine.usdc", "face.pc2"])
 def test_blender_sees_the_same(clip: Clip, tmp_path: Path, name: str) -> None:
     """Imported and stepped through in Blender, each vertex is where the clip has it."""
-    python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
-    if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
-        pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
     is_fine = name.startswith("fine")
     path = written(clip, tmp_path / name, refinement=REFINED if is_fine else None)
-    found = tmp_path / "found.npz"
-    told = [python, str(IN_BLENDER), str(path), str(found), f"{RATE:g}", str(FRAMES)]
-    subprocess.run(told, check=True, capture_output=True)
+    found = positions_in_blender(path, tmp_path, RATE, FRAMES)
     with np.load(found) as positions:
         for frame in range(FRAMES):
             if name.endswith("pc2"):

@@ -11,14 +11,14 @@ import numpy as np
 import numpy.typing as npt
 import OpenEXR
 import pytest
-from click.testing import CliRunner, Result
 from PIL import Image
 
-from risorius.__main__ import command
 from risorius.app.errors import UserError
 from risorius.app.passes.exr import NOTHING, write_exr
 from risorius.app.passes.files import Labelled, save_labelled
 from tests.heads import stranger
+
+from .command_line import risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
@@ -32,11 +32,6 @@ time = 0.0
 time = 0.2
 AU12 = 1.0
 """
-
-
-def risorius(*arguments: object) -> Result:
-    """Run the command in this process."""
-    return CliRunner().invoke(command(), [str(argument) for argument in arguments])
 
 
 def channels_of(path: Path) -> dict[str, npt.NDArray[Any]]:

@@ -7,12 +7,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
-from click.testing import CliRunner, Result
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from risorius.__main__ import command
 from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance, script_for
 from risorius.app.recordings import Take
@@ -22,6 +20,8 @@ from risorius.app.recordings.playback import LEAD, Playback
 from risorius.app.recordings.smoothing import smoothed
 from risorius.app.scenes import FaceScene
 from risorius.app.script import TOLERANCE, load_script
+
+from .command_line import risorius
 
 RATE = 60
 Curve = npt.NDArray[np.float64]
@@ -56,11 +56,6 @@ def written(folder: Path, seconds: float = 1.0) -> Path:
 def face() -> FaceScene:
     """The built-in face."""
     return FaceScene()
-
-
-def risorius(*arguments: object) -> Result:
-    """Run the command in this process."""
-    return CliRunner().invoke(command(), [str(argument) for argument in arguments])
 
 
 @given(st.floats(0.0, 0.3), st.floats(0.0, 2.5))

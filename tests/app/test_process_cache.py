@@ -8,10 +8,10 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 from risorius.app import process_cache
-from risorius.app.cli import main
+
+from .command_line import risorius
 
 SCRIPT = """
 duration = 0.3
@@ -82,7 +82,7 @@ def test_the_content_of_a_file_is_known_by_its_state(tmp_path: Path) -> None:
 
 def made(folder: Path, command: str) -> dict[str, bytes]:
     """Every file that a command makes in a folder."""
-    ended = CliRunner().invoke(main, command.format(folder).split(), catch_exceptions=False)
+    ended = risorius(*command.format(folder).split())
     assert ended.exit_code == 0, ended.output
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 

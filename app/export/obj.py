@@ -1,19 +1,24 @@
-"""A folder of one mesh file a frame, an OBJ: what every program reads, triangles as they come.
+"""OBJ, which every program reads: a folder of one a frame, or one whose vertices a PC2 file moves.
 
-Source: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL).
+The mesh is the whole head, the skin first, in metres, so that one modifier moves everything.
+Sources: Wavefront, "Advanced Visualizer manual", appendix B1 (OBJ) and B2 (MTL); Blender's own
+reader, the Mesh Cache modifier, and Autodesk's PointCache2.
 """
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import PIL.Image
 
-from .clip import Clip, Floats, Indices
+from .clip import METRES, Clip, Floats, Indices
 from .formats import FRAME, Request
-from .frame_surfaces import METRES, FrameSurface, frame_surfaces
+from .frame_surfaces import FrameSurface, frame_surfaces
+
+PC2_HEAD = "<12siiffi"  # signature, version, vertices, first frame, frames a sample, samples
 
 
 def write_obj(clip: Clip, folder: Path, request: Request) -> None:
@@ -21,14 +26,29 @@ def write_obj(clip: Clip, folder: Path, request: Request) -> None:
 
     The mesh that is simulated keeps its V vertices, in their order.
     """
-    material = write_material(clip, folder / "frame.mtl")
+    material = _write_material(clip, folder / "frame.mtl")
     frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
     for number, frame in enumerate(frames):
         path = folder / f"{FRAME.format(number)}.obj"
-        path.write_text(obj_text(frame, material))
+        path.write_text(_obj_text(frame, material))
 
 
-def write_material(clip: Clip, path: Path) -> str:
+def write_pc2(clip: Clip, part: Path, request: Request) -> None:
+    """Write metres, little-endian; a sample is a frame, the first is frame 0."""
+    points = []
+    for number, frame in enumerate(request.counted(frame_surfaces(clip), clip.frame_count)):
+        if number == 0:
+            material = _write_material(clip, part.with_suffix(".mtl"))
+            part.with_suffix(".obj").write_text(_obj_text(frame, material))
+        points.append(METRES * np.concatenate([surface.points for surface in frame]))
+    vertices = len(points[0])
+    with part.open("wb") as file:
+        head = (b"POINTCACHE2\0", 1, vertices, 0.0, 1.0, clip.frame_count)
+        file.write(struct.pack(PC2_HEAD, *head))
+        file.write(np.stack(points).astype("<f4").tobytes())
+
+
+def _write_material(clip: Clip, path: Path) -> str:
     """Write an MTL and its picture, if the skin has one; the name of the MTL, or nothing."""
     if clip.scene.albedo is None:
         return ""
@@ -38,7 +58,7 @@ def write_material(clip: Clip, path: Path) -> str:
     return path.name
 
 
-def obj_text(frame: Sequence[FrameSurface], material: str) -> str:
+def _obj_text(frame: Sequence[FrameSurface], material: str) -> str:
     """One OBJ of one object, a group for each surface; material: the MTL that the skin has.
 
     Vertices have colours behind their coordinates, as MeshLab writes and Blender reads them.

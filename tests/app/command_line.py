@@ -1,0 +1,37 @@
+"""The command as tests give it, in this process, and what it refuses; and Blender, as a reader."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from risorius.__main__ import command
+
+
+def risorius(*arguments: object) -> Result:
+    """Run the command in this process."""
+    return CliRunner().invoke(command(), [str(argument) for argument in arguments])
+
+
+def refusal(result: Result) -> str:
+    """The one line that a refusal is, beside the one that says that something is compiled."""
+    assert result.exit_code == 2, result.output
+    lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
+    assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
+    return lines[0]
+
+
+def positions_in_blender(path: Path, folder: Path, rate: float, frames: int) -> Path:
+    """Where Blender has the vertices of a file, frame by frame, as an .npz; skips without bpy."""
+    python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
+    if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
+        pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
+    found, program = folder / "found.npz", Path(__file__).with_name("positions_in_blender.py")
+    told = [python, program, path, found, f"{rate:g}", str(frames)]
+    subprocess.run(told, check=True, capture_output=True)
+    return found
