@@ -1,24 +1,22 @@
-"""Which values of remembered settings are of use: a rule for each."""
+"""What can be chosen in the window, by the names that panels show and settings keep."""
 
 from __future__ import annotations
 
-import math
-import reprlib
 import sys
-from collections.abc import Callable, Collection
-from typing import Any, get_type_hints
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
 
 from risorius import render
+from risorius.schema import MadeFrom, OneOf, Record, Within, parsed_json, quoted
 
-from ..refining.looks import LOOKS, STATIC
+from ..files import read_text
 from .interface.commands import chord
+from .interface.gui import THEMES
 
-Rule = Callable[[Any], Any]  # gives back a value that is of use; ValueError or KeyError if not
-
-LONGEST_NUMBER = 15  # [digits] of a whole number; Python refuses to read very long ones
+LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
 SIDES = 200, 16384  # [screen units] of the window, least and most
 SIDES_EXPORTED = 16, 8192  # [pixels] of what is exported
-MOST_TOLD = 6  # of values that are of no use; a line has room for no more
 FURTHEST = 1e6  # of any number that says where a camera is
 ZOOMS = 0.6, 3.0  # least and most of the size of words
 COMPARISONS = ("off", "wipe", "side by side", "A alone", "B alone")
@@ -36,163 +34,51 @@ TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 TABS = ("Face", "Mechanism", "Live")
 
 
-class Refused:
-    """Takes what is of use out of stored tables, and gathers words for what is not."""
-
-    def __init__(self) -> None:
-        self._found: list[str] = []
-
-    def __str__(self) -> str:
-        more = len(self._found) - MOST_TOLD
-        return ", ".join([*self._found[:MOST_TOLD], *([f"{more} more"] if more > 0 else [])])
-
-    def table(self, where: str, stored: Any, rule_of: Callable[[str], Rule | None]) -> Any:
-        """The entries of a table that their rules accept; what has no rule is passed by."""
-        if not isinstance(stored, dict):
-            self._found.append(f"{where.rstrip('.') or 'all'} = {reprlib.repr(stored)}")
-            return {}
-        accepted = {}
-        for name, value in stored.items():
-            rule = rule_of(name)
-            if rule is None:  # of another version of the program
-                continue
-            try:
-                accepted[name] = rule(value)
-            except (ValueError, KeyError):
-                self._found.append(f"{where}{name} = {reprlib.repr(value)}")
-        return accepted
+def _shortcut(key: str) -> str:
+    try:
+        chord(key)
+    except KeyError:
+        raise ValueError(
+            f"was {key!r}, must be a key of the keyboard, with its modifiers"
+        ) from None
+    return key
 
 
-def whole_number(digits: str) -> float:
-    """The number that is written so; NaN for one that is of no use anywhere."""
-    return int(digits) if len(digits) <= LONGEST_NUMBER else math.nan
+def _folder(name: str) -> str:
+    if "\0" in name:
+        raise ValueError(f"was {name!r}, must be the name of a folder")
+    return name
 
 
-def number(least: float, most: float) -> Rule:
-    """Any from the least to the most."""
-
-    def rule(value: Any) -> float:
-        """A finite number, neither on nor off."""
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not (is_number and least <= value <= most):  # NaN is not
-            raise ValueError
-        return float(value)
-
-    return rule
-
-
-def one_of(allowed: Collection[str]) -> Rule:
-    """One of the words `allowed`."""
-
-    def rule(value: Any) -> str:
-        """One of them."""
-        if not (isinstance(value, str) and value in allowed):
-            raise ValueError
+def _option(value: Any) -> Any:
+    is_number = isinstance(value, int | float)
+    if is_number and abs(value) <= sys.float_info.max:
         return value
-
-    return rule
-
-
-def several_of(allowed: Collection[str]) -> Rule:
-    """A list of the words `allowed`."""
-    one = one_of(allowed)
-    return lambda value: [one(each) for each in _list(value)]
-
-
-def _list(value: Any) -> list[Any]:
-    if not isinstance(value, list):
-        raise ValueError
+    if is_number or not isinstance(value, str | None):
+        raise ValueError(f"was {quoted(value)}, must be a number, a text, true or false")
     return value
 
 
-def anything(value: Any) -> Any:
-    """A table, whose entries have rules of their own, or what has no rule."""
-    return value
+_Pair = Annotated[tuple[int, int], Within(*SIDES)]
+_Place = Annotated[tuple[float, float, float, float, float, float], Within(-FURTHEST, FURTHEST)]
+Size = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
+Camera = Annotated[list[float], MadeFrom(_Place, list)]  # yaw, pitch, distance, target
+Shortcut = Annotated[str, MadeFrom(str, _shortcut)]
+Folder = Annotated[str, MadeFrom(str, _folder)]
+Share = Annotated[float, Within(0.0, 1.0)]
+# Of a refiner, which knows more about it.
+Option = Annotated[Any, MadeFrom(Any, _option)]
 
 
-def rules_of(kind: type) -> dict[str, Rule]:
-    """The rules that the fields of a dataclass are annotated with, by their names."""
-    hints = get_type_hints(kind, include_extras=True)
-    return {name: next(iter(getattr(hints[name], "__metadata__", ())), anything) for name in hints}
+@dataclass
+class WindowSettings(Record):
+    """What of the settings is needed before anything else is there."""
+
+    size: Size = None  # of the window [screen units]
+    theme: Annotated[str, OneOf(THEMES)] = "light"
+    zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # of all words and sliders
 
 
-def flag(value: Any) -> bool:
-    """On or off."""
-    if not isinstance(value, bool):
-        raise ValueError
-    return value
-
-
-def size(value: Any) -> tuple[int, int] | None:
-    """Width and height of a window, or None."""
-    if value is None:
-        return None
-    side = number(*SIDES)
-    width, height = (int(side(each)) for each in _list(value))
-    return width, height
-
-
-def sides(value: Any) -> tuple[int, int]:
-    """Width and height of what is exported [pixels]."""
-    width, height = map(number(*SIDES_EXPORTED), _list(value))
-    return int(width), int(height)
-
-
-def folder(value: Any) -> str:
-    """The name of one; "" for the present one."""
-    if not isinstance(value, str) or "\0" in value:
-        raise ValueError
-    return value
-
-
-def shortcut(value: Any) -> str:
-    """A key of the keyboard, with its modifiers."""
-    chord(str(value))
-    return str(value)
-
-
-def texts(value: Any) -> list[str]:
-    """A list of any words."""
-    return [str(each) for each in _list(value)]
-
-
-def camera(value: Any) -> list[float]:
-    """Yaw, pitch, distance, and the point it looks at."""
-    place = [number(-FURTHEST, FURTHEST)(each) for each in _list(value)]
-    if len(place) != 6:
-        raise ValueError
-    return place
-
-
-def option(value: Any) -> Any:
-    """A number, a word, on or off, or None for what suits; the refiner knows more about it."""
-    if isinstance(value, str | bool) or value is None:
-        return value
-    finite = number(-sys.float_info.max, sys.float_info.max)(value)
-    return value if isinstance(value, int) else finite
-
-
-def refiners() -> Collection[str]:
-    """Names of refiners; they are imported when somebody asks for them."""
-    from risorius import refine
-
-    return refine.available()
-
-
-def refiner(value: Any) -> str | None:
-    """The name of one, which is not the one that does nothing; None for that of the look."""
-    if value is None:
-        return None
-    if value == STATIC:
-        raise ValueError
-    return one_of(refiners())(value)  # type: ignore[no-any-return]
-
-
-def side(value: Any) -> str:
-    """What a side of a comparison shows: what is chosen, a look, or a refiner."""
-    return one_of((CHOSEN, *LOOKS, *refiners()))(value)  # type: ignore[no-any-return]
-
-
-def table_of_refiner(name: str) -> Rule | None:
-    """The options of a refiner, where there is one of this name."""
-    return anything if name in refiners() else None
+def stored_settings(path: Path) -> Any:
+    """What the file has; UserError, OSError or ValueError where it is none."""
+    return parsed_json(read_text(path, what="file of settings", longest=LONGEST_FILE))

@@ -11,24 +11,25 @@ import contextlib
 import json
 import reprlib
 import time
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
-from risorius import render
+from risorius import refine, render
+from risorius.schema import Flag, OneOf, Record, Within, read_what_fits
 
 from ..anatomy import OPACITY, SIDES, SOLIDS, Dissection
 from ..capture.formats import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
-from ..files import NoSuchFileError, read_text, save_text
+from ..files import NoSuchFileError, save_text
 from ..refining.looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
 from ..refining.refiners import refiner_for
 from ..scenes import Scene
 from . import setting_rules as rules
 from .colours import COLOURS
-from .interface.gui import THEMES
 from .overlays import OVERLAYS, overlays_of
 
 
@@ -71,37 +72,53 @@ for _each in MOTION:
     KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)
 
 MOST_RECENT = 10  # files that are remembered
-LONGEST_FILE = 2**20  # [bytes]; those that we write have two thousand
+MOST_TOLD = 4  # of values that are of no use; a line has room for no more
+
+
+class Refiners:
+    """Some names, and those of all refiners that do something and are there when somebody asks."""
+
+    def __init__(self, *others: str | None) -> None:
+        self._others = others
+
+    def __iter__(self) -> Iterator[str | None]:
+        yield from (*self._others, *(name for name in refine.available() if name != STATIC))
+
+
+Side = Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *LOOKS), "a look or a refiner")]
 
 
 @dataclass
-class Display:
+class Display(Record):
     """How the scene is shown; the names are those that panels show."""
 
-    look: Annotated[str, rules.one_of(LOOKS)] = FIRST_LOOK
-    refiner: Annotated[str | None, rules.refiner] = None  # None: that of the look
+    look: Annotated[str, OneOf(LOOKS)] = FIRST_LOOK
+    # None: that of the look.
+    refiner: Annotated[str | None, OneOf(Refiners(None), "a refiner")] = None
     # What refiners are told over the look, by their names.
-    options: dict[str, dict[str, Any]] = field(default_factory=dict)
-    is_refined: Annotated[bool, rules.flag] = True
-    compare: Annotated[str, rules.one_of(rules.COMPARISONS)] = "off"
-    a: Annotated[str, rules.side] = STATIC  # what is compared, at the left and at the right
-    b: Annotated[str, rules.side] = rules.CHOSEN
-    divider: Annotated[float, rules.number(0.0, 1.0)] = 0.5  # of a wipe, of the picture's width
-    shading: Annotated[str, rules.one_of([each.value for each in render.Shading])] = "pixel"
-    wireframe: Annotated[bool, rules.flag] = False
-    colours: Annotated[str, rules.one_of(COLOURS)] = "none"
-    skin: Annotated[str, rules.one_of(rules.SKINS)] = "textured"
-    occlusion: Annotated[bool, rules.flag] = True  # less light in folds; of textured skin
-    # How deep skin wrinkles where it is compressed.
-    wrinkles: Annotated[float, rules.number(0.0, 1.0)] = 1.0
-    light: Annotated[str, rules.one_of(render.LIGHTS)] = "studio"
-    background: Annotated[str, rules.one_of(rules.BACKGROUNDS)] = "theme"
-    tone: Annotated[str, rules.one_of(rules.TONES)] = "own"  # of textured skin
-    is_orthographic: Annotated[bool, rules.flag] = False  # the camera
-    overlays: Annotated[list[str], rules.several_of(OVERLAYS)] = field(default_factory=list)
+    options: dict[str, dict[str, rules.Option]] = field(default_factory=dict)
+    is_refined: Flag = True
+    compare: Annotated[str, OneOf(rules.COMPARISONS)] = "off"
+    # What is compared, at the left and at the right.
+    a: Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *LOOKS), "a look or a refiner")] = STATIC
+    b: Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *LOOKS), "a look or a refiner")] = (
+        rules.CHOSEN
+    )
+    divider: rules.Share = 0.5  # of a wipe, of the picture's width
+    shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
+    wireframe: Flag = False
+    colours: Annotated[str, OneOf(COLOURS)] = "none"
+    skin: Annotated[str, OneOf(rules.SKINS)] = "textured"
+    occlusion: Flag = True  # less light in folds; of textured skin
+    wrinkles: rules.Share = 1.0  # how deep they are where skin is compressed
+    light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
+    background: Annotated[str, OneOf(rules.BACKGROUNDS)] = "theme"
+    tone: Annotated[str, OneOf(rules.TONES)] = "own"  # of textured skin
+    is_orthographic: Flag = False  # the camera
+    overlays: list[Annotated[str, OneOf(OVERLAYS)]] = field(default_factory=list)
     # Of the skin over muscles and skull, and on which side of the face it lets them show.
-    skin_opacity: Annotated[float, rules.number(0.0, 1.0)] = OPACITY
-    dissect: Annotated[str, rules.one_of(SIDES)] = "both"
+    skin_opacity: rules.Share = OPACITY
+    dissect: Annotated[str, OneOf(SIDES)] = "both"
 
     @property
     def dissection(self) -> Dissection:
@@ -151,47 +168,50 @@ class Display:
         order = [shading.value for shading in render.Shading]
         self.shading = order[(order.index(self.shading) + 1) % len(order)]
 
+    def remove_unknown_refiners(self) -> None:
+        """Tell nothing to refiners that are not installed any more."""
+        self.options = {
+            name: self.options[name] for name in refine.available() if name in self.options
+        }
+
     def remove_missing_overlays(self, scene: Scene) -> None:
         """Show none that this scene has no data for."""
         self.overlays = [name for name in self.overlays if name in overlays_of(scene)]
 
 
 @dataclass
-class ExportChoices:
+class ExportChoices(Record):
     """What was exported last, and how."""
 
-    kind: Annotated[str, rules.one_of(KINDS)] = "mp4"
-    source: Annotated[str, rules.one_of(SOURCES)] = "script"
-    seconds: Annotated[float, rules.number(0.1, 600.0)] = 4.0  # of a face as it is
-    size: Annotated[tuple[int, int], rules.sides] = (1280, 720)
-    rate: Annotated[float, rules.number(1.0, 240.0)] = 30.0  # [frames/s]
-    is_transparent: Annotated[bool, rules.flag] = False
-    has_captions: Annotated[bool, rules.flag] = True
-    is_turntable: Annotated[bool, rules.flag] = False
-    folder: Annotated[str, rules.folder] = ""  # "" for the present one
+    kind: Annotated[str, OneOf(KINDS)] = "mp4"
+    source: Annotated[str, OneOf(SOURCES)] = "script"
+    seconds: Annotated[float, Within(0.1, 600.0)] = 4.0  # of a face as it is
+    size: Annotated[tuple[int, int], Within(*rules.SIDES_EXPORTED)] = (1280, 720)
+    rate: Annotated[float, Within(1.0, 240.0)] = 30.0  # [frames/s]
+    is_transparent: Flag = False
+    has_captions: Flag = True
+    is_turntable: Flag = False
+    folder: rules.Folder = ""  # "" for the present one
 
 
 @dataclass
-class Settings:
+class Settings(rules.WindowSettings):
     """Everything that is remembered."""
 
-    size: Annotated[tuple[int, int] | None, rules.size] = None  # of the window [screen units]
-    theme: Annotated[str, rules.one_of(THEMES)] = "light"
-    zoom: Annotated[float, rules.number(*rules.ZOOMS)] = 1.0  # of all words and sliders
-    is_linked: Annotated[bool, rules.flag] = True  # sliders of both sides
-    is_alive: Annotated[bool, rules.flag] = True  # the face, where nobody moves it
-    tab: Annotated[str, rules.one_of(rules.TABS)] = "Face"
+    is_linked: Flag = True  # sliders of both sides
+    is_alive: Flag = True  # the face, where nobody moves it
+    tab: Annotated[str, OneOf(rules.TABS)] = "Face"
     # [letters' heights]; layout.py has the limits of a screen.
-    panel_width: Annotated[float, rules.number(0.0, 1000.0)] = 22.5
-    shows_curves: Annotated[bool, rules.flag] = False  # of keys, instead of rows
-    counts_frames: Annotated[bool, rules.flag] = False  # instead of seconds
-    timeline_height: Annotated[float, rules.number(0.0, 1000.0)] = 0.0  # [letters']; 0: as needed
-    folds: dict[str, bool] = field(default_factory=dict)  # which headings are open, by title
-    cameras: dict[str, list[float]] = field(default_factory=dict)  # by scene
-    keys: dict[str, str] = field(default_factory=dict)  # that were changed, by command
-    recent: Annotated[list[str], rules.texts] = field(default_factory=list)  # files, latest first
+    panel_width: Annotated[float, Within(0.0, 1000.0)] = 22.5
+    shows_curves: Flag = False  # of keys, instead of rows
+    counts_frames: Flag = False  # instead of seconds
+    timeline_height: Annotated[float, Within(0.0, 1000.0)] = 0.0  # [letters']; 0: as needed
+    folds: dict[str, Flag] = field(default_factory=dict)  # which headings are open, by title
+    cameras: dict[str, rules.Camera] = field(default_factory=dict)  # by scene
+    keys: dict[str, rules.Shortcut] = field(default_factory=dict)  # that were changed, by command
+    recent: list[str] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
-    knows_first_steps: Annotated[bool, rules.flag] = False
+    knows_first_steps: Flag = False
     export: ExportChoices = field(default_factory=ExportChoices)
 
     def note_recent(self, *paths: Path) -> None:
@@ -241,39 +261,23 @@ def load_settings(path: Path) -> tuple[Settings, str]:
 
     In that case the file is set aside, and what is of use of it written anew.
     """
-    settings, refused = Settings(), rules.Refused()
     try:
-        text = read_text(path, what="file of settings", longest=LONGEST_FILE)
-        stored = json.loads(text, parse_int=rules.whole_number)
+        stored = rules.stored_settings(path)
     except NoSuchFileError:
-        return settings, ""
+        return Settings(), ""
     except UserError as error:
-        return settings, f"{error}; all is as at first; {rename_unusable(path)}"
-    except (ValueError, RecursionError) as error:
-        return (
-            settings,
-            f"{path}: not valid JSON: {error}; all is as at first; {rename_unusable(path)}",
-        )
-    accepted = refused.table("", stored, rules.rules_of(Settings).get)
-    display = refused.table("display.", accepted.pop("display", {}), rules.rules_of(Display).get)
-    options = refused.table("display.options.", display.pop("options", {}), rules.table_of_refiner)
-    display["options"] = {
-        name: refused.table(f"display.options.{name}.", found, lambda _: rules.option)
-        for name, found in options.items()
-    }
-    export = refused.table("export.", accepted.pop("export", {}), rules.rules_of(ExportChoices).get)
-    accepted["export"] = ExportChoices(**export)
-    folds, cameras, keys = (accepted.pop(name, {}) for name in ("folds", "cameras", "keys"))
-    accepted["folds"] = refused.table("folds.", folds, lambda _: rules.flag)
-    accepted["cameras"] = refused.table("cameras.", cameras, lambda _: rules.camera)
-    accepted["keys"] = refused.table("keys.", keys, lambda _: rules.shortcut)
-    settings, told = Settings(**accepted, display=Display(**display)), str(refused)
-    if not told:
+        return Settings(), f"{error}; all is as at first; {rename_unusable(path)}"
+    except ValueError as error:
+        return Settings(), f"{path}: {error}; all is as at first; {rename_unusable(path)}"
+    settings, refused = read_what_fits(Settings, stored)
+    settings.display.remove_unknown_refiners()
+    if not refused:
         return settings, ""
     renamed = rename_unusable(path)
     with contextlib.suppress(UserError):  # of a full disk others speak
         save_settings(path, settings)
-    return settings, in_one_line(f"{path}: of no use and as at first: {told}; {renamed}")
+    told = refused[:MOST_TOLD] + [f"{len(refused) - MOST_TOLD} more"] * (len(refused) > MOST_TOLD)
+    return settings, in_one_line(f"{path}: as at first: {'; '.join(told)}; {renamed}")
 
 
 def rename_unusable(path: Path) -> str:
@@ -321,4 +325,8 @@ def _suits(scene: Scene, refinement: Refinement) -> bool:
 
 def save_settings(path: Path, settings: Settings) -> None:
     """Write the file; UserError where that cannot be."""
-    save_text(path, json.dumps(asdict(settings), indent=1))
+    stored = asdict(settings)
+    for table in (stored, stored["display"]):  # what is not chosen is not there
+        for name in [name for name, value in table.items() if value is None]:
+            del table[name]
+    save_text(path, json.dumps(stored, indent=1))

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import json
 import logging
 import os
 import sys
@@ -22,11 +21,11 @@ import PIL.Image
 from PIL import ImageDraw, ImageFont
 
 from risorius import render
+from risorius.schema import read_what_fits
 
 from ...errors import UserError
-from ...files import read_text
-from .. import setting_rules as rules
 from ..interface.gui import FONT, FONT_SIZE, THEMES, Theme, wait_for_event
+from ..setting_rules import WindowSettings, stored_settings
 from .placement import first_size
 
 LOADING, COMPILING = "Loading the face ...", "Compiling, this once: half a minute ..."
@@ -42,17 +41,14 @@ class SplashScreen(logging.Handler):
     def __init__(self, size: tuple[int, int] | None, path: Path | None, *, is_own: bool) -> None:
         """path: of the settings. is_own: it is not the built-in face that will be seen."""
         super().__init__()
-        known = {"theme": rules.one_of(THEMES), "size": rules.size}
-        known["zoom"] = rules.number(*rules.ZOOMS)
         stored: Any = {}
-        with contextlib.suppress(UserError, OSError, ValueError, RecursionError):
-            if path is not None:  # what is wrong with it, load_settings tells
-                stored = json.loads(read_text(path, what="file of settings", longest=2**20))
-        found = rules.Refused().table("", stored, known.get)
-        self._theme, self._is_own = THEMES[found.get("theme", "light")], is_own
+        with contextlib.suppress(UserError, OSError, ValueError):  # which load_settings tells
+            stored = {} if path is None else stored_settings(path)
+        found = read_what_fits(WindowSettings, stored)[0]
+        self._theme, self._is_own = THEMES[found.theme], is_own
         self._text, self._drawn = LOADING, ((0, 0), "")
-        self.surface = render.open_window(size or first_size(found.get("size")), "Risorius")
-        self._em = FONT_SIZE * found.get("zoom", 1.0) * self.surface.pixel_scale
+        self.surface = render.open_window(size or first_size(found.size), "Risorius")
+        self._em = FONT_SIZE * found.zoom * self.surface.pixel_scale
         LOG.addHandler(self)
         self._show()
 
