@@ -16,7 +16,7 @@ from .. import process_cache
 from ..anatomy import Dissection
 from ..files import Image
 from ..motion import play
-from ..passes.files import Labelled, labelled
+from ..passes.labelled import Labelled, labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
 from ..refining.looks import Refinement

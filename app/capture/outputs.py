@@ -21,10 +21,10 @@ from ..files import (
     folder_atomically,
     written_atomically,
 )
-from ..passes.files import ENDS, Labelled
+from ..passes.labelled import ENDS, Labelled
 from ..stopping import cleaned_up_if_stopped
 from ..workers.child import share_of_cores
-from .ffmpeg import Encoder, Soundtrack
+from .encoder import Encoder, Soundtrack
 from .formats import check_format, size_of_film
 from .transparency import with_colours_around
 

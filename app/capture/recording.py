@@ -9,13 +9,13 @@ from pathlib import Path
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
 from ..motion import scene_of
-from ..passes.files import beside, check_wanted, save_labelled
+from ..passes.labelled import beside, check_wanted, save_labelled
 from ..script import Script
 from ..sound import load_sound
 from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
-from .ffmpeg import Soundtrack
+from .encoder import Soundtrack
 from .formats import HEARD, check_name, format_of
 
 

@@ -196,7 +196,7 @@ def _check_free(
 def _beside(name: str, given: dict[str, Any]) -> list[Path]:
     """The files that come with the one that a line names."""
     from ..export.formats import format_for
-    from ..passes.files import beside
+    from ..passes.labelled import beside
 
     output: Path | None = given.get("output")
     if name == "export" and output is not None:

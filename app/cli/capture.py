@@ -137,7 +137,7 @@ def capture(
     from ..capture import capture as film_of
     from ..capture.formats import HEARD
     from ..files import check_apart
-    from ..passes.files import beside
+    from ..passes.labelled import beside
     from ..refining.refiners import parse_comparison
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]

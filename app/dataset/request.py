@@ -13,7 +13,7 @@ from typing import Any
 from risorius.assets.meshes import FORMATS
 
 from ..errors import UserError
-from ..passes.files import check_wanted
+from ..passes.labelled import check_wanted
 from ..passes.passes import IMAGES
 from .surroundings import Backgrounds, backgrounds_of, digest, files_in
 from .table import SampleTable, load_table, with_camera

@@ -21,7 +21,7 @@ from ..files import Image
 from ..motion import SETTLING
 from ..motion.idle import looking_at
 from ..passes.camera_labels import CameraLabels
-from ..passes.files import Labelled
+from ..passes.labelled import Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline
 from ..refining.looks import Refinement

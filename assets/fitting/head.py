@@ -38,7 +38,6 @@ from ..model import (
     SingleArray,
     Wrinkles,
 )
-from risorius.geometry.normals import vertex_normals
 from ..topology import boundary_loops
 from ..user_files import named
 from .coarser import coarser

@@ -15,7 +15,7 @@ from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
-from risorius.app.passes.files import labelled
+from risorius.app.passes.labelled import labelled
 from risorius.app.passes.passes import NAMES, Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment

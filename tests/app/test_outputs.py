@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from risorius.app import files
-from risorius.app.capture import ffmpeg, outputs
+from risorius.app.capture import outputs
 from risorius.app.cli import main
 from risorius.app.errors import UserError
 
@@ -131,7 +131,7 @@ def fake_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[st
         fake.chmod(0o755)
         return fake
 
-    monkeypatch.setattr(ffmpeg, "PATIENCE", 0.8)
+    monkeypatch.setattr(encoder, "PATIENCE", 0.8)
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "ffmpeg"))
     return make
 

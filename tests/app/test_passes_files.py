@@ -15,7 +15,7 @@ from PIL import Image
 
 from risorius.app.errors import UserError
 from risorius.app.passes.exr import NOTHING, write_exr
-from risorius.app.passes.files import Labelled, save_labelled
+from risorius.app.passes.labelled import Labelled, save_labelled
 from tests.heads import stranger
 
 from .command_line import risorius

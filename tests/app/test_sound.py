@@ -19,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius.app.capture import outputs
-from risorius.app.capture.ffmpeg import Soundtrack as Heard
+from risorius.app.capture.encoder import Soundtrack as Heard
 from risorius.app.capture.formats import HEARD
 from risorius.app.cli import main
 from risorius.app.errors import UserError
