@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from risorius.app import files
-from risorius.app.capture import outputs
+from risorius.app.capture import encoder, outputs
 from risorius.app.cli import main
 from risorius.app.errors import UserError
 
