@@ -11,12 +11,19 @@ import pytest
 
 from risorius.app import process_cache
 from risorius.app.performances import script_for
+from risorius.app.scenes import FaceScene
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display
 
 from .driving import SIZE, replace_state, settle, xdotool
+
+
+@pytest.fixture(scope="session")
+def scene() -> FaceScene:
+    """One face for all tests that only pose it."""
+    return FaceScene()
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ import sys
 import time
 from collections.abc import Sequence
 from copy import deepcopy
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -168,30 +167,6 @@ def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
     clear_search(viewer)
 
 
-def test_a_comparison_has_two_parts_or_one(viewer: Viewer) -> None:
-    """In however narrow a picture neither part is empty; a single pixel is not divided."""
-    display = replace(viewer.settings.display, divider=0.02)
-    for compare in ("wipe", "side by side"):
-        display = replace(display, compare=compare)
-        shots = viewer.stage.shots(display, (3, 0, 2, 50))
-        assert [shot.clip for shot in shots] == [(3, 0, 1, 50), (4, 0, 1, 50)]
-        assert len(viewer.stage.shots(display, (3, 0, 1, 50))) == 1
-
-
-def test_the_divider_can_be_dragged(viewer: Viewer) -> None:
-    """In a comparison both meshes are drawn, and the line between them follows the mouse."""
-    viewer.session.toggle_alone("disgust")
-    xdotool(viewer, "key", "d")
-    assert len(viewer.stage.shots(viewer.settings.display, viewer.view.viewport)) == 2
-    left, top, width, height = viewer.view.area
-    place = on_screen(viewer, left + 0.5 * width, top + 0.2 * height)
-    drag(viewer, place, (round(0.2 * width), 0))
-    xdotool(viewer, "mouseup", 1)
-    assert viewer.settings.display.divider == pytest.approx(0.7, abs=0.02)
-    assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
-    assert viewer.stage.static.triangle_count == len(viewer.session.scene.faces)
-
-
 @pytest.mark.slow
 def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     """Whatever the second panel offers makes a picture; thresholds act at once."""
@@ -247,25 +222,6 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     assert not viewer.messages.is_error
 
 
-@pytest.mark.slow
-def test_normals_are_chosen(viewer: Viewer) -> None:
-    """Linear, refined, or what suits the scheme; the picture changes, and a look takes it back."""
-    viewer.session.toggle_alone("disgust")
-    click(viewer, "tab Mechanism")
-    assert until(viewer, lambda: viewer.is_idle)
-    shown = {}
-    for words in ("automatic", "linear", "refined", "automatic"):
-        click(viewer, "normals")
-        click(viewer, f"normals: {words}")
-        assert not viewer.messages.is_error
-        shown[words] = viewer.stage.refined.triangle_count
-    assert viewer.stage.refined.label == "smooth, changed"
-    assert shown["linear"] != shown["refined"] == shown["automatic"]
-    click(viewer, "Look")
-    click(viewer, "Look: smooth")
-    assert viewer.stage.refined.label == "smooth"
-
-
 def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
     """With the paper's criterion, also beside another; not where they would do nothing."""
     click(viewer, "tab Mechanism")
@@ -275,28 +231,6 @@ def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
         settle(viewer)
         offered[criterion] = "threshold_once" in viewer.gui.places
     assert offered == {"bulge": False, "normal+rest": True, "normal": True}
-
-
-def test_two_looks_are_compared(viewer: Viewer) -> None:
-    """On the left is what list A says: a look, a refiner, or the mesh as it is again."""
-    viewer.session.toggle_alone("disgust")
-    click(viewer, "tab Mechanism")
-    assert until(viewer, lambda: viewer.is_idle)
-    smooth = viewer.stage.refined.triangle_count
-    assert "A" not in viewer.gui.places
-    xdotool(viewer, "key", "d")
-    labels, counts = [], []
-    for name in ("paper", "loop", "static"):
-        click(viewer, "A")
-        click(viewer, f"A: {name}")
-        left, right = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
-        assert right.drawn is viewer.stage.refined and right.drawn.triangle_count == smooth
-        labels.append(left.drawn.label)
-        counts.append(left.drawn.triangle_count)
-    static = len(viewer.session.scene.faces)
-    assert labels == ["paper", "loop", "static"]
-    assert static < counts[0] < smooth and counts[1:] == [4 * static, static]
-    assert not viewer.messages.text
 
 
 def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
@@ -313,53 +247,6 @@ def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     xdotool(viewer, "click", 3)
     assert viewer.settings.display.wrinkles == 1.0
     assert until(viewer, lambda: viewer.stage.refined.stream.has_wrinkles)
-
-
-@pytest.mark.slow
-def test_recording_survives_a_file(viewer: Viewer, tmp_path: Path) -> None:
-    """Record a slider, save through the window, open again, replay: the same face."""
-    viewer.session.begin_script()
-    viewer.session.edit(replace(viewer.session.script, duration=0.5))
-    xdotool(viewer, "key", "ctrl+r")
-    assert viewer.session.is_recording
-    viewer.session.set("jaw_open", 0.6)
-    assert until(viewer, lambda: viewer.session.recorded_seconds > 1.0)
-    wanted = viewer.session.scene.positions.copy()
-    xdotool(viewer, "key", "ctrl+r")
-    path = tmp_path / "take.toml"
-    xdotool(viewer, "key", "ctrl+s")
-    xdotool(viewer, "key", "ctrl+a")
-    write(viewer, path.name)
-    xdotool(viewer, "key", "Return")
-    assert until(viewer, path.exists) and not viewer.session.unsaved
-    xdotool(viewer, "key", "n")
-    assert until(viewer, lambda: moved(viewer) < 0.5)
-    xdotool(viewer, "key", "ctrl+o")
-    write(viewer, path.name)
-    click(viewer, "path confirmed")
-    assert viewer.session.script.source == str(path)
-    xdotool(viewer, "key", "space")
-    assert until(viewer, lambda: not viewer.session.is_playing)
-    assert np.abs(viewer.session.scene.positions - wanted).max() < 0.05
-
-
-def test_a_bad_file_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None:
-    """Dropping nonsense shows one line in the window; a missing and a good file do theirs."""
-    bad = tmp_path / "bad.toml"
-    bad.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\nno_such_muscle = 1.0\n")
-    viewer.drop([str(bad)])
-    settle(viewer)
-    assert "no_such_muscle" in viewer.messages.text and "message" in viewer.gui.places
-    viewer.drop([str(tmp_path / "none.toml")])
-    assert "no such file" in viewer.messages.text
-    file = tmp_path / "picture.toml"
-    file.write_bytes(bytes(range(256)))
-    viewer.drop([str(file)])
-    assert "cannot be read" in viewer.messages.text
-    good = tmp_path / "good.toml"
-    good.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n")
-    viewer.drop([str(good)])
-    assert viewer.session.values["jaw_open"] == 0.5
 
 
 def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:

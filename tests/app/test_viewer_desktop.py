@@ -94,17 +94,16 @@ def place_of(viewer: Viewer) -> tuple[int, int, int, int]:
     return viewer.placement._place()
 
 
-@pytest.mark.parametrize("key", ["F11", pytest.param("alt+Return", marks=pytest.mark.slow)])
-def test_full_screen_and_back(viewer: Viewer, key: str) -> None:
+def test_full_screen_and_back(viewer: Viewer) -> None:
     """All of the screen is the window; left again, it is as large and where it was."""
     before = place_of(viewer)
     xdotool(viewer, "mousemove", *nose(viewer))
-    xdotool(viewer, "key", key)
+    xdotool(viewer, "key", "F11")
     assert until(viewer, lambda: place_of(viewer) == (0, 0, *screen_size()))
     assert viewer.placement.is_full
     assert viewer.surface.read().shape[1::-1] == screen_size()
     assert viewer.placement.size == SIZE  # which is what is remembered
-    xdotool(viewer, "key", key)
+    xdotool(viewer, "key", "alt+Return")
     assert until(viewer, lambda: place_of(viewer) == before)
     assert not viewer.placement.is_full
 
@@ -129,20 +128,6 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     xdotool(viewer, "key", "h")  # which belongs to whoever writes
     assert not viewer.panel_state.are_hidden
     xdotool(viewer, "key", "Escape")
-
-
-def test_full_screen_without_panels_still_acts(viewer: Viewer) -> None:
-    """Keys act on the bare image, and both ways back work in any order."""
-    xdotool(viewer, "mousemove", *nose(viewer))
-    viewer.face_panel.search = ""
-    xdotool(viewer, "key", "F11", "h")
-    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *screen_size()))
-    xdotool(viewer, "key", "3")
-    assert viewer.session.is_alone(viewer.session.scene.expressions[2])
-    xdotool(viewer, "key", "F11")
-    assert until(viewer, lambda: viewer.view.viewport == (0, 0, *SIZE))
-    xdotool(viewer, "key", "3", "h")
-    assert "play" in viewer.gui.places
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ from risorius.app.motion import scene_of
 from risorius.app.refining.looks import Refinement
 from risorius.app.script import parse_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.settings import ExportChoices, Settings, load_settings, save_settings
+from risorius.app.viewer.settings import ExportChoices
 from risorius.app.workers import child
 from risorius.render import LIGHT, LIGHTS, Style
 
@@ -187,7 +187,7 @@ def test_a_signal_ends_the_export_too(
     assert [path.name for path in tmp_path.rglob("*")] == ["logs"]
 
 
-@pytest.mark.parametrize("kind", ["mp4", "frames", "npz"])
+@pytest.mark.parametrize("kind", ["mp4", "npz"])
 def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     """It is told at once, and the dialog stays with all that was chosen."""
     viewer.settings.export.kind, viewer.settings.export.folder = kind, "/proc/none"
@@ -213,18 +213,6 @@ def test_a_path_that_cannot_be_is_no_trap(viewer: Viewer, folder: str, name: str
         assert not viewer.exporter.is_asking
 
 
-def test_the_dialog_waits_while_something_is_asked(viewer: Viewer) -> None:
-    """The window's cross asks about unsaved work; "Back" goes back to the dialog."""
-    viewer.session.set("jaw_open", 0.5)
-    xdotool(viewer, "key", "F10")
-    viewer.ask_to_close()
-    settle(viewer)  # until the question is in its place
-    assert "question: Back" in viewer.gui.places and "export: Cancel" not in viewer.gui.places
-    click(viewer, "question: Back")
-    settle(viewer)
-    assert not viewer.question.is_open and "export: Cancel" in viewer.gui.places
-
-
 def test_enter_opens_the_list_that_tab_came_to(viewer: Viewer) -> None:
     """It begins the export only where no other widget is meant."""
     xdotool(viewer, "key", "F10")
@@ -243,15 +231,3 @@ def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> No
     finish(viewer)
     assert viewer.messages.is_error and "no pose has a name" in viewer.messages.text
     assert list(tmp_path.iterdir()) == []
-
-
-def test_what_was_chosen_is_remembered(tmp_path: Path) -> None:
-    """The dialog comes up as it was left, also in another run; what is of no use gives way."""
-    path = tmp_path / "viewer.json"
-    settings = Settings(export=ExportChoices("webm", "pose", 2.0, (320, 200), 24.0, True))
-    save_settings(path, settings)
-    assert load_settings(path) == (settings, "")
-    path.write_text(path.read_text().replace('"webm"', '"avi"'))
-    found, told = load_settings(path)
-    assert found.export.kind == "mp4" and "export.kind = 'avi'" in told
-    assert found.export.size == (320, 200)

@@ -14,9 +14,7 @@ from risorius.app.viewer.settings import ExportChoices
 
 from .driving import (
     NEEDS_A_SCREEN,
-    clear_search,
     click,
-    drag,
     middle,
     nose,
     on_screen,
@@ -40,13 +38,6 @@ def test_escape_closes_a_menu_whose_submenu_is_pointed_at(viewer: Viewer) -> Non
     assert not viewer.gui.has_popup
 
 
-def test_history_tells_what_of_the_view_was_changed(viewer: Viewer) -> None:
-    """Wireframe and colours are told apart."""
-    for key, told in (("w", "View: wireframe"), ("c", "View: colours")):
-        xdotool(viewer, "key", key)
-        assert until(viewer, lambda told=told: viewer.session.history.labels[-1] == told)
-
-
 def test_the_bar_of_one_side_shows_the_muscles_of_that_side(viewer: Viewer) -> None:
     """Where an expression has a bar for each side, each draws its own muscles into the face."""
     show_controls(viewer, "joy")
@@ -57,24 +48,6 @@ def test_the_bar_of_one_side_shows_the_muscles_of_that_side(viewer: Viewer) -> N
     assert "zygomaticus_major_right" not in viewer.view.pointed
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
     assert until(viewer, lambda: "zygomaticus_major_right" in viewer.view.pointed)
-
-
-def test_a_click_on_the_timelines_edge_leaves_its_height_free(viewer: Viewer) -> None:
-    """It goes on to be as high as its rows need."""
-    viewer.settings.timeline_height = 0.0
-    click(viewer, "timeline's edge")
-    assert viewer.settings.timeline_height == 0.0
-
-
-def test_first_steps_leave_the_bar_of_colours_free(viewer: Viewer) -> None:
-    """They stand in the other half of the picture."""
-    viewer.first_steps.begin()
-    xdotool(viewer, "key", "h")  # so that there is room beside the face
-    settle(viewer)
-    left, _, width, _ = viewer.view.area
-    assert viewer.gui.places["first steps: Skip"][2] < left + 0.5 * width
-    click(viewer, "first steps: Skip")
-    xdotool(viewer, "key", "h")
 
 
 def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
@@ -94,30 +67,6 @@ def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
     assert until(viewer, lambda: bool(viewer.muscle_note.name))
     assert until(viewer, lambda: viewer.muscle_note.name in viewer.view.pointed)
     xdotool(viewer, "key", "Escape")
-
-
-def test_both_sides_of_a_row_have_a_bar_and_no_third(viewer: Viewer) -> None:
-    """The key of an expression whose sides were taken apart fills both bars."""
-    session = viewer.session
-    show_controls(viewer, "joy")
-    xdotool(viewer, "key", "Return")
-    if "joy_left" not in viewer.gui.places:
-        click(viewer, "sides joy")
-    xdotool(viewer, "key", "1")
-    assert session.current["joy"] == 1.0
-    assert "joy" not in viewer.gui.places and "joy_left" in viewer.gui.places
-    drag(viewer, middle(viewer, "joy_right"), (-300, 0))
-    xdotool(viewer, "mouseup", 1)
-    values = session.values
-    assert (values["joy"], values["joy_right"], values["joy_left"]) == (0.0, 0.0, 1.0)
-    click(viewer, "sides joy")
-
-
-def test_words_are_found_in_any_form(viewer: Viewer) -> None:
-    """As people say them."""
-    show_controls(viewer, "chewing")
-    assert until(viewer, lambda: "show jaw_open" in viewer.gui.places)
-    clear_search(viewer)
 
 
 def test_enter_opens_the_file_that_was_clicked(viewer: Viewer, tmp_path: Path) -> None:

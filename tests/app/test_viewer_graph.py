@@ -174,17 +174,6 @@ def test_a_name_selects_its_curve(viewer: Viewer) -> None:
     assert {curve.name for curve in graph.curves} == {"pose joy", "pose jaw_open"}
 
 
-def test_the_wheel_zooms(viewer: Viewer) -> None:
-    """About the mouse; Shift+F shows all."""
-    place, axis = at(viewer, 2.0, 0.8), viewer.time_axis
-    xdotool(viewer, "mousemove", *place)
-    xdotool(viewer, "click", "--repeat", 2, 4)
-    assert axis.span < 3.5
-    assert at(viewer, 2.0, 0.8) == pytest.approx(place, abs=2)
-    xdotool(viewer, "key", "shift+f")
-    assert axis.is_whole
-
-
 def test_the_timeline_is_dragged_taller(viewer: Viewer, tmp_path: Path) -> None:
     """Its upper edge goes where it is dragged, and is remembered."""
     height = viewer.timeline.height()
@@ -222,23 +211,6 @@ def test_keys_and_curves_are_switched(viewer: Viewer) -> None:
     assert viewer.selection.places == {KeyPlace(POSES, 1.0)}
     xdotool(viewer, "key", "g")
     assert viewer.settings.shows_curves
-
-
-def test_groups_fold(viewer: Viewer) -> None:
-    """Tracks stand under the groups of their controls, which a click folds."""
-    keys = Channel([0.0, 1.0], [0.0, 1.0])
-    tracks = dict.fromkeys(("joy", "AU12_left", "AU4_right", "viseme_aa"), keys)
-    viewer.session.open(Script("groups", 2.0, "groups", tracks=tracks))
-    sheet = viewer.timeline.dope_sheet
-    settle(viewer)
-    inside = {track.label: track.parents[-1:] for track in sheet.rows}
-    assert inside["AU4 right"] == inside["AU12 left"] == ("Tracks: Action units",)
-    assert inside["Viseme aa"] == ("Tracks: Visemes",) and inside["Visemes"] == ("Tracks",)
-    left, top, _, bottom = viewer.gui.places["row Tracks: Action units"]
-    xdotool(viewer, "mousemove", *on_screen(viewer, left + 4.0, 0.5 * (top + bottom)))
-    xdotool(viewer, "click", 1)
-    assert "AU4 right" not in [track.label for track in sheet.rows]
-    assert viewer.settings.folds["Tracks: Action units"] is False
 
 
 def test_a_dense_take_is_drawn_with_little(viewer: Viewer) -> None:

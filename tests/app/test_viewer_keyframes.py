@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
@@ -37,12 +36,6 @@ def hello() -> Script:
     return load_script(HELLO)
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """One face for all tests of this file."""
-    return FaceScene()
-
-
 @pytest.fixture
 def session(scene: FaceScene, tmp_path: Path) -> Session:
     """A session with a script of the user's own."""
@@ -55,15 +48,6 @@ def session(scene: FaceScene, tmp_path: Path) -> Session:
 def pose_times(script: Script) -> list[float]:
     """When the script has poses [s]."""
     return [pose.time for pose in script.poses]
-
-
-def test_a_moved_key_keeps_everything_but_its_time(hello: Script) -> None:
-    """Name, values and easing go along; what is not selected stays."""
-    script, places = keyframes.moved(hello, Places.of(JOY), 0.5)
-    assert places == {KeyPlace(POSES, 1.5)}
-    assert pose_times(script) == [0.0, 1.5, 3.0, 4.0]
-    assert replace(script.poses[1], time=1.0) == hello.poses[1]
-    assert script.tracks == hello.tracks and script.at(1.5)["joy"] == 1.0
 
 
 def test_moved_keys_stay_in_order_and_after_zero(hello: Script) -> None:
@@ -86,18 +70,6 @@ def test_moving_there_and_back_changes_nothing(hello: Script) -> None:
     for seconds in (0.1, 0.7, 1.0 / 3.0, -0.1, -1.0 / 3.0, -0.7):
         script, places = keyframes.moved(script, places, seconds)
     assert replace(script, duration=hello.duration) == hello
-
-
-def test_copies_and_deletions(hello: Script) -> None:
-    """A copy is as the key was; deleting it gives the script back; the last key stays."""
-    script, copies = keyframes.copied(hello, Places.of(JOY, KeyPlace("blink", 2.12)), 0.25)
-    assert copies == {KeyPlace(POSES, 1.25), KeyPlace("blink", 2.37)}
-    assert keyframes.places_of(script) == keyframes.places_of(hello) | copies
-    assert keyframes.without(script, copies) == hello
-    blinks = Places({"blink": hello.tracks["blink"].times})
-    assert keyframes.without(hello, blinks).tracks == {}
-    with pytest.raises(UserError, match="at least one key"):
-        keyframes.without(hello, keyframes.places_of(hello))
 
 
 def test_names_easings_and_the_end(hello: Script) -> None:
@@ -215,13 +187,6 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) ->
     session.set("joy", 0.3)
     session.edit(keyframes.moved(session.script, Places.of(KeyPlace(POSES, 1.5)), -0.5)[0])
     assert session.values["joy"] == 0.3
-
-
-def test_keys_cannot_be_changed_while_recording(session: Session) -> None:
-    """What is being recorded takes the script's place: a change would be lost."""
-    session.toggle_recording()
-    with pytest.raises(UserError, match="stop the recording"):
-        session.edit(keyframes.moved(session.script, Places.of(JOY), 0.5)[0])
 
 
 def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None:

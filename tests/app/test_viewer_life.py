@@ -133,22 +133,3 @@ def test_it_sleeps_when_nobody_is_there(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     xdotool(viewer, "key", "Shift_L")
     assert viewer.life.is_on
-
-
-@pytest.mark.slow
-def test_panels_are_not_drawn_for_it(viewer: Viewer) -> None:
-    """A face that only lives moves no slider: the panels' last picture stays."""
-    assert until(viewer, lambda: viewer.is_left_alone)
-    settle(viewer)
-    drawn, note = [], viewer.panel_cache.note_drawn
-    viewer.panel_cache.note_drawn = lambda *size, **over: (
-        drawn.append(True),
-        note(*size, **over),
-    )
-    try:
-        for _ in range(20):
-            if viewer.is_left_alone:
-                viewer.wait_for_frame()
-    finally:
-        viewer.panel_cache.note_drawn = note
-    assert not drawn

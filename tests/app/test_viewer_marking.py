@@ -380,24 +380,8 @@ class TestInTheWindow:
         assert not marking.unsaved and marking.file.exists()
 
     @pytest.mark.slow
-    def test_the_menu_and_half_a_file_begin_marking(self, viewer: Viewer, mesh: Path) -> None:
-        """File, Mark a head; and a mesh that is dropped with a landmark file that has gaps."""
-        click(viewer, "menu File")
-        click(viewer, "menu File: Mark a head ...")
-        click(viewer, "file stranger.obj", times=2)
-        assert not self.room(viewer).marking.marks.places
-        xdotool(viewer, "key", "ctrl+w")
-        half = mesh.with_name("half.json")
-        rows = [row if n < 5 else None for n, row in enumerate(true_places().tolist())]
-        half.write_text(json.dumps({"landmarks": rows}))
-        drop(viewer, mesh, half)
-        assert len(self.room(viewer).marking.marks.places) == 5
-
-    @pytest.mark.slow
-    @pytest.mark.parametrize("theme", ["light", "dark"])
-    def test_everything_is_in_a_small_window(self, viewer: Viewer, mesh: Path, theme: str) -> None:
-        """The last button is inside, the guide beside the panel; both themes draw."""
-        viewer.settings.theme = theme
+    def test_everything_is_in_a_small_window(self, viewer: Viewer, mesh: Path) -> None:
+        """The last button is inside, the guide beside the panel."""
         viewer.mark(mesh)
         self.mark_first(viewer)
         room = self.room(viewer)
@@ -409,4 +393,3 @@ class TestInTheWindow:
         assert guide_width <= left and guide_height > 0.2 * height
         click(viewer, "Next point")
         assert room.marking.current == ORDER[1]
-        viewer.settings.theme = "light"

@@ -20,14 +20,13 @@ from risorius.app.script import (
     is_pose,
     keyframes,
     load_script,
-    parse_script,
     pose_script,
     save_script,
-    script_text,
 )
 from risorius.app.script.places import Places
 from risorius.app.script.recorder import Recorder
 from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
+from risorius.app.viewer.messages import Messages
 from risorius.app.viewer.overlays import LINES, overlays_of
 from risorius.app.viewer.panels.rows import rows_of, search_rows
 from risorius.app.viewer.picture import picking
@@ -44,12 +43,6 @@ SMILE = "zygomaticus_major"
 STEPS = 90
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """One face for all tests of this file."""
-    return FaceScene()
-
-
 @pytest.fixture
 def session(scene: FaceScene) -> Session:
     """A session that begins with the neutral face."""
@@ -61,14 +54,6 @@ def run(session: Session, steps: int = STEPS) -> None:
     """Let so many steps of time pass."""
     for _ in range(steps):
         session.advance(STEP)
-
-
-@pytest.mark.parametrize("path", [None, Path("docs/hello.toml")])
-def test_scripts_survive_being_written(path: Path | None) -> None:
-    """What a script says is the same after it was written and read again."""
-    script = script_for(path, "face")
-    again = parse_script(script_text(script), source=script.source)
-    assert again == script
 
 
 def test_a_pose_is_a_script_that_stands_still(tmp_path: Path) -> None:
@@ -163,36 +148,6 @@ def test_recordings_keep_corners_only() -> None:
     assert np.abs(np.array(played) - wave).max() <= TOLERANCE + 1e-9
 
 
-def test_undo_and_redo(session: Session) -> None:
-    """Every complete change can be taken back and done again; a new one ends redoing."""
-    session.set("jaw_open", 0.3)
-    session.set("jaw_open", 0.6)
-    session.note()
-    session.mirror()
-    session.toggle_alone("joy")
-    session.undo()
-    assert session.values["jaw_open"] == 0.6 and not session.values["joy"]
-    session.undo()
-    assert not any(session.values.values()) and not session.can_undo
-    session.redo()
-    assert session.values["jaw_open"] == 0.6
-    session.neutral()
-    assert not session.history.can_redo
-
-
-def test_undo_brings_back_a_pose_that_a_script_moved_away(session: Session) -> None:
-    """A pose made by hand, then the script played: one step back is the pose."""
-    session.set("jaw_open", 0.6)
-    session.note()
-    session.toggle_playing()
-    run(session, 70)
-    assert session.values["jaw_open"] != 0.6
-    session.undo()
-    assert session.values["jaw_open"] == 0.6 and not session.is_playing
-    session.undo()
-    assert not any(session.values.values())
-
-
 def test_history_ends_somewhere() -> None:
     """Undoing before the first state stays there; equal states count once."""
     history = History(0, lambda before, after: 0)
@@ -244,21 +199,6 @@ def test_random_faces_are_symmetric_and_within_limits(session: Session) -> None:
     assert moved == mirrored(moved) and 4 < len(moved) < 60
     session.undo()
     assert not any(session.values.values())
-
-
-def test_mirror_of_gaze_and_of_arkit_shapes(session: Session) -> None:
-    """Each eye looks to the other side, up stays up, and sides spelled in capitals change, too."""
-    session.set("gaze_horizontal_left", 0.3)
-    session.set("gaze_vertical_left", -0.2)
-    session.set("gaze_horizontal", 0.1)
-    session.set("mouthSmileLeft", 0.4)
-    session.set("jawRight", 0.5)
-    session.set("AU51", 0.6)
-    session.mirror()
-    assert {name: value for name, value in session.values.items() if value} == {
-        "gaze_horizontal_right": -0.3, "gaze_vertical_right": -0.2, "gaze_horizontal": -0.1,
-        "mouthSmileRight": 0.4, "jawLeft": 0.5, "AU52": 0.6,
-    }  # fmt: skip
 
 
 def test_rows_of_arkit_shapes() -> None:
@@ -429,3 +369,19 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
         session.advance(STEP)
     session.toggle_recording()
     assert session.script.at(0.25)["jaw_open"] == pytest.approx(0.5, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        ("nothing was recorded: no control moved", "Nothing was recorded: no control moved"),
+        ("my smile.toml: opened", "my smile.toml: opened"),
+        ("give it 2.5 s", "Give it 2.5 s"),
+        ("", ""),
+    ],
+)
+def test_lines_are_sentences(line: str, shown: str) -> None:
+    """They begin with a capital, but names of files stay as they are."""
+    messages = Messages()
+    messages.say(line)
+    assert messages.text == shown

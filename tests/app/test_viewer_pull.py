@@ -36,13 +36,6 @@ def photograph(viewer: Viewer) -> np.ndarray:
     return np.asarray(Image.open(path)).astype(int)
 
 
-def picture(viewer: Viewer) -> np.ndarray:
-    """The scene as it is displayed."""
-    left, bottom, width, height = viewer.view.viewport
-    top = viewer.surface.size[1] - bottom - height
-    return viewer.surface.read_scene()[top : top + height, left : left + width].astype(int)
-
-
 def viewer_pictures() -> list[str]:
     """Screenshots in the present folder."""
     return [str(path) for path in Path.cwd().glob("*.png")]
@@ -64,25 +57,6 @@ def test_pictures_have_no_lines_of_a_slider_that_is_pointed_at(viewer: Viewer) -
     xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
     assert until(viewer, lambda: not viewer.view.pointed)
     assert np.abs(with_mouse - photograph(viewer)).max() <= 2
-    clear_search(viewer)
-
-
-@pytest.mark.slow
-def test_lines_are_seen_and_gone_as_a_slider_is_pressed(viewer: Viewer) -> None:
-    """Pointing at a slider tints its fibres; while it is dragged the face is free of them."""
-    point_at_slider(viewer)
-    assert until(viewer, lambda: viewer.painter.is_complete)
-    tinted = picture(viewer)
-    xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
-    assert until(viewer, lambda: viewer.painter.is_complete and not viewer.view.pointed)
-    changed = np.abs(picture(viewer) - tinted).max(axis=2)
-    assert (changed > 40).sum() > 30
-    point_at = middle(viewer, f"{MAJOR}_left")
-    drag(viewer, point_at, (10, 0))
-    assert until(viewer, lambda: viewer.session.values[f"{MAJOR}_left"] > 0.0)
-    assert until(viewer, lambda: not viewer.view.pointed)
-    xdotool(viewer, "mouseup", 1)
-    assert until(viewer, lambda: bool(viewer.view.pointed))
     clear_search(viewer)
 
 

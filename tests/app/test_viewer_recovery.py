@@ -43,12 +43,6 @@ class Clock:
         return self.now
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """One face for all tests of this file."""
-    return FaceScene()
-
-
 @pytest.fixture
 def session(scene: FaceScene, tmp_path: Path) -> Session:
     """A script of the user's own, opened from a file."""
@@ -142,19 +136,6 @@ def test_a_long_script_is_written_in_steps(
     recovery.watch(session)
     recovery.watch(session)
     assert load_script(path) == session.script
-
-
-def test_a_long_script_that_changes_all_the_time_is_written(
-    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
-) -> None:
-    """A drag of many dense tracks is never finished with; some seconds of it are lost at most."""
-    times, names = np.arange(1, 101) / 60.0, list(session.controls.limits)[:3]
-    for step in range(round(3.0 * LONGEST / STEP)):
-        tracks = {name: Channel(times + step * STEP, times) for name in names}
-        session.edit(replace(session.script, tracks=tracks), is_done=False)
-        recovery.watch(session)
-        clock.now += STEP
-    assert "script" in stored_work(tmp_path)
 
 
 @pytest.mark.slow
@@ -318,7 +299,7 @@ def test_damaged_work_hides_no_other(session: Session, recovery: Recovery, tmp_p
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes of POSIX systems")
-@pytest.mark.parametrize("name", ['"PIPE"', '"a\\u0000b"', '"\\x"', "", f'"{5000 * "x"}"'])
+@pytest.mark.parametrize("name", ['"PIPE"', '"a\\u0000b"', ""])
 def test_a_damaged_name_of_its_file_loses_no_script(
     session: Session, recovery: Recovery, tmp_path: Path, name: str
 ) -> None:
@@ -431,13 +412,12 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
 @pytest.mark.slow
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_window_that_is_told_to_stop_loses_nothing(
-    at_work: subprocess.Popen[str], tmp_path: Path, number: signal.Signals
+    at_work: subprocess.Popen[str], tmp_path: Path
 ) -> None:
     """What was done this moment is written before the end."""
-    at_work.send_signal(number)
-    assert at_work.wait(DEADLINE) == -number
+    at_work.send_signal(signal.SIGHUP)
+    assert at_work.wait(DEADLINE) == -signal.SIGHUP
     assert at_work.stderr is not None and at_work.stderr.read() == ""
     [pose] = [load_script(file) for file in tmp_path.glob("risorius/unsaved/*.pose.toml")]
     assert any(pose.at(0.0).values())
@@ -466,27 +446,6 @@ def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_
     # The kill may have met a file on its way; its staging folder is swept by who writes there.
     left = [file for file in (folder / "unsaved").iterdir() if not file.name.startswith(PREFIX)]
     assert left == []
-
-
-@pytest.mark.window
-@NEEDS_A_SCREEN[1]
-@pytest.mark.slow
-def test_work_that_is_undone_is_kept_no_more(
-    at_work: subprocess.Popen[str], tmp_path: Path
-) -> None:
-    """In a window that nobody touches any more, files come and go within seconds."""
-    folder = tmp_path / "risorius"
-    wait_for(lambda: stored_work(folder))
-    press("n")
-    wait_for(lambda: not stored_work(folder))
-
-    def has_ended() -> bool:
-        press("ctrl+q")  # again where a busy window missed it, as whoever sits there would
-        return at_work.poll() is not None
-
-    wait_for(has_ended)
-    assert at_work.returncode == 0
-    assert list((folder / "unsaved").iterdir()) == []
 
 
 @pytest.mark.window

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.script import load_script
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace
 from risorius.app.viewer import Viewer
@@ -51,21 +48,6 @@ def scrub(viewer: Viewer, time: float) -> None:
 
 
 @pytest.mark.slow
-def test_a_pose_that_was_scrubbed_away_is_told_and_comes_back(viewer: Viewer) -> None:
-    """The ruler, and a click on a key: each says in a line what it lets go; Ctrl+Z has it."""
-    scrub(viewer, 2.0)
-    time, value = viewer.session.time, open_jaw(viewer)
-    assert viewer.session.differing == {"jaw_open"}
-    for away in (lambda: scrub(viewer, 3.5), lambda: press(viewer, at(viewer, JOY))):
-        viewer.messages.text = ""
-        away()
-        assert viewer.session.values["jaw_open"] < value
-        assert "Jaw open not keyed" in viewer.messages.text and "[Undo]" in viewer.messages.text
-        xdotool(viewer, "key", "ctrl+z")
-        assert viewer.session.values["jaw_open"] == value and viewer.session.time == time
-
-
-@pytest.mark.slow
 def test_what_is_not_keyed_is_keyed_or_let_go_by_a_button(viewer: Viewer) -> None:
     """Both stand by the timeline, and say nothing where nothing differs."""
     scrub(viewer, 2.0)
@@ -96,48 +78,6 @@ def test_auto_key(viewer: Viewer) -> None:
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
 
 
-@pytest.mark.slow
-def test_recording_punches_in(viewer: Viewer) -> None:
-    """Ctrl+R begins at the playhead, and replaces what was moved while it ran; Ctrl+Z takes it."""
-    before = viewer.session.script
-    scrub(viewer, 2.0)
-    start = viewer.session.time
-    show_controls(viewer, "jaw open")
-    clear_search(viewer)
-    xdotool(viewer, "key", "ctrl+r")
-    assert viewer.session.is_recording and "Recording from 2.0" in viewer.messages.text
-    viewer.session.set("jaw_open", 0.7)
-    assert until(viewer, lambda: viewer.session.time > start + 0.4)
-    xdotool(viewer, "key", "ctrl+r")
-    script = viewer.session.script
-    assert "1 control recorded" in viewer.messages.text and "[Save script]" in viewer.messages.text
-    assert script.poses == before.poses and set(script.tracks) == {"blink", "jaw_open"}
-    assert script.tracks["blink"] == before.tracks["blink"]
-    assert script.tracks["jaw_open"].times[0] >= start
-    assert script.at(1.0) == {**before.at(1.0), "jaw_open": before.at(1.0)["jaw_open"]}
-    assert viewer.session.name == "own.toml"
-    xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script == before
-
-
-@pytest.mark.slow
-def test_keys_are_copied_and_pasted(viewer: Viewer, own: Path, tmp_path: Path) -> None:
-    """Ctrl+C and Ctrl+V: at the playhead, and in another script, too."""
-    press(viewer, at(viewer, JOY))
-    xdotool(viewer, "key", "ctrl+c")
-    scrub(viewer, 2.0)
-    xdotool(viewer, "key", "ctrl+v")
-    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
-    assert viewer.session.script.poses[2].name == "joy"
-    xdotool(viewer, "key", "ctrl+z")
-    viewer.session.open(load_script(own))
-    viewer.session.begin_script()
-    settle(viewer)  # the row of tracks goes
-    scrub(viewer, 1.5)
-    xdotool(viewer, "key", "ctrl+v")
-    assert pose_times(viewer) == [0.0, 1.5] and viewer.session.script.poses[1].name == "joy"
-
-
 def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
     """Never by Backspace; by Delete when the timeline was touched last, not after other work."""
     settle(viewer)
@@ -158,20 +98,6 @@ def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
     press(viewer, at(viewer, JOY))
     xdotool(viewer, "key", "Delete")
     assert pose_times(viewer) == [0.0, 3.0, 4.0]
-
-
-def test_a_name_leaves_the_strip_where_it_is(viewer: Viewer) -> None:
-    """Rows stay where they are when the first pose of a script gets its name, or loses it."""
-    viewer.session.begin_script()
-    settle(viewer)
-    first = KeyPlace(POSES, 0.0)
-    before = viewer.timeline.height(), at(viewer, first)
-    viewer.selection.rename()
-    assert until(viewer, lambda: "pose name" in viewer.gui.places)
-    write(viewer, "rest")
-    xdotool(viewer, "key", "Return")
-    assert viewer.session.script.key_poses
-    assert (viewer.timeline.height(), at(viewer, first)) == before
 
 
 @pytest.mark.slow

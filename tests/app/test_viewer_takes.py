@@ -27,12 +27,6 @@ HELLO = Path("docs/hello.toml")
 TAKE = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1}]\njaw_open=[{time=0,value=0.5}]"
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """One face for all tests of this file."""
-    return FaceScene()
-
-
 @pytest.fixture
 def session(scene: FaceScene) -> Session:
     """A session that plays a script of poses and a blink."""
@@ -86,14 +80,6 @@ def test_what_is_keyed_or_was_never_moved_is_let_go_in_silence(session: Session)
     assert session.seek(2.0) is None and session.history.labels[-1] == "Key at 1.00 s"
     set_by_hand(session, jaw_open=0.7)
     assert session.seek(2.5) and session.seek(3.0) is None
-
-
-def test_a_slider_that_is_still_held_comes_back_too(session: Session) -> None:
-    """The key of a menu may be pressed while a slider is dragged."""
-    session.set("jaw_open", 0.6)
-    session.seek(1.0)
-    session.undo()
-    assert session.values["jaw_open"] == 0.6
 
 
 def test_auto_key_keys_what_is_changed(session: Session) -> None:

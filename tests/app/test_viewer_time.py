@@ -114,15 +114,11 @@ def number_in_ruler(viewer: Viewer, when: float, beside: float) -> tuple[int, in
     return on_screen(viewer, viewer.time_axis.x(when) + beside * em, 0.7 * top + 0.3 * bottom)
 
 
-@pytest.mark.parametrize(
-    "beside",
-    [pytest.param(-0.2, marks=pytest.mark.slow), pytest.param(0.0, marks=pytest.mark.slow), 0.2],
-)
-def test_a_click_on_a_number_goes_there(viewer: Viewer, beside: float) -> None:
+def test_a_click_on_a_number_goes_there(viewer: Viewer) -> None:
     """Wherever in the number; a drag from there goes to other frames."""
     labelled = [tick.time for tick in viewer.time_axis.ticks(4.2 * imgui.get_font_size())]
     assert 2.0 in labelled
-    press(viewer, number_in_ruler(viewer, 2.0, beside))
+    press(viewer, number_in_ruler(viewer, 2.0, 0.2))
     assert viewer.session.time == 2.0
     drag(viewer, number_in_ruler(viewer, 2.0, 0.0), (12, 0))
     xdotool(viewer, "mouseup", 1)
@@ -147,61 +143,7 @@ def test_buttons_stay_where_they_are(viewer: Viewer) -> None:
     assert places() == before and viewer.timeline.height() < height
 
 
-def test_poses_are_unfolded_in_the_timeline_alone(viewer: Viewer) -> None:
-    """The heading of the same name in the panel stays as it is."""
-    settle(viewer)
-    (row,) = (row for row in viewer.timeline.dope_sheet.rows if row.is_whole)
-    left, top, _, bottom = viewer.gui.places[f"row {row.name}"]
-    xdotool(viewer, "mousemove", *on_screen(viewer, left + 4.0, 0.5 * (top + bottom)))
-    before = viewer.gui.places["Expressions"]
-    xdotool(viewer, "click", 1)
-    assert "row pose joy" in viewer.gui.places and viewer.gui.places["Expressions"] == before
-
-
-def test_the_hint_of_record_leaves_the_ruler_free(viewer: Viewer) -> None:
-    """It is one line beside what is counted."""
-    xdotool(viewer, "mousemove", *middle(viewer, "record"))
-
-    def hints() -> list[object]:
-        windows = imgui.get_current_context().windows
-        return [each for each in windows if each.active and each.name.startswith("##Tooltip")]
-
-    assert until(viewer, lambda: bool(hints()))
-    settle(viewer)
-    (hint,) = hints()
-    _, top, _, bottom = viewer.gui.places["time"]
-    low, high = hint.pos.y, hint.pos.y + hint.size.y  # type: ignore[attr-defined]
-    assert high <= top or low >= bottom
-    assert high - low < 2.5 * imgui.get_font_size()
-
-
 # Keys that were changed
-
-
-@pytest.mark.slow
-def test_hints_name_the_key_that_works(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """After a change in the overview; the second key went with the first."""
-    told = list[str]()
-    real = imgui.text_unformatted
-    monkeypatch.setattr(imgui, "text_unformatted", lambda text: (told.append(text), real(text)))
-    xdotool(viewer, "key", "F1")
-    click(viewer, "key Record")
-    xdotool(viewer, "key", "F7")
-    click(viewer, "key Redo")
-    xdotool(viewer, "key", "F8")
-    xdotool(viewer, "key", "Escape")
-    xdotool(viewer, "mousemove", *middle(viewer, "record"))
-    assert until(viewer, lambda: any("(F7)" in text for text in told))
-    assert not any("Ctrl+R" in text for text in told)
-    viewer.session.toggle_alone("joy")
-    xdotool(viewer, "key", "ctrl+z", "ctrl+shift+z")
-    assert not viewer.session.is_alone("joy")
-    xdotool(viewer, "key", "F8")
-    assert viewer.session.is_alone("joy")
-    xdotool(viewer, "key", "F1")
-    click(viewer, "Usual keys")
-    xdotool(viewer, "key", "Escape", "ctrl+z", "ctrl+shift+z")
-    assert viewer.session.is_alone("joy")
 
 
 # Values of curves

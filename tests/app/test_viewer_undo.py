@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
-from risorius.app.script import load_script
+from risorius.app.script import load_script, parse_script
 from risorius.app.viewer.interface.commands import Command, set_keys
 from risorius.app.viewer.picture.skin_drag import SkinDrag
 from risorius.app.viewer.session.physics import STEP
@@ -19,12 +20,9 @@ from risorius.app.viewer.settings import Display, Settings
 HELLO = Path("docs/hello.toml")
 CORNER = 48  # a landmark: of the mouth
 AHEAD = np.array([0.0, 0.0, -1.0])
-
-
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """One face for all tests of this file."""
-    return FaceScene()
+BROW = 24  # another landmark
+MAJOR = "zygomaticus_major_left"
+SMILE = f"duration = 4\n[tracks]\n{MAJOR} = [{{time = 0, value = 0}}, {{time = 4, value = 1}}]"
 
 
 @pytest.fixture
@@ -165,3 +163,41 @@ def test_a_changed_command_has_the_chosen_key_alone() -> None:
     assert redo.keys == ("F7",) and redo.displayed_keys == "F7"
     set_keys([redo], {})
     assert redo.keys == ("Ctrl+Y", "Ctrl+Shift+Z")
+
+
+@pytest.fixture
+def smiling(scene: FaceScene) -> Session:
+    """A smile that comes slowly on one side."""
+    scene.reset()
+    return Session(scene, parse_script(SMILE, source="smile.toml"))
+
+
+def test_a_pull_that_is_recorded_leaves_other_muscles_to_the_script(smiling: Session) -> None:
+    """Only what holds the pulled brow is recorded; the smile goes on as the script has it."""
+    smiling.toggle_recording()
+    run(smiling, 10)
+    brow = smiling.scene.positions[smiling.scene.head.landmarks[BROW]].copy()
+    finger = SkinDrag(smiling, Settings(), brow, AHEAD, poses=True)
+    before = smiling.script
+    for up in np.linspace(1.0, 6.0, 6):
+        finger.to(brow + up * np.eye(3)[1])
+        smiling.advance(STEP)
+    finger.let_go()
+    run(smiling, 60)
+    smiling.toggle_recording()
+    assert any(name.startswith("frontalis") for name in smiling.script.tracks)
+    assert smiling.script.tracks[MAJOR] is before.tracks[MAJOR]
+
+
+def test_a_pose_survives_a_recording_of_nothing(smiling: Session) -> None:
+    """Where no time passed, the pose is by hand again: unsaved, told when it goes, undone."""
+    smiling.seek(1.0)
+    smiling.set("jaw_open", 0.6)
+    smiling.note()
+    smiling.toggle_recording()
+    with pytest.raises(UserError, match="nothing was recorded"):
+        smiling.toggle_recording()
+    assert smiling.values["jaw_open"] == 0.6 and smiling.has_unsaved_pose
+    assert "[Undo]" in (smiling.seek(2.0) or "")
+    smiling.undo()
+    assert smiling.values["jaw_open"] == 0.6
