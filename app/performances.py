@@ -12,8 +12,7 @@ from pathlib import Path
 
 from .errors import UserError
 from .recordings import is_recording, read_take
-from .recordings.conversion import script_of
-from .recordings.playback import Playback
+from .recordings.conversion import Playback, script_of
 from .recordings.report import Report
 from .recordings.text import read_beginning
 from .scenes import SCENES

@@ -102,23 +102,46 @@ class Within:
 
 @dataclass(frozen=True)
 class OneOf:
-    """One of these texts; told: as errors name them, where they are many."""
+    """Exactly one of these, or of what a function gives when the first is read.
 
-    allowed: Iterable[Any]
+    told: as errors name them, where they are many.
+    """
+
+    allowed: Iterable[Any] | Callable[[], Iterable[Any]]
     told: str = ""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """Exactly one of them."""
-        message = self.told or f"one of {', '.join(self.allowed)}"
-        schema = core_schema.no_info_plain_validator_function(self._one)
-        return core_schema.custom_error_schema(schema, "must_be", custom_error_message=message)
+        """A function, since True is 1 for a set."""
+        allowed = tuple(self.allowed() if callable(self.allowed) else self.allowed)
 
-    def _one(self, given: Any) -> Any:
-        if not any(type(given) is type(each) and given == each for each in self.allowed):
-            raise ValueError
-        return given
+        def one(given: Any) -> Any:
+            """One of them; ValueError for another."""
+            if not any(type(given) is type(each) and given == each for each in allowed):
+                raise ValueError
+            return given
+
+        return core_schema.custom_error_schema(
+            core_schema.no_info_plain_validator_function(one),
+            "must_be",
+            custom_error_message=self.told or f"one of {', '.join(allowed)}",
+        )
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Of a table: every key is one of these names, every value of one type."""
+
+    names: Iterable[str] | Callable[[], Iterable[str]]
+    value: Any
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """A table with keys and values of these kinds."""
+        names = OneOf(self.names).__get_pydantic_core_schema__(str, handler)
+        return core_schema.dict_schema(names, handler.generate_schema(self.value))
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from ..batch.journal import Journal
 from ..batch.listing import Job, clashes, lines_of, words_of
 from ..errors import UserError, counted, in_one_line
 from ..files import cannot_be_written, check_apart, check_folder
-from ..recordings.playback import Playback
+from ..recordings.conversion import Playback
 from ..stopping import cleaned_up_if_stopped
 from .options import PATH, SILENT
 

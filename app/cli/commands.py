@@ -16,7 +16,7 @@ from click.core import ParameterSource
 
 from ..errors import UserError, counted, in_one_line
 from ..live import LOOPBACK, PROTOCOLS, Listening
-from ..recordings.playback import Playback
+from ..recordings.conversion import Playback
 from .batch import batch
 from .capture import capture, demo
 from .dataset import dataset

@@ -12,7 +12,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..recordings.playback import LEAD, Playback
+from ..recordings.conversion import LEAD, Playback
 from ..refining.looks import FIRST_LOOK, LOOKS, Refinement
 from .parameters import FiniteRange, PersonName
 

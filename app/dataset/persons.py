@@ -39,7 +39,7 @@ def person_of(request: Request, number: int) -> Somebody:
     table = request.table
     seeds = np.random.SeedSequence([request.seed, number, PERSONS])
     random = np.random.default_rng(seeds)
-    tone = round(float(random.uniform(*table.persons["tone"])), 2)
+    tone = round(float(random.uniform(*table.persons.tone)), 2)
     irises = drawn_irises(random, tone, table.irises)
     labels: dict[str, Any] = {"number": number, "tone": tone, "irises": irises}
     features = Features()

@@ -42,7 +42,7 @@ class Request:
 
     def options(self) -> dict[str, Any]:
         """What decides the samples, as JSON has it: resumed is what was begun with the same."""
-        table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded))}
+        table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
         options = {
             "risorius": self.version,
             "seed": self.seed,
@@ -75,7 +75,7 @@ def request_of(
         samples = with_camera(samples, camera)
     found = () if heads is None else _heads_in(heads)
     if found:
-        samples = replace(samples, persons={**samples.persons, "count": len(found)})
+        samples = replace(samples, persons=replace(samples.persons, count=len(found)))
     told = {
         "sample": sample,
         "camera": camera,

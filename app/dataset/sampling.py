@@ -69,13 +69,15 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
     controls = face.controls | _blink(table, heads, face.controls)
     controls = _two_sided(table, sides, controls, face.one_sided)
     for angle in ("yaw", "pitch", "roll"):
-        degrees = table.head[angle] * _bounded_normal(heads)
+        degrees = getattr(table.head, angle) * _bounded_normal(heads)
         controls[f"head_{angle}"] = degrees / HEAD_RANGES[f"head_{angle}"]
-    aside = [table.eyes[way] * _bounded_normal(heads) for way in ("horizontal", "vertical")]
-    is_at_camera = heads.random() < table.eyes["at_camera"]
-    ranges = [table.camera[each] for each in ("yaw", "pitch", "zoom", "field_of_view")]
+    aside = [
+        getattr(table.eyes, way) * _bounded_normal(heads) for way in ("horizontal", "vertical")
+    ]
+    is_at_camera = heads.random() < table.eyes.at_camera
+    ranges = [getattr(table.camera, each) for each in ("yaw", "pitch", "zoom", "field_of_view")]
     yaw, pitch, zoom, field_of_view = (float(cameras.uniform(*each)) for each in ranges)
-    across, along = (float(cameras.uniform(*table.camera["shift"])) for _ in range(2))
+    across, along = (float(cameras.uniform(*table.camera.shift)) for _ in range(2))
     return Sample(
         seed,
         index,
@@ -84,7 +86,7 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         {key: round(float(value), 4) for key, value in controls.items()},
         None if is_at_camera else (aside[0], aside[1]),
         View(yaw, pitch, zoom, field_of_view, (across, along)),
-        int(looks.integers(table.persons["count"])),
+        int(looks.integers(table.persons.count)),
         chosen(looks, table.lights),
         int(looks.integers(2**63)),
     )
@@ -111,18 +113,18 @@ class _Face:
         self._table = table
         self._random = random
         self.controls: dict[str, float] = {}
-        self.one_sided = table.sides["one_sided"]  # the chance of each unit
+        self.one_sided = table.sides.one_sided  # the chance of each unit
 
     def fill(self, kind: str) -> str:
         """Make a face of this kind; what it is called."""
         table, random = self._table, self._random
         if kind == "expression":
             rows = table.expressions
-            name = chosen(random, {name: row.get("share", 0.0) for name, row in rows.items()})
-            self.one_sided = float(random.random() < rows[name].get("one_sided", 0.0))
+            name = chosen(random, {name: row.share for name, row in rows.items()})
+            self.one_sided = float(random.random() < rows[name].one_sided)
             strength = self._intensity()
-            for unit, share in rows[name].items():
-                if unit not in ("share", "one_sided") and random.random() < share:
+            for unit, share in rows[name].units.items():
+                if random.random() < share:
                     self._add(unit, strength * random.uniform(0.75, 1.1))
             return name
         if kind == "unit":
@@ -178,7 +180,7 @@ def _blink(
     table: SampleTable, random: np.random.Generator, controls: Mapping[str, float]
 ) -> dict[str, float]:
     """Lids on their way or shut, where nothing else moves them."""
-    is_blinking, closed = random.random() < table.eyes["blink"], random.uniform(0.25, 1.0)
+    is_blinking, closed = random.random() < table.eyes.blink, random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
         return {}
     return {BLINK: float(closed)}
@@ -191,11 +193,11 @@ def _two_sided(
     one_sided: float,
 ) -> dict[str, float]:
     """Units by side where the face is not symmetric; a lean face leans with all of them."""
-    is_asymmetric = random.random() < table.sides["asymmetric"]
+    is_asymmetric = random.random() < table.sides.asymmetric
     side = int(random.integers(2))  # the one that is stronger, or alone
     result: dict[str, float] = {}
     for name, value in controls.items():
-        weaker = 1.0 - min(abs(table.sides["difference"] * _bounded_normal(random)), 1.0)
+        weaker = 1.0 - min(abs(table.sides.difference * _bounded_normal(random)), 1.0)
         if name not in paired_units() or name == BLINK:
             result[name] = value
         elif random.random() < one_sided:

@@ -5,22 +5,21 @@ Sources of what stands in it are named there. This reads and checks it.
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Container, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Container, Iterable, Mapping
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from risorius import assets
 from risorius.assets.generator.eyeballs import IRISES
 from risorius.assets.identities import DARKEST, LIGHTEST
 from risorius.render import LIGHTS
+from risorius.schema import REST, MadeFrom, OneOf, Record, Rows, Within, called, parsed_toml, read
 
 from ..errors import UserError
 from ..files import NoSuchFileError, read_text
-from ..recordings.viseme_tracks import is_number
 
 LONGEST_FILE = 2**18  # [bytes]
 KINDS = ("neutral", "expression", "mixture", "speech", "unit")
@@ -30,32 +29,146 @@ OF_EYES_AND_HEAD = {f"AU{number}" for number in range(51, 65)}  # these have the
 FILLED_UP = ("sides", "eyes", "head", "camera", "persons")  # rows that are left out are taken
 Shares = Mapping[str, float]
 Range = tuple[float, float]
-ANY = "*"  # rows of any name
-WEIGHT, SHARE = (0.0, 1e6), (0.0, 1.0)
+
+
+def _layer(title: str) -> Mapping[str, Any]:
+    return {layer.title: layer.rows for layer in assets.load("head").layers}[title]
+
+
+def _units() -> list[str]:
+    return [unit for unit in _layer("Action units") if unit not in {BLINK, *OF_EYES_AND_HEAD}]
+
+
+def _visemes() -> list[str]:
+    return list(_layer("Visemes"))
+
+
+def _drawn(shares: dict[str, float]) -> Shares:
+    """Shares from which one name is drawn; ValueError where none can be."""
+    if not any(shares.values()):
+        raise ValueError("all shares are 0; one at least must be above")
+    return shares
+
+
+def _ordered(ends: Range) -> Range:
+    if ends[0] > ends[1]:
+        raise ValueError(f"was {list(ends)}, must be [low, high], the lower first")
+    return ends
+
+
+def _between(low: float, high: float) -> MadeFrom:
+    """Of a range: both of its ends are within these limits."""
+    return MadeFrom(Annotated[Range, Within(low, high)], _ordered)
+
+
+def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
+    """Of shares: a table of these names and weights."""
+    return MadeFrom(Annotated[Shares, Rows(names, Weight)], _drawn)
+
+
+Weight = Annotated[float, Within(0.0, 1e6)]
+Share = Annotated[float, Within(0.0, 1.0)]
+Degrees = Annotated[float, Within(0.0, 15.0)]
+Unit = Annotated[str, OneOf(_units)]
 
 
 @dataclass(frozen=True)
-class SampleTable:
+class Expression(Record):
+    """How often it comes, how often on one side alone, and how often each unit is in it."""
+
+    units: Annotated[Shares, called(REST), Rows(_units, Share)]
+    share: Weight = 0.0
+    one_sided: Share = 0.0
+
+
+def _expressions(rows: dict[str, Expression]) -> Mapping[str, Expression]:
+    _drawn({name: row.share for name, row in rows.items()})
+    return rows
+
+
+@dataclass(frozen=True)
+class Excluded(Record):
+    """Units that are not there together."""
+
+    pairs: Annotated[tuple[frozenset[str], ...], MadeFrom(list[list[Unit]], lambda p: _pairs(p))]
+
+
+def _pairs(pairs: list[list[str]]) -> tuple[frozenset[str], ...]:
+    for pair in pairs:
+        if len(set(pair)) != 2 or len(pair) != 2:
+            raise ValueError(f"was {pair}, must be two different action units")
+    return tuple(map(frozenset, pairs))
+
+
+@dataclass(frozen=True)
+class Sides(Record):
+    """How unlike left and right are."""
+
+    asymmetric: Share
+    difference: Share
+    one_sided: Share
+
+
+@dataclass(frozen=True)
+class Eyes(Record):
+    """Where eyes look, and whether they are shut."""
+
+    blink: Share
+    at_camera: Share
+    horizontal: Degrees
+    vertical: Degrees
+
+
+@dataclass(frozen=True)
+class Head(Record):
+    """How far the head turns [degrees], up to half of what the neck can."""
+
+    yaw: Annotated[float, Within(0.0, 20.0)]
+    pitch: Degrees
+    roll: Degrees
+
+
+@dataclass(frozen=True)
+class Camera(Record):
+    """Where the camera stands."""
+
+    yaw: Annotated[Range, _between(-90.0, 90.0)]
+    pitch: Annotated[Range, _between(-60.0, 60.0)]
+    zoom: Annotated[Range, _between(0.2, 2.0)]
+    field_of_view: Annotated[Range, _between(5.0, 90.0)]
+    shift: Annotated[Range, _between(-0.3, 0.3)]
+
+
+@dataclass(frozen=True)
+class Persons(Record):
+    """How many they are, and the tone of their skin."""
+
+    count: Annotated[int, Within(1, 1_000_000)]
+    tone: Annotated[Range, _between(DARKEST, LIGHTEST)]
+
+
+@dataclass(frozen=True)
+class SampleTable(Record):
     """What aus.toml says, section by section; its comments are the documentation."""
 
-    kinds: Shares
-    letters: Shares
-    expressions: Mapping[str, Shares]
-    units: Shares
-    together: Mapping[str, Shares]
-    excluded: tuple[frozenset[str], ...]
-    speech: Shares
-    sides: Shares
-    eyes: Shares
-    head: Shares
-    camera: Mapping[str, Range]
-    persons: Mapping[str, Any]
-    irises: Shares
-    lights: Shares
+    kinds: Annotated[Shares, _drawn_from(KINDS)]
+    letters: Annotated[Shares, _drawn_from(LETTERS)]
+    expressions: Annotated[Mapping[str, Expression], MadeFrom(dict[str, Expression], _expressions)]
+    units: Annotated[Shares, _drawn_from(_units)]
+    together: Annotated[Mapping[str, Shares], Rows(_units, Annotated[Shares, Rows(_units, Share)])]
+    excluded: Excluded
+    speech: Annotated[Shares, _drawn_from(_visemes)]
+    sides: Sides
+    eyes: Eyes
+    head: Head
+    camera: Camera
+    persons: Persons
+    irises: Annotated[Shares, _drawn_from(IRISES)]
+    lights: Annotated[Shares, _drawn_from(LIGHTS)]
 
     def goes_with(self, unit: str, others: Container[str]) -> bool:
         """Whether a unit may be there beside those that are."""
-        excluded = (pair - {unit} for pair in self.excluded if unit in pair)
+        excluded = (pair - {unit} for pair in self.excluded.pairs if unit in pair)
         return not any(other in others for pair in excluded for other in pair)
 
 
@@ -69,28 +182,21 @@ def load_table(path: Path | None) -> SampleTable:
 
     Raises UserError with file, section and row.
     """
-    sections = tomllib.loads(table_text())
+    sections = parsed_toml(table_text())
     where = str(path or "aus.toml")
     if path is not None:
         try:
-            own = tomllib.loads(read_text(path, what="table of samples", longest=LONGEST_FILE))
+            own = parsed_toml(read_text(path, what="table of samples", longest=LONGEST_FILE))
         except NoSuchFileError:
             raise UserError(
                 f"{path}: no such table; `risorius dataset --sample-table > {path.name}` writes one"
             ) from None
-        except (ValueError, RecursionError) as error:
-            raise UserError(f"{path}: not valid TOML: {error}") from None
+        except ValueError as error:
+            raise UserError(f"{path}: {error}") from None
         for name, rows in own.items():
             is_added = name in FILLED_UP and isinstance(rows, dict)
             sections[name] = {**sections[name], **rows} if is_added else rows
-    found = _checked(where, sections, {**_weighted(), **_others()})
-    shares = {name: found[name].values() for name in _weighted()}
-    shares["expressions"] = [row.get("share") for row in found["expressions"].values()]
-    for name, given in shares.items():
-        if not any(given):
-            raise UserError(f"{where}, '{name}': all shares are 0; one at least must be above")
-    found["persons"]["count"] = int(found["persons"]["count"])
-    return SampleTable(**{**found, "excluded": found["excluded"].get("pairs", ())})
+    return read(SampleTable, sections, where, error=UserError)
 
 
 def with_camera(table: SampleTable, text: str) -> SampleTable:
@@ -109,86 +215,12 @@ def with_camera(table: SampleTable, text: str) -> SampleTable:
             "-30:30,0:10"
         ) from None
     pairs = {name: ends * 2 if len(ends) == 1 else ends for name, ends in given.items()}
-    camera = _checked(f"--camera {text}", pairs, _others()["camera"])
-    return replace(table, camera={**table.camera, **camera})
+    camera = {each.name: list(getattr(table.camera, each.name)) for each in fields(Camera)}
+    found = read(Camera, {**camera, **pairs}, f"--camera {text}", error=UserError)
+    return replace(table, camera=found)
 
 
 @cache
 def paired_units() -> frozenset[str]:
     """The action units that have two sides."""
     return frozenset(name for name, row in _layer("Action units").items() if row.get("pair"))
-
-
-def _layer(title: str) -> Mapping[str, Any]:
-    return {layer.title: layer.rows for layer in assets.load("head").layers}[title]
-
-
-def _units() -> list[str]:
-    return [unit for unit in _layer("Action units") if unit not in {BLINK, *OF_EYES_AND_HEAD}]
-
-
-def _weighted() -> dict[str, dict[str, Any]]:
-    """Sections from which one name is drawn, as `_checked` wants them."""
-    names = {"kinds": KINDS, "letters": LETTERS, "units": _units(), "speech": _layer("Visemes"),
-             "irises": IRISES, "lights": LIGHTS}  # fmt: skip
-    return {section: dict.fromkeys(each, WEIGHT) for section, each in names.items()}
-
-
-def _others() -> dict[str, dict[str, Any]]:
-    """All other sections."""
-    shares = dict.fromkeys(_units(), SHARE)
-    return {
-        "expressions": {ANY: {"share": WEIGHT, "one_sided": SHARE, **shares}},
-        "together": dict.fromkeys(shares, shares),
-        "excluded": {"pairs": frozenset(shares)},
-        "sides": dict.fromkeys(("asymmetric", "difference", "one_sided"), SHARE),
-        "eyes": {"blink": SHARE, "at_camera": SHARE, "horizontal": (0, 15), "vertical": (0, 15)},
-        "head": {"yaw": (0, 20), "pitch": (0, 15), "roll": (0, 15)},  # half of what the neck turns
-        "camera": {"yaw": [-90, 90], "pitch": [-60, 60], "zoom": [0.2, 2.0],
-                   "field_of_view": [5, 90], "shift": [-0.3, 0.3]},
-        "persons": {"count": (1, 1e6), "tone": [DARKEST, LIGHTEST]},
-    }  # fmt: skip
-
-
-def _checked(where: str, given: Any, allowed: Any) -> Any:
-    """What is given, its numbers as floats; UserError where it is not allowed.
-
-    allowed: (least, most) for a number, [least, most] for a pair [low, high] of them, a set for
-    pairs of its names, and for rows what is allowed by their names, or by ANY.
-    """
-
-    def wrong(what: str) -> UserError:
-        """An error about all that is given."""
-        return UserError(f"{where}: was {given!r}, must be {what}")
-
-    if isinstance(allowed, dict):
-        if not isinstance(given, dict):
-            raise wrong("a table of rows")
-        for name in given:
-            if name not in allowed and ANY not in allowed:
-                raise UserError(
-                    f"{where}, '{name}': is no name here; allowed are {', '.join(allowed)}"
-                )
-        return {
-            name: _checked(f"{where}, '{name}'", row, allowed.get(name, allowed.get(ANY)))
-            for name, row in given.items()
-        }
-    if isinstance(allowed, frozenset):
-        if not isinstance(given, list):
-            raise wrong('pairs, as in [["AU26", "AU27"], ...]')
-        for pair in given:
-            names = set(map(str, pair)) if isinstance(pair, list) else set()
-            if len(names) != 2 or not names <= allowed:
-                raise UserError(f"{where}: was {pair!r}, must be two different action units")
-        return tuple(map(frozenset, given))
-    least, most = allowed
-    if isinstance(allowed, list):
-        if not isinstance(given, list) or len(given) != 2:
-            raise wrong("[low, high]")
-        low, high = (_checked(where, value, (least, most)) for value in given)
-        if low > high:
-            raise wrong("[low, high], the lower first")
-        return low, high
-    if not is_number(given) or not least <= given <= most:
-        raise wrong(f"a number from {least:g} to {most:g}")
-    return float(given)

@@ -16,9 +16,8 @@ import numpy as np
 
 from ..errors import UserError
 from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
-from ..recordings.conversion import lead_of
+from ..recordings.conversion import LEAD, lead_of
 from ..recordings.names import ARKIT
-from ..recordings.playback import LEAD
 from .clip import Clip, Floats, Surface
 from .formats import Request
 

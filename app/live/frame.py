@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..recordings.spelling import shape_of
+from ..recordings.names import shape_of
 
 MOST_BYTES = 16384  # of a packet; the largest that anybody sends has about 3000
 LONGEST_NAME = 40  # letters of a shape

@@ -1,4 +1,4 @@
-"""Angles of head and eyes as ARKit's writers give them; unit, axes and signs come from the data.
+"""Angles of head and eyes as ARKit's writers give them; their unit comes from the data.
 
 ARKit's shapes eyeLookDown, eyeLookIn ... follow its eye angles, so they tell what the angles are.
 Live Link Face writes, fitted to a real take (correlation 0.98 to 0.999; [rad], + is down and to the
@@ -8,7 +8,7 @@ subject's right):
     yaw = 0.62 in - 0.59 out - 0.07 of the left eye, the opposite of the right eye
 
 So its axes stand 4 degrees outwards of where the eyes look, as the axis of a real eyeball does.
-Other writers use degrees, or halves of a turn as Unreal's plug-in does.
+Other writers use degrees.
 """
 
 from __future__ import annotations
@@ -21,14 +21,13 @@ import numpy as np
 from .names import EYE_ANGLES
 from .take import Array
 
-UNITS = {"radians": 180.0 / math.pi, "degrees": 1.0, "halves of a turn": 180.0}  # in degrees
+UNITS = {"radians": 180.0 / math.pi, "degrees": 1.0}  # in degrees
 LARGEST_DEGREES = 360.0  # what is larger is no angle in any unit
 LARGEST_RADIANS = 2.0 * math.pi
 MOVES = 0.005  # [rad] standard deviation of a look that tells something
 AGREES = 0.5  # correlation
 FOLLOWS = 0.9  # correlation that tells where an eye looks ahead
 CENTRED = 0.01  # [rad] by which it may be off unnoticed
-CLEARLY = 0.6  # correlation that swaps axes
 
 
 def in_degrees(
@@ -50,18 +49,12 @@ def in_degrees(
     if not moving:
         return {}
     looks = looks_of(shapes)
-    angles = _head_unswapped(_eyes_unswapped(moving, looks, notes), looks, notes)
-    unit = _unit(angles, looks, notes)
-    found = {}
-    for name, values in angles.items():
-        sign = -1.0  # ARKit's writers count down and to the right
-        if name in looks and _correlation(values, looks[name]) < -AGREES:
-            sign = 1.0
-            notes.append(f"{name} runs against the eyeLook shapes; its sign was turned.")
-        found[name] = sign * UNITS[unit] * (values - _outward(values, looks.get(name)))
-    if any(_outward(angles[name], looks.get(name)) for name in angles):
+    unit = _unit(moving, looks, notes)
+    outward = {name: _outward(values, looks.get(name)) for name, values in moving.items()}
+    if any(outward.values()):
         notes.append("The eyeballs' axes stand outwards of where the eyes look; that was undone.")
-    return found
+    # ARKit's writers count down and to the right.
+    return {name: -UNITS[unit] * (values - outward[name]) for name, values in moving.items()}
 
 
 def looks_of(shapes: Mapping[str, Array]) -> dict[str, Array]:
@@ -80,7 +73,7 @@ def looks_of(shapes: Mapping[str, Array]) -> dict[str, Array]:
 
 def _outward(values: Array, look: Array | None) -> float:
     """How far an angle is off, in its own unit, where the shapes say that the eye looks ahead."""
-    if look is None or abs(_correlation(values, look)) < FOLLOWS:
+    if look is None or _correlation(values, look) < FOLLOWS:
         return 0.0
     angle, seen = _both_known(values, look)
     slope, offset = np.polyfit(seen, angle, 1)
@@ -91,9 +84,9 @@ def _unit(angles: Mapping[str, Array], looks: Mapping[str, Array], notes: list[s
     """The unit by least squares of eye angles on looks; by size where the eyes do not tell."""
     product = square = 0.0
     for name in EYE_ANGLES:
-        if name in angles and abs(_correlation(angles[name], looks.get(name))) > AGREES:
+        if name in angles and _correlation(angles[name], looks.get(name)) > AGREES:
             angle, look = _both_known(angles[name], looks[name])
-            product += abs(float(np.dot(angle - angle.mean(), look - look.mean())))
+            product += float(np.dot(angle - angle.mean(), look - look.mean()))
             square += float(np.dot(look - look.mean(), look - look.mean()))
     if square > 0.0:
         slope = product / square  # of the file's unit in radians
@@ -110,50 +103,6 @@ def _unit(angles: Mapping[str, Array], looks: Mapping[str, Array], notes: list[s
 def _size(angles: Mapping[str, Array]) -> float:
     """How far angles go, a few wrong ones aside, in their own unit."""
     return max(float(np.nanpercentile(np.abs(values), 99)) for values in angles.values())
-
-
-def _eyes_unswapped(
-    angles: dict[str, Array], looks: Mapping[str, Array], notes: list[str]
-) -> dict[str, Array]:
-    """Pitch and yaw of the eyes exchanged, where each follows the look along the other axis."""
-    straight, crossed = [], []
-    for side in ("left", "right"):
-        for axis, other in (("yaw", "pitch"), ("pitch", "yaw")):
-            column = angles.get(f"eye_{axis}_{side}")
-            straight.append(abs(_correlation(column, looks.get(f"eye_{axis}_{side}"))))
-            crossed.append(abs(_correlation(column, looks.get(f"eye_{other}_{side}"))))
-    if max(crossed) > CLEARLY and sum(crossed) > sum(straight) + CLEARLY:
-        notes.append("The writer swapped pitch and yaw of the eyes; they were put back.")
-        return angles | {
-            name: angles[_other_axis(name)] for name in EYE_ANGLES if _other_axis(name) in angles
-        }
-    return angles
-
-
-def _head_unswapped(
-    angles: dict[str, Array], looks: Mapping[str, Array], notes: list[str]
-) -> dict[str, Array]:
-    """The same of the head: eyes that keep their goal turn against the head, on the same axis."""
-    if not {"head_yaw", "head_pitch"} <= angles.keys():
-        return angles
-    across, along = looks.get("eye_yaw_left"), looks.get("eye_pitch_left")
-    crossed = (
-        _correlation(angles["head_yaw"], along),
-        _correlation(angles["head_pitch"], across),
-    )
-    straight = (
-        _correlation(angles["head_yaw"], across),
-        _correlation(angles["head_pitch"], along),
-    )
-    if max(crossed) < -CLEARLY and min(straight) > -AGREES:
-        notes.append("The writer swapped pitch and yaw of the head; they were put back.")
-        return angles | {"head_yaw": angles["head_pitch"], "head_pitch": angles["head_yaw"]}
-    return angles
-
-
-def _other_axis(name: str) -> str:
-    """The name with pitch for yaw, or yaw for pitch."""
-    return name.replace("yaw", "P").replace("pitch", "yaw").replace("P", "pitch")
 
 
 def _both_known(first: Array, second: Array) -> tuple[Array, Array]:

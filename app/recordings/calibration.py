@@ -21,8 +21,7 @@ import numpy as np
 
 from ..controls.mirror import TURNED, twin_of
 from ..errors import UserError
-from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
-from .spelling import angle_of, shape_of
+from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES, angle_of, shape_of
 from .take import Array, Take
 
 Value = TypeVar("Value", float, Array)

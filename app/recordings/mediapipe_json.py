@@ -1,9 +1,10 @@
-"""Shapes in JSON: what MediaPipe's face landmarker answers, as programs and web pages write it.
+"""Shapes in JSON: what MediaPipe's face landmarker answers, and what Audio2Face exports.
 
-A picture is a list of `{"category_name": "jawOpen", "score": 0.2}` (also `categoryName` or `name`;
-scores may be texts), or simply `{"jawOpen": 0.2}`. A recording is a list of those, or of frames
-`{"timestamp": 33, "faceBlendshapes": ...}`, under "frames" or not; or one list of numbers for each
-shape; or `facsNames` with rows of `weightMat`, as NVIDIA's Audio2Face exports.
+A face is a list of `{"category_name": "jawOpen", "score": 0.2}` (`categoryName` on web pages; a
+score may be a text), or simply `{"jawOpen": 0.2}`. A frame holds one or several of them, under
+`faceBlendshapes` or `blendshapes`, perhaps beside a time stamp and the head's matrix. A recording
+is a list of frames, under `frames` or not. NVIDIA's Audio2Face has `facsNames` and rows of
+`weightMat`.
 """
 
 from __future__ import annotations
@@ -15,199 +16,127 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
-from .faces import only_one
 from .gaps import whole_take
 from .named_columns import is_calibrated, shares
-from .names import HEAD_ANGLES
-from .request import Request
-from .spelling import shape_of
+from .names import HEAD_ANGLES, shape_of
 from .table import LARGEST
-from .take import Array, Take
+from .take import Array, Request, Take
 from .timing import FRAMES, STAMPS, frame_times, stamp_times
 
-NAMES = ("category_name", "categoryName", "name")  # of a category
-SCORES = ("score", "value", "weight")
-# The other keys without capitals and underscores.
-LISTS = ("frames", "results", "data", "recording", "samples")
-SHAPES = ("blendshapes", "faceblendshapes", "categories", "shapes", "weights", "scores", "arkit",
-          "coefficients", "values")  # fmt: skip
-MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix", "transform",
-            "facialtransformationmatrix")  # fmt: skip
-RATES = ("fps", "framerate", "exportfps", "samplerate")
-TIMES = tuple(dict.fromkeys(name.replace("_", "") for name in STAMPS))
-NUMBERS = tuple(dict.fromkeys(name.replace("_", "") for name in FRAMES))
-SHAPE_ROWS = (("facsnames", "weightmat"), ("names", "weights"), ("blendshapenames", "weights"))
-Shapes = dict[str, float]
+# All without capitals and underscores, see `_plain`.
+FACES = ("faceblendshapes", "blendshapes", "categories")
+MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
+RATES = ("fps", "exportfps")
+TIMES, NUMBERS = (
+    tuple(dict.fromkeys(name.replace("_", "") for name in names)) for names in (STAMPS, FRAMES)
+)
 
 
 def recognises(document: Any) -> bool:
     """Whether there are shapes in the first frames of the document."""
-    if _columns(document) is not None:
-        return True
-    frames, _ = _frames(document)
-    return any(_faces(frame) for frame in frames[:1000])
+    return any(_faces(frame) for frame in _frames(document)[:1000])
 
 
 def read(document: Any, source: str, request: Request) -> Take:
     """The take in the document."""
     notes: list[str] = []
-    unknown: list[str] = []
-    table = _columns(document)
-    if table is not None:
-        only_one(source, request)
-        shapes, stamps, given = table
-    else:
-        frames, given = _frames(document)
-        faces = [_faces(frame) for frame in frames]
-        shapes = _channels(faces, _index_of_face(faces, source, request, notes), unknown)
-        keyed = [_keys(frame) if isinstance(frame, dict) else {} for frame in frames]
-        stamps = {
-            key: np.array([_number(keys.get(key)) for keys in keyed])
-            for key in (*TIMES, *NUMBERS)
-            if any(key in keys for keys in keyed)
-        }
-        shapes |= _head(keyed)
-    count = len(next(iter(shapes.values())))
-    times = _times(stamps, count, request.rate, given, notes)
-    head = {name: values for name, values in shapes.items() if name in HEAD_ANGLES}
-    shapes = shares({name: values for name, values in shapes.items() if name not in head}, notes)
+    frames = _frames(document)
+    shapes, unknown = _shapes([_faces(frame) for frame in frames], source, request, notes)
+    keyed = [_plain(frame) for frame in frames]
+    stamps = {
+        key: np.array([_number(keys.get(key)) for keys in keyed])
+        for key in (*TIMES, *NUMBERS)
+        if any(key in keys for keys in keyed)
+    }
+    times = _times(stamps, len(frames), request.rate, _rate(document), notes)
+    shapes = shares(shapes, notes)
     return whole_take(
-        "MediaPipe JSON" if table is None else "JSON of shapes",
+        "MediaPipe JSON",
         source,
         times,
-        shapes | head,
+        shapes | _head(keyed),
         notes=notes,
         unknown=unknown,
         is_calibrated=is_calibrated(shapes, notes),
     )
 
 
-def _frames(document: Any) -> tuple[list[Any], float | None]:
-    """What stands for the frames, and the frame rate where the document tells it."""
+def recognises_weights(document: Any) -> bool:
+    """Whether the document is what Audio2Face exports."""
+    keys = _plain(document)
+    return all(isinstance(keys.get(name), list) for name in ("facsnames", "weightmat"))
+
+
+def read_weights(document: Any, source: str, request: Request) -> Take:
+    """The take in `{"facsNames": ["jawOpen", ...], "weightMat": [[0.2, ...], ...]}`."""
+    request.refuse_face(source)
+    keys, notes = _plain(document), list[str]()
+    rows = [row if isinstance(row, list) else [] for row in keys["weightmat"]]
+    found: dict[str, Array] = {}
+    unknown = []
+    for place, name in enumerate(map(str, keys["facsnames"])):
+        if shape := shape_of(name):
+            found[shape] = np.array([_number(dict(enumerate(row)).get(place)) for row in rows])
+        else:
+            unknown.append(name)
+    times = _times({}, len(rows), request.rate, _rate(document), notes)
+    shapes = shares(found, notes)
+    return whole_take("Audio2Face", source, times, shapes, notes=notes, unknown=unknown)
+
+
+def _frames(document: Any) -> list[Any]:
+    """What stands for the frames."""
     if isinstance(document, dict):
-        keys = _keys(document)
-        rate = _number(_first(keys, RATES))
-        given = rate if 1.0 <= rate <= 1000.0 else None
-        frames = _first(keys, LISTS)
-        if isinstance(frames, list):
-            return frames, given
-        shapes = _first(keys, SHAPES)
-        if isinstance(shapes, list) and shapes and _category(shapes[0]) is None:
-            return shapes, given
-        return [document], given
+        frames = _plain(document).get("frames")
+        return frames if isinstance(frames, list) else [document]
     if isinstance(document, list):
-        is_picture = bool(document) and all(_category(item) is not None for item in document)
-        return ([document] if is_picture else document), None
-    return [], None
+        return [document] if document and all(map(_category, document)) else document
+    return []
 
 
-def _faces(value: Any) -> list[Shapes]:
-    """The shapes of each face in what stands for a frame."""
-    if isinstance(value, dict):
-        found = {
-            shape: number
-            for key, item in value.items()
-            if not isinstance(item, dict | list)
-            and (shape := shape_of(key))
-            and math.isfinite(number := _number(item))
-        }
-        return [found] if found else _faces(_first(_keys(value), SHAPES))
-    if isinstance(value, list):
-        categories = [_category(item) for item in value]
-        if categories and all(category is not None for category in categories):
-            return [{name: score for name, score in filter(None, categories)}]
-        return [face for item in value for face in _faces(item)]
+def _faces(frame: Any) -> list[dict[str, float]]:
+    """Name as it is written -> score of each face in what stands for a frame."""
+    if isinstance(frame, dict):
+        plain = {key: item for key, item in frame.items() if not isinstance(item, dict | list)}
+        found = {key: _number(item) for key, item in plain.items() if shape_of(key)}
+        return [found] if found else _faces(_first(_plain(frame), FACES))
+    if isinstance(frame, list):
+        categories = [_category(item) for item in frame]
+        if categories and all(categories):
+            return [dict(filter(None, categories))]
+        return [face for item in frame for face in _faces(item)]
     return []
 
 
 def _category(item: Any) -> tuple[str, float] | None:
     """Name and score, where the item is one category; the name is as written."""
-    if not isinstance(item, dict):
-        return None
-    name = next((item[key] for key in NAMES if key in item), None)
-    score = next((item[key] for key in SCORES if key in item), None)
-    if not isinstance(name, str) or not isinstance(score, str | int | float):
-        return None
-    return name, _number(score)
+    keys = _plain(item)
+    name, score = keys.get("categoryname"), keys.get("score")
+    return (name, _number(score)) if isinstance(name, str) and score is not None else None
 
 
-def _index_of_face(
-    faces: Sequence[list[Shapes]], source: str, request: Request, notes: list[str]
-) -> int:
-    """Which face of each frame is taken: they are counted from 0."""
-    most = max(len(each) for each in faces)
-    if request.face is None:
-        if most > 1:
-            notes.append(f"Up to {most} faces are in a frame; taken was '0', the first.")
-        return 0
-    if request.face not in [str(number) for number in range(most)]:
-        listed = ", ".join(f"'{number}'" for number in range(most))
-        raise UserError(f"{source}: no face '{request.face}'; in it are {listed}")
-    return int(request.face)
-
-
-def _channels(faces: Sequence[list[Shapes]], face: int, unknown: list[str]) -> dict[str, Array]:
-    """Shape -> values, shape (frames,), NaN where there is no face."""
-    values: dict[str, Array] = {}
-    for row, several in enumerate(faces):
-        if face >= len(several):
-            continue
-        for spelled, score in several[face].items():
-            name = shape_of(spelled)
-            if name is None:
-                if spelled not in unknown and spelled != "_neutral" and len(unknown) < 1000:
-                    unknown.append(spelled)
-                continue
-            if name not in values:
-                values[name] = np.full(len(faces), np.nan)
-            values[name][row] = score
-    return values
-
-
-def _columns(
-    document: Any,
-) -> tuple[dict[str, Array], dict[str, Array], float | None] | None:
-    """Shapes, time stamps and rate of a document that lists numbers; None for another one."""
-    if not isinstance(document, dict):
-        return None
-    _, rate = _frames(document)
-    keys = _keys(document)
-    for names_key, rows_key in SHAPE_ROWS:
-        names, rows = keys.get(names_key), keys.get(rows_key)
-        if isinstance(names, list) and isinstance(rows, list) and rows:
-            shapes = {}
-            for place, name in enumerate(names):
-                if isinstance(name, str) and (shape := shape_of(name)):
-                    shapes[shape] = np.array(
-                        [
-                            _number(row[place])
-                            if isinstance(row, list) and place < len(row)
-                            else math.nan
-                            for row in rows
-                        ]
-                    )
-            if shapes:
-                return shapes, {}, rate
-    inner = _first(keys, SHAPES)
-    columns = inner if isinstance(inner, dict) else document
-    lists = {
-        shape: values
-        for key, values in columns.items()
-        if isinstance(values, list) and values and (shape := shape_of(key))
-    }
-    if not lists or any(isinstance(item, dict | list) for item in next(iter(lists.values()))):
-        return None
-    count = min(len(values) for values in lists.values())
-    stamps = {
-        key: np.array([_number(value) for value in values[:count]])
-        for key, values in _keys(document | columns).items()
-        if isinstance(values, list) and key in (*TIMES, *NUMBERS) and len(values) >= count
-    }
-    shapes = {
-        shape: np.array([_number(value) for value in values[:count]])
-        for shape, values in lists.items()
-    }
-    return shapes, stamps, rate
+def _shapes(
+    frames: Sequence[list[dict[str, float]]], source: str, request: Request, notes: list[str]
+) -> tuple[dict[str, Array], list[str]]:
+    """Shape -> values, shape (frames,), NaN where there is no face; and names that none has."""
+    most = max(map(len, frames), default=0)
+    listed = [str(number) for number in range(most)]
+    if request.face is not None and request.face not in listed:
+        raise UserError(
+            f"{source}: no face '{request.face}'; in it are "
+            + ", ".join(f"'{number}'" for number in listed)
+        )
+    if request.face is None and most > 1:
+        notes.append(f"Up to {most} faces are in a frame; taken was '0', the first.")
+    face, values, unknown = int(request.face or 0), dict[str, Array](), dict[str, None]()
+    for row, faces in enumerate(frames):
+        for written, score in faces[face].items() if face < len(faces) else ():
+            name = shape_of(written)
+            if name is not None:
+                values.setdefault(name, np.full(len(frames), np.nan))[row] = score
+            elif written != "_neutral":
+                unknown[written] = None
+    return values, list(unknown)[:1000]
 
 
 def _head(frames: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
@@ -224,20 +153,18 @@ def _head(frames: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
 
 
 def _matrix(value: Any) -> Array | None:
-    """The rotation, shape (3, 3), in 16 numbers by rows, or by columns as pages have them."""
+    """The rotation, shape (3, 3), in 4 rows, or in 16 numbers by columns, as pages have them."""
     while isinstance(value, list) and len(value) == 1:
         value = value[0]
     if isinstance(value, dict):
         value = value.get("data")
-    if isinstance(value, list) and len(value) == 4:
-        value = [number for row in value if isinstance(row, list) for number in row]
-    if not isinstance(value, list) or len(value) != 16:
+    try:
+        matrix = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
         return None
-    matrix = np.array([_number(number) for number in value]).reshape(4, 4)
-    if not np.isfinite(matrix).all():
+    if matrix.shape not in ((4, 4), (16,)) or not np.isfinite(matrix).all():
         return None
-    is_by_columns = not matrix[:3, 3].any() and bool(matrix[3, :3].any())
-    return (matrix.T if is_by_columns else matrix)[:3, :3]
+    return (matrix if matrix.ndim == 2 else matrix.reshape(4, 4).T)[:3, :3]
 
 
 def _times(
@@ -249,14 +176,22 @@ def _times(
         for key in TIMES:
             if key in stamps and (times := stamp_times(stamps[key], notes)) is not None:
                 return times
-    if given is not None and rate is None:
-        notes.append(f"{given:g} frames a second, as the file says.")
+        if given is not None:
+            notes.append(f"{given:g} frames a second, as the file says.")
     frame = next((stamps[key] for key in NUMBERS if key in stamps), None)
     return frame_times(frame, count, rate or given, notes)
 
 
-def _keys(item: Mapping[str, Any]) -> dict[str, Any]:
-    """The same under keys without capitals and underscores."""
+def _rate(document: Any) -> float | None:
+    """The frames a second that the document tells."""
+    rate = _number(_first(_plain(document), RATES))
+    return rate if 1.0 <= rate <= 1000.0 else None
+
+
+def _plain(item: Any) -> dict[str, Any]:
+    """A table under keys without capitals and underscores; an empty one for what is none."""
+    if not isinstance(item, dict):
+        return {}
     return {key.casefold().replace("_", ""): value for key, value in item.items()}
 
 

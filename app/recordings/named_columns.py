@@ -10,14 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .angles import in_degrees
-from .faces import COLUMNS as FACE_COLUMNS
-from .faces import one_face
 from .gaps import whole_take
-from .names import ARKIT
-from .request import Request
-from .spelling import ACTION_UNIT, angle_of, is_eye_roll, shape_of, viseme_of
-from .table import Table
-from .take import Array, Take
+from .names import ACTION_UNIT, ARKIT, angle_of, is_eye_roll, shape_of, viseme_of
+from .table import FACE_COLUMNS, Table, one_face
+from .take import Array, Request, Take
 from .timing import times_of
 
 PERCENT = 2.0  # shapes beyond are no shares: 0 to 100

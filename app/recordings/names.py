@@ -9,10 +9,16 @@
 Left and right are the subject's own. Angles grow to the subject's left, up, and (roll) to the left
 shoulder, as the controls do. Readers turn signs and units of a format; nobody after them does.
 
+Programs spell them in many ways: `mouthSmile_L`, `MouthSmileLeft`, `blendShapes.mouthSmileLeft` and
+`mouth_smile_left` are one name; the functions below tell which.
+
 Source: Apple, ARFaceAnchor.BlendShapeLocation (the names).
 """
 
 from __future__ import annotations
+
+import functools
+import re
 
 ARKIT = (
     "eyeBlinkLeft", "eyeLookDownLeft", "eyeLookInLeft", "eyeLookOutLeft", "eyeLookUpLeft",
@@ -34,3 +40,60 @@ EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_righ
 VISEMES = tuple(
     f"viseme_{sound}" for sound in "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 )
+
+ACTION_UNIT = re.compile(r"au[ _]?0*([1-9]\d?)(?:[ _]?(r|c|l|left|right))?$")
+OCULUS_VOWELS = {"i": "ih", "o": "oh", "u": "ou", "e": "E"}  # of its visemes -> ours
+_SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEMES}
+
+
+def _letters(name: str) -> str:
+    """The name without capitals and what stands between words."""
+    return re.sub(r"[^a-z0-9]", "", name.casefold())
+
+
+def _spellings() -> dict[str, str]:
+    """Letters -> shape; sides also as L and R, in front or behind."""
+    found = {}
+    for name in ARKIT:
+        found[_letters(name)] = name
+        for side in ("Left", "Right"):
+            if name.endswith(side):
+                found[_letters(name.removesuffix(side) + side[0])] = name
+    return found
+
+
+def _angle_spellings() -> dict[str, str]:
+    """Letters -> angle, in the order of words that packets and files use."""
+    found = {_letters(name): name for name in (*HEAD_ANGLES, *EYE_ANGLES)}
+    for name in EYE_ANGLES:
+        _, axis, side = name.split("_")
+        for spelling in (f"{side}eye{axis}", f"eye{axis}{side[0]}", f"eye{side}{axis}"):
+            found[spelling] = name
+    return found
+
+
+_SHAPES = _spellings()
+_ANGLES = _angle_spellings()
+_EYE_ROLLS = ("lefteyeroll", "righteyeroll")
+
+
+@functools.lru_cache(maxsize=4096)  # JSON names each shape again in each frame
+def shape_of(column: str) -> str | None:
+    """The ARKit shape that a column holds; None for another column."""
+    return _SHAPES.get(_letters(column)) or _SHAPES.get(_letters(re.split(r"[.:/|]", column)[-1]))
+
+
+def angle_of(column: str) -> str | None:
+    """The angle of head or eye that a column holds, unit and sign aside."""
+    return _ANGLES.get(_letters(column))
+
+
+def is_eye_roll(column: str) -> bool:
+    """Whether the column is known and of no use: eyes do not roll."""
+    return _letters(column) in _EYE_ROLLS
+
+
+def viseme_of(column: str) -> str | None:
+    """The viseme that a column or track holds: `viseme_PP`, `PP`, or Oculus' `I`, `O`, `U`."""
+    sound = column.strip().casefold().removeprefix("viseme_").removeprefix("v_")
+    return _SOUND.get(OCULUS_VOWELS.get(sound, sound).casefold())

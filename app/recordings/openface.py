@@ -12,13 +12,10 @@ import re
 
 import numpy as np
 
-from .faces import COLUMNS as FACE_COLUMNS
-from .faces import one_face
 from .gaps import whole_take
 from .names import EYE_ANGLES
-from .request import Request
-from .table import Table
-from .take import Array, Take
+from .table import FACE_COLUMNS, Table, one_face
+from .take import Array, Request, Take
 from .timing import times_of
 
 INTENSITY = re.compile(r"au(\d\d)_r$")

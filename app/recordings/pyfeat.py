@@ -16,15 +16,12 @@ import re
 
 import numpy as np
 
-from .faces import COLUMNS as FACE_COLUMNS
-from .faces import one_face
 from .gaps import whole_take
 from .named_columns import shares
+from .names import shape_of
 from .openface import eyes_in_head
-from .request import Request
-from .spelling import shape_of
-from .table import Table
-from .take import Array, Take
+from .table import FACE_COLUMNS, Table, one_face
+from .take import Array, Request, Take
 from .timing import times_of
 
 UNIT = re.compile(r"au(\d\d)$")

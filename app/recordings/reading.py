@@ -6,17 +6,18 @@ that recognises it and one that reads it, and a row here.
 
 from __future__ import annotations
 
-import json
+import contextlib
 import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from risorius.schema import parsed_json
+
 from ..errors import UserError
-from . import mediapipe_json, named_columns, openface, pyfeat, rhubarb, viseme_tracks
-from .request import Request
+from . import mediapipe_json, named_columns, openface, pyfeat, speech
 from .table import Table, header_of, table_in
-from .take import Take
+from .take import Request, Take
 from .text import read_beginning, read_recording
 
 
@@ -35,15 +36,16 @@ class DocumentFormat(NamedTuple):
 
 
 TABLES = (
-    TableFormat(rhubarb.recognises_rows, rhubarb.read_rows),
+    TableFormat(speech.recognises_rows, speech.read_rows),
     TableFormat(named_columns.is_live_link, named_columns.read),
     TableFormat(pyfeat.recognises, pyfeat.read),
     TableFormat(openface.recognises, openface.read),
     TableFormat(named_columns.recognises, named_columns.read),
 )
 DOCUMENTS = (
-    DocumentFormat(viseme_tracks.recognises, viseme_tracks.read),
-    DocumentFormat(rhubarb.recognises, rhubarb.read),
+    DocumentFormat(speech.recognises_tracks, speech.read_tracks),
+    DocumentFormat(speech.recognises_cues, speech.read_cues),
+    DocumentFormat(mediapipe_json.recognises_weights, mediapipe_json.read_weights),
     DocumentFormat(mediapipe_json.recognises, mediapipe_json.read),
 )
 KNOWN = (
@@ -98,18 +100,14 @@ def is_recording(path: Path) -> bool:
 def _document(text: str, source: str) -> Any:
     """The JSON in a text, also where each line is a document of its own (JSON Lines)."""
     try:
-        return json.loads(text)
-    except RecursionError:
-        raise UserError(f"{source}: is nested too deep for a recording") from None
+        return parsed_json(text)
     except ValueError as error:
         why = error
     lines = [line for line in text.split("\n") if line.strip()]
-    try:
+    with contextlib.suppress(ValueError):
         if len(lines) > 1:
-            return [json.loads(line) for line in lines]
-    except (ValueError, RecursionError):
-        pass
-    raise UserError(f"{source}: is not valid JSON: {why}") from None
+            return [parsed_json(line) for line in lines]
+    raise UserError(f"{source}: is {why}")
 
 
 def _strange(names: tuple[str, ...]) -> str:

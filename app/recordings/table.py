@@ -11,18 +11,19 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..errors import UserError, counted
-from .take import Array
+from .take import Array, Request
 
 DELIMITERS = ",;\t|"
 UNIT_SEPARATOR = "\x1f"  # stands between cells that were quoted: it is in no cell
 LONGEST_NAME = 80  # [characters] of a column; what is longer is no header
 LARGEST = 1e30  # what is larger is no measurement; nanoseconds since 1970 are 1.8e18
-MOST_LINES = 4  # that a quoted cell may go on for
+FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
+MOST_LISTED = 8  # faces in a message
 NO_NUMBER = ("", "nan", "na", "n/a", "null", "none", "-", "inf", "-inf", "#n/a")
 
 
@@ -94,7 +95,7 @@ class Table:
 
 def header_of(text: str) -> tuple[tuple[str, ...], str]:
     """The names in the first line that is one, and the delimiter; no names: there is no table."""
-    line, start, asked = _first_line(text)
+    line, start = _first_line(text)
     following = text[start + len(line) :].lstrip("\n ").partition("\n")[0]
 
     def fit(delimiter: str) -> tuple[bool, int]:
@@ -102,7 +103,7 @@ def header_of(text: str) -> tuple[tuple[str, ...], str]:
         count = line.count(delimiter)
         return 0 < count == following.count(delimiter), count
 
-    delimiter = asked or max(DELIMITERS, key=fit)
+    delimiter = max(DELIMITERS, key=fit)
     try:
         names = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     except csv.Error:
@@ -118,14 +119,12 @@ def header_of(text: str) -> tuple[tuple[str, ...], str]:
 def table_in(text: str, *, source: str) -> Table:
     """The table in a text. UserError where rows and header do not belong together."""
     names, delimiter = header_of(text)
-    _, start, _ = _first_line(text)
+    _, start = _first_line(text)
     before, notes = text.count("\n", 0, start) + 1, list[str]()
-    if '"' in text:
-        delimiter_within = UNIT_SEPARATOR
-        rows = _unquoted(text[start:], delimiter, len(names), before, notes)
-    else:
-        delimiter_within = delimiter
-        rows = [(number, line) for number, line in enumerate(text[start:].split("\n"))]
+    rows = list(enumerate(text[start:].split("\n")))
+    delimiter_within = UNIT_SEPARATOR if '"' in text else delimiter
+    if delimiter_within != delimiter:
+        rows = [(number, _unquoted(line, delimiter)) for number, line in rows]
     rows = [(before + number, line) for number, line in rows[1:] if line.strip(" \t,;|\x1f")]
     if not rows:
         raise UserError(f"{source}: has a header and no rows below it; nothing was recorded")
@@ -150,55 +149,23 @@ def table_in(text: str, *, source: str) -> Table:
     )
 
 
-def _first_line(text: str) -> tuple[str, int, str]:
-    """The header's line, where it begins, and the delimiter that a line 'sep=;' asked for."""
-    asked = ""
+def _first_line(text: str) -> tuple[str, int]:
+    """The header's line, and where it begins."""
     start = 0
-    while start < len(text):
-        end = text.find("\n", start)
-        end = len(text) if end < 0 else end
-        line = text[start:end].strip("\ufeff ")
-        if line.casefold().startswith("sep=") and line[4:5] and not asked:
-            asked = line[4]
-        elif line and not line.startswith("#"):
-            return line, start, asked
-        start = end + 1
-    return "", start, asked
+    for line in text.splitlines(keepends=True):
+        plain = line.strip("\ufeff \n")
+        if plain and not plain.startswith("#"):
+            return plain, start
+        start += len(line)
+    return "", start
 
 
-def _unquoted(
-    text: str, delimiter: str, length: int, before: int, notes: list[str]
-) -> list[tuple[int, str]]:
-    """The rows of a text with quotes, which may hold delimiters and a few line ends.
-
-    A quote that nothing closes ends with its line, so that it takes no other rows along.
-    """
-    lines, rows, open_quotes, start = text.splitlines(keepends=True), [], list[int](), 0
-    while start < len(lines):
-        for end in range(start + 1, min(start + MOST_LINES, len(lines)) + 1):
-            if "".join(lines[start:end]).count('"') % 2 == 0:
-                cells = _cells(lines[start:end], delimiter)
-                if end == start + 1 or len(cells) == length:
-                    break
-        else:
-            open_quotes.append(before + start)
-            end = start + 1
-            cells = _cells(lines[start:end], delimiter)
-        rows.append((end - 1, UNIT_SEPARATOR.join(cells)))
-        start = end
-    if open_quotes:
-        first = f"Line {open_quotes[0]} opens a quotation mark that nothing closes"
-        more = f", and so do {len(open_quotes) - 1} more" if len(open_quotes) > 1 else ""
-        notes.append(f"{first}{more}.")
-    return rows
-
-
-def _cells(lines: list[str], delimiter: str) -> list[str]:
-    """The cells of one row; none where one of them is longer than the csv module bears."""
+def _unquoted(line: str, delimiter: str) -> str:
+    """A row with quotes, its cells between UNIT_SEPARATOR; "" for what csv cannot read."""
     try:
-        return next(csv.reader(lines, delimiter=delimiter, skipinitialspace=True), [])
-    except csv.Error:
-        return []
+        return UNIT_SEPARATOR.join(next(csv.reader([line], delimiter=delimiter), []))
+    except csv.Error:  # a cell of megabytes
+        return ""
 
 
 def _of_one_length(
@@ -225,3 +192,40 @@ def _of_one_length(
         )
         notes.append(what)
     return kept
+
+
+def one_face(table: Table, request: Request) -> Table:
+    """The rows of the face that is asked for, or of the one that most rows show.
+
+    UserError for a face that is not there. Faces are called as the file calls them.
+    """
+    places = table.places
+    column = next((places[name] for name in FACE_COLUMNS if name in places), None)
+    if column is None:
+        request.refuse_face(table.source)
+        return table
+    cells = table.cells(column)
+    counts: dict[str, int] = {}
+    for cell in cells:
+        if cell and cell.casefold() != "nan":
+            counts[cell] = counts.get(cell, 0) + 1
+    often = sorted(counts, key=lambda face: (-counts[face], face))
+    if request.face is not None and request.face not in counts:
+        listed = ", ".join(f"'{face}'" for face in often[:MOST_LISTED])
+        more = ", ..." if len(often) > MOST_LISTED else ""
+        there = f"in it are {listed}{more}" if often else "no row of it names one"
+        raise UserError(f"{table.source}: no face '{request.face}'; {there}")
+    if len(counts) < 2:
+        return table
+    face = request.face or often[0]
+    kept = [row for row, cell in enumerate(cells) if cell == face]
+    why = "" if request.face else ", the one seen most"
+    return replace(
+        table,
+        lines=[table.lines[row] for row in kept],
+        line_numbers=[table.line_numbers[row] for row in kept],
+        notes=[
+            *table.notes,
+            f"{len(counts)} faces are in the file; taken was '{face}'{why} ({len(kept)} rows).",
+        ],
+    )

@@ -1,4 +1,4 @@
-"""A recording of a face, whoever made it: channels over time."""
+"""A recording of a face, whoever made it: channels over time; and what a reader is asked for."""
 
 from __future__ import annotations
 
@@ -8,7 +8,22 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import UserError
+
 Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Request:
+    """face: which one, where a file has several. rate: frames a second, known better."""
+
+    face: str | None = None
+    rate: float | None = None
+
+    def refuse_face(self, source: str) -> None:
+        """UserError where a face is asked for in a file that names none."""
+        if self.face is not None:
+            raise UserError(f"{source}: names no faces; leave out the face '{self.face}'")
 
 
 @dataclass(frozen=True)

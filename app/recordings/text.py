@@ -11,9 +11,7 @@ from ..files import read_bytes
 
 LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about as long
 BEGINNING = 2**16  # [bytes] that tell whether a file is a recording; a header of 2183 names fits
-MARKS = (  # the longer first: UTF-32 begins as UTF-16 does
-    (codecs.BOM_UTF32_LE, "utf-32"),
-    (codecs.BOM_UTF32_BE, "utf-32"),
+MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
@@ -48,9 +46,6 @@ def decoded(content: bytes) -> str | None:
     for mark, encoding in MARKS:
         if content.startswith(mark):
             return _checked(content.decode(encoding, errors="ignore"))
-    if content[1:200:2].count(0) > 50 or content[0:200:2].count(0) > 50:  # UTF-16 without a mark
-        encoding = "utf-16-le" if content[1:200:2].count(0) > 50 else "utf-16-be"
-        return _checked(content.decode(encoding, errors="ignore"))
     try:
         return _checked(codecs.getincrementaldecoder("utf-8")().decode(content))
     except UnicodeDecodeError:

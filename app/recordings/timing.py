@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import datetime
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -15,10 +15,9 @@ from .take import Array
 
 RATES = (24000 / 1001, 24.0, 25.0, 30000 / 1001, 30.0, 50.0, 60000 / 1001, 60.0)  # [frames / s]
 DEFAULT_RATE = 30.0  # of most cameras
-TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:([:;.,])(\d+)(?:[.,](\d+))?)?$")
+TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:([:;])(\d+)(?:[.,](\d+))?)?$")
 DAY = 86_400.0  # [s]
 LONGEST_PAUSE = 3600.0  # [s] over midnight; what goes back further is a wrong time
-MOST_FRAMES = 240  # in a second; larger numbers in a timecode's last place are milliseconds
 SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
 UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
     (SHORTEST_STEP, 2.5, 1.0, "seconds"),
@@ -94,45 +93,57 @@ def stamp_times(stamps: Array, notes: list[str]) -> Array | None:
 
 
 def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
-    """Times of SMPTE timecode (HH:MM:SS:FF.fraction) or of the clock (HH:MM:SS.mmm, a date)."""
-    parts = [TIMECODE.match(cell) for cell in cells]
-    if sum(part is not None for part in parts) * 2 < len(cells):
-        return _unwrapped(np.array([_date(cell) for cell in cells]))
-    seconds = np.full(len(cells), np.nan)
-    frames = np.zeros(len(cells))
-    fractions = np.zeros(len(cells))
-    is_clock = is_drop_frame = False
-    for row, part in enumerate(parts):
-        if part is None:
-            continue
-        hours, minutes, second, mark, last, fraction = part.groups()
-        seconds[row] = int(hours) * 3600 + int(minutes) * 60 + int(second)
-        is_clock |= mark in (".", ",")
-        is_drop_frame |= mark == ";"
-        frames[row] = float(f"0.{last}" if mark in (".", ",") else last or 0)
-        fractions[row] = float(f"0.{fraction}") if fraction else 0.0
-    if is_clock:
-        return _unwrapped(seconds + frames)
-    if frames.max() >= MOST_FRAMES:
-        notes.append("The last number of the timecode was read as milliseconds.")
-        return _unwrapped(seconds + frames / 1000.0)
-    if len(cells) > 1 and not frames.any() and set(np.diff(seconds)) == {1.0}:
-        notes.append("The timecode counts whole seconds, one for each row: rows are frames.")
+    """Times of SMPTE timecode, HH:MM:SS:FF.fraction, NaN where a cell has none."""
+    code = _Timecode.of(cells)
+    if not code.frames.any() and len(np.unique(code.seconds)) > 1:
+        notes.append("The timecode counts no frames, and was not used.")
         return frame_times(None, len(cells), rate, notes)
-    counted = _rate_in(frames, seconds, is_drop_frame, notes if rate is None else [])
+    counted = _rate_in(code, notes if rate is None else [])
     rate = rate or counted
-    base = math.ceil(rate if frames.max() < rate <= RATES[-1] else counted)
-    numbers = _unwrapped(seconds) * base + frames
-    if not _mostly_rises(numbers + fractions):
+    base = math.ceil(rate if code.frames.max() < rate <= RATES[-1] else counted)
+    numbers = code.numbers(base)
+    if not _mostly_rises(numbers + code.fractions):
         notes.append("The timecode stands still, and was not used.")
         return frame_times(None, len(cells), rate, notes)
-    if is_drop_frame:  # two numbers a minute (four of 60) are left out, but in each tenth minute
-        minutes = np.floor(_unwrapped(seconds) / 60.0)
-        numbers -= (base // 15) * (minutes - np.floor(minutes / 10.0))
-    if _jumps(numbers + fractions) > _jumps(numbers) + 0.005 * len(numbers):
+    if _jumps(numbers + code.fractions) > _jumps(numbers) + 0.005 * len(numbers):
         notes.append("The fraction in the timecode makes frames jump to and fro, and was not used.")
         return numbers / rate
-    return (numbers + fractions) / rate
+    return (numbers + code.fractions) / rate
+
+
+@dataclass(frozen=True)
+class _Timecode:
+    """What cells of timecode say; arrays of shape (rows,).
+
+    seconds: of the day, NaN where there is no timecode. frames: counted in this second.
+    fractions: of a frame. is_drop_frame: two numbers a minute are left out.
+    """
+
+    seconds: Array
+    frames: Array
+    fractions: Array
+    is_drop_frame: bool
+
+    @classmethod
+    def of(cls, cells: Sequence[str]) -> _Timecode:
+        """The timecode in these cells."""
+        rows, marks = np.full((len(cells), 5), np.nan), set[str | None]()
+        for row, cell in enumerate(cells):
+            if part := TIMECODE.match(cell):
+                *whole, mark, frame, fraction = part.groups(default="0")
+                rows[row] = *map(int, whole), int(frame), float(f"0.{fraction}")
+                marks.add(mark)
+        seconds = rows[:, :3] @ (3600.0, 60.0, 1.0)
+        return cls(seconds, np.nan_to_num(rows[:, 3]), np.nan_to_num(rows[:, 4]), ";" in marks)
+
+    def numbers(self, base: int) -> Array:
+        """Frames since midnight of the first day, where a second has `base` of them."""
+        seconds = _unwrapped(self.seconds)
+        numbers: Array = seconds * base + self.frames
+        if self.is_drop_frame:  # two numbers a minute (four of 60), but in each tenth minute
+            minutes = np.floor(seconds / 60.0)
+            numbers -= (base // 15) * (minutes - np.floor(minutes / 10.0))
+        return numbers
 
 
 def _jumps(numbers: Array) -> int:
@@ -141,20 +152,19 @@ def _jumps(numbers: Array) -> int:
     return int(np.sum(np.abs(steps - np.median(steps)) > 0.5)) if len(steps) else 0
 
 
-def _rate_in(frames: Array, seconds: Array, is_drop_frame: bool, notes: list[str]) -> float:
+def _rate_in(code: _Timecode, notes: list[str]) -> float:
     """The frame rate of timecodes, from the highest number of a frame in a second."""
-    highest = int(frames.max())
-    if is_drop_frame:
-        rate = RATES[6] if highest >= 30 else RATES[3]
+    highest = int(code.frames.max())
+    if code.is_drop_frame:
+        rate = RATES[-2] if highest >= 30 else RATES[3]
         notes.append(f"Drop-frame timecode: {rate:.2f} frames a second.")
         return rate
-    whole = [each for each in RATES if each == int(each)]
-    rate = next((each for each in whole if each > highest), float(MOST_FRAMES))
-    if rate == MOST_FRAMES:
-        rate = next(each for each in (72.0, 90.0, 100.0, 120.0, 240.0) if each > highest)
-    if len(np.unique(seconds)) > 1:
+    rate = next((each for each in RATES if each == int(each) and each > highest), 240.0)
+    if highest >= rate:  # no camera: thousandths
+        rate = 1000.0
+    if len(np.unique(code.seconds)) > 1:
         notes.append(f"{rate:g} frames a second, as the timecode counts to {highest}.")
-    elif len(frames) > 1:
+    elif len(code.frames) > 1:
         rate = max(rate, 60.0)
         notes.append(f"Less than a second of timecode: {rate:g} frames a second were assumed.")
     return rate
@@ -164,14 +174,6 @@ def _unwrapped(seconds: Array) -> Array:
     """Seconds of the day that go on after midnight."""
     steps = np.diff(seconds, prepend=seconds[:1])
     return seconds + DAY * np.cumsum(np.nan_to_num(steps) < LONGEST_PAUSE - DAY)
-
-
-def _date(cell: str) -> float:
-    """Seconds of an ISO 8601 date with time; NaN for what is none."""
-    try:
-        return datetime.datetime.fromisoformat(cell).timestamp()
-    except (ValueError, OverflowError, OSError):
-        return math.nan
 
 
 def _mostly_rises(values: Array) -> bool:

@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import sim
-from risorius.app.recordings.spelling import shape_of
+from risorius.app.recordings.names import shape_of
 from risorius.sim.coordinates import FaceSpace
 from risorius.sim.landmarks import Side
 from risorius.sim.rig import LinearMuscle, RingMuscle

@@ -24,8 +24,8 @@ from risorius.app.files import Image
 from risorius.app.live import LOOPBACK, Listening
 from risorius.app.live.sender import Sender
 from risorius.app.performances import read_performance, script_for
+from risorius.app.recordings.conversion import Playback
 from risorius.app.recordings.names import ARKIT
-from risorius.app.recordings.playback import Playback
 from risorius.app.recordings.reading import read_take
 from risorius.app.scenes import FaceScene
 from risorius.app.script.keyframes import places_of

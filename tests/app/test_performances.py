@@ -14,10 +14,8 @@ from PIL import Image
 from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance, script_for
 from risorius.app.recordings import Take
-from risorius.app.recordings.conversion import lead_of, script_of
+from risorius.app.recordings.conversion import LEAD, Playback, lead_of, script_of, smoothed
 from risorius.app.recordings.names import ARKIT
-from risorius.app.recordings.playback import LEAD, Playback
-from risorius.app.recordings.smoothing import smoothed
 from risorius.app.scenes import FaceScene
 from risorius.app.script import TOLERANCE, load_script
 

@@ -1,0 +1,188 @@
+"""Speech: visemes in JSON as OpenFaceFX writes them, mouth shapes of Rhubarb Lip Sync.
+
+OpenFaceFX shares each moment among fifteen visemes, so that the lips' weight is about 0.4 where
+they meet: far too little to shut them. Its peaks of PP and FF are raised to what contact needs, and
+silence to 1, at the cost of all others. Rhubarb has one of nine mouth shapes for each stretch of
+time (its manual, "Mouth shapes"), in JSON or TSV.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import numpy as np
+
+from risorius.schema import OneOf, Record, Rest, Within, called
+from risorius.schema import read as read_table
+
+from ..errors import UserError
+from .gaps import whole_take
+from .names import viseme_of
+from .table import Table
+from .take import Array, Request, Take
+
+CONTACTS = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # what the peak of a sound needs
+SILENCE = "viseme_sil"
+PEAK = 0.1  # what is lower is a neighbour's shadow
+LOW = 0.8  # tracks whose peaks are higher are clear enough
+MOUTHS = {  # of Rhubarb -> viseme and value
+    "A": ("viseme_PP", 1.0),  # shut: p, b, m
+    "B": ("viseme_SS", 0.7),  # teeth together: k, s, t, ee
+    "C": ("viseme_E", 0.8),  # open: e, a
+    "D": ("viseme_aa", 0.9),  # wide open: aa
+    "E": ("viseme_oh", 0.8),  # a little rounded: ao, er
+    "F": ("viseme_ou", 0.9),  # puckered: u, w
+    "G": ("viseme_FF", 0.9),  # lower lip at the teeth: f, v
+    "H": ("viseme_nn", 0.9),  # tongue up: l
+    "X": (SILENCE, 1.0),
+}
+TURN = 0.08  # [s] in which one mouth shape goes over to the next
+
+
+Time = Annotated[float, Within(0.0, 86_400.0)]  # [s]
+
+
+@dataclass(frozen=True)
+class _Track(Record):
+    """The keys of a viseme, each a time and a weight."""
+
+    others: Rest[Any]
+    name: str
+    keys: list[Annotated[tuple[float, float], Within(-86_400.0, 86_400.0)]]
+
+
+@dataclass(frozen=True)
+class _Tracks(Record):
+    """What OpenFaceFX writes."""
+
+    others: Rest[Any]
+    channels: list[_Track]
+
+
+@dataclass(frozen=True)
+class _Cue(Record):
+    """A mouth shape and when it begins."""
+
+    others: Rest[Any]
+    start: Time
+    value: Annotated[str, OneOf(tuple(MOUTHS))]
+    end: Time = 0.0
+
+
+@dataclass(frozen=True)
+class _Cues(Record):
+    """What Rhubarb Lip Sync writes as JSON."""
+
+    others: Rest[Any]
+    mouth_cues: Annotated[list[_Cue], called("mouthCues")]
+
+
+def recognises_tracks(document: Any) -> bool:
+    """Whether the document holds tracks of visemes by name."""
+    channels = document.get("channels") if isinstance(document, dict) else None
+    names = [each.get("name") for each in channels or () if isinstance(each, dict)]
+    return any(isinstance(name, str) and viseme_of(name) for name in names)
+
+
+def read_tracks(document: Any, source: str, request: Request) -> Take:
+    """The take in `{"channels": [{"name": "PP", "keys": [[time, weight], ...]}, ...]}`."""
+    request.refuse_face(source)
+    tracks: dict[str, Array] = {}
+    unknown, notes = [], list[str]()
+    for channel in read_table(_Tracks, document, source, error=UserError).channels:
+        if viseme := viseme_of(channel.name):
+            if channel.keys:
+                tracks[viseme] = np.array(sorted(channel.keys, key=lambda key: key[0]))
+        else:
+            unknown.append(channel.name)
+    if not tracks:
+        raise UserError(f"{source}: no channel of visemes has any keys")
+    times = np.unique(np.concatenate([keys[:, 0] for keys in tracks.values()]))
+    channels = {
+        name: np.clip(np.interp(times, keys[:, 0], keys[:, 1]), 0.0, 1.0)
+        for name, keys in tracks.items()
+    }
+    channels = _made_clear(channels, notes)
+    return whole_take(
+        "Viseme tracks", source, times, channels, notes=notes, unknown=unknown,
+        is_calibrated=True,
+    )  # fmt: skip
+
+
+def _made_clear(channels: dict[str, Array], notes: list[str]) -> dict[str, Array]:
+    """Weights that shut the lips where they are to meet, and that rest in silence."""
+    if max(float(values.max()) for values in channels.values()) > LOW:
+        return channels
+    found = dict(channels)
+    for name, wanted in CONTACTS.items():
+        if name in found and (height := _height(found[name])):
+            found[name] = np.minimum(found[name] * (wanted / height), wanted)
+    if SILENCE in found and (height := _height(found[SILENCE])):
+        silence = np.minimum(found[SILENCE] / height, 1.0)
+        rest = (1.0 - silence) / np.maximum(1.0 - found[SILENCE], 1e-6)
+        found = {name: values * rest for name, values in found.items()} | {SILENCE: silence}
+    notes.append("Weights are low: those of PP, FF and silence were raised, so that lips meet.")
+    return found
+
+
+def _height(values: Array) -> float:
+    """How high the peaks of a track are, in the middle; 0 where it has none."""
+    edged = np.concatenate([[-1.0], values, [-1.0]])
+    is_peak = (values >= edged[:-2]) & (values >= edged[2:]) & (values > PEAK)
+    return float(np.median(values[is_peak])) if is_peak.any() else 0.0
+
+
+def recognises_cues(document: Any) -> bool:
+    """Whether the document is what Rhubarb Lip Sync writes as JSON."""
+    return isinstance(document, dict) and isinstance(document.get("mouthCues"), list)
+
+
+def read_cues(document: Any, source: str, request: Request) -> Take:
+    """The take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`."""
+    request.refuse_face(source)
+    cues = read_table(_Cues, document, source, error=UserError).mouth_cues
+    end = max((cue.end for cue in cues), default=0.0)
+    return _from_cues([(cue.start, cue.value) for cue in cues], end, source)
+
+
+def recognises_rows(names: tuple[str, ...]) -> bool:
+    """Whether a first line is one of Rhubarb's TSV: a time, a mouth shape."""
+    return len(names) == 2 and names[1] in MOUTHS and names[0].replace(".", "", 1).isdecimal()
+
+
+def read_rows(table: Table, request: Request) -> Take:
+    """The take in Rhubarb's TSV; its first row is no header."""
+    request.refuse_face(table.source)
+    starts = [float(table.names[0]), *table.numbers([0])[:, 0].tolist()]
+    cues = list(zip(starts, [table.names[1], *table.cells(1)], strict=True))
+    for number, (start, mouth) in zip([1, *table.line_numbers], cues, strict=True):
+        row = {"start": start, "value": mouth}
+        read_table(_Cue, row, f"{table.source}: line {number}", error=UserError)
+    return _from_cues(cues, cues[-1][0], table.source)
+
+
+def _from_cues(cues: Sequence[tuple[float, str]], end: float, source: str) -> Take:
+    """Mouth shapes that hold, and go over into each other around the moments of change."""
+    if not cues:
+        raise UserError(f"{source}: has no mouth cues; nothing is said")
+    cues = sorted(cues)
+    starts = np.array([start for start, _ in cues])
+    ends = np.append(starts[1:], max(end, starts[-1]))
+    half = np.minimum((ends - starts) / 2.0, TURN / 2.0)  # of its way out, and of the next one's in
+    points: dict[float, str] = {float(starts[0]): cues[0][1]}
+    for number, ((_, mouth), (start, following)) in enumerate(itertools.pairwise(cues)):
+        turn = min(half[number], half[number + 1]) if number + 2 < len(cues) else half[number]
+        points[start - turn] = mouth
+        points[start + turn] = following
+    points[max(float(ends[-1]), max(points))] = cues[-1][1]
+    times = np.array(sorted(points))
+    channels = {name: np.zeros(len(times)) for name, _ in MOUTHS.values()}
+    for row, time in enumerate(times):
+        name, value = MOUTHS[points[float(time)]]
+        channels[name][row] = value
+    used = {name: values for name, values in channels.items() if values.any()}
+    note = f"Mouth shapes became visemes, {TURN:g} s from one to the next."
+    return whole_take("Rhubarb Lip Sync", source, times, used, notes=[note], is_calibrated=True)
