@@ -1,31 +1,33 @@
 """The paper's Figure 1, end to end: simulation, triangle mesh, refinement, rendering.
 
-`step` and `draw` are the figure. The simulation never learns that refinement exists; the
-refiner reads the mesh and writes only into the buffers that the renderer lent; what it wrote is
-forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
+`Pipeline.step` and `Pipeline.draw` are the figure; whatever is seen of a scene, in the window, in
+films, in data sets and in the figures of the paper, goes through them. The simulation never learns
+that refinement exists; the refiner reads the mesh and writes only into the buffers that the
+renderer lent; what it wrote is forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 """
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
 
-from .anatomy import Dissection, Solids
+from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Layers
 from .refining.looks import Refinement
 from .refining.refiners import refiner_for
-from .refining.wrinkling import Amounts, Relief, on_rows, relief_of, wrinkling_of
+from .refining.wrinkling import Amounts, Compression, Relief, on_rows, relief_of
 from .scenes import Scene
 
 TEXTURED_COLUMNS = 8  # position, normal, u v
-Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
+SourceValues = Callable[[Scene, refine.Refiner], npt.NDArray[np.uint8]]
+Timer = Callable[[str], AbstractContextManager[Any]]
 
 
 @dataclass
@@ -35,31 +37,19 @@ class DrawnMesh:
     label: str  # what it is called under the picture
     refiner: refine.Refiner
     stream: render.Stream
-    uses_view: bool  # whether the refiner has a use for where the eye is
     relief: Relief | None = None  # by which wrinkles move what was refined
     strength: float = 1.0  # how much of them shows
     mesh: refine.RefinedMesh | None = None  # what was refined last
 
-    @classmethod
-    def of(cls, scene: Scene, renderer: render.Renderer, refinement: Refinement) -> DrawnMesh:
-        """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
-        refiner = refiner_for(scene, refinement)
-        stream = renderer.lend_stream(
-            refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
-        )
-        uses_view = "view" in inspect.signature(refiner.refine).parameters
-        relief = relief_of(scene, refinement)
-        return cls(refinement.label, refiner, stream, uses_view, relief)
-
     def refine(
-        self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera, viewport: Viewport
+        self,
+        positions: npt.NDArray[np.float64],
+        camera: render.OrbitCamera,
+        area: render.Rectangle,
     ) -> None:
-        """Fill the lent buffers with refined triangles, for whoever looks through the viewport."""
-        view_option = {}
-        if self.uses_view:
-            focal = camera.focal(viewport[2] / viewport[3], viewport[3])
-            view_option["view"] = refine.View(camera.eye, focal)
-        self.mesh = self.refiner.refine(positions, out=self.stream, **view_option)
+        """Fill the lent buffers with refined triangles, for whoever looks through the area."""
+        view = refine.View(camera.eye, camera.focal(area[2] / area[3], area[3]))
+        self.mesh = self.refiner.refine(positions, out=self.stream, view=view)
 
     def upload(self, wrinkling: Amounts | None = None, strength: float = 1.0) -> None:
         """Hand over what was refined last, moved as far as the scene's vertices wrinkle."""
@@ -86,92 +76,139 @@ class DrawnMesh:
         return f"{self.label}\n{self.triangle_count} triangles"
 
 
-class Pipeline:
-    """A scene, its mesh as each refiner has it drawn, and the renderer that draws."""
+class Viewport(NamedTuple):
+    """A mesh, and the area [pixels] in which it is drawn; clip: what is seen of that, None: all."""
 
-    def __init__(
-        self,
-        scene: Scene,
-        renderer: render.Renderer,
-        refinements: Sequence[Refinement],
-    ) -> None:
-        """Bind what is to be drawn of the scene, left to right."""
+    drawn: DrawnMesh
+    area: render.Rectangle
+    clip: render.Rectangle | None = None
+
+    @property
+    def seen(self) -> render.Rectangle:
+        """The part of the frame in which anything is drawn."""
+        return self.clip or self.area
+
+
+class Pipeline:
+    """A scene and the renderer that draws it."""
+
+    def __init__(self, scene: Scene, renderer: render.Renderer) -> None:
         self.scene = scene
         self.renderer = renderer
         self.texture: render.Texture | None = None
         self.set_tone(None)
-        self.wrinkling = wrinkling_of(scene, renderer)
-        self.solids = Solids(scene)
-        self.bind(refinements)
+        self.wrinkle_map: render.WrinkleMap | None = None
+        if (wrinkles := scene.wrinkles) is not None:
+            self._compression = Compression(scene)
+            self.wrinkle_map = renderer.load_wrinkles(wrinkles.map, wrinkles.steepest)
+        self.anatomy = Anatomy(scene)
 
-    def bind(self, refinements: Sequence[Refinement]) -> None:
-        """Draw these from here on; refiners begin anew."""
-        self.meshes = [DrawnMesh.of(self.scene, self.renderer, each) for each in refinements]
+    def bind(self, refinement: Refinement) -> DrawnMesh:
+        """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
+        refiner = refiner_for(self.scene, refinement)
+        stream = self.renderer.lend_stream(
+            refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+        )
+        return DrawnMesh(refinement.label, refiner, stream, relief_of(self.scene, refinement))
 
     def set_tone(self, tone: float | None) -> None:
         """Hand the scene's albedo to the renderer, in a tone [deg] where it has any."""
         scene = self.scene
-        if scene.albedo is None:
-            return
-        if self.texture is not None:
-            self.texture.release()
-        albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
-        self.texture = self.renderer.load_texture(albedo, scene.openness())
-
-    def release(self) -> None:
-        """Let go of what the renderer holds for the scene."""
-        for drawn in self.meshes:
-            drawn.stream.release()
-        if self.texture is not None:
-            self.texture.release()
-        if self.wrinkling is not None:
-            self.wrinkling.map.release()
+        if scene.albedo is not None:
+            albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
+            self.texture = self.renderer.load_texture(albedo, scene.openness())
 
     def step(self, seconds: float) -> None:
         """The upper half of the figure: time passes, and the triangle mesh follows."""
         self.scene.step(seconds)
 
     def refine(self, camera: render.OrbitCamera, viewports: Sequence[Viewport]) -> None:
-        """Refine a frame that nobody draws: a refiner may remember it in the next one."""
-        for drawn, viewport in zip(self.meshes, viewports, strict=True):
-            drawn.refine(self.scene.positions, camera, viewport)
+        """Refine each mesh; a frame that nobody draws, too: the next one may remember it."""
+        for drawn, area, _ in viewports:
+            drawn.refine(self.scene.positions, camera, area)
 
     def draw(
         self,
         camera: render.OrbitCamera,
         style: render.Style,
         viewports: Sequence[Viewport],
-        dissection: Dissection = Dissection(),  # noqa: B008 - frozen
+        *,
+        anatomy: AnatomyView = SKIN_ALONE,
+        values: SourceValues | None = None,
+        overlays: Sequence[render.Lines] = (),
+        timer: Timer = nullcontext,
     ) -> None:
-        """The lower half: refine the mesh by each refiner, and draw it into its viewport."""
-        self.solids.follow(dissection)
-        amounts = self.amounts(style)
-        self.renderer.draw_background(style, *viewports)
-        for drawn, viewport in zip(self.meshes, viewports, strict=True):
-            drawn.refine(self.scene.positions, camera, viewport)
-            drawn.upload(amounts, style.wrinkles)
-            values = None
-            if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
-                values = splits_of_source(drawn.refiner, drawn.mesh)
-            where, skin = {"viewport": viewport}, self.skin_of(drawn, values)
-            self.solids.draw(
-                self.renderer, drawn.stream, camera, style, dissection, where=where, skin=skin
+        """The lower half: refine the mesh for each viewport, hand it over, and draw it there.
+
+        values: what each triangle of the mesh is coloured by, where the style wants an amount;
+        those that it is refined into take it over. overlays: over every viewport.
+        timer: measures "refinement", "upload" and "draw".
+        """
+        with timer("refinement"):
+            amounts = self._wrinkling_amounts(style)
+            self.refine(camera, viewports)
+        with timer("upload"):
+            for viewport in viewports:
+                viewport.drawn.upload(amounts, style.wrinkles)
+        with timer("draw"):
+            layers = self.anatomy.layers(anatomy)
+            areas = dict.fromkeys(viewport.area for viewport in viewports)
+            self.renderer.draw_background(style, *areas)
+            for viewport in viewports:
+                self._draw(viewport, camera, style, layers, values)
+                for lines in overlays:
+                    self.renderer.draw_lines(lines, camera, viewport.area, viewport.clip)
+
+    def _draw(
+        self,
+        viewport: Viewport,
+        camera: render.OrbitCamera,
+        style: render.Style,
+        layers: Layers,
+        values: SourceValues | None,
+    ) -> None:
+        """Draw the skin and all parts of the scene, below it and over it, into one viewport."""
+        drawn, renderer, bones = viewport.drawn, self.renderer, self.scene.bone_transforms()
+        place, stream = {"viewport": viewport.area, "clip": viewport.clip}, drawn.stream
+        texture = self.texture if drawn.has_uv else None
+        wrinkles = self.wrinkle_map if drawn.has_uv else None
+        if style.shadows:
+            skin = None if layers.is_opened else stream
+            renderer.cast_shadows(layers.shadow_casters, bones, camera, style, stream=skin, **place)
+        for parts, cut in layers.under:
+            renderer.draw_parts(parts, bones, camera, style, cut=cut, **place)
+        renderer.draw_mesh(
+            stream,
+            camera,
+            replace(style, opacity=style.opacity * layers.opacity),
+            values=self._values(drawn, style, values),
+            texture=texture,
+            wrinkles=wrinkles,
+            cut=layers.cut,
+            fade=self.scene.fade,
+            **place,
+        )
+        renderer.draw_parts(layers.over, bones, camera, style, **place)
+        if not (renderer.surface.samples or layers.is_opened):
+            renderer.draw_outline(
+                stream, camera, style, texture=texture, fade=self.scene.fade, **place
             )
 
-    def amounts(self, style: render.Style) -> Amounts | None:
-        """How far each vertex wrinkles now; None where that does not show."""
-        if self.wrinkling is None or not style.shows_wrinkles:
+    def _values(
+        self, drawn: DrawnMesh, style: render.Style, values: SourceValues | None
+    ) -> npt.NDArray[np.uint8] | None:
+        """One value for each triangle that is drawn: that of the one that it comes from."""
+        if style.colour_by is render.ColourBy.NONE or drawn.mesh is None:
             return None
-        return self.wrinkling.amounts(self.scene.positions)
+        if style.colour_by is render.ColourBy.SPLITS:
+            return splits_of_source(drawn.refiner, drawn.mesh)
+        return None if values is None else values(self.scene, drawn.refiner)[drawn.mesh.source]
 
-    def skin_of(self, drawn: DrawnMesh, values: npt.NDArray[Any] | None) -> dict[str, Any]:
-        """What the renderer is told of a mesh's skin; values: by which it is coloured."""
-        return {
-            "values": values,
-            "texture": self.texture if drawn.has_uv else None,
-            "wrinkles": self.wrinkling.map if self.wrinkling and drawn.has_uv else None,
-            "fade": self.scene.fade,
-        }
+    def _wrinkling_amounts(self, style: render.Style) -> Amounts | None:
+        """How far each vertex wrinkles now; None where that does not show."""
+        if self.wrinkle_map is None or not style.shows_wrinkles:
+            return None
+        return self._compression.amounts(self.scene.positions)
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:
@@ -182,8 +219,9 @@ def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.N
     return np.take(splits, mesh.source)
 
 
-def side_by_side(size: tuple[int, int], count: int) -> list[Viewport]:
-    """Divide a frame of `size` pixels into `count` viewports from left to right."""
+def side_by_side(size: tuple[int, int], meshes: Sequence[DrawnMesh]) -> list[Viewport]:
+    """Divide a frame of `size` pixels among meshes, from left to right."""
     width, height = size
-    edges = [round(index * width / count) for index in range(count + 1)]
-    return [(left, 0, right - left, height) for left, right in pairwise(edges)]
+    edges = [round(index * width / len(meshes)) for index in range(len(meshes) + 1)]
+    areas = [(left, 0, right - left, height) for left, right in pairwise(edges)]
+    return [Viewport(drawn, area) for drawn, area in zip(meshes, areas, strict=True)]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,13 @@ from PIL import ImageDraw
 from risorius import refine, render
 from risorius.app.capture.captions import INK, SHADE, font
 from risorius.app.files import Image
-from risorius.app.pipeline import splits_of_source
+from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
+from risorius.app.scenes import Scene
 
-Lines = Sequence[npt.NDArray[np.float64]]
 Transforms = Mapping[str, npt.NDArray[np.float64]]
 POSITION_AND_NORMAL = 6  # columns of a vertex without texture coordinates
+
+RED = (0.85, 0.1, 0.1)
 
 
 @dataclass(frozen=True)
@@ -28,11 +31,23 @@ class Drawing:
     camera: render.OrbitCamera
     style: render.Style
     parts: tuple[Any, ...] = ()
-    bones: Transforms | None = None
+    bones: Transforms = field(default_factory=dict)
     texture: render.Texture | None = None
-    lines: Lines = ()
-    line_colour: render.Colour = (0.85, 0.1, 0.1)
-    line_width: float = 3.0
+    lines: render.Lines | None = None
+
+
+class _Shown(Scene):
+    """What is before the camera just now; nothing moves it."""
+
+    bones: Transforms = MappingProxyType({})
+    skin = np.zeros((0, 3))
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self.skin
+
+    def bone_transforms(self) -> Transforms:
+        return self.bones
 
 
 class Canvas:
@@ -41,7 +56,9 @@ class Canvas:
     def __init__(self, size: tuple[int, int], *, samples: int = 4) -> None:
         self.surface = render.open_offscreen(size, samples=samples)
         self.renderer = render.Renderer(self.surface)
-        self._streams: dict[refine.Refiner, render.Stream] = {}
+        self._scene = _Shown()
+        self._pipeline = Pipeline(self._scene, self.renderer)
+        self._meshes: dict[refine.Refiner, DrawnMesh] = {}
 
     def __enter__(self) -> Canvas:
         return self
@@ -51,52 +68,32 @@ class Canvas:
 
     def stream_for(self, refiner: refine.Refiner) -> render.Stream:
         """The buffers lent to a refiner, the same at every call."""
-        if refiner not in self._streams:
-            self._streams[refiner] = self.renderer.lend_stream(
+        if refiner not in self._meshes:
+            stream = self.renderer.lend_stream(
                 refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
             )
-        return self._streams[refiner]
+            self._meshes[refiner] = DrawnMesh("", refiner, stream)
+        return self._meshes[refiner].stream
 
     def draw(
-        self, refiner: refine.Refiner, positions: npt.NDArray[np.floating], drawing: Drawing
+        self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
     ) -> int:
         """Refine, upload and draw, without reading back; returns the number of triangles."""
-        stream = self.stream_for(refiner)
-        mesh = refiner.refine(positions, out=stream)
-        stream.upload(len(mesh.positions), len(mesh.triangles))
-        values = None
-        if drawing.style.colour_by is render.ColourBy.SPLITS:
-            values = splits_of_source(refiner, mesh)
-        self._draw(stream, values, drawing)
+        stream, scene = self.stream_for(refiner), self._scene
+        scene.skin, scene.parts, scene.bones = positions, drawing.parts, drawing.bones
+        self._pipeline.texture = drawing.texture
+        self.surface.begin()
+        self._pipeline.draw(
+            drawing.camera,
+            drawing.style,
+            [Viewport(self._meshes[refiner], (0, 0, *self.surface.size))],
+            overlays=[drawing.lines] if drawing.lines else [],
+        )
+        self.surface.end()
         return stream.triangle_count
 
-    def _draw(
-        self,
-        stream: render.Stream,
-        values: npt.NDArray[np.uint8] | None,
-        drawing: Drawing,
-    ) -> None:
-        """Draw what was uploaded; values: one for each triangle, where they colour it."""
-        style = drawing.style
-        self.surface.begin()
-        self.renderer.draw_background(style)
-        self.renderer.draw_mesh(
-            stream, drawing.camera, style, values=values, texture=drawing.texture
-        )
-        if drawing.bones is not None:
-            self.renderer.draw_parts(drawing.parts, drawing.bones, drawing.camera, style)
-        if drawing.lines:
-            self.renderer.draw_lines(
-                drawing.lines,
-                drawing.line_colour,
-                drawing.camera,
-                width=drawing.line_width,
-                hidden_opacity=0.0,
-            )
-        self.surface.end()
-
     def draw_image(
-        self, refiner: refine.Refiner, positions: npt.NDArray[np.floating], drawing: Drawing
+        self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
     ) -> Image:
         """Draw and read back."""
         self.draw(refiner, positions, drawing)
@@ -114,7 +111,10 @@ class Canvas:
         stream.vertices[:] = np.hstack([positions, normals])
         stream.triangles[:] = faces
         stream.upload(len(positions), len(faces))
-        self._draw(stream, None, drawing)
+        self.surface.begin()
+        self.renderer.draw_background(drawing.style)
+        self.renderer.draw_mesh(stream, drawing.camera, drawing.style)
+        self.surface.end()
         return self.surface.read()
 
 

@@ -22,9 +22,11 @@ from .compositor import Detail
 from .errors import GLError
 from .geometry_buffer import Geometry
 from .light import LIGHTS, Light, toward
+from .lines import Lines
 from .parts import Part
 from .probe import Finding, probe
-from .renderer import Renderer, Viewport
+from .render_target import Rectangle
+from .renderer import Renderer
 from .stream import Stream
 from .style import (
     BLACK,
@@ -42,6 +44,7 @@ from .style import (
 )
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
 from .texture import Texture, WrinkleMap
+from .translucency import Plane
 from .window import WindowSurface, open_window, size_on_screen
 
 __all__ = [
@@ -63,16 +66,18 @@ __all__ = [
     "Geometry",
     "Image",
     "Light",
+    "Lines",
     "OffscreenSurface",
     "OrbitCamera",
     "Part",
+    "Plane",
+    "Rectangle",
     "Renderer",
     "Shading",
     "Stream",
     "Style",
     "Surface",
     "Texture",
-    "Viewport",
     "WindowSurface",
     "WrinkleMap",
     "open_offscreen",

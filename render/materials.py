@@ -2,6 +2,7 @@
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
@@ -14,6 +15,7 @@ from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 HEAD_BONES = ("cranium", "mandible", "eye_right", "eye_left")
 HAIR_PIXELS = 1.4  # that a hair is drawn wide at least: a triangle seen from its side is narrower
+VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
     kind: np.array([(*to_linear(colour), cover) for colour, cover in ramp], np.float32)
@@ -105,3 +107,22 @@ def set_light(program: moderngl.Program, light: Light) -> None:
     program["to_key"], program["to_fill"] = light.to_key, light.to_fill
     program["key_light"], program["fill_light"] = light.key, light.fill
     program["rim_light"], program["sky"], program["ground"] = light.rim, light.sky, light.ground
+
+
+def value_texture(
+    gl: moderngl.Context, values: npt.NDArray[np.uint8] | None, triangle_count: int
+) -> moderngl.Texture:
+    """One small number per triangle, shape (M,), to be looked up by gl_PrimitiveID.
+
+    Raises ValueError where they are no such thing.
+    """
+    if values is None:
+        raise ValueError("the style colours by values, so draw_mesh needs values, one per triangle")
+    if values.shape != (triangle_count,) or values.dtype != np.uint8:
+        raise ValueError(
+            f"values has shape {values.shape} and dtype {values.dtype}; it must be "
+            f"({triangle_count},) uint8, one per uploaded triangle"
+        )
+    rows = np.zeros((max(-(-triangle_count // VALUES_PER_ROW), 1), VALUES_PER_ROW), np.uint8)
+    rows.reshape(-1)[:triangle_count] = values
+    return gl.texture((VALUES_PER_ROW, len(rows)), 1, rows.tobytes(), dtype="u1", alignment=1)

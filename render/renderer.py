@@ -18,22 +18,27 @@ import numpy.typing as npt
 from .backdrop import Backdrop
 from .camera import OrbitCamera
 from .camera_view import CameraView, box_corners
-from .geometry import check_columns, checked_values, line_segments, value_texture
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .materials import part_shader, set_light, set_part, set_skin, skin_shader
+from .lines import Lines
+from .materials import (
+    part_shader,
+    set_light,
+    set_part,
+    set_skin,
+    skin_shader,
+    value_texture,
+)
 from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
-from .render_target import scaled
+from .render_target import Rectangle, scaled
 from .shadow import DEEP, OFFSET, ShadowMap, Thrower
 from .stream import Share, Stream
-from .style import Colour, ColourBy, Shading, Style
+from .style import ColourBy, Shading, Style
 from .surface import Image, Surface
 from .texture import Texture, WrinkleMap
 from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
-
-Viewport = tuple[int, int, int, int]  # x, y, width, height [pixels], from the lower left corner
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
 
@@ -53,14 +58,6 @@ class Renderer:
         self._shadow_of: Stream | None = None  # a mesh whose shadow is there before it is drawn
         self._geometry_buffer: GeometryBuffer | None = None
         self._occluder: Occluder | None = None
-
-    def release(self) -> None:
-        """Let go of all that was compiled and uploaded here; nothing can be drawn any more.
-
-        The surface gives it back when its next frame begins. Streams and textures are not its own;
-        streams that were drawn with these programs have to be released, too.
-        """
-        vars(self).clear()
 
     def lend_stream(self, vertex_capacity: int, triangle_capacity: int, columns: int = 6) -> Stream:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
@@ -88,7 +85,7 @@ class Renderer:
         self.surface.make_current()
         return WrinkleMap(self._gl, texels, steepest)
 
-    def draw_background(self, style: Style, *viewports: Viewport) -> None:
+    def draw_background(self, style: Style, *viewports: Rectangle) -> None:
         """Paint the style's background over viewports, and over what was drawn there; none: all."""
         areas = tuple(self._viewport(each) for each in viewports or (None,))
         self._backdrop.paint(self.surface.target, areas, style.background)
@@ -99,8 +96,8 @@ class Renderer:
         camera: OrbitCamera,
         style: Style,
         *,
-        viewport: Viewport | None = None,
-        clip: Viewport | None = None,
+        viewport: Rectangle | None = None,
+        clip: Rectangle | None = None,
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
         wrinkles: WrinkleMap | None = None,
@@ -119,13 +116,13 @@ class Renderer:
         fade: what a x + b y + c z + d is at a place of the skin, from 0 to 1, shows of it there.
         """
         if texture is not None or wrinkles is not None:
-            check_columns(stream.vertices.shape[1])
+            stream.check_uv()
         if not (style.shows_wrinkles and stream.has_wrinkles):
             wrinkles = None
         is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         view = self._camera_view(camera, viewport, clip)
         if is_coloured:
-            self._values = value_texture(self._gl, checked_values(values, stream.triangle_count))
+            self._values = value_texture(self._gl, values, stream.triangle_count)
         if style.shadows and self._shadow_of is not stream:
             self._cast([stream], view, style)
         self._shadow_of = None
@@ -160,8 +157,8 @@ class Renderer:
         style: Style,
         *,
         stream: Stream | None = None,
-        viewport: Viewport | None = None,
-        clip: Viewport | None = None,
+        viewport: Rectangle | None = None,
+        clip: Rectangle | None = None,
     ) -> None:
         """Let parts, not the skin, throw the shadow on parts that are drawn next.
 
@@ -183,8 +180,8 @@ class Renderer:
         camera: OrbitCamera,
         style: Style,
         *,
-        viewport: Viewport | None = None,
-        clip: Viewport | None = None,
+        viewport: Rectangle | None = None,
+        clip: Rectangle | None = None,
         texture: Texture | None = None,
         fade: Plane | None = None,
     ) -> None:
@@ -247,8 +244,8 @@ class Renderer:
         camera: OrbitCamera,
         style: Style,
         *,
-        viewport: Viewport | None = None,
-        clip: Viewport | None = None,
+        viewport: Rectangle | None = None,
+        clip: Rectangle | None = None,
         cut: Plane | None = None,
     ) -> None:
         """Draw coloured parts, each moved by the matrix of its bone (column vectors); hairs last.
@@ -321,48 +318,38 @@ class Renderer:
 
     def draw_lines(
         self,
-        polylines: Sequence[npt.NDArray[Any]],
-        colour: Colour | npt.NDArray[Any],
+        lines: Lines,
         camera: OrbitCamera,
-        *,
-        viewport: Viewport | None = None,
-        clip: Viewport | None = None,
-        width: float = 1.6,
-        opacity: float = 1.0,
-        hidden_opacity: float = 0.45,
+        viewport: Rectangle | None = None,
+        clip: Rectangle | None = None,
     ) -> None:
-        """Draw polylines over the scene; where something hides them they shine through.
-
-        polylines: points of each line, shape (n, 3).
-        colour: sRGB of all lines, or one row per line, shape (len(polylines), 3).
-        width: [pixels at scale 1]; opacity, hidden_opacity: 0 to 1, in front and behind something.
-        """
+        """Draw polylines over the scene; where something hides them they shine through."""
         view = self._camera_view(camera, viewport, clip)
         program = self._program("lines.glsl")
-        rows, segments = line_segments(polylines, colour)
+        rows, segments = lines.segments()
         if not len(segments):
             return
-        width *= self._line_scale
+        width = lines.width * self._line_scale
         write_uniform(program, "world_to_clip", view.world_to_clip)
         program["viewport_size"] = view.viewport[2:]
         program["half_width"] = 0.5 * width
         if not self._use_layer(view, box_corners(rows[:, :3]), padding=2.0 + width):
             return
         content = [(self._gl.buffer(rows), "3f 3f", "in_position", "in_colour")]
-        lines = self._gl.vertex_array(program, content, self._gl.buffer(segments))
+        drawn = self._gl.vertex_array(program, content, self._gl.buffer(segments))
         with blending(self._gl):
-            for depth_func, share in ((">", hidden_opacity), ("<=", opacity)):
+            for depth_func, share in ((">", lines.hidden_opacity), ("<=", lines.opacity)):
                 if share > 0.0:
                     self._gl.depth_func = depth_func
                     program["opacity"] = share
-                    lines.render(moderngl.LINES)
+                    drawn.render(moderngl.LINES)
 
     def _camera_view(
-        self, camera: OrbitCamera, viewport: Viewport | None, clip: Viewport | None
+        self, camera: OrbitCamera, viewport: Rectangle | None, clip: Rectangle | None
     ) -> CameraView:
         return CameraView(camera, self._viewport(viewport), clip and self._viewport(clip))
 
-    def _viewport(self, viewport: Viewport | None) -> Viewport:
+    def _viewport(self, viewport: Rectangle | None) -> Rectangle:
         self.surface.make_current()
         if viewport is None:
             return (0, 0, *self.surface.target.size)

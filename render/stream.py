@@ -125,6 +125,14 @@ class Stream:
             buffer.orphan()
             buffer.write(np.ascontiguousarray(array))
 
+    def check_uv(self) -> None:
+        """Raise ValueError where rows have no texture coordinates, but a texture comes."""
+        if (columns := self.vertices.shape[1]) != 8:
+            raise ValueError(
+                f"a texture meets a stream of {columns} columns; it needs texture coordinates: "
+                "lend a stream of 8 columns (position, normal, u v), or draw without texture"
+            )
+
     def upload_values(self, values: npt.NDArray[np.float32] | None) -> None:
         """Hand two numbers for each uploaded vertex to OpenGL, (vertex_count, 2); None: zeros.
 
@@ -190,19 +198,3 @@ class Stream:
             )
             self._vertex_arrays[program, indices] = array
         array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
-
-    def release(self) -> None:
-        """Give the buffers back to OpenGL; the arrays stay readable."""
-        for array in self._vertex_arrays.values():
-            array.release()
-        self._vertex_arrays.clear()
-        self._vertex_buffer.release()
-        self._index_buffer.release()
-        for buffer in (
-            *(self._wrinkle_buffers or ()),
-            self._value_buffer,
-            self._chosen_buffer,
-        ):
-            if buffer is not None:
-                buffer.release()
-        self.vertex_count = self.triangle_count = 0

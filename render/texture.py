@@ -38,10 +38,6 @@ class _Mipmaps:
         self._texture.build_mipmaps()
         self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
 
-    def release(self) -> None:
-        """Give it back to OpenGL at once; it can no longer be drawn."""
-        self._texture.release()
-
 
 class Texture(_Mipmaps):
     """The albedo of a skin; `Renderer.load_texture` makes it.
@@ -87,11 +83,6 @@ class Texture(_Mipmaps):
         self._around.use(_AROUND_UNIT)
         program["redness"], program["lightness_weights"] = self.redness, LIGHTNESS
         program["occlusion"] = occlusion
-
-    def release(self) -> None:
-        """Give it back to OpenGL at once; it can no longer be drawn."""
-        super().release()
-        self._around.release()
 
 
 class WrinkleMap(_Mipmaps):

@@ -1,5 +1,5 @@
 """What lies under the skin, drawn through it: muscles and skull, as solids."""
 
-from .dissection import OPACITY, SIDES, SOLIDS, Dissection, Solids
+from .anatomy_view import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, Anatomy, AnatomyView, Layers
 
-__all__ = ["OPACITY", "SIDES", "SOLIDS", "Dissection", "Solids"]
+__all__ = ["OPACITY", "SIDES", "SKIN_ALONE", "STRUCTURES", "Anatomy", "AnatomyView", "Layers"]

@@ -54,6 +54,7 @@ class Muscles:
     name: str = "muscles"
     bone: str = "neck"  # stands still: vertices are where they are
     shine: float = 0.42
+    hair: float = 0.0
 
     @classmethod
     def of(cls, scene: Any) -> Muscles:

@@ -14,7 +14,6 @@ from PIL import ImageDraw, ImageFont
 from risorius import render
 
 from ..files import Image
-from ..pipeline import Viewport
 
 INK = (245, 245, 245)
 FAINT = (200, 203, 208)
@@ -94,7 +93,7 @@ def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, Im
 
 def labels(
     texts: Sequence[str],
-    viewports: Sequence[Viewport],
+    viewports: Sequence[render.Rectangle],
     bar: ColourBar | None,
     style: render.Style,
     least: float = 11.0,
@@ -119,13 +118,13 @@ def labels(
     return made
 
 
-def captioned(image: Image, shown: Sequence[Label], viewports: Sequence[Viewport]) -> Image:
+def captioned(image: Image, shown: Sequence[Label], lefts: Sequence[int]) -> Image:
     """Lay labels on a copy of a picture, and draw a line between viewports.
 
-    image: with 3 channels, or 4 and premultiplied.
+    image: with 3 channels, or 4 and premultiplied. lefts: where viewports begin [pixels].
     """
     page = image.copy()
-    for left in [each[0] for each in viewports if each[0]]:
+    for left in filter(None, lefts):
         page[:, left] = (*INK, 255)[: page.shape[2]]
     for x, y, label in shown:
         under = page[len(page) - y - len(label) : len(page) - y, x : x + label.shape[1]]

@@ -13,7 +13,7 @@ from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from .. import process_cache
-from ..anatomy import Dissection
+from ..anatomy import SKIN_ALONE, AnatomyView
 from ..files import Image
 from ..motion import play
 from ..passes.labelled import Labelled, labelled
@@ -24,7 +24,6 @@ from ..scenes import Scene
 from ..script import Script
 from .cameras import camera_for
 from .captions import SPLITS_BAR, captioned, labels
-from .transparency import straight
 
 UNSEEN = 0.05  # [pixels] of motion: within that, the last picture is shown once more
 
@@ -54,7 +53,7 @@ class CaptureOptions:
     # What draws it instead of these refinements and this style.
     painted: Callable[[Scene, render.OffscreenSurface], Painter] | None = None
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
-    dissection: Dissection = Dissection()  # noqa: RUF009 - frozen
+    anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
     is_alive: bool = False  # what the script leaves alone moves by itself
@@ -86,7 +85,7 @@ class Capture:
         def opened() -> tuple[render.OffscreenSurface, Pipeline]:
             """A surface, and the scene's textures on it."""
             surface = render.open_offscreen(options.size, samples=options.samples)
-            return surface, Pipeline(scene, render.Renderer(surface), ())
+            return surface, Pipeline(scene, render.Renderer(surface))
 
         # What is kept holds its scene, so that no other can have this identity.
         key = (options.size, options.samples, id(scene))
@@ -94,9 +93,9 @@ class Capture:
             "surface", key, opened, lambda made: made[0].close()
         )
         self.surface.make_current()
-        self.pipeline.bind(refinements)
-        self._passes = Passes(self.pipeline) if options.passes else None
-        self.viewports = side_by_side(self.surface.size, len(refinements))
+        meshes = [self.pipeline.bind(each) for each in refinements]
+        self._passes = Passes(self.pipeline, meshes[-1]) if options.passes else None
+        self.viewports = side_by_side(self.surface.size, meshes)
         self._frame: Frame | None = None  # the last one
         self._shown = np.zeros(0)  # what it was drawn of
         self._painter = None if options.painted is None else options.painted(scene, self.surface)
@@ -119,14 +118,14 @@ class Capture:
             return straight(image) if self.options.is_transparent else image
         self.surface.begin()
         options = self.options
-        self.pipeline.draw(self.camera, options.style, self.viewports, options.dissection)
+        self.pipeline.draw(self.camera, options.style, self.viewports, anatomy=options.anatomy)
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
         if self.options.beside and self.options.captions:
-            texts, style = [drawn.caption for drawn in self.pipeline.meshes], self.options.style
+            texts, style = [drawn.caption for drawn, *_ in self.viewports], options.style
+            areas = [viewport.area for viewport in self.viewports]
             bar = SPLITS_BAR if style.colour_by is render.ColourBy.SPLITS else None
-            shown = labels(texts, self.viewports, bar, style)
-            image = captioned(image, shown, self.viewports)
+            image = captioned(image, labels(texts, areas, bar, style), [left for left, *_ in areas])
         return straight(image) if self.options.is_transparent else image
 
     def refine(self) -> None:
@@ -151,7 +150,7 @@ class Capture:
         parts = [part.vertices for part in scene.parts]
         values = [*scene.values.values()]
         now = np.concatenate([scene.positions, *bones, *parts, values, camera.eye], axis=None)
-        width, height = self.viewports[0][2:]
+        width, height = self.viewports[0].area[2:]
         pixels = camera.focal(width / height, height) / np.linalg.norm(camera.eye - camera.target)
         is_same = len(now) == len(self._shown) and not self.options.passes
         if is_same and pixels * np.abs(now - self._shown).max() <= UNSEEN:
@@ -170,7 +169,7 @@ class Capture:
     def draw_frame(self) -> Frame:
         """Draw the scene as it is now, and say what is known of the picture."""
         image, known = self.draw_image(), None
-        triangles = max(drawn.triangle_count for drawn in self.pipeline.meshes)
+        triangles = max(drawn.triangle_count for drawn, *_ in self.viewports)
         if self._passes is not None:
             known = labelled(self._passes, self.camera, self.options.passes)
         return Frame(image, known, triangles)
@@ -199,3 +198,13 @@ class Capture:
                 share = (time - begin) * options.frames_per_second / (frames + 1)
                 self.camera.yaw = math.remainder(yaw + 360.0 * share, 360.0)
             yield time
+
+
+def straight(premultiplied: Image) -> Image:
+    """From premultiplied colours to those that files hold, (H, W, 4); black where nothing is."""
+    image = premultiplied.copy()
+    partly = (image[..., 3] > 0) & (image[..., 3] < 255)
+    colours = image[partly].astype(np.float32)
+    image[partly, :3] = np.minimum(colours[:, :3] * (255.0 / colours[:, 3:]) + 0.5, 255.0)
+    image[image[..., 3] == 0] = 0
+    return image

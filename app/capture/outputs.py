@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 import PIL.Image
 
 from ..files import (
@@ -26,8 +27,8 @@ from ..stopping import cleaned_up_if_stopped
 from ..workers.child import share_of_cores
 from .encoder import Encoder, Soundtrack
 from .formats import check_format, size_of_film
-from .transparency import with_colours_around
 
+AROUND = 6  # halvings: colours reach 64 pixels, the largest block of a coder, beyond an edge
 FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
 
 
@@ -108,3 +109,41 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
         yield add
         while waiting:
             waiting.popleft().result()
+
+
+def with_colours_around(image: Image) -> Image:
+    """The same picture, (H, W, 4), with colours of its edges where it is fully transparent.
+
+    What codes blocks of pixels, or colours at half the size, mixes edges with what is around them;
+    black there would be seen as a dark fringe.
+    """
+    weight: npt.NDArray[np.float32] = np.greater(image[..., 3:], 0).astype(np.float32)
+    filled = image.copy()
+    seen: npt.NDArray[np.float32] = (image[..., :3] * weight).astype(np.float32)
+    around = _filled(seen, weight, AROUND)
+    filled[..., :3] = np.where(weight > 0.0, image[..., :3], around + 0.5)
+    return filled
+
+
+def _filled(
+    colours: npt.NDArray[np.float32], weight: npt.NDArray[np.float32], halvings: int
+) -> npt.NDArray[np.float32]:
+    """Colours (H, W, 3), 0 where the weight (H, W, 1) is, with means of those around there."""
+    if not halvings:
+        return colours
+    height, width = weight.shape[:2]
+    padding = ((0, height % 2), (0, width % 2), (0, 0))
+
+    def halved(values: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+        """Sums of two by two."""
+        even = np.pad(values, padding)
+        rows = even[::2] + even[1::2]
+        summed: npt.NDArray[np.float32] = rows[:, ::2] + rows[:, 1::2]
+        return summed
+
+    count = halved(weight)
+    means = np.divide(halved(colours), np.maximum(count, 1.0), dtype=np.float32)
+    some: npt.NDArray[np.float32] = np.minimum(count, np.float32(1.0))
+    coarse = _filled(means, some, halvings - 1)
+    fine = coarse.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
+    return np.where(weight > 0.0, colours, fine)

@@ -157,7 +157,7 @@ def capture(
         is_turntable=filming.turntable,
         span=filming.span,
         style=replace(drawing.style(), background=filming.background),
-        dissection=drawing.dissection(),
+        anatomy=drawing.anatomy_view(),
         samples=filming.samples,
         head=drawing.fitted_head(),
         is_alive=filming.alive,

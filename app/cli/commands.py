@@ -236,7 +236,7 @@ def open_window(
         from ..viewer.session.live_commands import check_scene
 
         check_scene(performance.scene)
-    told_of = (drawing.refinement(), drawing.dissection()) if drawing.is_told else None
+    told_of = (drawing.refinement(), drawing.anatomy_view()) if drawing.is_told else None
     if told_of is not None:
         told_of[0].check("face" if performance is None else performance.scene)
     if mesh is None:
@@ -251,8 +251,8 @@ def open_window(
 
         display = None  # as it was last
         if told_of is not None:
-            refinement, dissection = told_of
-            display = display_of(refinement, script.scene, dissection, **drawing.style_options)
+            refinement, anatomy = told_of
+            display = display_of(refinement, script.scene, anatomy, **drawing.style_options)
         viewer = Viewer(script, size, display, head=head, settings_path=path, splash=splash)
         with viewer:
             if listening is not None:

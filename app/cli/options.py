@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from risorius import render
     from risorius.assets.fitting import FittedHead
 
-    from ..anatomy import Dissection
+    from ..anatomy import AnatomyView
     from ..recordings.report import Report
     from ..script import Script
 
@@ -38,8 +38,8 @@ SETTINGS = click.option(
 )
 SCENE = click.option("--scene", type=SCENE_NAMES, help="What is animated.")
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
-SOLIDS = ("muscles", "skull")  # anatomy.SOLIDS, not imported yet
-DISSECTION_OPTIONS = ("anatomy", "skin_opacity", "dissect")
+STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
+ANATOMY_OPTIONS = ("anatomy", "skin_opacity", "dissect")
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles", "light")
 
 
@@ -128,7 +128,7 @@ class Drawing(Subject):
     def is_told(self) -> bool:
         """Whether the command that runs was told anything of how the mesh is to be drawn."""
         source = click.get_current_context().get_parameter_source
-        names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS, *DISSECTION_OPTIONS)
+        names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS, *ANATOMY_OPTIONS)
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
@@ -145,9 +145,9 @@ class Drawing(Subject):
             light=render.LIGHTS[self.light],
         )
 
-    def dissection(self) -> Dissection:
+    def anatomy_view(self) -> AnatomyView:
         """What is seen under the skin; UserError for what is not there."""
-        from ..anatomy import OPACITY, Dissection
+        from ..anatomy import OPACITY, SKIN_ALONE, AnatomyView
 
         if self.anatomy is None:
             for name in ("skin_opacity", "dissect"):
@@ -156,13 +156,15 @@ class Drawing(Subject):
                     raise UserError(
                         f"--{option} goes with --anatomy, which says what is under the skin"
                     )
-            return Dissection()
+            return SKIN_ALONE
         names = self.anatomy.split(",")
         for name in names:
-            if name not in SOLIDS:
-                raise UserError(f"--anatomy: '{name}' is not there; it takes {', '.join(SOLIDS)}")
+            if name not in STRUCTURES:
+                raise UserError(
+                    f"--anatomy: '{name}' is not there; it takes {', '.join(STRUCTURES)}"
+                )
         opacity = OPACITY if self.skin_opacity is None else self.skin_opacity
-        return Dissection(tuple(names), opacity, self.dissect or "both")
+        return AnatomyView(tuple(names), opacity, self.dissect or "both")
 
 
 HEAD = (
@@ -188,7 +190,7 @@ DISSECTING = (
     click.option(
         "--anatomy",
         is_flag=False,
-        flag_value=",".join(SOLIDS),
+        flag_value=",".join(STRUCTURES),
         metavar="[NAME,...]",
         help="Draw muscles, skull or both under translucent skin.",
     ),

@@ -23,7 +23,7 @@ from ..motion.idle import looking_at
 from ..passes.camera_labels import CameraLabels
 from ..passes.labelled import Labelled
 from ..passes.passes import Passes
-from ..pipeline import Pipeline
+from ..pipeline import Pipeline, Viewport
 from ..refining.looks import Refinement
 from ..scenes import FaceScene
 from .folder import name_of
@@ -76,10 +76,10 @@ class Studio:
         request = self._request
         sample = draw(request.table, request.seed, index)
         model = self._person(sample.person)
-        pipeline, scene = model.pipeline, model.pipeline.scene
+        scene = model.pipeline.scene
         assert isinstance(scene, FaceScene)
         camera = _posed(scene, sample, request.size)
-        image, surroundings = self._taken(pipeline, camera, sample)
+        image, surroundings = self._taken(model, camera, sample)
         images = model.passes.draw(camera, {"depth", *request.passes})
         labels = {
             "id": name_of(index),
@@ -96,7 +96,7 @@ class Studio:
         return Shot(image, Labelled(wanted, labels))
 
     def _taken(
-        self, pipeline: Pipeline, camera: render.OrbitCamera, sample: Sample
+        self, model: _Model, camera: render.OrbitCamera, sample: Sample
     ) -> tuple[Image, dict[str, Any]]:
         """The picture of a scene as it is now, and what is told of light and background."""
         request = self._request
@@ -109,7 +109,7 @@ class Studio:
             colours = request.backgrounds.colours(random)
         self._surface.begin()
         style = render.Style(light=light, background=colours)
-        pipeline.draw(camera, style, [(0, 0, *request.size)])
+        model.pipeline.draw(camera, style, [Viewport(model.passes.drawn, (0, 0, *request.size))])
         self._surface.end()
         if picture is None:
             image = self._surface.read()
@@ -121,8 +121,8 @@ class Studio:
     def _person_of(self, number: int) -> _Model:
         """A person of the set before the frame."""
         somebody = person_of(self._request, number)
-        pipeline = Pipeline(FaceScene(somebody.head), self._renderer, [Refinement()])
-        return _Model(pipeline, Passes(pipeline), somebody.labels)
+        pipeline = Pipeline(FaceScene(somebody.head), self._renderer)
+        return _Model(pipeline, Passes(pipeline, pipeline.bind(Refinement())), somebody.labels)
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:

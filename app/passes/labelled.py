@@ -1,6 +1,6 @@
 """The files that lie beside a picture: what is known of it, pass by pass.
 
-frame_00000.exr         depth, normal, triangle, splits, tension         exr.py
+frame_00000.exr         depth, normal, triangle, splits, tension: 32 bits a channel, lossless
 frame_00000_seg.png     segmentation: 8 bits, one class number a pixel
 frame_00000_ldmks.txt   landmarks: x and y of each in a row [pixels]
 frame_00000.json        camera, head, gaze, landmarks, controls          labels.py
@@ -9,7 +9,7 @@ frame_00000.json        camera, head, gaze, landmarks, controls          labels.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,12 +20,19 @@ import PIL.Image
 
 from risorius import render
 
-from ..errors import UserError
+from ..errors import UserError, needed
 from ..files import Image, cannot_be_written, written_atomically
-from .exr import CHANNELS, openexr, write_exr
 from .labels import labels_of
 from .passes import NAMES, OF_FACES, Passes
 
+CHANNELS = {
+    "depth": ("depth.Z",),
+    "normal": ("normal.X", "normal.Y", "normal.Z"),
+    "triangle": ("triangle.ID",),
+    "splits": ("splits",),
+    "tension": ("tension.stretch", "tension.compression"),
+}
+NOTHING = 0xFFFFFFFF  # of triangles, where integers have no sign: -1 when read as signed
 ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")
 
 
@@ -88,3 +95,25 @@ def labelled(passes: Passes, camera: render.OrbitCamera, wanted: Sequence[str]) 
     depth = images["depth"] if has_landmarks else None
     labels = labels_of(passes.scene, camera, passes.size, depth)
     return Labelled({name: images[name] for name in images if name in wanted}, labels)
+
+
+def openexr() -> Any:
+    """OpenEXR's module; UserError where it is missing."""
+    return needed("OpenEXR", "--passes", "passes")
+
+
+def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:
+    """Write passes by their names, those of CHANNELS; OSError where that fails."""
+    module = openexr()
+    channels = {}
+    for name, images in passes.items():
+        kind = np.float32 if images.dtype.kind == "f" else np.uint32
+        layers = images.reshape(*images.shape[:2], -1).astype(kind)
+        for k, channel in enumerate(CHANNELS[name]):
+            channels[channel] = np.ascontiguousarray(layers[..., k])
+    header = {"compression": module.ZIP_COMPRESSION, "type": module.scanlineimage}
+    try:
+        with module.File(header, channels) as file:
+            file.write(str(path))
+    except RuntimeError as error:  # ... image file "...". No space left on device.
+        raise OSError(str(error).rpartition('". ')[2].rstrip(".")) from None

@@ -23,7 +23,7 @@ from risorius import refine, render
 from risorius.assets import Segment
 from risorius.assets.identities import HAIR
 
-from ..pipeline import Pipeline, splits_of_source
+from ..pipeline import DrawnMesh, Pipeline, splits_of_source
 from ..refining.wrinkling import on_rows
 from ..scenes import FaceScene
 
@@ -34,14 +34,14 @@ Bytes = npt.NDArray[np.uint8]
 
 
 class Passes:
-    """Draws the passes of what a pipeline drew last."""
+    """Draws the passes of a mesh as a pipeline drew it last."""
 
-    def __init__(self, pipeline: Pipeline) -> None:
+    def __init__(self, pipeline: Pipeline, drawn: DrawnMesh) -> None:
         self.scene = scene = pipeline.scene
-        self._pipeline = pipeline
+        self._pipeline, self.drawn = pipeline, drawn
         self._tension = refine.Tension(scene.faces, scene.rest_positions)
         # Thin hairs are what is behind them, as in pictures that people label.
-        self._parts = [part for part in scene.parts if not getattr(part, "hair", 0.0)]
+        self._parts = [part for part in scene.parts if not part.hair]
         self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, self._parts)])
 
     @property
@@ -52,12 +52,12 @@ class Passes:
     def draw(
         self, camera: render.OrbitCamera, wanted: Collection[str] = IMAGES
     ) -> dict[str, npt.NDArray[Any]]:
-        """The passes of these names, for the mesh that `Pipeline.draw` drew last, on the right.
+        """The passes of these names, for the mesh as `Pipeline.draw` drew it last.
 
         The camera and the scene must be as they were then. Raises ValueError before the first
         picture, and for the segmentation of a scene that has none.
         """
-        scene, pipeline, drawn = self.scene, self._pipeline, self._pipeline.meshes[-1]
+        scene, pipeline, drawn = self.scene, self._pipeline, self.drawn
         if drawn.mesh is None:
             raise ValueError("nothing was drawn yet; call Pipeline.draw first")
         values = None
@@ -65,8 +65,8 @@ class Passes:
             stretch, compression, _ = self._tension.measure(scene.positions)
             values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
         wrinkles = None
-        if pipeline.wrinkling is not None and drawn.has_uv:
-            wrinkles = pipeline.wrinkling.map, drawn.strength
+        if pipeline.wrinkle_map is not None and drawn.has_uv:
+            wrinkles = pipeline.wrinkle_map, drawn.strength
         geometry = pipeline.renderer.draw_geometry(
             drawn.stream,
             self._parts,

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from risorius import assets, refine, render
+from risorius import assets, refine
 from risorius.assets.model import HIGHEST_FOLD
 from risorius.geometry.normals import vertex_normals
 
@@ -58,15 +58,6 @@ class Compression:
         resting = self._resting / (1.0 + np.square(np.minimum(lost, 0.0) / FLAT))
         shown: Amounts = np.maximum(amounts, resting).astype(np.float32)
         return shown
-
-
-class Wrinkling(Compression):
-    """The wrinkles of a scene, ready to be drawn."""
-
-    def __init__(self, scene: Scene, renderer: render.Renderer) -> None:
-        super().__init__(scene)
-        assert scene.wrinkles is not None
-        self.map = renderer.load_wrinkles(scene.wrinkles.map, scene.wrinkles.steepest)
 
 
 class Relief:
@@ -167,11 +158,6 @@ def on_rows(amounts: Amounts, refiner: refine.Refiner) -> Amounts | None:
     corners = [np.take(amounts, vertices[:, i], axis=0) * weights[:, i : i + 1] for i in range(3)]
     rows: Amounts = corners[0] + corners[1] + corners[2]
     return rows
-
-
-def wrinkling_of(scene: Scene, renderer: render.Renderer) -> Wrinkling | None:
-    """Ready the scene's wrinkles for the renderer; None where it has none."""
-    return None if scene.wrinkles is None else Wrinkling(scene, renderer)
 
 
 def relief_of(scene: Scene, refinement: Refinement) -> Relief | None:

@@ -49,6 +49,7 @@ class Tongue:
     unlit: Floats  # its colours in full light
     front: float  # z of the front teeth [mm]
     shape: npt.NDArray[np.float64] | None = None  # taken last
+    hair: float = 0.0
 
     @classmethod
     def of(cls, part: Any, front: float) -> Tongue:

@@ -7,7 +7,6 @@ their source. So the same colours are seen with and without refinement.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +18,7 @@ from risorius.geometry.normals import vertex_normals
 from risorius.render.style import AMOUNT_RAMP, SIGNED_RAMP
 
 from ..capture.captions import SPLITS_BAR, ColourBar
-from ..pipeline import DrawnMesh, splits_of_source
+from ..pipeline import SourceValues
 from ..scenes import Scene
 
 MOST_DROP = 0.3  # of the normals' dot product, drawn darkest: a bend of 45 degrees
@@ -35,16 +34,7 @@ class Colours:
 
     kind: render.ColourBy
     bar: ColourBar | None = None
-    of_source: Callable[[Scene, refine.Refiner], Amounts] | None = None
-
-    def values(self, scene: Scene, drawn: DrawnMesh) -> Amounts | None:
-        """One value for each drawn triangle, as `kind` wants it."""
-        assert drawn.mesh is not None
-        if self.kind is render.ColourBy.SPLITS:
-            return splits_of_source(drawn.refiner, drawn.mesh)
-        if self.of_source is None:
-            return None
-        return self.of_source(scene, drawn.refiner)[drawn.mesh.source]
+    of_source: SourceValues | None = None
 
 
 def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:

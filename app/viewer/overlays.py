@@ -1,14 +1,15 @@
-"""What shows how the face moves: lines over it (springs, landmarks), solids under its skin."""
+"""What shows how the face moves: lines over it; muscles and skull are anatomy's."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import render
+from risorius.render import Lines
 
 from ..scenes import Scene
 from .colours import edge_strains
@@ -26,16 +27,6 @@ SLACK, STRETCHED, SQUEEZED = (
 MARK = np.array([0.05, 0.55, 0.40])
 MARK_SIZE = 1.6  # [mm] half of a landmark's cross
 MOST_STRAIN = 0.3  # an edge in its full colour
-
-
-class Lines(NamedTuple):
-    """Polylines (n, 3) with a colour each, and how `draw_lines` is to draw them."""
-
-    polylines: Sequence[FloatArray]
-    colour: FloatArray
-    width: float = 1.6
-    hidden_opacity: float = 0.45
-    opacity: float = 1.0
 
 
 def spring_lines(scene: Scene, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
@@ -60,7 +51,7 @@ def landmark_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.Orbi
 
 OverlayMaker = Callable[[Any, npt.NDArray[np.int32], render.OrbitCamera], Lines]
 LINES: dict[str, OverlayMaker] = {"springs": spring_lines, "landmarks": landmark_lines}
-OVERLAYS = ("muscles", "springs", "skull", "landmarks")  # lines, and SOLIDS of anatomy
+OVERLAYS = ("muscles", "springs", "skull", "landmarks")  # lines, and STRUCTURES of anatomy
 
 
 def overlays_of(scene: Scene) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from typing import Annotated, Any, NamedTuple
 from risorius import refine, render
 from risorius.schema import Flag, OneOf, Record, Within, read_what_fits
 
-from ..anatomy import OPACITY, SIDES, SOLIDS, Dissection
+from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
 from ..capture.formats import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
@@ -121,10 +121,10 @@ class Display(Record):
     dissect: Annotated[str, OneOf(SIDES)] = "both"
 
     @property
-    def dissection(self) -> Dissection:
+    def anatomy(self) -> AnatomyView:
         """What is seen under the skin."""
-        solids = tuple(name for name in SOLIDS if name in self.overlays)
-        return Dissection(solids, self.skin_opacity, self.dissect)
+        structures = tuple(name for name in STRUCTURES if name in self.overlays)
+        return AnatomyView(structures, self.skin_opacity, self.dissect)
 
     def choose_look(self, name: str) -> None:
         """Refine by a look, and by nothing but it."""
@@ -233,7 +233,7 @@ def switch(part: object, name: str, value: object = True, other: object = False)
 def display_of(
     refinement: Refinement,
     scene: str,
-    dissection: Dissection = Dissection(),  # noqa: B008 - frozen
+    anatomy: AnatomyView = SKIN_ALONE,
     *,
     splits: bool,
     **style: Any,
@@ -242,9 +242,9 @@ def display_of(
     display = Display(
         look=refinement.look,
         colours="splits" if splits else "none",
-        overlays=list(dissection.solids),
-        skin_opacity=dissection.opacity,
-        dissect=dissection.side,
+        overlays=list(anatomy.structures),
+        skin_opacity=anatomy.opacity,
+        dissect=anatomy.side,
         **style,
     )
     if refinement.refiner == STATIC:

@@ -12,7 +12,6 @@ from imgui_bundle import imgui
 from risorius import render
 
 from ..capture.cameras import whole_scene
-from ..pipeline import Viewport
 from .interface.gui import THEMES, em
 from .session.session import Session
 from .setting_rules import BACKGROUNDS
@@ -75,16 +74,16 @@ class View:
         return BACKGROUNDS[self.display.background] or THEMES[self._settings.theme].background
 
     @property
-    def viewport(self) -> Viewport:
+    def viewport(self) -> render.Rectangle:
         """Its part of the framebuffer."""
         return self.pixels(self.area)
 
     @property
-    def drawn(self) -> Viewport | None:
+    def drawn(self) -> render.Rectangle | None:
         """What is drawn of the framebuffer, panels apart; None for all of it."""
         return self.viewport
 
-    def pixels(self, area: tuple[float, float, float, float]) -> Viewport:
+    def pixels(self, area: tuple[float, float, float, float]) -> render.Rectangle:
         """A part of the window, as one of the framebuffer."""
         display = imgui.get_io().display_size
         width, height = self._surface.size
@@ -122,7 +121,7 @@ class View:
         display = repr(asdict(self.display))
         return self.camera_place, display, self._settings.theme, self.viewport, self.pointed
 
-    def divider(self) -> list[tuple[Viewport, render.Colour]]:
+    def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
         """The line between the two halves of a comparison, and what to drag it by."""
         if self.display.compare not in ("wipe", "side by side"):
             return []

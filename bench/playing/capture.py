@@ -131,7 +131,7 @@ def _time_stages(
             (surface, "end", timed("draw", end_and_wait, "captions")),
             (surface, "read_scene", timed("read back", surface.read_scene, "captions")),
         ]
-        for drawn in pipeline.meshes:
+        for drawn, *_ in studio.viewports:
             changed.append((drawn, "refine", timed("refine", drawn.refine, "draw")))
             changed.append((drawn, "upload", timed("upload", drawn.upload, "draw")))
         for thing, attribute, call in changed:

@@ -109,8 +109,6 @@ class Pictures:
             or len(stream.vertices) < len(positions)
             or len(stream.triangles) < len(triangles)
         ):
-            if stream is not None:
-                stream.release()
             room = 2 * len(positions), 2 * len(triangles)
             self._stream = stream = self._renderer.lend_stream(*room)
         stream.vertices[: len(positions)] = np.concatenate([positions, normals], axis=1)

@@ -17,7 +17,7 @@ from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import Scene, build_scene
 
-from ..canvas import Canvas, Drawing, image_table
+from ..canvas import RED, Canvas, Drawing, image_table
 from . import folds
 from .figure_coherence import FLAT, GOURAUD
 
@@ -60,11 +60,11 @@ def _cells(canvas: Canvas, pose: Pose) -> list[tuple[str, Image]]:
         refine.create(name, scene.faces, scene.rest_positions) for name in ("none", "kahler")
     )
     before, after = folds.measure(refined, scene.faces, scene.positions)
-    lines = lines_along(scene)
+    lines = render.Lines(lines_along(scene), RED, width=2.0, hidden_opacity=0.0)
 
     def picture(refiner: refine.Refiner, style: render.Style) -> Image:
-        drawn_lines = lines if style is GOURAUD else ()
-        drawing = Drawing(camera, style, scene.parts, bones, lines=drawn_lines, line_width=2.0)
+        drawn_lines = lines if style is GOURAUD else None
+        drawing = Drawing(camera, style, scene.parts, bones, lines=drawn_lines)
         return canvas.draw_image(refiner, scene.positions, drawing)
 
     return [

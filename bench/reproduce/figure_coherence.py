@@ -17,7 +17,7 @@ from risorius.app.files import Image
 from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
 from risorius.app.scenes import PlaneScene
 
-from ..canvas import Canvas, Drawing, image_table
+from ..canvas import RED, Canvas, Drawing, image_table
 from .claims import Outcome
 from .turned_lines import Line, inner_lines, point_rows, turned
 
@@ -83,8 +83,9 @@ def _moments(
         gone |= set(turned(before, now, points))
         before = now
         if step % STEPS_BETWEEN == 0:
-            lines = [_lifted(mesh, points[a], points[b]) for _, a, b in sorted(gone)]
-            drawing = Drawing(camera, GROWING, lines=lines, line_width=2.4)
+            turned_now = [_lifted(mesh, points[a], points[b]) for _, a, b in sorted(gone)]
+            lines = render.Lines(turned_now, RED, width=2.4, hidden_opacity=0.0)
+            drawing = Drawing(camera, GROWING, lines=lines)
             image = canvas.draw_image(refiner, scene.positions, drawing)
             cells.append((f"{len(mesh.triangles)} triangles, {len(gone)} turned", image))
             count += len(gone)

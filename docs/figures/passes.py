@@ -47,7 +47,7 @@ def passes(size: tuple[int, int] = SIZE) -> Image:
         scene.pose(POSE)
         scene.step(SETTLED)
         picture = studio.draw_image()
-        known = labelled(Passes(studio.pipeline), studio.camera, NAMES)
+        known = labelled(Passes(studio.pipeline, studio.viewports[-1].drawn), studio.camera, NAMES)
     images = known.images
     on = images["depth"] > 0.0
     cells = {

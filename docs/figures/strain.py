@@ -47,9 +47,8 @@ def tension_map(size: tuple[int, int] = SIZE, poses: Sequence[str] = POSES) -> I
             renderer.draw_background(style)
             renderer.draw_parts([_coloured(pose, mesh, found)], {"skin": np.eye(4)}, camera, style)
             renderer.draw_parts(scene.parts, scene.bone_transforms(), camera, style)
-            renderer.draw_lines(
-                _strokes(mesh, found), (0.1, 0.1, 0.12), camera, width=1.0, hidden_opacity=0.0
-            )
+            strokes = render.Lines(_strokes(mesh, found), (0.1, 0.1, 0.12), 1.0, hidden_opacity=0.0)
+            renderer.draw_lines(strokes, camera)
             surface.end()
             title = f"{pose}: +{found.stretch.max():.0%}, -{found.compression.max():.0%} at most"
             cells.append((title, surface.read()))

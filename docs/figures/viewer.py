@@ -16,7 +16,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from risorius import assets, render
-from risorius.app.anatomy import Dissection
+from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
@@ -152,8 +152,8 @@ def plate() -> Image:
     """Muscles and skull of one side in a smile, to be framed."""
     scene = FaceScene()
     style = render.Style(background=render.DARK)
-    dissection = Dissection(("muscles", "skull"), 0.12, "right")
-    options = CaptureOptions(PLATE, camera=PLATE_CAMERA, style=style, dissection=dissection)
+    anatomy = AnatomyView(("muscles", "skull"), 0.12, "right")
+    options = CaptureOptions(PLATE, camera=PLATE_CAMERA, style=style, anatomy=anatomy)
     with Capture(scene, options) as capture:
         scene.pose({"joy": 0.85})
         scene.step(SETTLED)

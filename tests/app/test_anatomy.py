@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from risorius import render
 from risorius.__main__ import command
-from risorius.app.anatomy import SOLIDS, Dissection, Solids
+from risorius.app.anatomy import STRUCTURES, Anatomy, AnatomyView
 from risorius.app.anatomy.muscle_bands import AROUND, ROWS, Muscles
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.cameras import camera_for
@@ -24,7 +24,7 @@ from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
 SIZE = (150, 170)
-BOTH = Dissection(SOLIDS)
+BOTH = AnatomyView(STRUCTURES)
 
 
 @pytest.fixture(scope="module")
@@ -34,9 +34,9 @@ def studio() -> Iterator[Capture]:
         yield opened
 
 
-def picture(studio: Capture, dissection: Dissection, **style: Any) -> Any:
+def picture(studio: Capture, anatomy: AnatomyView, **style: Any) -> Any:
     """What is seen of the face as it is now."""
-    options = replace(studio.options, dissection=dissection)
+    options = replace(studio.options, anatomy=anatomy)
     studio.options = replace(options, style=render.Style(**style))
     return studio.draw_image().astype(int)
 
@@ -50,11 +50,10 @@ def posed(scene: FaceScene, **pose: float) -> FaceScene:
     return scene
 
 
-def solids_of(studio: Capture, **pose: float) -> list[Any]:
+def structures_of(studio: Capture, **pose: float) -> list[Any]:
     """Muscles and skull of the face in a pose."""
     posed(studio.scene, **pose)  # type: ignore[arg-type]
-    studio.pipeline.solids.follow(BOTH)
-    parts = studio.pipeline.solids.parts
+    parts = studio.pipeline.anatomy.layers(BOTH).parts
     return [part for part in parts if part.name.startswith(("skull", "muscles"))]
 
 
@@ -75,20 +74,20 @@ def check_surface(part: Any) -> None:
 def test_skin_that_hides_everything_is_drawn_as_ever(studio: Capture) -> None:
     """At opacity 1, and without anything beneath, every byte is that of the usual picture."""
     posed(studio.scene)  # type: ignore[arg-type]
-    usual = picture(studio, Dissection())
-    assert np.array_equal(picture(studio, Dissection(SOLIDS, 1.0)), usual)
-    assert np.array_equal(picture(studio, Dissection((), 0.2)), usual)
+    usual = picture(studio, AnatomyView())
+    assert np.array_equal(picture(studio, AnatomyView(STRUCTURES, 1.0)), usual)
+    assert np.array_equal(picture(studio, AnatomyView((), 0.2)), usual)
     assert (picture(studio, BOTH) != usual).mean() > 0.3
-    assert np.array_equal(picture(studio, Dissection()), usual)  # and it leaves nothing behind
+    assert np.array_equal(picture(studio, AnatomyView()), usual)  # and it leaves nothing behind
 
 
 @pytest.mark.slow
 def test_no_skin_is_seen_at_opacity_0_and_one_side_alone_is_opened(studio: Capture) -> None:
     """What skin is like makes no difference then; the side that is not opened stays as it is."""
     posed(studio.scene)  # type: ignore[arg-type]
-    bare = Dissection(SOLIDS, 0.0)
+    bare = AnatomyView(STRUCTURES, 0.0)
     assert np.array_equal(picture(studio, bare), picture(studio, bare, textured=False))
-    usual, left = picture(studio, Dissection()), picture(studio, replace(bare, side="left"))
+    usual, left = picture(studio, AnatomyView()), picture(studio, replace(bare, side="left"))
     middle = SIZE[0] // 2
     shown = np.abs(left - usual).max(axis=2) > 24  # eyes lie in another shadow
     assert shown[:, : middle - 3].mean() < 0.01 < 0.2 < shown[:, middle + 3 :].mean()
@@ -98,9 +97,9 @@ def test_no_skin_is_seen_at_opacity_0_and_one_side_alone_is_opened(studio: Captu
 def test_more_skin_hides_more(studio: Capture) -> None:
     """From 0 to 1 the picture goes evenly to the usual one."""
     posed(studio.scene)  # type: ignore[arg-type]
-    usual = picture(studio, Dissection())
+    usual = picture(studio, AnatomyView())
     opacities = (0.0, 0.3, 0.6, 0.9)
-    shown = [picture(studio, Dissection(SOLIDS, opacity)) for opacity in opacities]
+    shown = [picture(studio, AnatomyView(STRUCTURES, opacity)) for opacity in opacities]
     off = [float(np.abs(each - usual).mean()) for each in shown]
     assert off == sorted(off, reverse=True) and off[0] > 5.0 * off[3]
 
@@ -109,7 +108,7 @@ def test_more_skin_hides_more(studio: Capture) -> None:
 @pytest.mark.parametrize("pose", [{}, {"joy": 1.0}, {"jaw_open": 1.0, "head_yaw": 0.6}])
 def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
     """At rest, in a smile, in a turned head that yawns."""
-    made = solids_of(studio, **pose)
+    made = structures_of(studio, **pose)
     assert len(made) == 5
     for part in made:
         check_surface(part)
@@ -143,9 +142,9 @@ def test_muscles_swell_and_redden_as_they_contract() -> None:
 
 
 @pytest.mark.parametrize("pose", [{}, {"joy": 1.0}])
-def test_a_symmetric_face_has_symmetric_solids(studio: Capture, pose: dict[str, float]) -> None:
+def test_a_symmetric_face_has_symmetric_anatomy(studio: Capture, pose: dict[str, float]) -> None:
     """Left and right are mirror images."""
-    for part in solids_of(studio, **pose):
+    for part in structures_of(studio, **pose):
         mirrored = part.vertices * np.array([-1.0, 1.0, 1.0], np.float32)
         off = cKDTree(part.vertices).query(mirrored)[0]
         assert np.percentile(off, 99) < 0.4, part.name
@@ -155,17 +154,16 @@ def test_a_symmetric_face_has_symmetric_solids(studio: Capture, pose: dict[str, 
 def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> None:
     """They lie in it, and the mandible goes down with the jaw."""
     scene = FaceScene(fit_head(*stranger().write(tmp_path)))
-    solids = Solids(scene)
-    solids.follow(BOTH)
+    anatomy = Anatomy(scene)
     low, high = scene.rest_positions.min(axis=0), scene.rest_positions.max(axis=0)
-    parts = {part.name: part for part in solids.parts}
+    parts = {part.name: part for part in anatomy.layers(BOTH).parts}
     for name in ("skull_cranium", "skull_mandible", "skull_nose", "muscles"):
         points = parts[name].vertices
         assert np.isfinite(points).all() and len(points) > 300
         assert (points.max(axis=0) < high + 2.0).all() and (points.min(axis=0) > low - 12.0).all()
     before = parts["muscles"].vertices
     posed(scene, jaw_open=1.0)
-    solids.follow(BOTH)
+    anatomy.layers(BOTH)
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
 
 
@@ -176,9 +174,8 @@ def test_holes_that_meet_leave_a_head_its_anatomy(tmp_path: Path) -> None:
     ring = np.flatnonzero((faces == crown).any(axis=1))
     opposite = next(n for n in ring[1:] if len({*faces[n]} & {*faces[ring[0]]}) == 1)
     kept = np.delete(faces, [ring[0], opposite], axis=0)
-    solids = Solids(FaceScene(fit_head(*mine.write(tmp_path, faces=kept))))
-    solids.follow(BOTH)
-    assert "neck_section" in [part.name for part in solids.parts]
+    anatomy = Anatomy(FaceScene(fit_head(*mine.write(tmp_path, faces=kept))))
+    assert "neck_section" in [part.name for part in anatomy.layers(BOTH).parts]
 
 
 @pytest.mark.slow
@@ -206,17 +203,17 @@ def test_the_command_draws_anatomy(tmp_path: Path) -> None:
 def test_muscles_need_no_skull_and_rest_with_the_face() -> None:
     """Bones are formed only when they are asked for; where nothing moved, nothing is shaped."""
     scene = FaceScene()
-    solids = Solids(scene)
-    solids.follow(Dissection(("muscles",)))
-    muscles = next(part for part in solids.parts if part.name == "muscles")
-    assert [part.name for part in solids.parts if "skull" in part.name] == ["skull_nose"]
+    anatomy, view = Anatomy(scene), AnatomyView(("muscles",))
+    parts = anatomy.layers(view).parts
+    muscles = next(part for part in parts if part.name == "muscles")
+    assert [part.name for part in parts if "skull" in part.name] == ["skull_nose"]
     shape = muscles.vertices
-    solids.follow(Dissection(("muscles",)))
+    anatomy.layers(view)
     assert muscles.vertices is shape
     scene.pose({"joy": 1.0})
     for _ in range(5):
         scene.step(1.0 / 60.0)
-    solids.follow(Dissection(("muscles",)))
+    anatomy.layers(view)
     assert np.abs(muscles.vertices - shape).max() > 0.1
 
 
@@ -227,8 +224,8 @@ def test_the_whole_side_is_the_usual_picture(
     """Seen from its own side, nothing comes through skin; the mouth is lined, lashes are there."""
     posed(studio.scene, **pose)  # type: ignore[arg-type]
     camera, studio.camera = studio.camera, camera_for(studio.scene, view)
-    usual = picture(studio, Dissection(), shadows=False)
-    opened = picture(studio, Dissection(SOLIDS, 0.3, "left"), shadows=False)
+    usual = picture(studio, AnatomyView(), shadows=False)
+    opened = picture(studio, AnatomyView(STRUCTURES, 0.3, "left"), shadows=False)
     shown = np.abs(opened - usual).max(axis=2) > 24
     at_rest = studio.scene.rest_positions
     is_midline = (at_rest[:, 0] == 0.0) & (at_rest[:, 2] > 45.0)  # in front, the throat, too
@@ -239,8 +236,8 @@ def test_the_whole_side_is_the_usual_picture(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("solids", [("skull",), SOLIDS])
-def test_no_background_shines_through_a_head(studio: Capture, solids: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("structures", [("skull",), STRUCTURES])
+def test_no_background_shines_through_a_head(studio: Capture, structures: tuple[str, ...]) -> None:
     """Behind a mouth that is open, and in the collar, there is something."""
     posed(studio.scene, jaw_open=1.0)  # type: ignore[arg-type]
     marks = studio.scene.positions[studio.scene.head.landmarks]  # type: ignore[attr-defined]
@@ -254,7 +251,7 @@ def test_no_background_shines_through_a_head(studio: Capture, solids: tuple[str,
         seen = []
         for colour in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)):
             style = {"background": render.Background(colour, colour), "shadows": False}
-            seen.append(picture(studio, Dissection(solids, 0.0), **style)[y, x])
+            seen.append(picture(studio, AnatomyView(structures, 0.0), **style)[y, x])
         assert np.abs(seen[0] - seen[1]).max() < 24, view
     studio.camera = camera
 

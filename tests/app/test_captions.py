@@ -14,7 +14,6 @@ from risorius.app.capture.captions import (
     contact_sheet,
     labels,
 )
-from risorius.app.pipeline import side_by_side
 
 STYLE = render.Style()
 GREY = np.full((200, 400, 3), 128, np.uint8)
@@ -22,9 +21,9 @@ GREY = np.full((200, 400, 3), 128, np.uint8)
 
 def test_a_caption_for_each_half_and_a_line_between() -> None:
     """Text in both outer corners, the line from top to bottom, the image left as it was."""
-    halves = side_by_side((400, 200), 2)
+    halves = [(0, 0, 200, 200), (200, 0, 200, 200)]
     made = labels(["static", "kahler"], halves, None, STYLE)
-    with_captions = captioned(GREY, made, halves)
+    with_captions = captioned(GREY, made, [0, 200])
     is_drawn = (with_captions != 128).any(axis=2)
     assert is_drawn[:, 200].all()
     text = is_drawn.copy()
@@ -43,16 +42,16 @@ def test_a_caption_without_room_is_left_out() -> None:
 
 def test_a_single_picture_has_no_line() -> None:
     """Nothing is divided where there is one viewport."""
-    whole = side_by_side((400, 200), 1)
-    with_captions = captioned(GREY, labels(["x"], whole, None, STYLE), whole)
+    whole = [(0, 0, 400, 200)]
+    with_captions = captioned(GREY, labels(["x"], whole, None, STYLE), [0])
     assert (with_captions[:150] == 128).all()
 
 
 def test_labels_lie_on_transparent_pictures() -> None:
     """Where nothing is, a plate is as opaque as it is; colours stay multiplied by alpha."""
-    whole = side_by_side((400, 200), 1)
+    whole = [(0, 0, 400, 200)]
     empty = np.zeros((200, 400, 4), np.uint8)
-    page = captioned(empty, labels(["static\n2030 triangles"], whole, None, STYLE), whole)
+    page = captioned(empty, labels(["static\n2030 triangles"], whole, None, STYLE), [0])
     assert page[0, 0, 3] == 0 and page[-15, 12, 3] == PLATE and page[..., 3].max() > PLATE
     assert (page[..., :3] <= page[..., 3:]).all()
 

@@ -11,7 +11,7 @@ import pytest
 from risorius import refine, render
 from risorius.app.capture.cameras import whole_scene
 from risorius.app.errors import UserError
-from risorius.app.pipeline import Pipeline
+from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.looks import FIRST_LOOK, LOOKS, Look, Refinement, named
 from risorius.app.refining.refiners import parse_comparison, refiner_for
 from risorius.app.scenes import SCENES, Scene
@@ -50,16 +50,17 @@ def test_every_look_is_drawn_by_every_refiner(
 ) -> None:
     """On every scene, without a crack, and as something that can be seen."""
     scene, refinement = scenes[name], Refinement(look, refiner)
-    pipeline = Pipeline(scene, render.Renderer(surface), [refinement])
+    pipeline = Pipeline(scene, render.Renderer(surface))
+    drawn = pipeline.bind(refinement)
     camera = whole_scene(scene, "front")
     surface.begin()
-    pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
+    pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
     surface.end()
     assert np.ptp(surface.read()) > 30
     bound = refiner_for(scene, refinement)
     mesh = bound.refine(scene.positions)
     refine.check(bound, mesh, scene.positions)
-    assert len(mesh.triangles) == pipeline.meshes[0].triangle_count
+    assert len(mesh.triangles) == drawn.triangle_count
     is_refined = len(mesh.triangles) > 1.2 * len(scene.faces)
     assert is_refined == (refiner != "none")
 

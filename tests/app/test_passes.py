@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +34,11 @@ EXPRESSIONS: dict[str, dict[str, float]] = {
     "pucker, tilted": {"AU18": 1.0, "head_roll": 0.5},
 }
 Array = npt.NDArray[np.float64]
+
+
+def passes_of(studio: Capture, wanted: Sequence[str]) -> dict[str, Any]:
+    """The passes of these names of what was drawn last."""
+    return Passes(studio.pipeline, studio.viewports[-1].drawn).draw(studio.camera, wanted)
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +108,7 @@ def test_triangles_and_depth_are_those_that_rays_hit(plain: Capture, yaw: float)
     """At 400 places of the mesh as it is: more than 99 in 100 hit the same triangle."""
     scene = posed(plain, EXPRESSIONS["smile"])
     camera = seen_from(plain, yaw, 5.0)
-    found = Passes(plain.pipeline).draw(plain.camera, ["depth", "triangle"])
+    found = passes_of(plain, ["depth", "triangle"])
     skin = np.argwhere(found["triangle"] >= 0)
     places = skin[np.random.default_rng(4).choice(len(skin), 400, replace=False)]
     pixels = np.column_stack([places[:, ::-1] + 0.5, np.ones(len(places))])
@@ -118,7 +124,7 @@ def test_nothing_parts_and_skin_are_told_apart(studio: Capture) -> None:
     """One background in all passes; no triangle of the mesh on teeth and eyes."""
     posed(studio, EXPRESSIONS["open mouth"])
     seen_from(studio)
-    found = Passes(studio.pipeline).draw(studio.camera)
+    found = Passes(studio.pipeline, studio.viewports[-1].drawn).draw(studio.camera)
     assert tuple(found) == IMAGES
     nothing = found["depth"] == 0.0
     assert 0.3 < nothing.mean() < 0.9
@@ -137,8 +143,8 @@ def test_splits_are_those_of_the_triangle_that_is_seen(studio: Capture) -> None:
     """As the refiner tells them."""
     posed(studio, EXPRESSIONS["smile"])
     seen_from(studio)
-    found = Passes(studio.pipeline).draw(studio.camera, ["triangle", "splits"])
-    refiner = studio.pipeline.meshes[0].refiner
+    found = passes_of(studio, ["triangle", "splits"])
+    refiner = studio.viewports[0].drawn.refiner
     is_skin = found["triangle"] >= 0
     edges = refiner.triangle_edges[found["triangle"][is_skin]]
     assert np.array_equal(found["splits"][is_skin], refiner.splits[edges].sum(axis=1))
@@ -147,7 +153,7 @@ def test_splits_are_those_of_the_triangle_that_is_seen(studio: Capture) -> None:
 
 def test_tension_is_that_of_the_vertices_around(studio: Capture) -> None:
     """Between the least and the greatest of the triangle's corners, and none at rest."""
-    scene, passes = studio.scene, Passes(studio.pipeline)
+    scene, passes = studio.scene, Passes(studio.pipeline, studio.viewports[-1].drawn)
     posed(studio, EXPRESSIONS["smile"])
     seen_from(studio)
     found = passes.draw(studio.camera, ["tension", "triangle"])
@@ -168,7 +174,7 @@ def test_classes_are_the_subjects_own_sides_and_mirror(studio: Capture) -> None:
     """From the front, right of the subject is left in the picture; a picture of rest is even."""
     posed(studio, {})
     seen_from(studio)
-    classes = Passes(studio.pipeline).draw(studio.camera, ["segmentation"])["segmentation"]
+    classes = passes_of(studio, ["segmentation"])["segmentation"]
     mirrored = classes[:, ::-1].copy()
     for right, left in ((3, 4), (5, 6), (7, 8)):
         columns = [np.nonzero(classes == side)[1] for side in (right, left)]
@@ -187,7 +193,7 @@ def test_an_open_mouth_has_an_inside(studio: Capture) -> None:
     for name, controls in (("open", {"jaw_open": 0.9}), ("shut", {"AU43": 1.0})):
         posed(studio, controls)
         seen_from(studio)
-        classes = Passes(studio.pipeline).draw(studio.camera, ["segmentation"])["segmentation"]
+        classes = passes_of(studio, ["segmentation"])["segmentation"]
         found[name] = np.bincount(classes.ravel(), minlength=256)
     assert found["open"][Segment.MOUTH_INTERIOR] > 400 > 50 > found["shut"][Segment.MOUTH_INTERIOR]
     assert found["shut"][Segment.RIGHT_EYE] < 0.2 * found["open"][Segment.RIGHT_EYE]
@@ -202,7 +208,7 @@ def test_landmarks_lie_on_the_depth_map(
     """All that are visible: each within 2 mm, and half of them within half a millimetre."""
     scene = posed(studio, EXPRESSIONS[expression])
     camera = seen_from(studio, *view)
-    depth = Passes(studio.pipeline).draw(studio.camera, ["depth"])["depth"]
+    depth = passes_of(studio, ["depth"])["depth"]
     found = landmarks_in(scene, camera, depth)
     assert found.visible.sum() > 35
     columns, rows = np.floor(found.pixels[found.visible]).astype(int).T
@@ -229,7 +235,7 @@ def test_landmarks_lie_where_they_are_called_by(studio: Capture, expression: str
     """
     scene = posed(studio, EXPRESSIONS[expression])
     camera = seen_from(studio)
-    classes = Passes(studio.pipeline).draw(studio.camera, ["segmentation"])["segmentation"]
+    classes = passes_of(studio, ["segmentation"])["segmentation"]
     points = points_of(scene)[:68]
     pixels, widths = camera.project(points), camera.to_camera(points)[:, 2]
     off = np.array([
@@ -244,7 +250,7 @@ def test_the_refined_surface_goes_through_the_landmarks(studio: Capture) -> None
     for controls in EXPRESSIONS.values():
         scene = posed(studio, controls)
         seen_from(studio)
-        mesh = studio.pipeline.meshes[0].mesh
+        mesh = studio.viewports[0].drawn.mesh
         assert mesh is not None
         landmarks = scene.landmarks
         points = points_of(scene)[:68]
@@ -266,7 +272,7 @@ def test_a_profile_hides_the_far_side(
     controls = {k: v for k, v in EXPRESSIONS[expression].items() if not k.startswith("head")}
     scene = posed(studio, controls)
     camera = seen_from(studio, side * yaw)
-    depth = Passes(studio.pipeline).draw(studio.camera, ["depth"])["depth"]
+    depth = passes_of(studio, ["depth"])["depth"]
     visible = landmarks_in(scene, camera, depth).visible
     right = [*range(0, 6), *range(17, 20), 36, 37, 40, 41, 68]
     left = [*range(11, 17), *range(24, 27), 44, 45, 46, 47, 69]
@@ -279,7 +285,7 @@ def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio: Capture) 
     for controls, is_seen in (({}, True), ({"AU43": 1.0}, False)):
         scene = posed(studio, controls)
         camera = seen_from(studio)
-        depth = Passes(studio.pipeline).draw(studio.camera, ["depth"])["depth"]
+        depth = passes_of(studio, ["depth"])["depth"]
         found = landmarks_in(scene, camera, depth)
         assert (found.visible[68:] == is_seen).all()
         assert found.visible[17:36].all()
@@ -294,7 +300,7 @@ def test_another_head_has_the_same_classes() -> None:
     scene = FaceScene(fit(other.mesh, other.landmarks))
     with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as studio:
         camera = seen_from(studio)
-        found = Passes(studio.pipeline).draw(studio.camera, ["segmentation", "depth"])
+        found = passes_of(studio, ["segmentation", "depth"])
         landmarks = landmarks_in(scene, camera, found["depth"])
     classes = found["segmentation"]
     columns, rows = np.floor(landmarks.pixels).astype(int).T
@@ -311,7 +317,7 @@ def test_other_scenes_have_what_makes_sense() -> None:
     for _ in range(30):
         scene.step(1.0 / 60.0)
     with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as studio:
-        passes = Passes(studio.pipeline)
+        passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
         with pytest.raises(ValueError, match="nothing was drawn yet"):
             passes.draw(studio.camera)
         studio.draw_image()
@@ -331,6 +337,6 @@ def test_an_unusual_person_shuts_the_eyes(yaw: float) -> None:
         for pose, controls in {"open": {}, "shut": {"blink": 1.0}}.items():
             posed(opened, controls)
             seen_from(opened, yaw, -40.0)
-            drawn = Passes(opened.pipeline).draw(opened.camera, ["segmentation"])
+            drawn = passes_of(opened, ["segmentation"])
             seen[pose] = np.isin(drawn["segmentation"], EYES).sum()
         assert seen["shut"] <= 4 and seen["open"] > 100

@@ -14,8 +14,7 @@ import pytest
 from PIL import Image
 
 from risorius.app.errors import UserError
-from risorius.app.passes.exr import NOTHING, write_exr
-from risorius.app.passes.labelled import Labelled, save_labelled
+from risorius.app.passes.labelled import NOTHING, Labelled, save_labelled, write_exr
 from tests.heads import stranger
 
 from .command_line import risorius

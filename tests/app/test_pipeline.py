@@ -11,7 +11,7 @@ import pytest
 from risorius import refine, render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.motion import SETTLING
-from risorius.app.pipeline import Pipeline, side_by_side, splits_of_source
+from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport, side_by_side, splits_of_source
 from risorius.app.refining.looks import Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene
@@ -28,6 +28,16 @@ def surface() -> Iterator[Any]:
         yield opened
 
 
+def image(pipeline: Pipeline, drawn: DrawnMesh) -> Any:
+    """What is seen of a scene, by one refiner."""
+    surface = pipeline.renderer.surface
+    surface.begin()
+    camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="front")
+    pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
+    surface.end()
+    return surface.read()
+
+
 class DoubleRefiner:
     """Emits every triangle twice: useless, but a refiner."""
 
@@ -40,7 +50,7 @@ class DoubleRefiner:
         self.triangle_edges = self._plain.triangle_edges
         self.splits = self._plain.splits
 
-    def refine(self, positions: Any, out: Any = None) -> Any:
+    def refine(self, positions: Any, out: Any = None, view: Any = None) -> Any:
         mesh = self._plain.refine(positions, out=out)
         count = len(mesh.triangles)
         out.triangles[count : 2 * count] = mesh.triangles
@@ -61,60 +71,43 @@ def test_rows_without_texture_coordinates_are_drawn(
     monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
     refine.register("bare", lambda faces, rest, **_: refine.PassThrough(faces, rest))
     scene = FaceScene()
-    pipeline = Pipeline(scene, render.Renderer(surface), [Refinement(refiner="bare")])
-    surface.begin()
-    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
-    pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
-    surface.end()
-    assert surface.read().std() > 10.0
+    pipeline = Pipeline(scene, render.Renderer(surface))
+    assert image(pipeline, pipeline.bind(Refinement(refiner="bare"))).std() > 10.0
 
 
 def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """A refiner from outside goes through the real pipeline to a image."""
     refine.register("double", DoubleRefiner)
     scene = PlaneScene()
-    pipeline = Pipeline(scene, render.Renderer(surface), [Refinement(refiner="double")])
-    surface.begin()
-    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
+    pipeline = Pipeline(scene, render.Renderer(surface))
+    drawn = pipeline.bind(Refinement(refiner="double"))
     pipeline.step(0.1)
-    pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
-    surface.end()
-    assert pipeline.meshes[0].triangle_count == 308
-    assert np.ptp(surface.read()) > 30
+    assert np.ptp(image(pipeline, drawn)) > 30
+    assert drawn.triangle_count == 308
 
 
 def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
     """With and without refinement the simulation runs through the same bytes."""
     scenes = [FaceScene(), FaceScene()]
     renderer = render.Renderer(surface)
-    camera = render.OrbitCamera.framing(scenes[0].rest_positions, view="front")
     for scene, name in zip(scenes, ("none", "kahler"), strict=True):
-        pipeline = Pipeline(scene, renderer, [Refinement(refiner=name)])
+        pipeline = Pipeline(scene, renderer)
+        drawn = pipeline.bind(Refinement(refiner=name))
         faces = scene.faces.copy()
         scene.pose({"surprise": 1.0})
         for _ in range(15):
-            surface.begin()
             pipeline.step(1 / 30)
-            pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
-            surface.end()
+            image(pipeline, drawn)
         assert np.array_equal(faces, scene.faces)
     assert scenes[0].positions.tobytes() == scenes[1].positions.tobytes()
-    assert pipeline.meshes[0].triangle_count > 1.1 * len(scenes[0].faces)
+    assert drawn.triangle_count > 1.1 * len(scenes[0].faces)
 
 
 def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
     """By the paper's criterion the refined picture at rest is the static one, pixel for pixel."""
-    scene = FaceScene()
-    renderer = render.Renderer(surface)
-    camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
-    images = []
-    for refinement in (Refinement(refiner="none"), Refinement("paper")):
-        pipeline = Pipeline(scene, renderer, [refinement])
-        surface.begin()
-        pipeline.draw(camera, render.Style(), [(0, 0, *SIZE)])
-        surface.end()
-        images.append(surface.read())
-    assert np.array_equal(*images)
+    pipeline = Pipeline(FaceScene(), render.Renderer(surface))
+    asked = Refinement(refiner="none"), Refinement("paper")
+    assert np.array_equal(*(image(pipeline, pipeline.bind(each)) for each in asked))
 
 
 def test_splits_of_source() -> None:
@@ -134,7 +127,8 @@ def test_splits_of_source() -> None:
 
 def test_side_by_side_covers_the_frame() -> None:
     """Viewports share no column and leave none out, also for odd widths."""
-    first, second, third = side_by_side((101, 10), 3)
+    meshes: Any = [None] * 3
+    first, second, third = (each.area for each in side_by_side((101, 10), meshes))
     assert first[0] == 0
     assert first[0] + first[2] == second[0]
     assert second[0] + second[2] == third[0]

@@ -90,7 +90,7 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) > 3.0)
     assert until(viewer, lambda: viewer.stage.refined.triangle_count > 2100)
     xdotool(viewer, "key", "r")
-    shot = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)[0]
+    shot = viewer.stage.viewports(viewer.settings.display, viewer.view.viewport)[0]
     assert shot.drawn.triangle_count == len(viewer.session.scene.faces)
     xdotool(viewer, "key", "r")
     xdotool(viewer, "key", "1")

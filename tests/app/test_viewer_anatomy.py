@@ -9,7 +9,7 @@ from risorius.app.viewer import Viewer  # before render, see app/viewer/gui.py
 from risorius.app.viewer.setting_rules import SKINS
 
 from risorius import render  # isort: skip
-from risorius.app.anatomy import Dissection
+from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 
 from .driving import settle, xdotool
@@ -29,7 +29,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
     assert (np.abs(shown - usual).max(axis=2) > 16).mean() > 0.05
     size = shown.shape[1], shown.shape[0]
     style = render.Style(albedo=SKINS["textured"][1], background=viewer.view.background)
-    options = CaptureOptions(size=size, style=style, dissection=Dissection(("muscles",)))
+    options = CaptureOptions(size=size, style=style, anatomy=AnatomyView(("muscles",)))
     with Capture(viewer.session.scene, options) as capture:
         capture.camera = viewer.view.camera
         off = np.abs(capture.draw_image().astype(int) - shown)

@@ -46,8 +46,8 @@ def only_open(viewer: Viewer, title: str) -> None:
 
 def widths(viewer: Viewer) -> list[int]:
     """Of what is seen of each mesh [pixels]."""
-    shots = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
-    return [shot.clip[2] for shot in shots]
+    shots = viewer.stage.viewports(viewer.settings.display, viewer.view.viewport)
+    return [shot.seen[2] for shot in shots]
 
 
 def test_side_by_side_is_two_equal_halves(viewer: Viewer) -> None:
@@ -127,14 +127,14 @@ def test_any_two_are_compared_and_flipped(viewer: Viewer) -> None:
     viewer.settings.display.compare = "side by side"
     settle(viewer)
     in_panel(viewer, ("A", "loop"), ("B", "paper"))
-    shots = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
+    shots = viewer.stage.viewports(viewer.settings.display, viewer.view.viewport)
     assert [shot.drawn.label for shot in shots] == ["loop", "paper"]
     in_panel(viewer, ("B", "as chosen above"))
     seen = []
     for _ in range(3):
         xdotool(viewer, "key", "b")
-        (shot,) = viewer.stage.shots(viewer.settings.display, viewer.view.viewport)
-        assert shot.clip == viewer.view.viewport and len(viewer.surface.labels) == 1
+        (shot,) = viewer.stage.viewports(viewer.settings.display, viewer.view.viewport)
+        assert shot.seen == viewer.view.viewport and len(viewer.surface.labels) == 1
         seen.append((viewer.settings.display.compare, shot.drawn.label))
     assert seen == [("B alone", "smooth"), ("A alone", "loop"), ("B alone", "smooth")]
     assert not viewer.messages.text

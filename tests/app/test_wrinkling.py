@@ -14,15 +14,14 @@ import pytest
 
 from risorius import assets, render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.refining.wrinkling import Wrinkling, on_rows, wrinkling_of
-from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.refining.wrinkling import Compression, on_rows
+from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import fit_head
 from risorius.assets.identities import person_called
 from tests.heads import stranger
 
 Array = npt.NDArray[np.float64]
 SETTLED = 1.2  # [s]
-CARD: Any = SimpleNamespace(load_wrinkles=lambda *_: None)  # no graphics card is needed to measure
 
 
 @pytest.fixture(scope="module")
@@ -32,12 +31,12 @@ def scene() -> FaceScene:
 
 
 @pytest.fixture(scope="module")
-def wrinkling(scene: FaceScene) -> Wrinkling:
+def wrinkling(scene: FaceScene) -> Compression:
     """What measures it."""
-    return Wrinkling(scene, CARD)
+    return Compression(scene)
 
 
-def amounts(scene: FaceScene, wrinkling: Wrinkling, **pose: float) -> Array:
+def amounts(scene: FaceScene, wrinkling: Compression, **pose: float) -> Array:
     """How far the face wrinkles in a pose that it has settled in."""
     scene.reset()
     scene.pose(pose)
@@ -55,7 +54,7 @@ def forehead(scene: FaceScene) -> Array:
     return region(scene, (-30, 36, 60), (30, 62, 120))
 
 
-def test_nothing_wrinkles_at_rest(scene: FaceScene, wrinkling: Wrinkling) -> None:
+def test_nothing_wrinkles_at_rest(scene: FaceScene, wrinkling: Compression) -> None:
     """Exactly nothing, so that the picture without wrinkles is drawn."""
     found = amounts(scene, wrinkling)
     assert not found.any()
@@ -67,7 +66,7 @@ def test_nothing_wrinkles_at_rest(scene: FaceScene, wrinkling: Wrinkling) -> Non
     ["AU4", *(pytest.param(f"AU{unit}", marks=pytest.mark.slow) for unit in (1, 6, 17, 18))],
 )
 def test_amounts_grow_with_the_muscle_and_never_jump(
-    scene: FaceScene, wrinkling: Wrinkling, name: str
+    scene: FaceScene, wrinkling: Compression, name: str
 ) -> None:
     """In twenty steps no vertex moves by more than a fifth, and the sum only grows."""
     steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 41)]
@@ -78,7 +77,7 @@ def test_amounts_grow_with_the_muscle_and_never_jump(
     assert sums[-1] > 1.0 and (np.diff(sums) > -0.01 * sums[-1]).all()
 
 
-def test_amounts_follow_time_without_a_jump(scene: FaceScene, wrinkling: Wrinkling) -> None:
+def test_amounts_follow_time_without_a_jump(scene: FaceScene, wrinkling: Compression) -> None:
     """At thirty frames a second, from rest into a full expression in half a second."""
     scene.reset()
     last = wrinkling.amounts(scene.positions).copy()
@@ -92,7 +91,7 @@ def test_amounts_follow_time_without_a_jump(scene: FaceScene, wrinkling: Wrinkli
 
 @pytest.mark.parametrize("name", ["AU1", "AU4", "AU6", "AU12"])
 def test_mirrored_input_gives_mirrored_amounts(
-    scene: FaceScene, wrinkling: Wrinkling, name: str
+    scene: FaceScene, wrinkling: Compression, name: str
 ) -> None:
     """Left and right of the face, though furrows themselves differ."""
     assert isinstance(scene.head, assets.Head)
@@ -116,7 +115,7 @@ def test_mirrored_input_gives_mirrored_amounts(
     ],
 )
 def test_each_wrinkles_where_it_does_in_people(
-    scene: FaceScene, wrinkling: Wrinkling, name: str, low: Any, high: Any, slot: int
+    scene: FaceScene, wrinkling: Compression, name: str, low: Any, high: Any, slot: int
 ) -> None:
     """A clear amount there, and next to none on a forehead that nothing moves."""
     found = amounts(scene, wrinkling, **{name: 1.0})
@@ -212,7 +211,7 @@ def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:
 
 
 @pytest.mark.slow
-def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Wrinkling) -> None:
+def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Compression) -> None:
     """A fitted one of another shape and mesh, and the built-in one with more triangles."""
     head = assets.load("head")
     fine = head.finer(1)
@@ -234,7 +233,7 @@ def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Wr
     fitted: Any = fit_head(*stranger().write(tmp_path))
     for other in (fitted, finer):
         another = FaceScene(other)
-        measure = Wrinkling(another, CARD)
+        measure = Compression(another)
         assert not amounts(another, measure).any()
         found = amounts(another, measure, AU1=1.0, AU2=1.0)
         mean = found[forehead(another).astype(bool), 0].mean()
@@ -245,7 +244,7 @@ def test_furrows_of_age_are_pulled_flat() -> None:
     """A kiss draws the cheek over the fold beside the nose tight; its wrinkled lips stay so."""
     person = person_called("maria")
     aged = FaceScene(person)
-    measure = Wrinkling(aged, CARD)
+    measure = Compression(aged)
     before, after = (amounts(aged, measure, **pose) for pose in ({}, {"kiss": 1.0}))
     x, y, _ = (aged.rest_positions - person.vertices[person.landmarks[54]]).T
     fold = (x > -2.0) & (x < 22.0) & (y > 13.0) & (y < 26.0)
@@ -254,8 +253,3 @@ def test_furrows_of_age_are_pulled_flat() -> None:
     assert fold.sum() > 4
     assert after[fold, 0].max() < 0.3 * before[fold, 0].min()
     assert after[lip].max() > 1.5 * before[lip].max() > 0.0
-
-
-def test_the_plane_has_none() -> None:
-    """Nothing is loaded for it."""
-    assert wrinkling_of(PlaneScene(), CARD) is None

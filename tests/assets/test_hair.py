@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +12,7 @@ import pytest
 from scipy.ndimage import binary_dilation
 from scipy.spatial import cKDTree
 
-from risorius.app.anatomy import Dissection, Solids
+from risorius.app.anatomy import Anatomy, AnatomyView
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
@@ -33,6 +35,11 @@ from risorius.geometry.normals import vertex_normals
 COLOUR = np.array([0.3, 0.2, 0.15])
 LONG = ("bob", "waves", "short")
 HANGING = ("bob", "waves")
+
+
+def passes_of(studio: Capture, wanted: Sequence[str]) -> dict[str, Any]:
+    """The passes of these names of what was drawn last."""
+    return Passes(studio.pipeline, studio.viewports[-1].drawn).draw(studio.camera, wanted)
 
 
 @cache
@@ -156,12 +163,11 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     options = CaptureOptions(size=(160, 160), passes=("segmentation",))
     with Capture(scene, options) as capture:
         capture.draw_image()
-        classes = Passes(capture.pipeline).draw(capture.camera, ("segmentation",))["segmentation"]
+        classes = passes_of(capture, ("segmentation",))["segmentation"]
     assert (classes == Segment.HAIR).mean() > 0.08
     assert (classes[0] == Segment.BACKGROUND).all()
-    solids = Solids(scene)
-    solids.follow(Dissection(("muscles",)))
-    assert solids.parts and not [p for p in solids.parts if getattr(p, "name", "").startswith(HAIR)]
+    parts = Anatomy(scene).layers(AnatomyView(("muscles",))).parts
+    assert parts and not [part for part in parts if part.name.startswith(HAIR)]
 
 
 def test_hair_throws_its_shadow_on_skin(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -174,7 +180,7 @@ def test_hair_throws_its_shadow_on_skin(monkeypatch: pytest.MonkeyPatch) -> None
         CaptureOptions(size=(240, 296), camera="0,0,0.9", passes=("segmentation",)),
     ) as capture:
         within = capture.draw_image().astype(float)
-        classes = Passes(capture.pipeline).draw(capture.camera, ("segmentation",))["segmentation"]
+        classes = passes_of(capture, ("segmentation",))["segmentation"]
         monkeypatch.setattr(capture.pipeline.renderer, "cast_shadows", lambda *_, **__: None)
         without = capture.draw_image().astype(float)
     darker = (without - within).mean(axis=2)

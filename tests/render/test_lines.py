@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from risorius import render
+from risorius.render import Lines
 
 from .scenes import PLAIN, at, drawn, facing, lent, square
+
+RED = (1.0, 0.0, 0.0)
 
 
 def test_lines_before_and_behind(surface: render.Surface) -> None:
@@ -21,13 +24,8 @@ def test_lines_before_and_behind(surface: render.Surface) -> None:
         surface.begin()
         renderer.draw_background(PLAIN)
         renderer.draw_mesh(wall, facing(), PLAIN)
-        renderer.draw_lines(
-            [over, under],
-            np.array([(0, 0.8, 0), (0, 0, 0.9)]),
-            facing(),
-            width=4.0,
-            hidden_opacity=hidden_opacity,
-        )
+        colours = np.array([(0, 0.8, 0), (0, 0, 0.9)])
+        renderer.draw_lines(Lines([over, under], colours, 4.0, hidden_opacity), facing())
         surface.end()
         frames.append(surface.read().astype(np.int32))
     skin = at(frames[0], 0.0, 0.0)
@@ -44,8 +42,8 @@ def test_lines_are_not_joined(surface: render.Surface) -> None:
     right = np.array([(40.0, -10, 0), (40, 10, 0)])
     surface.begin()
     renderer.draw_background(PLAIN)
-    renderer.draw_lines([], (1, 0, 0), facing())
-    renderer.draw_lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], (1, 0, 0), facing())
+    renderer.draw_lines(Lines([], RED), facing())
+    renderer.draw_lines(Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED), facing())
     surface.end()
     columns = np.nonzero(drawn(surface.read().astype(np.int32)).any(axis=0))[0]
     assert len(columns) > 2 and not ((columns > 20) & (columns < 76)).any()
@@ -55,4 +53,4 @@ def test_line_colours_must_fit(surface: render.Surface) -> None:
     """One colour, or one per line."""
     line = np.zeros((3, 3))
     with pytest.raises(ValueError, match=r"colour has shape \(2, 3\); it must be \(3,\), or one"):
-        render.Renderer(surface).draw_lines([line], np.zeros((2, 3)), facing())
+        render.Renderer(surface).draw_lines(Lines([line], np.zeros((2, 3))), facing())

@@ -42,7 +42,8 @@ def scene(surface: render.Surface, style: render.Style) -> render.Image:
     renderer.draw_background(style)
     renderer.draw_mesh(stream, camera, style, values=values)
     renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, camera, style)
-    renderer.draw_lines([np.array([(-60.0, 40, 20), (60, -40, -20)])], (0.75, 0.1, 0.1), camera)
+    line = np.array([(-60.0, 40, 20), (60, -40, -20)])
+    renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), camera)
     surface.end()
     return surface.read()
 

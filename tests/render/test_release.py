@@ -1,4 +1,4 @@
-"""What is given back to OpenGL: a renderer that is released leaves nothing behind."""
+"""What is given back to OpenGL: a renderer that nobody holds any more leaves nothing behind."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def counting(monkeypatch: pytest.MonkeyPatch) -> Callable[[], Counter[str]]:
 
 
 def draw_all(surface: render.Surface) -> np.ndarray:
-    """A picture that needs every program and buffer; everything is released after it."""
+    """A picture that needs every program and buffer; nobody holds anything after it."""
     renderer = render.Renderer(surface)
     shape, camera = sphere(), facing()
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 8)
@@ -68,16 +68,14 @@ def draw_all(surface: render.Surface) -> np.ndarray:
         renderer.draw_mesh(stream, camera, style, values=values, texture=texture, wrinkles=wrinkles)
         renderer.draw_parts([Ball()], STILL, camera, style)
         renderer.draw_outline(stream, camera, style, texture=texture)
-        renderer.draw_lines([shape.positions[:5]], (1.0, 0.0, 0.0), camera)
+        renderer.draw_lines(render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), camera)
         surface.end()
     frame = surface.read()
-    for each in (stream, texture, wrinkles, renderer):
-        each.release()
     return frame
 
 
 @pytest.mark.parametrize("samples", [0, 4])
-def test_a_released_renderer_leaves_nothing(samples: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lost_renderer_leaves_nothing(samples: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten renderers one after the other: the same image, and not one object is left."""
     with render.open_offscreen((96, 96), samples=samples) as surface:
         count = counting(monkeypatch)

@@ -58,7 +58,7 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
     shape = sphere(4)
     stream = lent(renderer, shape)
     style = render.Style(wireframe=True, colour_by=render.ColourBy.SPLITS)
-    lines = [shape.positions[:50]]
+    lines = render.Lines([shape.positions[:50]], (1.0, 0.0, 0.0))
     buffers = stream._vertex_buffer, stream._index_buffer
     sizes = [buffer.size for buffer in buffers]
     peaks = []
@@ -69,7 +69,7 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
         surface.begin()
         renderer.draw_background(style)
         renderer.draw_mesh(stream, facing(), style, values=np.zeros(count, np.uint8))
-        renderer.draw_lines(lines, (1.0, 0.0, 0.0), facing())
+        renderer.draw_lines(lines, facing())
         surface.end()
         surface.read()
         peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
@@ -100,13 +100,6 @@ def test_positions_that_are_not_finite_are_survived(surface: render.Surface) -> 
     renderer.draw_mesh(stream, facing(), render.Style(wireframe=True))
     surface.end()
     assert surface.read().shape == (96, 96, 3)
-
-
-def test_released_stream_keeps_its_arrays(surface: render.Surface) -> None:
-    """After release the arrays can still be read, and nothing is drawn."""
-    stream = lent(render.Renderer(surface), square())
-    stream.release()
-    assert stream.vertices[2, 0] == 50.0 and stream.triangle_count == 0
 
 
 @pytest.mark.parametrize(

@@ -36,9 +36,7 @@ def textured(
     renderer.draw_background(style)
     renderer.draw_mesh(stream, camera or facing(), style, values=values, texture=texture)
     surface.end()
-    frame = surface.read().astype(np.int32)
-    texture.release()
-    return frame
+    return surface.read().astype(np.int32)
 
 
 def plain_image(colour: tuple[int, int, int], size: tuple[int, int] = (8, 8)) -> render.Image:

@@ -18,13 +18,15 @@ def test_viewports_are_apart(samples: int) -> None:
         renderer = render.Renderer(surface)
         stream = lent(renderer, sphere())
 
-        def draw(viewport: render.Viewport, style: render.Style, zoom: float) -> None:
+        def draw(viewport: render.Rectangle, style: render.Style, zoom: float) -> None:
             camera = facing()
             camera.zoom(zoom)
             renderer.draw_background(style, viewport)
             renderer.draw_mesh(stream, camera, style, viewport=viewport)
             renderer.draw_parts([Ball()], STILL, camera, style, viewport=viewport)
-            renderer.draw_lines([stream.vertices[:9, :3]], (1, 0, 0), camera, viewport=viewport)
+            renderer.draw_lines(
+                render.Lines([stream.vertices[:9, :3]], (1, 0, 0)), camera, viewport
+            )
 
         surface.begin()
         draw(whole, render.Style(wireframe=True), 4.0)

@@ -21,7 +21,6 @@ from ...capture import CaptureOptions, capture
 from ...errors import UserError
 from ...export.formats import Request, check_request, export, format_for
 from ...files import Image, check_file, save_png
-from ...pipeline import Viewport
 from ...scenes import FaceScene, Scene
 from ...script import Script, pose_script
 from ...workers.progress import Task
@@ -53,7 +52,7 @@ class StagePainter:
 
     display: Display
     background: render.Background | None
-    viewport: Viewport
+    viewport: render.Rectangle
     has_captions: bool
     letter: float  # [pixels] of captions, at least
     camera: Any = None
@@ -67,8 +66,7 @@ class StagePainter:
 
     def refine(self, camera: render.OrbitCamera) -> None:
         """Refine a frame that nobody draws."""
-        for shot in self.stage.shots(self.display, self.viewport):
-            shot.drawn.refine(self.stage.scene.positions, camera, shot.viewport)
+        self.stage.pipeline.refine(camera, self.stage.viewports(self.display, self.viewport))
 
     def draw_image(self, camera: render.OrbitCamera) -> Image:
         """The picture; premultiplied, where it is transparent."""

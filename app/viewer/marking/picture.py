@@ -70,7 +70,7 @@ class MarkingView(View):
         """All of the window: the guide is in its upper left corner."""
 
     @property
-    def panel(self) -> Viewport:
+    def panel(self) -> render.Rectangle:
         """The part of the framebuffer below the guide."""
         left, bottom, width, _ = self.pixels(self.guide_area)
         return left, 0, width, bottom
@@ -82,9 +82,10 @@ class MarkingPicture:
     def __init__(self, marking: Marking, surface: render.WindowSurface) -> None:
         self.surface, self.marking = surface, marking
         self._renderer = render.Renderer(surface)
-        self._guide = Pipeline(build_scene("face"), self._renderer, [Refinement()])
-        static = Refinement(refiner=STATIC)
-        self._mesh = Pipeline(MeshScene(marking), self._renderer, [static])
+        self._guide = Pipeline(build_scene("face"), self._renderer)
+        self._skin = self._guide.bind(Refinement())
+        self._own = Pipeline(MeshScene(marking), self._renderer)
+        self._mesh = self._own.bind(Refinement(refiner=STATIC))
         head = assets.load("head")
         self.guide_points = head.vertices[head.landmarks]
         self._guide_normals = vertex_normals(head.vertices, head.faces)[head.landmarks]
@@ -92,20 +93,15 @@ class MarkingPicture:
     def bind(self, display: Display) -> None:
         """Nothing: the mesh is always drawn alike."""
 
-    def close(self) -> None:
-        """Let go of everything."""
-        self._mesh.release()
-        self._guide.release()
-        self._renderer.release()
-
     def draw(self, view: View) -> None:
         """Draw the mesh, and the guide into its corner."""
         assert isinstance(view, MarkingView)
         self.surface.begin()
         clay = render.Style(albedo=render.CLAY, background=view.background)
-        self._mesh.draw(view.camera, clay, [view.viewport])
+        self._own.draw(view.camera, clay, [Viewport(self._mesh, view.viewport)])
         skin = render.Style(background=view.background)
-        self._guide.draw(self.guide_camera(), skin, [view.pixels(view.guide_area)])
+        corner = Viewport(self._skin, view.pixels(view.guide_area))
+        self._guide.draw(self.guide_camera(), skin, [corner])
         self.surface.target.flush()
         self.surface.gl.finish()
 

@@ -153,9 +153,9 @@ class MechanismPanel:
             self._pick("A", (STATIC, *LOOKS, *names, CHOSEN), labels)
             self._pick("B", (STATIC, *LOOKS, *names, CHOSEN), labels)
         base = len(stage.scene.faces)
-        for shot in stage.shots(display, self._view.viewport):
-            count = shot.drawn.triangle_count
-            imgui.text(f"{shot.drawn.label}: {count} triangles")
+        for drawn, *_ in stage.viewports(display, self._view.viewport):
+            count = drawn.triangle_count
+            imgui.text(f"{drawn.label}: {count} triangles")
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")
         splits = stage.refined.refiner.splits
@@ -228,7 +228,7 @@ class MechanismPanel:
                 imgui.same_line(self._rows.second)
             is_on = name in display.overlays
             self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
-        if display.dissection.solids:
+        if display.anatomy.structures:
             now = display.skin_opacity
             slid = self._rows.slide("Skin opacity", "skin_opacity", now, (0.0, 1.0), OPACITY)
             display.skin_opacity = now if slid is None else slid

@@ -180,6 +180,6 @@ class Mouse(CameraMouse):
     def _ray(self, io: Any) -> Ray:
         """Through the mouse, in the viewport that it is in."""
         place = self._place(io)
-        shots = self._stage.shots(self._view.display, self._view.viewport)
-        under = [shot for shot in shots if place[0] >= shot.clip[0]] or shots[:1]
-        return Ray.through(self._view.camera, under[-1].viewport, place)
+        viewports = self._stage.viewports(self._view.display, self._view.viewport)
+        under = [each for each in viewports if place[0] >= each.seen[0]] or viewports[:1]
+        return Ray.through(self._view.camera, under[-1].area, place)

@@ -12,8 +12,6 @@ import numpy.typing as npt
 from risorius import render
 from risorius.sim.landmarks import polyline_distance
 
-from ...pipeline import Viewport
-
 FloatArray = npt.NDArray[np.float64]
 MUSCLE_REACH = 14.0  # [mm] from a fibre within which a click on the skin means its muscle
 # A ray that meets an edge must not slip between its two triangles by the last bit.
@@ -29,7 +27,7 @@ class Ray:
 
     @classmethod
     def through(
-        cls, camera: render.OrbitCamera, viewport: Viewport, place: tuple[float, float]
+        cls, camera: render.OrbitCamera, viewport: render.Rectangle, place: tuple[float, float]
     ) -> Ray:
         """The ray of `place` [pixels from the lower left corner of the surface]."""
         left, bottom, width, height = viewport

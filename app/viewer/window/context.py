@@ -235,7 +235,6 @@ class ApplicationContext:
     def leave_marking(self) -> None:
         """Back to the face."""
         if self.room is not None:
-            self.room.picture.close()
             self.room = None
             self.mouse.forget()
             self.painter.forget()

@@ -1,0 +1,46 @@
+"""Polylines over a scene."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .style import Colour
+
+
+class Lines(NamedTuple):
+    """Polylines, which shine through what hides them."""
+
+    polylines: Sequence[npt.NDArray[Any]]
+    """Points of each line, shape (n, 3)."""
+    colour: Colour | npt.NDArray[Any]
+    """sRGB of all lines, or one row per line, shape (len(polylines), 3)."""
+    width: float = 1.6
+    """[pixels at scale 1]"""
+    hidden_opacity: float = 0.45
+    """0 to 1, behind something."""
+    opacity: float = 1.0
+    """0 to 1, in front."""
+
+    def segments(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
+        """Position and sRGB of all points, (n, 6), and the ends of each segment, (s, 2).
+
+        Raises ValueError for another number of colours.
+        """
+        polylines, colours = self.polylines, np.asarray(self.colour, np.float32)
+        if colours.shape not in ((3,), (len(polylines), 3)):
+            raise ValueError(
+                f"colour has shape {colours.shape}; it must be (3,), or one row per line: "
+                f"({len(polylines)}, 3)"
+            )
+        counts = np.array([len(line) for line in polylines], np.int64)
+        if not counts.sum():
+            return np.zeros((0, 6), np.float32), np.zeros((0, 2), np.uint32)
+        rows = np.empty((int(counts.sum()), 6), np.float32)
+        np.concatenate([np.reshape(line, (-1, 3)) for line in polylines], out=rows[:, :3])
+        rows[:, 3:] = colours if colours.ndim == 1 else np.repeat(colours, counts, axis=0)
+        is_last = np.zeros(len(rows), bool)
+        is_last[np.cumsum(counts)[counts > 0] - 1] = True
+        starts = np.flatnonzero(~is_last).astype(np.uint32)
+        return rows, np.stack([starts, starts + 1], axis=1)
