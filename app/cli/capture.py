@@ -12,17 +12,15 @@ from ..errors import UserError, in_one_line
 from ..recordings.conversion import Playback
 from ..refining.looks import STATIC, Refinement
 from .options import (
-    FPS,
     PATH,
     SCENE,
     SCRIPT,
     SETTINGS,
-    SILENT,
     SOUND,
     Drawing,
+    option,
     packed,
     played,
-    with_drawing,
     with_playback,
 )
 from .parameters import BackgroundName, FiniteRange, Size
@@ -37,72 +35,47 @@ if TYPE_CHECKING:
 class Filming:
     """What capture alone is told."""
 
-    size: tuple[int, int]
-    fps: float
-    compare: str | None
-    captions: bool
-    camera: str | None
-    turntable: bool
-    span: tuple[float, float] | None
-    background: render.Background | None
-    passes: str | None
-    alive: bool
-    still_time: float | None
-    samples: int
-    overwrite: bool
-    quiet: bool
-
-
-with_filming = packed(
-    "filming",
-    Filming,
-    click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told."),
-    FPS,
-    click.option(
-        "--compare",
+    size: tuple[int, int] = option(type=Size(), default=(1280, 720), help="1280x720 unless told.")
+    fps: float = option(type=FiniteRange(1, 240), default=30.0, show_default=True)
+    compare: str | None = option(
         is_flag=False,
         flag_value=STATIC,
         metavar="[NAME,...]",
         help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
-    ),
-    click.option("--captions/--no-captions", default=True, help="Words under a comparison."),
-    click.option("--camera", help="Named view, or yaw,pitch[,zoom] in degrees."),
-    click.option("--turntable", is_flag=True, help="The camera goes round once."),
-    click.option(
+    )
+    captions: bool = option(
+        "--captions/--no-captions", default=True, help="Words under a comparison."
+    )
+    camera: str | None = option(help="Named view, or yaw,pitch[,zoom] in degrees.")
+    turntable: bool = option(is_flag=True, help="The camera goes round once.")
+    span: tuple[float, float] | None = option(
         "--range",
-        "span",
         type=FiniteRange(0, 86_400),
         nargs=2,
         metavar="FROM TO",
         help="The part of the script that is seen [s].",
-    ),
-    click.option(
-        "--background",
+    )
+    background: render.Background | None = option(
         type=BackgroundName(),
         default="light",
         help="light, dark, white, black, a colour as #00b140, or transparent.",
-    ),
-    click.option(
-        "--passes",
+    )
+    passes: str | None = option(
         metavar="NAME,...",
         help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
         "landmarks.",
-    ),
-    click.option(
-        "--alive",
-        is_flag=True,
-        help="What the script leaves alone lives: eyes blink and look at the camera.",
-    ),
-    click.option(
+    )
+    alive: bool = option(
+        is_flag=True, help="What the script leaves alone lives: eyes blink and look at the camera."
+    )
+    still_time: float | None = option(
         "--time",
-        "still_time",
         type=FiniteRange(0, 86_400),
         help="When a .png is taken [s]: else in the first named pose, or at the end.",
-    ),
-    click.option("--samples", type=click.IntRange(0, 16), default=4, show_default=True),
-    click.option("--overwrite", is_flag=True, help="Replace the frames in a folder."),
-    SILENT,
-)
+    )
+    samples: int = option(type=click.IntRange(0, 16), default=4, show_default=True)
+    overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
+    quiet: bool = option(is_flag=True, help="No progress bar.")
 
 
 @click.command()
@@ -114,9 +87,9 @@ with_filming = packed(
 @click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
 @SCENE
 @SOUND
-@with_filming
+@packed(Filming)
 @with_playback
-@with_drawing
+@packed(Drawing)
 def capture(
     script: Path | None,
     settings: tuple[str, ...],

@@ -29,10 +29,10 @@ from .options import (
     SOUND,
     Drawing,
     mapping_table,
+    option,
     packed,
     played,
     told,
-    with_drawing,
     with_playback,
 )
 from .parameters import Size
@@ -47,9 +47,17 @@ if TYPE_CHECKING:
 class Live:
     """What a window is told of a face that is sent to it."""
 
-    live: str | None
-    port: int | None
-    address: str
+    live: str | None = option(
+        type=click.Choice(list(PROTOCOLS)), help="Follow a face that is sent."
+    )
+    port: int | None = option(
+        type=click.IntRange(1, 65535), help="Unless told, the protocol's own."
+    )
+    address: str = option(
+        default=LOOPBACK,
+        show_default=True,
+        help="Of this computer, on which to listen; 0.0.0.0 for its whole network.",
+    )
 
     def listening(self, playback: Playback) -> Listening | None:
         """Where to listen, None for nowhere; UserError for what does not go together.
@@ -73,32 +81,15 @@ class Live:
         )
 
 
-port_option = click.option(
-    "--port", type=click.IntRange(1, 65535), help="Unless told, the protocol's own."
-)
-with_live = packed(
-    "live",
-    Live,
-    click.option("--live", type=click.Choice(list(PROTOCOLS)), help="Follow a face that is sent."),
-    port_option,
-    click.option(
-        "--address",
-        default=LOOPBACK,
-        show_default=True,
-        help="Of this computer, on which to listen; 0.0.0.0 for its whole network.",
-    ),
-)
-
-
 @click.command()
 @click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
 @click.option("--scene", type=SCENE_NAMES, help="face, unless told.")
 @click.option("--script", type=PATH, help="What the space key plays: a script or a recording.")
 @SOUND
 @QUIET
-@with_live
+@packed(Live)
 @with_playback
-@with_drawing
+@packed(Drawing)
 def view(
     size: tuple[int, int] | None,
     scene: str | None,
@@ -130,7 +121,7 @@ def view(
 @click.option(
     "--to", "kind", type=click.Choice(list(PROTOCOLS)), default="livelink", show_default=True
 )
-@port_option
+@click.option("--port", type=click.IntRange(1, 65535), help="Unless told, the protocol's own.")
 @click.option("--address", default=LOOPBACK, show_default=True, help="Of the receiving computer.")
 @click.option("--loop", is_flag=True, help="Again and again, until Ctrl-C.")
 def send(recording: Path | None, kind: str, port: int | None, address: str, loop: bool) -> None:
@@ -163,7 +154,7 @@ def send(recording: Path | None, kind: str, port: int | None, address: str, loop
 @SOUND
 @QUIET
 @with_playback
-@with_drawing
+@packed(Drawing)
 def replay(
     script: Path,
     size: tuple[int, int] | None,

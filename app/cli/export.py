@@ -12,59 +12,42 @@ from ..export.formats import FORMATS, RIGS, Request, check_request, format_for
 from ..export.formats import export as write
 from ..recordings.conversion import Playback
 from .options import (
-    FPS,
     PATH,
     SCENE,
     SCRIPT,
     SETTINGS,
-    SILENT,
     Subject,
+    option,
     packed,
     told,
     with_playback,
-    with_subject,
 )
+from .parameters import FiniteRange
 
 
 @dataclass(frozen=True)
 class Exporting:
     """What export alone is told."""
 
-    name: str | None
-    fps: float
-    refined: bool
-    rig: str | None
-    overwrite: bool
-    quiet: bool
-
-
-with_exporting = packed(
-    "exporting",
-    Exporting,
-    click.option(
+    name: str | None = option(
         "--as",
-        "name",
         type=click.Choice([each.name for each in FORMATS]),
         help="The format, where a suffix does not tell: obj is a folder of one file a frame; "
         "of a .csv, arkit is meant unless told.",
-    ),
-    FPS,
-    click.option(
-        "--refined",
+    )
+    fps: float = option(
+        type=FiniteRange(1, 240), default=30.0, show_default=True, help="Frames a second."
+    )
+    refined: bool = option(
         is_flag=True,
         help="The skin as it is drawn: other triangles in each frame, as --look, --refiner and "
         "--option say.",
-    ),
-    click.option(
-        "--rig",
-        type=click.Choice(list(RIGS)),
-        help="Of a .glb: targets by name, as avatars have them.",
-    ),
-    click.option(
-        "--overwrite", is_flag=True, help="Replace frames in a folder, or files beside -o."
-    ),
-    SILENT,
-)
+    )
+    rig: str | None = option(
+        type=click.Choice(list(RIGS)), help="Of a .glb: targets by name, as avatars have them."
+    )
+    overwrite: bool = option(is_flag=True, help="Replace frames in a folder, or files beside -o.")
+    quiet: bool = option(is_flag=True, help="No progress bar.")
 
 
 @click.command()
@@ -72,9 +55,9 @@ with_exporting = packed(
 @SETTINGS
 @click.option("-o", "--output", type=PATH, required=True, help="A file, or a folder with --as.")
 @SCENE
-@with_exporting
+@packed(Exporting)
 @with_playback
-@with_subject
+@packed(Subject)
 def export(
     script: Path | None,
     settings: tuple[str, ...],

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,8 +30,8 @@ SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
 SOUND = click.option(
     "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
 )
+QUIET = click.option("--quiet", is_flag=True, help="Say nothing of a recording.")
 SILENT = click.option("--quiet", is_flag=True, help="No progress bar.")
-FPS = click.option("--fps", type=FiniteRange(1, 240), default=30.0, show_default=True)
 SCRIPT = click.argument("script", type=PATH, required=False)
 SETTINGS = click.option(
     "--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT."
@@ -43,9 +43,27 @@ ANATOMY_OPTIONS = ("anatomy", "skin_opacity", "dissect")
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles", "light")
 
 
-def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Command], Command]:
-    """Give a command these options as one argument, `name`, of the dataclass `settings`."""
+def option(*names: str, **about: Any) -> Any:
+    """A field of settings that is an option of the command line, called like it unless named."""
+    return field(metadata={"option": (names, about)})
+
+
+def options_of(settings: type[Any]) -> Iterator[Command]:
+    """The options that the fields of a dataclass are."""
+    for each in fields(settings):
+        names, about = each.metadata["option"]
+        names = names or (f"--{each.name.replace('_', '-')}",)
+        yield click.option(*names, each.name, **about)
+
+
+def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Command], Command]:
+    """Give a command an argument that is such a dataclass, called like it, of these options.
+
+    options: those of its fields, unless told.
+    """
     keys = [each.name for each in fields(settings)]
+    name = settings.__name__.lower()
+    decorators = list(options or options_of(settings))
 
     def decorate(command: Command) -> Command:
         """Pack what is given for these options, and call the command."""
@@ -56,8 +74,8 @@ def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Comma
             return command(**given, **{name: packed_in})
 
         wrapped: Command = call
-        for option in reversed(options):
-            wrapped = option(wrapped)
+        for each in reversed(decorators):
+            wrapped = each(wrapped)
         return wrapped
 
     return decorate
@@ -67,12 +85,30 @@ def packed(name: str, settings: type[Any], *options: Command) -> Callable[[Comma
 class Subject:
     """What is told of whose head it is, and how it is refined."""
 
-    head: Path | None
-    landmarks: Path | None
-    person: int | str | None
-    refiner_settings: tuple[str, ...]
-    refiner: str | None
-    look: str
+    head: Path | None = option(type=PATH, help="A head of your own: any triangle mesh.")
+    landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of --head, as JSON.")
+    person: int | str | None = option(
+        type=PersonName(),
+        help="Another person than the built-in head: for each number one, and some by name.",
+    )
+    look: str = option(
+        type=click.Choice(list(LOOKS)),
+        default=FIRST_LOOK,
+        show_default=True,
+        help="How the mesh is refined; paper is the paper's own rule.",
+    )
+    refiner: str | None = option(
+        metavar="NAME",
+        help="Refine plug-in, unless that of the look (risorius doctor lists them); none draws the "
+        "mesh as it is.",
+    )
+    refiner_settings: tuple[str, ...] = option(
+        "--option",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Of the refiner, over the look: scheme=cubic, criterion=bulge, ... "
+        "(risorius doctor lists schemes and criteria).",
+    )
 
     def check_head(self) -> None:
         """Raise UserError for what does not go together."""
@@ -109,15 +145,43 @@ class Subject:
 class Drawing(Subject):
     """What view, replay and capture are told alike: whose head, how refined, in what style."""
 
-    dissect: str | None
-    skin_opacity: float | None
-    anatomy: str | None
-    light: str
-    wrinkles: float
-    skin: str
-    splits: bool
-    wireframe: bool
-    shading: str
+    anatomy: str | None = option(
+        is_flag=False,
+        flag_value=",".join(STRUCTURES),
+        metavar="[NAME,...]",
+        help="Draw muscles, skull or both under translucent skin.",
+    )
+    skin_opacity: float | None = option(
+        type=FiniteRange(0, 1),
+        help="With --anatomy: how much of the skin is seen, 0.25 unless told; 0: none.",
+    )
+    dissect: str | None = option(
+        type=click.Choice(["both", "left", "right"]),
+        help="With --anatomy: the subject's side whose skin is translucent; both unless told.",
+    )
+    light: str = option(
+        type=click.Choice(LIGHT_NAMES),
+        default="studio",
+        show_default=True,
+        help="Where light comes from, how strong, and of what colour.",
+    )
+    wrinkles: float = option(
+        type=FiniteRange(0, 1),
+        default=1.0,
+        show_default=True,
+        help="How deep skin wrinkles where it is compressed; 0: not at all.",
+    )
+    skin: str = option(
+        type=click.Choice(["textured", "plain", "clay"]),
+        default="textured",
+        show_default=True,
+        help="clay is plain grey, as in the paper's pictures.",
+    )
+    splits: bool = option(is_flag=True, help="Colour triangles by their number of splits.")
+    wireframe: bool = option(is_flag=True, help="Draw the edges of every triangle.")
+    shading: str = option(
+        type=click.Choice(["flat", "gouraud", "pixel"]), default="pixel", show_default=True
+    )
 
     @property
     def style_options(self) -> dict[str, Any]:
@@ -152,9 +216,9 @@ class Drawing(Subject):
         if self.anatomy is None:
             for name in ("skin_opacity", "dissect"):
                 if getattr(self, name) is not None:
-                    option = name.replace("_", "-")
                     raise UserError(
-                        f"--{option} goes with --anatomy, which says what is under the skin"
+                        f"--{name.replace('_', '-')} goes with --anatomy, which says what is under "
+                        "the skin"
                     )
             return SKIN_ALONE
         names = self.anatomy.split(",")
@@ -167,95 +231,7 @@ class Drawing(Subject):
         return AnatomyView(tuple(names), opacity, self.dissect or "both")
 
 
-HEAD = (
-    click.option("--head", type=PATH, help="A head of your own: any triangle mesh."),
-    click.option("--landmarks", type=PATH, help="The 68 iBug landmarks of --head, as JSON."),
-    click.option(
-        "--person",
-        type=PersonName(),
-        help="Another person than the built-in head: for each number one, and some by name.",
-    ),
-)
-DISSECTING = (
-    click.option(
-        "--dissect",
-        type=click.Choice(["both", "left", "right"]),
-        help="With --anatomy: the subject's side whose skin is translucent; both unless told.",
-    ),
-    click.option(
-        "--skin-opacity",
-        type=FiniteRange(0, 1),
-        help="With --anatomy: how much of the skin is seen, 0.25 unless told; 0: none.",
-    ),
-    click.option(
-        "--anatomy",
-        is_flag=False,
-        flag_value=",".join(STRUCTURES),
-        metavar="[NAME,...]",
-        help="Draw muscles, skull or both under translucent skin.",
-    ),
-)
-STYLE = (
-    click.option(
-        "--light",
-        type=click.Choice(LIGHT_NAMES),
-        default="studio",
-        show_default=True,
-        help="Where light comes from, how strong, and of what colour.",
-    ),
-    click.option(
-        "--wrinkles",
-        type=FiniteRange(0, 1),
-        default=1.0,
-        show_default=True,
-        help="How deep skin wrinkles where it is compressed; 0: not at all.",
-    ),
-    click.option(
-        "--skin",
-        type=click.Choice(["textured", "plain", "clay"]),
-        default="textured",
-        show_default=True,
-        help="clay is plain grey, as in the paper's pictures.",
-    ),
-    click.option("--splits", is_flag=True, help="Colour triangles by their number of splits."),
-    click.option("--wireframe", is_flag=True, help="Draw the edges of every triangle."),
-    click.option(
-        "--shading",
-        type=click.Choice(["flat", "gouraud", "pixel"]),
-        default="pixel",
-        show_default=True,
-    ),
-)
-REFINING = (
-    click.option(
-        "--option",
-        "refiner_settings",
-        multiple=True,
-        metavar="NAME=VALUE",
-        help="Of the refiner, over the look: scheme=cubic, criterion=bulge, ... "
-        "(risorius doctor lists schemes and criteria).",
-    ),
-    click.option(
-        "--refiner",
-        metavar="NAME",
-        help="Refine plug-in, unless that of the look (risorius doctor lists them); none draws the "
-        "mesh as it is.",
-    ),
-    click.option(
-        "--look",
-        type=click.Choice(list(LOOKS)),
-        default=FIRST_LOOK,
-        show_default=True,
-        help="How the mesh is refined; paper is the paper's own rule.",
-    ),
-)
-with_subject = packed("subject", Subject, *HEAD, *REFINING)
-with_drawing = packed("drawing", Drawing, *HEAD, *DISSECTING, *STYLE, *REFINING)
-
-
-with_playback = packed(
-    "playback",
-    Playback,
+PLAYBACK = (
     click.option(
         "--neutral",
         metavar="HOW",
@@ -286,7 +262,7 @@ with_playback = packed(
     click.option("--face", metavar="ID", help="Which face, where a file has several."),
     click.option("--rate", type=FiniteRange(1, 1000), help="Frames a second, for wrong times."),
 )
-QUIET = click.option("--quiet", is_flag=True, help="Say nothing of a recording.")
+with_playback = packed(Playback, PLAYBACK)
 
 
 def told(report: Report) -> None:
