@@ -14,7 +14,7 @@ import difflib
 import json
 import reprlib
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, partial
 from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type_hints
@@ -113,12 +113,13 @@ class OneOf:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """A function, since True is 1 for a set."""
+        """A choice by value and type, since True is equal to 1."""
         allowed = tuple(self.allowed() if callable(self.allowed) else self.allowed)
+        typed = {(type(each), each) for each in allowed}
 
         def one(given: Any) -> Any:
             """One of them; ValueError for another."""
-            if not any(type(given) is type(each) and given == each for each in allowed):
+            if not isinstance(given, Hashable) or (type(given), given) not in typed:
                 raise ValueError
             return given
 

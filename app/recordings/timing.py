@@ -95,6 +95,8 @@ def stamp_times(stamps: Array, notes: list[str]) -> Array | None:
 def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
     """Times of SMPTE timecode, HH:MM:SS:FF.fraction, NaN where a cell has none."""
     code = _Timecode.of(cells)
+    if np.isnan(code.seconds).all():
+        return code.seconds
     if not code.frames.any() and len(np.unique(code.seconds)) > 1:
         notes.append("The timecode counts no frames, and was not used.")
         return frame_times(None, len(cells), rate, notes)

@@ -34,8 +34,19 @@ Before its first key a channel keeps that key's value, after its last key the la
 """
 
 from .bounds import LONGEST_FILE
-from .model import DECIMALS, EASING_NAMES, Channel, Floats, Key, Limits, Pose, Script, rounded
-from .reader import LARGEST, load_script, parse_script, preface_of
+from .model import (
+    DECIMALS,
+    EASING_NAMES,
+    LARGEST,
+    Channel,
+    Floats,
+    Key,
+    Limits,
+    Pose,
+    Script,
+    rounded,
+)
+from .reader import load_script, parse_script, preface_of
 from .thinning import TOLERANCE, thinned
 from .writer import POSE_SECONDS, is_pose, pose_script, prepare_text, save_script, script_text
 

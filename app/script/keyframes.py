@@ -16,9 +16,8 @@ import numpy.typing as npt
 
 from ..errors import UserError
 from ..scenes import clamped
-from .model import DECIMALS, EASING_NAMES, Channel, Key, Limits, Pose, Script, rounded
+from .model import DECIMALS, EASING_NAMES, LARGEST, Channel, Key, Limits, Pose, Script, rounded
 from .places import Places, among
-from .reader import LARGEST
 
 POSES = ""  # the track of whole poses; any other is called as its control is
 FRAME = 1.0 / 30.0  # [s] to which times are rounded, as in the films that the window makes

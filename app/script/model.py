@@ -9,31 +9,40 @@ from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
 
+from risorius.schema import REST, OneOf, Record, Within, called
+
 from ..errors import UserError
-from .easing import ALL_EASINGS
+from .easing import ALL_EASINGS, ALLOWED
 
 Floats = npt.NDArray[np.float64]
 Easings = npt.NDArray[np.uint16]  # places in EASING_NAMES
 EASING_NAMES = tuple(ALL_EASINGS)
+EASING_NUMBERS = {name: number for number, name in enumerate(EASING_NAMES)}
 _CURVES = tuple(ALL_EASINGS.values())
 
 Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
 MOST_OUTLINES = 16  # of a channel that are kept
 DECIMALS = 6  # of numbers that come from sliders and clocks
+LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
+
+Number = Annotated[float, Within(-LARGEST, LARGEST)]
+Moment = Annotated[float, Within(0.0, LARGEST)]
+Easing = Annotated[str, OneOf(EASING_NAMES, ALLOWED)]
 
 
 @dataclass(frozen=True)
-class Key:
+class Key(Record):
     """One keyframe of one channel: at `time` [s] it has `value`, approached by `easing`."""
 
-    time: float
-    value: float
-    easing: str = "smooth"
+    time: Moment
+    value: Number
+    easing: Easing = "smooth"
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,12 +221,12 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Pose:
+class Pose(Record):
     """A whole pose at `time` [s]: what it does not name is 0; approached by `easing`."""
 
-    time: float
-    values: Mapping[str, float] = field(default_factory=dict)
-    easing: str = "smooth"
+    time: Moment
+    values: Annotated[Mapping[str, Number], called(REST)] = field(default_factory=dict)
+    easing: Easing = "smooth"
     name: str | None = None  # one that has a name gets a picture on a contact sheet
 
     def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
