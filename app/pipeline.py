@@ -97,10 +97,10 @@ class Pipeline:
         self.renderer = renderer
         self.texture: render.Texture | None = None
         self.set_tone(None)
-        self.wrinkle_map: render.WrinkleMap | None = None
+        self.wrinkle_map: render.BumpMap | None = None
         if (wrinkles := scene.wrinkles) is not None:
             self._compression = Compression(scene)
-            self.wrinkle_map = renderer.load_wrinkles(wrinkles.map, wrinkles.steepest)
+            self.wrinkle_map = renderer.load_bumps(wrinkles.map, wrinkles.steepest)
         self.anatomy = Anatomy(scene)
 
     def bind(self, refinement: Refinement) -> DrawnMesh:
@@ -149,7 +149,7 @@ class Pipeline:
             self.refine(camera, viewports)
         with timer("upload"):
             for viewport in viewports:
-                viewport.drawn.upload(amounts, style.wrinkles)
+                viewport.drawn.upload(amounts, style.bumps)
         with timer("draw"):
             layers = self.anatomy.layers(anatomy)
             areas = dict.fromkeys(viewport.area for viewport in viewports)
@@ -171,7 +171,7 @@ class Pipeline:
         drawn, renderer, bones = viewport.drawn, self.renderer, self.scene.bone_transforms()
         place, stream = {"viewport": viewport.area, "clip": viewport.clip}, drawn.stream
         texture = self.texture if drawn.has_uv else None
-        wrinkles = self.wrinkle_map if drawn.has_uv else None
+        bumps = self.wrinkle_map if drawn.has_uv else None
         if style.shadows:
             skin = None if layers.is_opened else stream
             renderer.cast_shadows(layers.shadow_casters, bones, camera, style, stream=skin, **place)
@@ -183,7 +183,7 @@ class Pipeline:
             replace(style, opacity=style.opacity * layers.opacity),
             values=self._values(drawn, style, values),
             texture=texture,
-            wrinkles=wrinkles,
+            bumps=bumps,
             cut=layers.cut,
             fade=self.scene.fade,
             **place,
@@ -206,7 +206,7 @@ class Pipeline:
 
     def _wrinkling_amounts(self, style: render.Style) -> Amounts | None:
         """How far each vertex wrinkles now; None where that does not show."""
-        if self.wrinkle_map is None or not style.shows_wrinkles:
+        if self.wrinkle_map is None or not style.shows_bumps:
             return None
         return self._compression.amounts(self.scene.positions)
 

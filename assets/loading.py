@@ -158,7 +158,7 @@ def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
                 bone=str(arrays["part_bones"][i]),
                 shine=float(arrays["part_shine"][i]),
                 roots=roots if roots.min() >= 0 else None,
-                hair=float(arrays["part_hair"][i]),
+                strand_radius=float(arrays["part_hair"][i]),
             )
         )
     return tuple(parts)

@@ -84,9 +84,9 @@ class Part:
     shine: strength of the highlight, 0 (dull) to 1 (wet).
     roots: for a part that grows from the skin and moves with it, for each vertex the one whose
         place on the skin it keeps to, shape (n,), int32; None for all others.
-    hair: half the thickness of the hairs that the part consists of [mm]; 0 where it is none.
-    strands: place of each vertex across and along the strands with which it is striped [mm], and
-        a unit vector along them, shape (n, 5), float32; None for all but locks of hair.
+    strand_radius: half the thickness of the hairs that it consists of [mm]; 0 where it is none.
+    striation: place of each vertex across and along the strands with which it is striped [mm], and
+        a unit vector along them, shape (n, 5), float32; None for all but hair cards.
     """
 
     name: str
@@ -97,8 +97,13 @@ class Part:
     bone: str
     shine: float
     roots: IndexArray | None = None
-    hair: float = 0.0
-    strands: SingleArray | None = None
+    strand_radius: float = 0.0
+    striation: SingleArray | None = None
+
+    @property
+    def is_enclosed(self) -> bool:
+        """Whether it is in the head, where light from behind does not get."""
+        return self.bone in ("cranium", "mandible", "eye_right", "eye_left")
 
 
 @dataclass(frozen=True)

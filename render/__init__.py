@@ -43,7 +43,7 @@ from .style import (
     Style,
 )
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
-from .texture import Texture, WrinkleMap
+from .texture import BumpMap, Texture
 from .translucency import Plane
 from .window import WindowSurface, open_window, size_on_screen
 
@@ -58,6 +58,7 @@ __all__ = [
     "VIEWS",
     "WHITE",
     "Background",
+    "BumpMap",
     "Colour",
     "ColourBy",
     "Detail",
@@ -79,7 +80,6 @@ __all__ = [
     "Surface",
     "Texture",
     "WindowSurface",
-    "WrinkleMap",
     "open_offscreen",
     "open_window",
     "probe",

@@ -16,7 +16,7 @@ from .camera_view import CameraView
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
 from .stream import Stream
-from .texture import WrinkleMap
+from .texture import BumpMap
 
 Floats = npt.NDArray[np.float32]
 
@@ -48,7 +48,7 @@ class GeometryBuffer:
         self.size = size
         self._gl = gl
         self._program = compile_program(gl, "geometry.glsl")
-        self._wrinkled: moderngl.Program | None = None
+        self._bumped: moderngl.Program | None = None
         self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4, 2)]
         self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
 
@@ -58,7 +58,7 @@ class GeometryBuffer:
         parts: Sequence[PlacedPart],
         view: CameraView,
         values: Floats | None,
-        wrinkles: tuple[WrinkleMap, float] | None,
+        bumps: tuple[BumpMap, float] | None,
     ) -> Geometry:
         """Draw what `stream` last uploaded, and parts; see `Renderer.draw_geometry`."""
         gl, program = self._gl, self._program
@@ -67,7 +67,7 @@ class GeometryBuffer:
         gl.enable_only(moderngl.DEPTH_TEST)
         self._target.clear()
         stream.upload_values(values)
-        skin = program if wrinkles is None else self._program_of(*wrinkles)
+        skin = program if bumps is None else self._program_of(*bumps)
         for each in (program, skin):
             write_uniform(each, "projection", view.projection)
         write_uniform(skin, "model_view", view.world_to_view)
@@ -81,12 +81,12 @@ class GeometryBuffer:
             first += len(buffers.part.faces)
         return self._read()
 
-    def _program_of(self, wrinkles: WrinkleMap, strength: float) -> moderngl.Program:
-        """The program for skin that wrinkles, ready to draw it."""
-        if self._wrinkled is None:
-            self._wrinkled = compile_program(self._gl, "geometry.glsl", "WRINKLES")
-        wrinkles.set_uniforms(self._wrinkled, strength)
-        return self._wrinkled
+    def _program_of(self, bumps: BumpMap, strength: float) -> moderngl.Program:
+        """The program for a mesh with a bump map, ready to draw it."""
+        if self._bumped is None:
+            self._bumped = compile_program(self._gl, "geometry.glsl", "BUMPS")
+        bumps.set_uniforms(self._bumped, strength)
+        return self._bumped
 
     def _read(self) -> Geometry:
         """Fetch the textures, top row first."""

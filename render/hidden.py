@@ -194,7 +194,7 @@ def draw_sides(
         occluder.prepare_inside(view, style)
         occluder.target.use_layer(view.viewport, covered)
         gl.enable(moderngl.CULL_FACE)
-        # What turns away shows no wrinkles, so the last program does for it.
+        # What turns away shows no bumps, so the last program does for it.
         shares = [(shares[-1][0], Share.CHOSEN), (occluder.inside, Share.OTHERS)]
     gl.cull_face = "front"
     for program, share in shares:

@@ -1,4 +1,4 @@
-"""How skin and rigid parts take light and colours: what surface.glsl asks of each."""
+"""How meshes and parts take light and colours: what surface.glsl asks of each."""
 
 import moderngl
 import numpy as np
@@ -13,8 +13,7 @@ from .programs import write_uniform
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
-HEAD_BONES = ("cranium", "mandible", "eye_right", "eye_left")
-HAIR_PIXELS = 1.4  # that a hair is drawn wide at least: a triangle seen from its side is narrower
+STRAND_PIXELS = 1.4  # that a strand is wide at least: a triangle seen from its side is narrower
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
 _RAMPS = {
@@ -30,7 +29,7 @@ COLOUR_DEFINES: dict[ColourBy, tuple[str, ...]] = {
 }
 
 
-def skin_shader(style: Style, has_texture: bool, has_wrinkles: bool, fades: bool) -> list[str]:
+def mesh_shader(style: Style, has_texture: bool, has_bumps: bool, fades: bool) -> list[str]:
     """The file and the defines of the program of a mesh."""
     return [
         "surface.glsl",
@@ -40,22 +39,22 @@ def skin_shader(style: Style, has_texture: bool, has_wrinkles: bool, fades: bool
         *(["TEXTURED"] if has_texture else []),
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),
-        *(["WRINKLES"] if has_wrinkles else []),
+        *(["BUMPS"] if has_bumps else []),
         *(["FADED"] if fades else []),
     ]
 
 
 def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
     """The file and the defines of the program of parts of a kind, see `PartBuffers`."""
-    shadows = ["SHADOWS"] * (has_shadow and kind != "HAIR")
-    if kind == "LOCKS":
-        return ["locks.glsl", *shadows]
-    sunk = ["SUNK"] * (is_cut and kind != "HAIR")
+    shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
+    if kind == "CARDS":
+        return ["cards.glsl", *shadows]
+    sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
     return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
 
 
-def set_skin(program: moderngl.Program, style: Style, view: CameraView, line_scale: float) -> None:
-    """How skin of this style takes light, and its wireframe and colours by values."""
+def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_scale: float) -> None:
+    """How a mesh of this style takes light, and its wireframe and colours by values."""
     set_light(program, style.light)
     if "albedo" in program:  # not where a texture takes its place
         program["albedo"] = tuple(to_linear(style.albedo))
@@ -75,31 +74,33 @@ def set_skin(program: moderngl.Program, style: Style, view: CameraView, line_sca
 
 
 def set_inside(program: moderngl.Program, style: Style) -> None:
-    """How the inner side of skin of this style takes light, for inside.glsl."""
+    """How the inner side of a mesh of this style takes light, for inside.glsl."""
     program["inner_albedo"], program["to_key"] = tuple(to_linear(style.inside)), style.light.to_key
     program["sky"], program["ground"] = style.light.sky, style.light.ground
 
 
-def set_part(program: moderngl.Program, part: Part, light: Light, view: CameraView) -> None:
-    """From dull (gums, tongue: broad and faint) to wet (eyes: small and bright) highlights.
+def set_part(
+    program: moderngl.Program, kind: str, part: Part, light: Light, view: CameraView
+) -> None:
+    """From dull (broad and faint) to wet (small and bright) highlights.
 
-    `set_light` comes first; of it, light from behind does not get through a head.
+    `set_light` comes first; of it, light from behind does not reach what is enclosed, or fibres.
     """
     shine = part.shine
-    if getattr(part, "strands", None) is not None:
+    if kind == "CARDS":
         program["gloss"] = 2.0 * shine
         return
-    is_in_head = part.bone in HEAD_BONES or getattr(part, "fibres", None) is not None
-    program["rim_light"] = (0.0, 0.0, 0.0) if is_in_head else light.rim
+    is_rimless = part.is_enclosed or kind == "FIBRES"
+    program["rim_light"] = (0.0, 0.0, 0.0) if is_rimless else light.rim
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
-    # What is as wet as an eye is dark by itself, not for want of light; so is a shirt.
-    program["least_mirrored"] = shine * shine if part.bone in HEAD_BONES else 1.0
+    # What is wet is dark by itself, not for want of light; so is what is not enclosed.
+    program["least_mirrored"] = shine * shine if part.is_enclosed else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
-    if thickness := getattr(part, "hair", 0.0):  # half of it, and what it is at least at distance 1
+    if kind == "STRANDS":  # half their thickness, and what it is at least at distance 1
         _, _, width, height = view.viewport
-        program["half_hair"] = thickness
-        program["least_half"] = 0.5 * HAIR_PIXELS / view.camera.focal(width / height, height)
+        program["half_strand"] = part.strand_radius
+        program["least_half"] = 0.5 * STRAND_PIXELS / view.camera.focal(width / height, height)
 
 
 def set_light(program: moderngl.Program, light: Light) -> None:

@@ -9,14 +9,10 @@ import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
-from .camera_view import CameraView, box_corners
-from .outline import fringes
+from .camera_view import box_corners
 
-# What is striped: by which attribute of a part, and its kind, layout and attributes in OpenGL.
-STRIPED = {
-    "fibres": ("FIBRES", "2f", "in_fibre"),
-    "strands": ("LOCKS", "2f 3f", "in_strand", "in_along"),
-}
+# What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.
+STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 5: ("CARDS", " 2f 3f", "in_strand", "in_along")}
 
 
 class Part(Protocol):
@@ -26,9 +22,11 @@ class Part(Protocol):
         other arrays of the same shape whenever its shape has changed.
     faces: counter-clockwise from the side that is seen, shape (m, 3), int32; the other side is not
         drawn. colours: sRGB 0..1, shape (n, 3), float32.
-    bone: whose transform moves it. shine: 0 dull, 1 wet. Hairs have `hair`, half their thickness,
-        too; muscles `fibres`, the place of each vertex across and along them [mm], (n, 2); locks of
-        hair `strands`: the same, and a unit vector along them, (n, 5).
+    bone: whose transform moves it. shine: 0 dull, 1 wet.
+    is_enclosed: whether it lies within another surface, where light from behind does not get.
+    strand_radius: half the thickness of the strands that it consists of; 0 where it is solid.
+    striation: place of each vertex across and along the fibres with which it is striped [mm],
+        (n, 2); for cards of strands a unit vector along them, too, (n, 5); None: it is plain.
     """
 
     @property
@@ -45,6 +43,12 @@ class Part(Protocol):
     def bone(self) -> str: ...
     @property
     def shine(self) -> float: ...
+    @property
+    def is_enclosed(self) -> bool: ...
+    @property
+    def strand_radius(self) -> float: ...
+    @property
+    def striation(self) -> npt.NDArray[np.float32] | None: ...
 
 
 class PartBuffers:
@@ -59,19 +63,15 @@ class PartBuffers:
                 f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
             )
         self._gl = gl
-        self.hair = getattr(part, "hair", 0.0)
-        # What it is drawn with: a define of surface.glsl, or LOCKS for locks.glsl.
-        self.kind = "HAIR" if self.hair else "RIGID"
-        self._more: npt.NDArray[np.float32] | None = None  # attributes that others have not
-        self._layout: tuple[str, ...] = ("3f 3f 3f", "in_position", "in_normal", "in_colour")
-        for name, (kind, layout, *attributes) in STRIPED.items():
-            if (more := getattr(part, name, None)) is not None:
-                self.kind, self._more = kind, more
-                self._layout = (f"{self._layout[0]} {layout}", *self._layout[1:], *attributes)
-        # What stands out of the head has an outline of its own; the rest is seen before skin.
-        self.is_outlined = self.kind == "RIGID" and part.bone == "neck"
-        columns = 9 if self._more is None else 9 + np.shape(self._more)[1]
-        self._vertices = gl.buffer(reserve=4 * columns * len(part.vertices))
+        # What it is drawn with: a define of surface.glsl, or CARDS for cards.glsl.
+        self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
+        columns = 0 if part.striation is None else np.shape(part.striation)[1]
+        if columns:
+            self.kind, layout, *more = STRIPED[columns]
+        self._layout = (f"3f 3f 3f{layout}", "in_position", "in_normal", "in_colour", *more)
+        # What is enclosed is seen before what encloses it.
+        self.is_outlined = self.kind == "RIGID" and not part.is_enclosed
+        self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
         self.upload()
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
@@ -85,21 +85,12 @@ class PartBuffers:
         if vertices is self._uploaded:
             return
         self.corners = box_corners(vertices)
-        rows = np.hstack(
-            [
-                vertices,
-                part.normals,
-                to_linear(part.colours),
-                *([] if self._more is None else [self._more]),
-            ]
-        ).astype(np.float32)
+        more = [] if part.striation is None else [part.striation]
+        rows = np.hstack([vertices, part.normals, to_linear(part.colours), *more])
+        rows = rows.astype(np.float32)
         self._vertices.write(rows.tobytes())
-        self._rows = rows if self.is_outlined else rows[:0]
+        self.rows = rows if self.is_outlined else rows[:0]  # for fringes
         self._uploaded = vertices
-
-    def fringes(self, view: CameraView, bone: npt.NDArray[np.float64]) -> npt.NDArray[np.float32]:
-        """Of its outline, see outline.py."""
-        return fringes(self._rows, self.part.faces, view, bone)
 
     def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
         """Choose among its faces, (m,), for `draw` of the chosen."""

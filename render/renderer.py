@@ -22,11 +22,11 @@ from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
 from .lines import Lines
 from .materials import (
+    mesh_shader,
     part_shader,
     set_light,
+    set_mesh,
     set_part,
-    set_skin,
-    skin_shader,
     value_texture,
 )
 from .outline import draw_fringes, fringes
@@ -37,7 +37,7 @@ from .shadow import DEEP, OFFSET, ShadowMap, Thrower
 from .stream import Share, Stream
 from .style import ColourBy, Shading, Style
 from .surface import Image, Surface
-from .texture import Texture, WrinkleMap
+from .texture import BumpMap, Texture
 from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
@@ -65,7 +65,7 @@ class Renderer:
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
     def load_texture(self, image: Image, openness: Image | None = None) -> Texture:
-        """Hand an image of the skin to OpenGL; draw_mesh takes the albedo from it.
+        """Hand an image to OpenGL, from which draw_mesh takes the albedo.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
         openness: how much of the light from all around gets there, 255 = all, shape (H, W), uint8.
@@ -74,16 +74,16 @@ class Renderer:
         self.surface.make_current()
         return Texture(self._gl, image, openness)
 
-    def load_wrinkles(self, texels: Image, steepest: float) -> WrinkleMap:
-        """Hand a map of wrinkles to OpenGL; draw_mesh takes the furrows of the skin from it.
+    def load_bumps(self, texels: Image, steepest: float) -> BumpMap:
+        """Hand a bump map to OpenGL, from which draw_mesh takes the fine shape of a surface.
 
-        texels: slope of the skin's height along u and v (128 is level), depth of the furrow, which
+        texels: slope of its height along u and v (128 is level), depth of the furrow, which
             of the stream's two amounts counts (0 the first .. 255 the second); top row first,
             shape (H, W, 4), uint8. steepest: slope of 255 [mm for a whole texture coordinate].
         Raises ValueError for another shape or type.
         """
         self.surface.make_current()
-        return WrinkleMap(self._gl, texels, steepest)
+        return BumpMap(self._gl, texels, steepest)
 
     def draw_background(self, style: Style, *viewports: Rectangle) -> None:
         """Paint the style's background over viewports, and over what was drawn there; none: all."""
@@ -100,7 +100,7 @@ class Renderer:
         clip: Rectangle | None = None,
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
-        wrinkles: WrinkleMap | None = None,
+        bumps: BumpMap | None = None,
         cut: Plane | None = None,
         fade: Plane | None = None,
     ) -> None:
@@ -110,44 +110,43 @@ class Renderer:
             unless that is NONE. Raises ValueError where it does not fit.
         texture: the albedo of the front side, unless the style is not textured; needs a stream of
             8 columns, ValueError else.
-        wrinkles: furrows of the skin, as far as the style and the amounts of wrinkling that were
-            uploaded let them show; per-pixel shading alone has them. Needs 8 columns, too.
-        cut: in front of it skin is opaque. Draw before it what is to be seen through the skin.
-        fade: what a x + b y + c z + d is at a place of the skin, from 0 to 1, shows of it there.
+        bumps: fine shape, as far as the style and the amounts that were uploaded let it show;
+            per-pixel shading alone has it. Needs 8 columns, too.
+        cut: in front of it the mesh is opaque. Draw before it what is to be seen through it.
+        fade: what a x + b y + c z + d is at a place of the mesh, from 0 to 1, shows of it there.
         """
-        if texture is not None or wrinkles is not None:
+        if texture is not None or bumps is not None:
             stream.check_uv()
-        if not (style.shows_wrinkles and stream.has_wrinkles):
-            wrinkles = None
-        is_coloured = style.colour_by is not ColourBy.NONE  # by values in the order of triangles
         view = self._camera_view(camera, viewport, clip)
-        if is_coloured:
+        if style.colour_by is not ColourBy.NONE:
             self._values = value_texture(self._gl, values, stream.triangle_count)
         if style.shadows and self._shadow_of is not stream:
             self._cast([stream], view, style)
         self._shadow_of = None
+        if not self._use_layer(view, stream.corners):
+            return
         fade = fade_seen(fade, stream, view)
-        shares = {Share.ALL: wrinkles}
-        if wrinkles is not None and not is_coloured:
-            shares = {Share.WRINKLED: wrinkles, Share.SMOOTH: None}
-        drawn = []
-        for share, relief in shares.items():
-            program = self._skin_program(view, stream, style, texture, relief, fade)
-            if program is None:
-                return
-            drawn.append((program, share))
-        if style.opacity < 1.0 or fade is not None:
-            for program, _ in drawn if style.opacity < 1.0 else ():
+        drawn = [
+            (self._mesh_program(view, style, texture, relief, fade), share)
+            for share, relief in _shares(stream, style, bumps)
+        ]
+        if style.opacity < 1.0:
+            for program, _ in drawn:
                 set_translucency(program, style, view, cut)
+        if style.opacity < 1.0 or fade is not None:
             draw_nearest(self._gl, stream, drawn)
-        elif not self.surface.is_software:
-            for each, share in drawn:
-                stream.draw(each, share)
+        elif self.surface.is_software:
+            draw_sides(self._gl, stream, drawn, view, style, self._target_occluder())
         else:
-            target = self.surface.target
-            if target.samples and (self._occluder is None or self._occluder.target is not target):
-                self._occluder = Occluder(self._gl, target)
-            draw_sides(self._gl, stream, drawn, view, style, self._occluder)
+            for program, share in drawn:
+                stream.draw(program, share)
+
+    def _target_occluder(self) -> Occluder | None:
+        """What leaves hidden triangles out where pixels have several samples; else the last one."""
+        target, occluder = self.surface.target, self._occluder
+        if target.samples and (occluder is None or occluder.target is not target):
+            self._occluder = Occluder(self._gl, target)
+        return self._occluder
 
     def cast_shadows(
         self,
@@ -160,7 +159,7 @@ class Renderer:
         viewport: Rectangle | None = None,
         clip: Rectangle | None = None,
     ) -> None:
-        """Let parts, not the skin, throw the shadow on parts that are drawn next.
+        """Let parts, not the mesh, throw the shadow on parts that are drawn next.
 
         stream: a mesh that is drawn next; it throws the shadow, too, and takes that of the parts.
         """
@@ -198,39 +197,36 @@ class Renderer:
         )
         if not len(rows):
             return
-        seen = fade_seen(fade, stream, view)
-        program = self._skin_program(view, stream, style, texture, None, seen, "FRINGE")
-        if program is not None:
+        if self._use_layer(view, stream.corners):
+            seen = fade_seen(fade, stream, view)
+            program = self._mesh_program(view, style, texture, None, seen, "FRINGE")
             with blending(self._gl):
                 draw_fringes(self._gl, program, rows)
 
-    def _skin_program(
+    def _mesh_program(
         self,
         view: CameraView,
-        stream: Stream,
         style: Style,
         texture: Texture | None,
-        wrinkles: WrinkleMap | None,
+        bumps: BumpMap | None,
         fade: Plane | None,
         *more: str,
-    ) -> moderngl.Program | None:
-        """The program of a mesh, with all that it asks for; None where the mesh is not seen."""
+    ) -> moderngl.Program:
+        """The program of a mesh, with all that it asks for."""
         texture = texture if style.textured else None
-        has = texture is not None, wrinkles is not None, fade is not None
-        program = self._program(*skin_shader(style, *has), *more)
+        has = texture is not None, bumps is not None, fade is not None
+        program = self._program(*mesh_shader(style, *has), *more)
         write_uniform(program, "model_view", view.world_to_view)
         write_uniform(program, "projection", view.projection)
-        if not self._use_layer(view, stream.corners):
-            return None
         if fade is not None:
             program["fade"] = fade
-        set_skin(program, style, view, self._line_scale)
+        set_mesh(program, style, view, self._line_scale)
         if style.shadows and self._shadow is not None:
             self._shadow.set_uniforms(program, view, _SHADOW_UNIT)
         if texture is not None:
             texture.set_uniforms(program, _ALBEDO_UNIT, float(style.occlusion))
-        if wrinkles is not None:
-            wrinkles.set_uniforms(program, style.wrinkles)
+        if bumps is not None:
+            bumps.set_uniforms(program, style.bumps)
         if style.colour_by is not ColourBy.NONE:
             assert self._values is not None
             self._values.use(_VALUE_UNIT)
@@ -248,12 +244,12 @@ class Renderer:
         clip: Rectangle | None = None,
         cut: Plane | None = None,
     ) -> None:
-        """Draw coloured parts, each moved by the matrix of its bone (column vectors); hairs last.
+        """Draw coloured parts, each moved by the matrix of its bone (column vectors); strands last.
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
-        Raises ValueError for a bone without transform. What is on the neck has smooth edges always.
-        cut: in front of it whole skin will hide them, even where they come out of it.
+        Raises ValueError for a bone without transform. What is not enclosed has smooth edges.
+        cut: in front of it an opaque mesh will hide them, even where they come out of it.
         """
         view = self._camera_view(camera, viewport, clip)
         shadow = self._shadow if style.shadows else None
@@ -266,7 +262,7 @@ class Renderer:
         occluder = self._occluder
         if is_chosen := occluder is not None and occluder.is_of(view, self.surface.target):
             occluder.choose_parts(placed)
-        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind == "HAIR")
+        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind == "STRANDS")
         if not self.surface.samples and cut is None:
             drawn += [(*each, "FRINGE") for each in placed if each[0].is_outlined]
         programs = {}
@@ -278,15 +274,16 @@ class Renderer:
             if cut is not None and "cut" in program:
                 set_cut(program, view, cut, SUNK)
             if shadow is not None and "shadow_map" in program:
-                offset = DEEP if kind == "LOCKS" else OFFSET
+                offset = DEEP if kind == "CARDS" else OFFSET
                 shadow.set_uniforms(program, view, _SHADOW_UNIT, offset)
         for buffers, bone, *fringe in drawn:
             program = programs[buffers.kind, *fringe]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
-            set_part(program, buffers.part, style.light, view)
-            with blending(self._gl) if buffers.hair or fringe else nullcontext():
+            set_part(program, buffers.kind, buffers.part, style.light, view)
+            with blending(self._gl) if buffers.kind == "STRANDS" or fringe else nullcontext():
                 if fringe:
-                    draw_fringes(self._gl, program, buffers.fringes(view, bone))
+                    rows = fringes(buffers.rows, buffers.part.faces, view, bone)
+                    draw_fringes(self._gl, program, rows)
                 else:
                     buffers.draw(program, chosen=is_chosen)
 
@@ -298,23 +295,23 @@ class Renderer:
         camera: OrbitCamera,
         *,
         values: npt.NDArray[np.float32] | None = None,
-        wrinkles: tuple[WrinkleMap, float] | None = None,
+        bumps: tuple[BumpMap, float] | None = None,
     ) -> Geometry:
         """Numbers of what is seen, for each pixel of the surface; nothing on it changes.
 
         values: two numbers for each vertex that `stream` last uploaded, (vertex_count, 2), to be
             interpolated; None: zeros. Raises ValueError for another shape, or a bone without
             transform.
-        wrinkles: furrows of the skin that tilt its normals, and how deep they are, 0 to 1; needs
-            amounts of wrinkling, or counts for nothing.
+        bumps: fine shape that tilts normals, and how much of it, 0 to 1; needs amounts that were
+            uploaded, or counts for nothing.
         """
         view = self._camera_view(camera, None, None)
         if self._geometry_buffer is None or self._geometry_buffer.size != self.surface.target.size:
             self._geometry_buffer = GeometryBuffer(self._gl, self.surface.target.size)
         placed = self._parts.placed(parts, transforms)
-        if not stream.has_wrinkles:
-            wrinkles = None
-        return self._geometry_buffer.draw(stream, placed, view, values, wrinkles)
+        if not stream.has_bumps:
+            bumps = None
+        return self._geometry_buffer.draw(stream, placed, view, values, bumps)
 
     def draw_lines(
         self,
@@ -376,3 +373,14 @@ class Renderer:
         if is_seen := min(covered[2:]) > 0:
             self.surface.target.use_layer(view.viewport, covered)
         return is_seen
+
+
+def _shares(
+    stream: Stream, style: Style, bumps: BumpMap | None
+) -> list[tuple[Share, BumpMap | None]]:
+    """The triangles that are drawn alike, and their bumps; values go by the order of all."""
+    if bumps is None or not (style.shows_bumps and stream.has_bumps):
+        return [(Share.ALL, None)]
+    if style.colour_by is not ColourBy.NONE:
+        return [(Share.ALL, bumps)]
+    return [(Share.BUMPED, bumps), (Share.SMOOTH, None)]

@@ -1,6 +1,6 @@
-"""The shadow that skin and hair throw in the key light: on skin, on eyes, on teeth.
+"""The shadow that a mesh and parts throw in the key light, on themselves and on parts.
 
-A depth map, taken from the key light, which hangs on the camera. Of both sides of the skin: it is
+A depth map, taken from the key light, which hangs on the camera. Of both sides of a mesh: it is
 thin, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
 scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
 coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
@@ -24,7 +24,7 @@ RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade withi
 REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
 TEXEL = 2.0 * REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
-DEEP = 0.06  # the same for locks of hair, 9 mm: they lie over each other, and all are lit
+DEEP = 0.06  # the same for hair cards, 9 mm: they lie over each other, and all are lit
 STEEP = 0.999  # of a light's height, from which on it has no direction sideways
 
 Thrower = Stream | PlacedPart

@@ -19,7 +19,7 @@ class Share(Enum):
     """Which of the uploaded triangles are drawn."""
 
     ALL = "all"  # in their order
-    WRINKLED = "wrinkled"  # those with a corner that wrinkles
+    BUMPED = "bumped"  # those with a corner where the bump map shows
     SMOOTH = "smooth"  # all others
     CHOSEN = "chosen"  # those that `choose` was told of first,
     OTHERS = "others"  # and second
@@ -36,7 +36,7 @@ class Stream:
     source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
         borrower writes; never uploaded.
     vertex_count, triangle_count: what the last `upload` handed over.
-    has_wrinkles: whether that came with amounts of wrinkling.
+    has_bumps: whether that came with amounts of a bump map.
     corners: of the box that holds the uploaded vertices, shape (8, 3), float64.
     """
 
@@ -60,8 +60,8 @@ class Stream:
         self.corners = np.zeros((8, 3))
         self._gl = gl
         self._vertex_buffer = gl.buffer(reserve=self.vertices.nbytes, dynamic=True)
-        self.has_wrinkles = False
-        self._wrinkle_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
+        self.has_bumps = False
+        self._bump_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
         self._value_buffer: moderngl.Buffer | None = None
         self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
         self._chosen_buffer: moderngl.Buffer | None = None
@@ -74,11 +74,11 @@ class Stream:
         self,
         vertex_count: int,
         triangle_count: int,
-        wrinkling: npt.NDArray[np.float32] | None = None,
+        bump_amounts: npt.NDArray[np.float32] | None = None,
     ) -> None:
         """Hand the first `vertex_count` vertices and `triangle_count` triangles to OpenGL.
 
-        wrinkling: how far each vertex wrinkles, 0..1 in either slot of the map, (vertex_count, 2).
+        bump_amounts: how much of a bump map shows, 0..1 in either slot of it, (vertex_count, 2).
         """
         if not 0 <= vertex_count <= len(self.vertices):
             raise ValueError(
@@ -88,13 +88,13 @@ class Stream:
             raise ValueError(
                 f"triangle_count is {triangle_count}; this stream holds 0 to {len(self.triangles)}"
             )
-        if wrinkling is not None and wrinkling.shape != (vertex_count, 2):
+        if bump_amounts is not None and bump_amounts.shape != (vertex_count, 2):
             raise ValueError(
-                f"wrinkling has shape {wrinkling.shape}; it must be ({vertex_count}, 2), two "
+                f"bump_amounts has shape {bump_amounts.shape}; it must be ({vertex_count}, 2), two "
                 "amounts for each uploaded vertex"
             )
         self.vertex_count, self.triangle_count = vertex_count, triangle_count
-        self.has_wrinkles = wrinkling is not None
+        self.has_bumps = bump_amounts is not None
         self._ranges = {Share.ALL: (0, triangle_count)}
         if vertex_count == 0 or triangle_count == 0:
             return
@@ -104,24 +104,24 @@ class Stream:
         self._vertex_buffer.write(self.vertices[:vertex_count])
         self._index_buffer.orphan()
         self._index_buffer.write(self.triangles[:triangle_count])
-        if wrinkling is not None:
-            self._upload_wrinkling(wrinkling)
+        if bump_amounts is not None:
+            self._upload_bumps(bump_amounts)
 
-    def _upload_wrinkling(self, wrinkling: npt.NDArray[np.float32]) -> None:
-        """Upload amounts, and the triangles anew: first those that wrinkle."""
-        if self._wrinkle_buffers is None:
+    def _upload_bumps(self, bump_amounts: npt.NDArray[np.float32]) -> None:
+        """Upload amounts, and the triangles anew: first those that have bumps."""
+        if self._bump_buffers is None:
             room = 2 * self.vertices.itemsize * len(self.vertices)
-            self._wrinkle_buffers = (
+            self._bump_buffers = (
                 self._gl.buffer(reserve=room, dynamic=True),
                 self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True),
             )
         triangles = self.triangles[: self.triangle_count]
-        is_wrinkled = (wrinkling.max(axis=1) > 0.0)[triangles].any(axis=1)
-        parted = np.concatenate([triangles[is_wrinkled], triangles[~is_wrinkled]])
-        count = int(is_wrinkled.sum())
-        self._ranges[Share.WRINKLED] = 0, count
+        is_bumped = (bump_amounts.max(axis=1) > 0.0)[triangles].any(axis=1)
+        parted = np.concatenate([triangles[is_bumped], triangles[~is_bumped]])
+        count = int(is_bumped.sum())
+        self._ranges[Share.BUMPED] = 0, count
         self._ranges[Share.SMOOTH] = count, len(triangles) - count
-        for buffer, array in zip(self._wrinkle_buffers, (wrinkling, parted), strict=True):
+        for buffer, array in zip(self._bump_buffers, (bump_amounts, parted), strict=True):
             buffer.orphan()
             buffer.write(np.ascontiguousarray(array))
 
@@ -165,7 +165,7 @@ class Stream:
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
 
-        `share`: WRINKLED and SMOOTH need amounts of wrinkling, and give the program in_wrinkling.
+        `share`: BUMPED and SMOOTH need bump_amounts, and give the program in_bumps.
         """
         first, count = self._ranges.get(share, (0, 0))
         if self.vertex_count == 0 or count == 0:
@@ -175,18 +175,17 @@ class Stream:
             assert self._chosen_buffer is not None
             indices = self._chosen_buffer
         elif share is not Share.ALL:
-            assert self._wrinkle_buffers is not None
-            indices = self._wrinkle_buffers[1]
+            assert self._bump_buffers is not None
+            indices = self._bump_buffers[1]
         array = self._vertex_arrays.get((program, indices))
         if array is None:
-            names = ["in_position", "in_normal", "in_uv"]
-            layout = "3f 3f 2f"
-            if self.vertices.shape[1] == 6:
-                names.pop()
-                layout = "3f 3f"
-            content: list[Any] = [(self._vertex_buffer, layout, *names)]
-            if self._wrinkle_buffers is not None:
-                content.append((self._wrinkle_buffers[0], "2f", "in_wrinkling"))
+            names = ("in_position", "in_normal")
+            layout = (
+                ("3f 3f", *names) if self.vertices.shape[1] == 6 else ("3f 3f 2f", *names, "in_uv")
+            )
+            content: list[Any] = [(self._vertex_buffer, *layout)]
+            if self._bump_buffers is not None:
+                content.append((self._bump_buffers[0], "2f", "in_bumps"))
             if self._value_buffer is not None:
                 content.append((self._value_buffer, "2f", "in_values"))
             array = self._gl.vertex_array(

@@ -95,7 +95,7 @@ class Style:
     gloss: float = 0.5  # strength of the skin's highlight, 0..1
     shadows: bool = True  # of the key light
     occlusion: bool = True  # less light from all around in folds, where the texture says so
-    wrinkles: float = 1.0  # how much of a map of wrinkles shows, where there is one; 0 = none
+    bumps: float = 1.0  # how much of a bump map shows, where there is one; 0 = none
     light: Light = LIGHTS["studio"]
     background: Background | None = LIGHT  # None: transparent
     wire_colour: Colour = (0.07, 0.08, 0.12)
@@ -118,9 +118,9 @@ class Style:
         return red, green, blue
 
     @property
-    def shows_wrinkles(self) -> bool:
-        """Whether anything of a map of wrinkles is to be seen: only pixel shading has them."""
-        return self.wrinkles > 0.0 and self.shading is Shading.PIXEL
+    def shows_bumps(self) -> bool:
+        """Whether anything of a bump map is to be seen: only pixel shading has them."""
+        return self.bumps > 0.0 and self.shading is Shading.PIXEL
 
     @property
     def _warmth(self) -> float:

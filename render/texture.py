@@ -1,4 +1,4 @@
-"""Images over the texture coordinates of the skin: its albedo, and the shape of its wrinkles.
+"""Images over the texture coordinates of a surface: its albedo, and its bump map.
 
 The albedo comes as sRGB and is kept as square roots of linear light, which shaders square: eight
 bits hold either as finely. Software OpenGL reads and blends such bytes as they are, in two thirds
@@ -17,7 +17,7 @@ from .surface import Image, is_software
 
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
 LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
-WRINKLE_UNIT = 5  # texture unit; 4 belongs to a window's enlargement
+BUMP_UNIT = 5  # texture unit; 4 belongs to a window's enlargement
 _AROUND_UNIT = 6
 _AROUND_LEVEL = 3  # of the smaller versions: a texel there is the mean of 8 x 8
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
@@ -85,8 +85,8 @@ class Texture(_Mipmaps):
         program["occlusion"] = occlusion
 
 
-class WrinkleMap(_Mipmaps):
-    """The shape of the skin's furrows; `Renderer.load_wrinkles` makes it.
+class BumpMap(_Mipmaps):
+    """The fine shape of a surface, say its furrows; `Renderer.load_bumps` makes it.
 
     steepest: slope of a full byte [scene's unit for one unit of the texture coordinates].
     """
@@ -95,18 +95,18 @@ class WrinkleMap(_Mipmaps):
         texels = np.asarray(texels)
         if texels.ndim != 3 or texels.shape[2] != 4 or not texels.size or texels.dtype != np.uint8:
             raise ValueError(
-                f"the map of wrinkles has shape {texels.shape} and dtype {texels.dtype}; it must "
+                f"the bump map has shape {texels.shape} and dtype {texels.dtype}; it must "
                 "be (height, width, 4) uint8: slopes along u and v, depth, slot; top row first"
             )
         self.steepest = steepest
         super().__init__(gl, texels)
 
     def set_uniforms(self, program: moderngl.Program, strength: float) -> None:
-        """Let a program that includes wrinkles.glsl look it up."""
-        self._texture.use(WRINKLE_UNIT)
-        program["wrinkle_map"] = WRINKLE_UNIT
-        program["wrinkle_slope"] = self.steepest
-        program["wrinkle_strength"] = strength
+        """Let a program that includes bumps.glsl look it up."""
+        self._texture.use(BUMP_UNIT)
+        program["bump_map"] = BUMP_UNIT
+        program["bump_slope"] = self.steepest
+        program["bump_strength"] = strength
 
 
 def _roots(values: npt.NDArray[np.float32]) -> Image:

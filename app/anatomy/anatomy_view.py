@@ -80,8 +80,8 @@ class Anatomy:
         structures = self._structures(scene, view)
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
         others = stay + self._soft(scene, view)
-        strands = [part for part in others if part.hair]
-        others = [part for part in others if not part.hair]
+        strands = [part for part in others if part.strand_radius]
+        others = [part for part in others if not part.strand_radius]
         cut = _cut(scene, view)
         return Layers(
             structures + others,

@@ -43,18 +43,19 @@ class _Bound(NamedTuple):
 class Muscles:
     """All bands of a face as one part that changes its shape (see render/parts.py).
 
-    fibres: place across and along of each vertex, (n, 2) [mm at rest]: where its striation is.
+    striation: place across and along of each vertex, (n, 2) [mm at rest]: where its striation is.
     """
 
     vertices: npt.NDArray[np.float32]
     normals: npt.NDArray[np.float32]
     colours: npt.NDArray[np.float32]
     faces: npt.NDArray[np.int32]
-    fibres: npt.NDArray[np.float32]
+    striation: npt.NDArray[np.float32]
     name: str = "muscles"
     bone: str = "neck"  # stands still: vertices are where they are
     shine: float = 0.42
-    hair: float = 0.0
+    is_enclosed: bool = False
+    strand_radius: float = 0.0
 
     @classmethod
     def of(cls, scene: Any) -> Muscles:
@@ -297,7 +298,7 @@ class Muscles:
             offset = 40.0 * np.arange(count)[:, None, None]
             fibres.append(np.stack([wide + offset, along], axis=-1).reshape(-1, 2))
         self.faces = np.concatenate(faces).astype(np.int32)
-        self.fibres = (np.concatenate(fibres) / self.scale).astype(np.float32)
+        self.striation = (np.concatenate(fibres) / self.scale).astype(np.float32)
 
 
 def _bound(points: Floats, x: Floats) -> _Bound:

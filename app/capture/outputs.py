@@ -5,10 +5,9 @@ from __future__ import annotations
 import contextlib
 import re
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -25,17 +24,13 @@ from ..files import (
 from ..passes.labelled import ENDS, Labelled
 from ..stopping import cleaned_up_if_stopped
 from ..workers.child import share_of_cores
-from .encoder import Encoder, Soundtrack
-from .formats import check_format, size_of_film
+from .encoder import Encoder, Soundtrack, check_format, size_of_film
 
 AROUND = 6  # halvings: colours reach 64 pixels, the largest block of a coder, beyond an edge
 FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
 
 
-class FrameSink(Protocol):
-    """Takes the frames of a film one after the other, with what is to lie beside each."""
-
-    def __call__(self, image: Image, beside: Labelled | None = None) -> None: ...
+FrameSink = Callable[..., None]  # takes pictures one after the other, and what lies beside each
 
 
 @contextlib.contextmanager

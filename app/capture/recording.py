@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
@@ -15,8 +16,15 @@ from ..sound import load_sound
 from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
-from .encoder import Soundtrack
-from .formats import HEARD, check_name, format_of
+from .encoder import HEARD, Soundtrack, check_name, format_of
+
+
+class Taker(NamedTuple):
+    """Who takes frames of a script that plays."""
+
+    wants: Callable[[float], bool]
+    """Whether the frame at this time [s] is one of them."""
+    take: Callable[[float, Frame], None]
 
 
 def capture(
@@ -36,42 +44,58 @@ def capture(
     """
     _check(script, options, output, sheet, time)
     _check_passes(script, output, options)
-    wanted = list(script.key_poses) if sheet else []
-    still = output if _is_image(output) else None
+    begin, end = options.span or (0.0, script.duration)
+    takers, count, most = list[Taker](), 1, 0
+    with contextlib.ExitStack() as stack:
+        if sheet is not None:
+            takers.append(stack.enter_context(_sheet_of(script, options, sheet)))
+        if output is not None and _is_image(output):
+            moment, picture = _moment_of(script, options, time), output
+            takers.append(
+                Taker(
+                    lambda now: now == moment,
+                    lambda _, frame: save_labelled(picture, frame.image, frame.known),
+                )
+            )
+            end = max(end, moment) if sheet else moment
+        elif output is not None:
+            sink = _sink_for(output, options, overwrite, soundtrack_of(script, options.span))
+            add, first = stack.enter_context(sink), begin - 0.5 / options.frames_per_second
+            takers.append(
+                Taker(lambda now: now >= first, lambda _, frame: add(frame.image, frame.known))
+            )
+            frames = round((end - begin) * options.frames_per_second + 0.5) + 1
+            count = processes.worthwhile(options, frames)
+        playing = _played(script, options, end, progress, count)
+        for now, draw in stack.enter_context(contextlib.closing(playing)):
+            if taking := [taker for taker in takers if taker.wants(now)]:
+                frame = draw()
+                most = max(most, frame.triangle_count)
+                for taker in taking:
+                    taker.take(now, frame)
+    return most
+
+
+@contextlib.contextmanager
+def _sheet_of(script: Script, options: CaptureOptions, sheet: Path) -> Iterator[Taker]:
+    """Takes the frames of the named poses, and lays them out in a picture at the end."""
+    half, wanted = 0.5 / options.frames_per_second, list(script.key_poses)
+    named: list[tuple[str, Image]] = []
+
+    def take(now: float, frame: Frame) -> None:
+        """For as many poses as are at this frame."""
+        while wanted and wanted[0].time <= now + half:
+            named.append((wanted.pop(0).name or "", frame.image))
+
+    yield Taker(lambda now: bool(wanted) and wanted[0].time <= now + half, take)
+    save_png(sheet, contact_sheet(named, columns=2 if options.beside else 3))
+
+
+def _moment_of(script: Script, options: CaptureOptions, time: float | None) -> float:
+    """The time [s] of the frame of which a picture is taken."""
     if time is None:
         time = script.key_poses[0].time if script.key_poses else script.duration
-    rate = options.frames_per_second
-    still_at = round(time * rate) / rate if still else -1.0
-    until = still_at if still and not sheet else max(script.duration, still_at)
-    begin, until = options.span or (0.0, until)
-    begin -= 0.5 / rate  # a frame is of the span where it is nearest to its begin
-    named: list[tuple[str, Image]] = []
-    most = 0
-    with contextlib.ExitStack() as stack:
-        film = None
-        if output is not None and not still:
-            film = stack.enter_context(
-                _sink_for(output, options, overwrite, soundtrack_of(script, options.span))
-            )
-        count = (
-            1 if film is None else processes.worthwhile(options, round((until - begin) * rate) + 1)
-        )
-        playing = _played(script, options, until, progress, count)
-        for now, draw in stack.enter_context(contextlib.closing(playing)):
-            is_wanted = bool(wanted) and wanted[0].time <= now + 0.5 / rate
-            if now < begin or (film is None and not is_wanted and now != still_at):
-                continue
-            frame = draw()
-            most = max(most, frame.triangle_count)
-            if film is not None:
-                film(frame.image, frame.known)
-            if still and now == still_at:
-                save_labelled(still, frame.image, frame.known)
-            while wanted and wanted[0].time <= now + 0.5 / rate:
-                named.append((wanted.pop(0).name or "", frame.image))
-        if sheet is not None:
-            save_png(sheet, contact_sheet(named, columns=2 if options.beside else 3))
-        return most
+    return round(time * options.frames_per_second) / options.frames_per_second
 
 
 def _played(

@@ -176,7 +176,7 @@ def _check_files(
             raise UserError(f"{path}: there is no such file")
     check_apart(outputs, inputs)
     if name == "capture" and given["output"] is not None:
-        from ..capture.formats import check_name
+        from ..capture.encoder import check_name
 
         check_name(given["output"])
 

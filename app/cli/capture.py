@@ -108,7 +108,7 @@ def capture(
     """
     from ..capture import CaptureOptions
     from ..capture import capture as film_of
-    from ..capture.formats import HEARD
+    from ..capture.encoder import HEARD
     from ..files import check_apart
     from ..passes.labelled import beside
     from ..refining.refiners import parse_comparison
@@ -153,7 +153,7 @@ def capture(
 
 def _tell_size(output: Path, options: CaptureOptions) -> None:
     """Say where a film is larger than was asked for."""
-    from ..capture.formats import size_of_film
+    from ..capture.encoder import size_of_film
 
     width, height = size_of_film(output, options.size, is_transparent=options.is_transparent)
     if (width, height) != options.size:

@@ -205,7 +205,7 @@ class Drawing(Subject):
             colour_by=render.ColourBy.SPLITS if self.splits else render.ColourBy.NONE,
             textured=self.skin == "textured",
             albedo=render.CLAY if self.skin == "clay" else render.SKIN,
-            wrinkles=self.wrinkles,
+            bumps=self.wrinkles,
             light=render.LIGHTS[self.light],
         )
 

@@ -20,8 +20,8 @@ from risorius import render
 from ..files import Image
 from ..motion import SETTLING
 from ..motion.idle import looking_at
-from ..passes.camera_labels import CameraLabels
 from ..passes.labelled import Labelled
+from ..passes.labels import CameraLabels
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, Viewport
 from ..refining.looks import Refinement

@@ -17,7 +17,7 @@ from risorius.geometry.normals import vertex_normals
 from ..errors import UserError
 from ..motion import SETTLING
 from ..scenes import FaceScene
-from ..scenes.growing import Growing
+from ..scenes.surface_attachment import SurfaceAttachment
 from .clip import Clip, Surface
 from .formats import RIGS
 from .morphs import Floats
@@ -147,7 +147,7 @@ def _resting(scene: FaceScene, pose: Mapping[str, float]) -> Shapes:
     shapes = {
         part.name: in_head(scene, part.bone, part.vertices[None], bones)[0]
         for part in scene.parts
-        if part.bone == JAW or isinstance(part, Growing)
+        if part.bone == JAW or isinstance(part, SurfaceAttachment)
     }
     return {"skin": in_head(scene, None, scene.positions[None], bones)[0], **shapes}
 

@@ -41,7 +41,7 @@ class Passes:
         self._pipeline, self.drawn = pipeline, drawn
         self._tension = refine.Tension(scene.faces, scene.rest_positions)
         # Thin hairs are what is behind them, as in pictures that people label.
-        self._parts = [part for part in scene.parts if not part.hair]
+        self._parts = [part for part in scene.parts if not part.strand_radius]
         self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, self._parts)])
 
     @property
@@ -64,16 +64,16 @@ class Passes:
         if "tension" in wanted:
             stretch, compression, _ = self._tension.measure(scene.positions)
             values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
-        wrinkles = None
+        bumps = None
         if pipeline.wrinkle_map is not None and drawn.has_uv:
-            wrinkles = pipeline.wrinkle_map, drawn.strength
+            bumps = pipeline.wrinkle_map, drawn.strength
         geometry = pipeline.renderer.draw_geometry(
             drawn.stream,
             self._parts,
             scene.bone_transforms(),
             camera,
             values=values,
-            wrinkles=wrinkles,
+            bumps=bumps,
         )
         # Entry -1, the last one, is that of pixels where nothing is drawn.
         parts = len(self._part_classes)

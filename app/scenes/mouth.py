@@ -49,7 +49,9 @@ class Tongue:
     unlit: Floats  # its colours in full light
     front: float  # z of the front teeth [mm]
     shape: npt.NDArray[np.float64] | None = None  # taken last
-    hair: float = 0.0
+    is_enclosed: bool = True
+    strand_radius: float = 0.0
+    striation: None = None
 
     @classmethod
     def of(cls, part: Any, front: float) -> Tongue:

@@ -23,8 +23,8 @@ from risorius.assets.identities import HAIR, Person, recoloured
 from ..controls.mirror import parted
 from ..errors import UserError
 from ..process_cache import cached, file_state
-from .growing import Growing
 from .mouth import Tongue, shaded_mouth
+from .surface_attachment import SurfaceAttachment
 
 BUILT_IN, OWN = "built-in", "own"  # what heads are called: that which comes along, and a user's
 CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
@@ -130,7 +130,7 @@ class FaceScene(Scene):
         self.parts = tuple(
             part
             if getattr(part, "roots", None) is None
-            else Growing.of(part, self.rest_positions, self.faces)
+            else SurfaceAttachment.of(part, self.rest_positions, self.faces)
             for part in shaded_mouth(head.parts)
         )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
@@ -200,7 +200,7 @@ class FaceScene(Scene):
     def _bend_parts(self) -> None:
         bent, bones = self.simulation.tongue(), self.bone_transforms()
         for part in self.parts:
-            if isinstance(part, Growing):
+            if isinstance(part, SurfaceAttachment):
                 part.follow(self.positions, bones[part.bone])
             elif isinstance(part, Tongue) and bent is not None:
                 part.bend(bent)

@@ -21,7 +21,7 @@ from risorius import refine, render
 from risorius.schema import Flag, OneOf, Record, Within, read_what_fits
 
 from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
-from ..capture.formats import FORMATS as FILMS
+from ..capture.encoder import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, save_text

@@ -161,7 +161,7 @@ def style_of(display: Display, background: render.Background | None) -> render.S
         textured=is_textured,
         occlusion=display.occlusion,
         albedo=albedo,
-        wrinkles=display.wrinkles,
+        bumps=display.wrinkles,
         light=render.LIGHTS[display.light],
         background=background,
     )

@@ -30,7 +30,7 @@ SIZE = 480
 """Width and height of a picture [pixels]."""
 SUPERSAMPLING = 2
 VIEWS = ("front", "three-quarter", "profile")
-CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, wrinkles=0.0)
+CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, bumps=0.0)
 BACKGROUND = 215
 """Grey level behind the mesh, about that of the window's."""
 

@@ -133,7 +133,7 @@ def wrinkles() -> Image:
         scene.pose({pose: 1.0})
         scene.step(SETTLED)
         for strength, how in ((0.0, "without"), (1.0, "with wrinkles")):
-            style = render.Style(wrinkles=strength)
+            style = render.Style(bumps=strength)
             options = CaptureOptions(size=WRINKLED, camera=view, style=style)
             with Capture(scene, options) as capture:
                 capture.camera.target = np.array(target)

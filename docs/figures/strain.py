@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import SimpleNamespace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +11,7 @@ from risorius import refine, render
 from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
+from risorius.assets.model import Part
 from risorius.bench.canvas import image_table
 from risorius.refine import Tension, TensionMap
 
@@ -55,13 +55,13 @@ def tension_map(size: tuple[int, int] = SIZE, poses: Sequence[str] = POSES) -> I
     return image_table([("stretch (orange) and compression (blue) against rest", cells)])
 
 
-def _coloured(name: str, mesh: refine.RefinedMesh, found: TensionMap) -> SimpleNamespace:
+def _coloured(name: str, mesh: refine.RefinedMesh, found: TensionMap) -> Part:
     """The skin as a part with a colour for each vertex."""
     stretch = np.clip(found.stretch / FULL, 0.0, 1.0)[:, None]
     compression = np.clip(found.compression / FULL, 0.0, 1.0)[:, None]
     colours = NEUTRAL + stretch * (STRETCHED - NEUTRAL)
     colours = colours + compression * (COMPRESSED - colours)
-    return SimpleNamespace(
+    return Part(
         name=f"skin, {name}",
         vertices=mesh.positions.copy(),
         normals=mesh.normals.copy(),

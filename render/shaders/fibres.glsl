@@ -1,4 +1,4 @@
-// Striation of muscle: strands side by side in bundles, each with its own tone, and grooves between
+// Striation: strands side by side in bundles, each with its own tone, and grooves between
 // them that catch the light. Strands finer than pixels fade into their mean.
 
 const float STRAND = 0.85, BUNDLE = 3.4;  // [mm] across
@@ -27,7 +27,7 @@ Strand strand_at(vec2 fibre) {
     return Strand(tone - grooves, -(0.9 * fine.z * fine.x + 0.8 * coarse.z * coarse.x));
 }
 
-// As wrinkles.glsl: the gradient of a height on any surface.
+// As bumps.glsl: the gradient of a height on any surface.
 vec3 stranded(vec3 normal, vec3 position, float across, float slope) {
     vec3 along_x = dFdx(position), along_y = dFdy(position);
     vec3 first = cross(along_y, normal), second = cross(normal, along_x);

@@ -1,8 +1,8 @@
 // What each pixel shows, as numbers: no light, no blending, one sample.
-// WRINKLES: of the skin, as in surface.glsl.
+// BUMPS: of the skin, as in surface.glsl.
 
-#if defined(WRINKLES)
-#define SURFACE vec3 normal; float depth; vec2 uv; vec2 values; vec3 position; vec2 wrinkling;
+#if defined(BUMPS)
+#define SURFACE vec3 normal; float depth; vec2 uv; vec2 values; vec3 position; vec2 bump_amounts;
 #else
 #define SURFACE vec3 normal; float depth; vec2 uv; vec2 values;
 #endif
@@ -13,8 +13,8 @@ in vec3 in_position;
 in vec3 in_normal;
 in vec2 in_uv;      // of the skin; parts have none
 in vec2 in_values;
-#if defined(WRINKLES)
-in vec2 in_wrinkling;
+#if defined(BUMPS)
+in vec2 in_bumps;
 #endif
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -26,17 +26,17 @@ void main() {
     surface.depth = -position.z;
     surface.uv = in_uv;
     surface.values = in_values;
-#if defined(WRINKLES)
+#if defined(BUMPS)
     surface.position = position.xyz;
-    surface.wrinkling = in_wrinkling;
+    surface.bump_amounts = in_bumps;
 #endif
     gl_Position = projection * position;
 }
 
 #elif defined(FRAGMENT_STAGE)
 
-#if defined(WRINKLES)
-#include "wrinkles.glsl"
+#if defined(BUMPS)
+#include "bumps.glsl"
 #endif
 in Surface { SURFACE } surface;
 uniform float first;  // number of the first triangle of this drawing call, counted from 1
@@ -48,9 +48,9 @@ void main() {
     float side = gl_FrontFacing ? 1.0 : -1.0;
     // From OpenGL's axes of the camera to those of pictures: x right, y down, z away from the eye.
     vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);
-#if defined(WRINKLES)
-    Wrinkle wrinkle = wrinkle_at(surface.uv, gl_FrontFacing ? surface.wrinkling : vec2(0.0));
-    normal = wrinkled(normal, surface.position, surface.uv, wrinkle);
+#if defined(BUMPS)
+    Bump bump = bump_at(surface.uv, gl_FrontFacing ? surface.bump_amounts : vec2(0.0));
+    normal = bumped(normal, surface.position, surface.uv, bump);
 #endif
     normal.yz = -normal.yz;
     normal_and_depth = vec4(normal, surface.depth);

@@ -1,9 +1,9 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
-// a picture), SHADOWS (of the key), WRINKLES (of the skin; with PIXEL), FRINGE (fading fringes along
-// contours, see outline.py), HAIR (thin cones, never drawn thinner than a pixel: they fade instead),
-// FIBRES (striation of muscle), TRANSLUCENT (skin that shows what is under it), SUNK (what is under
+// a picture), SHADOWS (of the key), BUMPS (of the skin; with PIXEL), FRINGE (fading fringes along
+// contours, see outline.py), STRANDS (thin cones, never drawn thinner than a pixel: they fade instead),
+// FIBRES (striation), TRANSLUCENT (skin that shows what is under it), SUNK (what is under
 // it, hidden where skin is whole), FADED (skin that fades toward a plane).
 
 #include "lighting.glsl"
@@ -29,23 +29,23 @@ uniform float sharpness;
 #else
 #define COLOUR_VARYING
 #endif
-#if defined(TEXTURED) || defined(WRINKLES)
+#if defined(TEXTURED) || defined(BUMPS)
 #define HAS_UV
 #define TEXTURE_VARYING vec2 uv;
 #else
 #define TEXTURE_VARYING
 #endif
-#if defined(WRINKLES)
-#define WRINKLE_VARYING vec2 wrinkling;
+#if defined(BUMPS)
+#define BUMP_VARYING vec2 bump_amounts;
 #else
-#define WRINKLE_VARYING
+#define BUMP_VARYING
 #endif
 #if defined(SHADOWS)
 #define SHADOW_VARYING vec3 light_place;
 #else
 #define SHADOW_VARYING
 #endif
-#if defined(FRINGE) || defined(HAIR)
+#if defined(FRINGE) || defined(STRANDS)
 #define FRINGE_VARYING float coverage;
 #else
 #define FRINGE_VARYING
@@ -56,7 +56,7 @@ uniform float sharpness;
 #define FIBRE_VARYING
 #endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING WRINKLE_VARYING FRINGE_VARYING FIBRE_VARYING
+    SHADOW_VARYING BUMP_VARYING FRINGE_VARYING FIBRE_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -68,8 +68,8 @@ in vec3 in_colour;
 #if defined(HAS_UV)
 in vec2 in_uv;
 #endif
-#if defined(WRINKLES)
-in vec2 in_wrinkling;
+#if defined(BUMPS)
+in vec2 in_bumps;
 #endif
 #if defined(FIBRES)
 in vec2 in_fibre;  // across and along the fibres [mm]
@@ -90,8 +90,8 @@ uniform float shadow_reach;
 uniform vec4 cut;  // plane, view space; in front of it the skin is whole
 uniform float cut_width;
 #endif
-#if defined(HAIR)
-uniform float half_hair;   // of a hair's thickness
+#if defined(STRANDS)
+uniform float half_strand;   // of a strand's thickness
 uniform float least_half;  // of what it is drawn with at least, at distance 1
 #endif
 out Surface { VARYINGS } surface;
@@ -99,10 +99,10 @@ out Surface { VARYINGS } surface;
 void main() {
     vec4 position = model_view * vec4(in_position, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal);
-#if defined(HAIR)
-    float seen = max(half_hair, -least_half * position.z);
-    position.xyz += normal * (seen - half_hair);
-    surface.coverage = half_hair / seen;
+#if defined(STRANDS)
+    float seen = max(half_strand, -least_half * position.z);
+    position.xyz += normal * (seen - half_strand);
+    surface.coverage = half_strand / seen;
 #endif
     surface.position = position.xyz;
 #if defined(PIXEL)
@@ -126,8 +126,8 @@ void main() {
 #if defined(HAS_UV)
     surface.uv = in_uv;
 #endif
-#if defined(WRINKLES)
-    surface.wrinkling = in_wrinkling;
+#if defined(BUMPS)
+    surface.bump_amounts = in_bumps;
 #endif
 #if defined(SHADOWS)
     float height = shadow_offset + shadow_reach * length(cross(normal, to_key));
@@ -188,8 +188,8 @@ void main() {
 #if defined(HAS_UV)
         drawn.uv = corner[i].uv;
 #endif
-#if defined(WRINKLES)
-        drawn.wrinkling = corner[i].wrinkling;
+#if defined(BUMPS)
+        drawn.bump_amounts = corner[i].bump_amounts;
 #endif
 #if defined(SHADOWS)
         drawn.light_place = corner[i].light_place;
@@ -238,8 +238,8 @@ uniform vec4 ramp[5];  // colour, and how much of it
 #if defined(SHADOWS)
 #include "shadowed.glsl"
 #endif
-#if defined(WRINKLES)
-#include "wrinkles.glsl"
+#if defined(BUMPS)
+#include "bumps.glsl"
 #endif
 #if defined(FIBRES)
 #include "fibres.glsl"
@@ -324,9 +324,9 @@ void main() {
     vec3 to_eye = normalize(-surface.position);
 #endif
     vec3 normal = shading_normal();
-#if defined(WRINKLES)
-    Wrinkle wrinkle = wrinkle_at(surface.uv, IS_FRONT ? surface.wrinkling : vec2(0.0));
-    normal = wrinkled(normal, surface.position, surface.uv, wrinkle);
+#if defined(BUMPS)
+    Bump bump = bump_at(surface.uv, IS_FRONT ? surface.bump_amounts : vec2(0.0));
+    normal = bumped(normal, surface.position, surface.uv, bump);
 #endif
 #if defined(FIBRES)
     Strand strand = strand_at(surface.fibre);
@@ -348,8 +348,8 @@ void main() {
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
     lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * openness;
 #endif
-#if defined(WRINKLES)
-    front *= 1.0 - wrinkle.depth * FURROW;
+#if defined(BUMPS)
+    front *= 1.0 - bump.depth * FURROW;
 #endif
 #if defined(FIBRES)
     front *= strand.tone;
@@ -381,7 +381,7 @@ void main() {
     float coverage = clamp(wire_half_width + 0.5 - nearest, 0.0, 1.0);
     shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
 #endif
-#if defined(FRINGE) || defined(HAIR)
+#if defined(FRINGE) || defined(STRANDS)
     pixel_colour = vec4(shown, solid * surface.coverage);
 #elif defined(TRANSLUCENT)
     // Where it is seen from the side there is more of it: so the outline of the face reads.

@@ -26,7 +26,7 @@ from hypothesis import strategies as st
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
 from risorius.app.capture.drawing import straight
-from risorius.app.capture.formats import FORMATS, TRANSPARENT, size_of_film
+from risorius.app.capture.encoder import FORMATS, TRANSPARENT, size_of_film
 from risorius.app.capture.outputs import with_colours_around
 from risorius.app.cli import main
 from risorius.app.errors import UserError

@@ -160,7 +160,7 @@ def test_depths_shadows_and_normals_show_them(joy: FaceScene) -> None:
     found = []
     with Capture(joy, options) as capture:
         for strength in (0.0, 1.0):
-            capture.options = replace(options, style=render.Style(wrinkles=strength))
+            capture.options = replace(options, style=render.Style(bumps=strength))
             frame = capture.draw_frame()
             assert frame.known is not None
             shadow = capture.pipeline.renderer._shadow

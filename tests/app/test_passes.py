@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from risorius import refine, render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.passes.camera_labels import CameraLabels
-from risorius.app.passes.landmarks import landmarks_in, points_of
+from risorius.app.passes.labels import CameraLabels, landmarks_in, points_of
 from risorius.app.passes.passes import IMAGES, Passes
 from risorius.app.refining.looks import Refinement
 from risorius.app.scenes import ClothScene, FaceScene

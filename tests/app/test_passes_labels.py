@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import render
-from risorius.app.passes.camera_labels import CameraLabels, gaze, head_pose
-from risorius.app.passes.labels import labels_of
+from risorius.app.passes.labels import CameraLabels, gaze, head_pose, labels_of
 from risorius.app.scenes import FaceScene, PlaneScene
 
 SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))

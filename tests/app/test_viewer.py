@@ -238,15 +238,15 @@ def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     viewer.session.toggle_alone("surprise")
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
-    assert viewer.settings.display.wrinkles == 1.0 and viewer.stage.refined.stream.has_wrinkles
+    assert viewer.settings.display.wrinkles == 1.0 and viewer.stage.refined.stream.has_bumps
     drag(viewer, middle(viewer, "wrinkles"), (-400, 0))
     xdotool(viewer, "mouseup", 1)
-    assert viewer.settings.display.wrinkles == 0.0 and not viewer.stage.refined.stream.has_wrinkles
+    assert viewer.settings.display.wrinkles == 0.0 and not viewer.stage.refined.stream.has_bumps
     xdotool(viewer, "click", 3)
     xdotool(viewer, "mousemove", *middle(viewer, "wrinkles"))
     xdotool(viewer, "click", 3)
     assert viewer.settings.display.wrinkles == 1.0
-    assert until(viewer, lambda: viewer.stage.refined.stream.has_wrinkles)
+    assert until(viewer, lambda: viewer.stage.refined.stream.has_bumps)
 
 
 def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:

@@ -166,7 +166,7 @@ def draw_images(
         scene.step(SETTLED)
         frames = []
         for strength in (0.0, 1.0):
-            capture.options = replace(options, style=render.Style(wrinkles=strength))
+            capture.options = replace(options, style=render.Style(bumps=strength))
             frames.append(capture.draw_image().astype(np.float64))
     return frames[0], frames[1], capture
 

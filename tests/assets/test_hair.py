@@ -68,9 +68,11 @@ def test_hair_is_a_sound_part(number: int, cut: str) -> None:
         assert part.name.startswith(HAIR) and part.bone == "cranium"
         count = len(part.vertices)
         assert part.normals.shape == part.colours.shape == (count, 3)
-        assert part.strands is not None and part.strands.shape == (count, 5)
+        assert part.striation is not None and part.striation.shape == (count, 5)
         assert 0 <= part.faces.min() and part.faces.max() < count
-        assert all(np.isfinite(each).all() for each in (part.vertices, part.colours, part.strands))
+        assert all(
+            np.isfinite(each).all() for each in (part.vertices, part.colours, part.striation)
+        )
         assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0, atol=1e-5)
         corners = part.vertices[part.faces].astype(np.float64)
         facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -160,7 +160,7 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head: Head) -> None:
 def test_lashes_are_rooted_in_the_lids_edges(head: Head) -> None:
     """Each stands on a margin, leaves the eye, and keeps clear of the eyeball."""
     lashes = part(head, "lashes")
-    assert lashes.roots is not None and lashes.hair > 0.0
+    assert lashes.roots is not None and lashes.strand_radius > 0.0
     edges = np.vstack([head.vertices[head.rings[f"eye_2_{side}"]] for side in ("right", "left")])
     roots = np.unique(lashes.roots)
     along = np.vstack([edges, 0.5 * (edges + np.roll(edges, 1, axis=0))])

@@ -130,7 +130,13 @@ class Ball:
     bone: str = "cranium"
     shine: float = 0.0
     name: str = "ball"
+    is_enclosed: bool = True
+    strand_radius: float = 0.0
     shape: Shape = field(default_factory=lambda: sphere(3, 20.0))
+
+    @property
+    def striation(self) -> Floats | None:
+        return None
 
     @property
     def vertices(self) -> Floats:

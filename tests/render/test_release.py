@@ -56,7 +56,7 @@ def draw_all(surface: render.Surface) -> np.ndarray:
     amounts = np.linspace(0.0, 1.0, 2 * len(shape.positions), dtype=np.float32).reshape(-1, 2)
     stream.upload(len(shape.positions), len(shape.triangles), amounts)
     texture = renderer.load_texture(np.full((8, 8, 3), 200, np.uint8))
-    wrinkles = renderer.load_wrinkles(np.full((8, 8, 4), 128, np.uint8), 1.0)
+    bumps = renderer.load_bumps(np.full((8, 8, 4), 128, np.uint8), 1.0)
     values = np.arange(len(shape.triangles), dtype=np.uint8)
     styles = [
         replace(PLAIN, shadows=True),
@@ -65,7 +65,7 @@ def draw_all(surface: render.Surface) -> np.ndarray:
     for style in styles:
         surface.begin()
         renderer.draw_background(style)
-        renderer.draw_mesh(stream, camera, style, values=values, texture=texture, wrinkles=wrinkles)
+        renderer.draw_mesh(stream, camera, style, values=values, texture=texture, bumps=bumps)
         renderer.draw_parts([Ball()], STILL, camera, style)
         renderer.draw_outline(stream, camera, style, texture=texture)
         renderer.draw_lines(render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), camera)

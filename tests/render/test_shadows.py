@@ -89,10 +89,10 @@ def test_convex_things_do_not_shadow_themselves(
 
 
 @pytest.mark.parametrize("shadows", [True, False])
-def test_locks_throw_shadows_on_a_mesh_but_not_on_themselves(
+def test_cards_throw_shadows_on_a_mesh_but_not_on_themselves(
     surface: render.Surface, shadows: bool
 ) -> None:
-    """A ball of hair before a wall darkens it to its lower right, once it is told to, and a frame.
+    """A ball of hair cards before a wall darkens it to its lower right, where it is told to.
 
     The ball keeps its colours: what is only a little nearer to the light does not shade it.
     """
@@ -107,10 +107,10 @@ def test_locks_throw_shadows_on_a_mesh_but_not_on_themselves(
         renderer.draw_background(style)
         if is_cast and shadows:
             renderer.cast_shadows(
-                [HairBall()], {"cranium": before_wall}, facing(), style, stream=wall
+                [StripedBall()], {"cranium": before_wall}, facing(), style, stream=wall
             )
         renderer.draw_mesh(wall, facing(), style)
-        renderer.draw_parts([HairBall()], {"cranium": before_wall}, facing(), style)
+        renderer.draw_parts([StripedBall()], {"cranium": before_wall}, facing(), style)
         surface.end()
         frames.append(surface.read().astype(np.int32))
     within, without = frames
@@ -120,11 +120,11 @@ def test_locks_throw_shadows_on_a_mesh_but_not_on_themselves(
 
 
 @dataclass(frozen=True, eq=False)
-class HairBall(Ball):
+class StripedBall(Ball):
     """A ball whose strands run down."""
 
     @property
-    def strands(self) -> npt.NDArray[np.float32]:
+    def striation(self) -> npt.NDArray[np.float32]:
         """Across and along [mm], and a unit vector along, shape (n, 5)."""
         normals = self.normals.astype(np.float64)
         down = np.array([0.0, -1.0, 0.0]) + normals[:, 1:2] * normals

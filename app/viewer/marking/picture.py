@@ -11,7 +11,7 @@ from risorius import assets, render
 from risorius.geometry.normals import vertex_normals
 from risorius.sim.landmarks import MIRRORED
 
-from ...passes.camera_labels import CameraLabels
+from ...passes.labels import CameraLabels
 from ...pipeline import Pipeline, Viewport
 from ...refining.looks import STATIC, Refinement
 from ...scenes import Scene, build_scene

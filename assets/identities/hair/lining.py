@@ -47,7 +47,7 @@ def lining_of(cut: Cut, envelope: Envelope, colour: Points, receded: float) -> d
             [piece[3] + start for piece, start in zip(pieces, starts, strict=True)]
         ).astype(np.int32),
         "colours": (shades[:, None] * colour).astype(np.float32),
-        "strands": np.vstack([strands for *_, strands, _ in pieces]).astype(np.float32),
+        "striation": np.vstack([strands for *_, strands, _ in pieces]).astype(np.float32),
     }
 
 

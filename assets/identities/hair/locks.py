@@ -35,7 +35,7 @@ class Look(NamedTuple):
 def locks_along(
     lines: list[Points], layer: Values, look: Look, colour: Values, random: np.random.Generator
 ) -> dict[str, Any]:
-    """The arrays of a `Part`: vertices, normals, faces, colours, strands.
+    """The arrays of a `Part`: vertices, normals, faces, colours, striation.
 
     lines: of the locks, each (k, 3) [mm] with a k of its own. layer: 0 for the lowest, 1 for the
     uppermost. colour: the mean of all (sRGB).
@@ -74,7 +74,7 @@ def locks_along(
         "normals": normals.astype(np.float32),
         "faces": faces.reshape(-1, 3).astype(np.int32),
         "colours": np.clip(tones.reshape(-1, 1) * colour, 0.0, 1.0).astype(np.float32),
-        "strands": strands.reshape(-1, 5).astype(np.float32),
+        "striation": strands.reshape(-1, 5).astype(np.float32),
     }
 
 

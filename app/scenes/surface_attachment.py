@@ -1,4 +1,4 @@
-"""What grows from the skin and moves with it: lashes, and the tears along the lids.
+"""Parts attached to a surface: lashes, and the tears along the lids, which move with the skin.
 
 Each root keeps its place over the triangle that was nearest to it at rest. What stands on it turns
 as the skin there does: with the normal, which is smooth over triangles, and with one direction in
@@ -23,7 +23,7 @@ Indices = npt.NDArray[np.int32]
 
 
 @dataclass(eq=False)
-class Growing:
+class SurfaceAttachment:
     """A part that changes its shape with the skin; drawn as any other (render/parts.py)."""
 
     name: str
@@ -33,7 +33,7 @@ class Growing:
     colours: Singles
     bone: str
     shine: float
-    hair: float
+    strand_radius: float
     near: npt.NDArray[np.int64]  # numbers of the skin's vertices around the roots, (P,)
     around: Indices  # the triangles among them, (Q, 3)
     feet: SurfacePoints  # of the roots, (R,)
@@ -41,9 +41,11 @@ class Growing:
     across: Floats  # (R, 3) of a direction in the triangle: what each corner adds to it
     local: Floats  # (n, 3) from the foot of the root, in its frame at rest
     local_normals: Floats
+    is_enclosed: bool = True
+    striation: None = None
 
     @classmethod
-    def of(cls, part: Any, skin: Floats, faces: Indices) -> Growing:
+    def of(cls, part: Any, skin: Floats, faces: Indices) -> SurfaceAttachment:
         """A part with `roots`, as it stands on the skin at rest, (V, 3) with triangles (F, 3)."""
         rest, normals = part.vertices.astype(np.float64), part.normals.astype(np.float64)
         roots, row = np.unique(part.roots, return_inverse=True)
@@ -54,15 +56,16 @@ class Growing:
         is_around = np.isin(faces, feet.corners).any(axis=1)
         near, around = np.unique(faces[is_around], return_inverse=True)
         feet = replace(feet, corners=np.searchsorted(near, feet.corners).astype(np.int32))
-        grown = cls(
+        attached = cls(
             part.name, part.vertices, part.normals, part.faces, part.colours, part.bone,
-            part.shine, part.hair, near.astype(np.int64), around.reshape(-1, 3).astype(np.int32),
+            part.shine, part.strand_radius, near.astype(np.int64),
+            around.reshape(-1, 3).astype(np.int32),
             feet, row, _along_x(skin[near][feet.corners]), rest, normals,
         )  # fmt: skip
-        places, frames = grown._frames(skin[near])
-        grown.local = np.einsum("nji,nj->ni", frames[row], rest - places[row])
-        grown.local_normals = np.einsum("nji,nj->ni", frames[row], normals)
-        return grown
+        places, frames = attached._frames(skin[near])
+        attached.local = np.einsum("nji,nj->ni", frames[row], rest - places[row])
+        attached.local_normals = np.einsum("nji,nj->ni", frames[row], normals)
+        return attached
 
     def follow(self, skin: Floats, bone: Floats) -> None:
         """Stand on the skin as it is now, (V, 3), told from the part's bone, a matrix (4, 4)."""

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from risorius import assets
 from risorius.app.scenes import FaceScene
-from risorius.app.scenes.growing import Growing
+from risorius.app.scenes.surface_attachment import SurfaceAttachment
 
 POSES = (
     {"AU43": 1.0},
@@ -29,17 +29,17 @@ def scene() -> FaceScene:
     return FaceScene()
 
 
-def grown(scene: FaceScene) -> list[Growing]:
-    """What grows from its skin."""
-    return [part for part in scene.parts if isinstance(part, Growing)]
+def attached(scene: FaceScene) -> list[SurfaceAttachment]:
+    """What is attached to its skin."""
+    return [part for part in scene.parts if isinstance(part, SurfaceAttachment)]
 
 
 def test_at_rest_they_are_as_they_were_made(scene: FaceScene) -> None:
     """Lashes and wet edges, to rounding."""
     scene.reset()
     made = {part.name: part for part in assets.load("head").parts}
-    assert {part.name for part in grown(scene)} == {"lashes", "wet_edges"}
-    for part in grown(scene):
+    assert {part.name for part in attached(scene)} == {"lashes", "wet_edges"}
+    for part in attached(scene):
         part.follow(scene.rest_positions, np.eye(4))
         assert np.allclose(part.vertices, made[part.name].vertices, atol=1e-4)
         assert np.allclose(part.normals, made[part.name].normals, atol=1e-4)
@@ -59,7 +59,7 @@ def test_a_skin_that_only_moves_takes_them_along(
     bone = np.eye(4)
     bone[:3, :3], bone[:3, 3] = turned.as_matrix(), shift
     made = {part.name: part for part in assets.load("head").parts}
-    for part in grown(scene):
+    for part in attached(scene):
         part.follow(skin, np.eye(4))
         expected = turned.apply(np.array(made[part.name].vertices, np.float64)) + shift
         assert np.allclose(part.vertices, expected, atol=1e-3)
@@ -78,7 +78,7 @@ def test_they_stay_on_lids_that_move(scene: FaceScene, pose: dict[str, float]) -
     bones = scene.bone_transforms()
     corners = scene.positions[scene.faces]
     tree = cKDTree(np.vstack([corners.mean(axis=1), scene.positions]))
-    for part in grown(scene):
+    for part in attached(scene):
         matrix = bones[part.bone]
         there = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
         roots = made[part.name].roots
@@ -88,7 +88,7 @@ def test_they_stay_on_lids_that_move(scene: FaceScene, pose: dict[str, float]) -
             np.linalg.norm(points - points[roots], axis=1)
             for points in (part.vertices, made[part.name].vertices)
         ]
-        if part.hair:
+        if part.strand_radius:
             assert np.allclose(*lengths, atol=1e-3)
             for eye in scene.head.eyes:
                 centre = matrix[:3, :3] @ eye.centre + matrix[:3, 3]

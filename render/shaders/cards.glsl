@@ -1,6 +1,6 @@
-// Locks of hair: striped along their strands, with highlights across them. SHADOWS: of the key.
-// What changes slowly over a lock is worked out at its corners: a picture of a head with long hair
-// is mostly hair.
+// Cards of strands, as hair is drawn: striped along them, with highlights across. SHADOWS: of the
+// key. What changes slowly over a card is worked out at its corners: a picture of long hair is
+// mostly cards.
 // Source: Kajiya, Kay 1989, "Rendering fur with three dimensional textures"; two highlights, one of
 // the hair's colour, as in Scheuermann 2004, "Practical real-time hair rendering and shading".
 
@@ -31,7 +31,7 @@ void main() {
     vec3 normal = normalize(mat3(model_view) * in_normal), along = mat3(model_view) * in_along;
     float lightness = 1.0;
 #if defined(SHADOWS)
-    // Toward the light, not off the lock: what is as far over it shades it, its neighbours do not.
+    // Toward the light, not off the card: what is as far over it shades it, its neighbours do not.
     vec3 above = position.xyz + (shadow_offset + shadow_reach) * to_key;
     lightness = key_lightness((shadow_matrix * vec4(above, 1.0)).xyz);
 #endif

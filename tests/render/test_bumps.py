@@ -21,7 +21,7 @@ def furrowed(
     amounts: tuple[float, float] | None,
     style: render.Style = PLAIN,
 ) -> npt.NDArray[np.int32]:
-    """A square whose right half has `texel` in its map and wrinkles by `amounts`."""
+    """A square whose right half has `texel` in its map and bumps by `amounts`."""
     texels = np.full((32, 32, 4), LEVEL, np.uint8)
     texels[:, 16:] = texel
     shape = square()
@@ -34,7 +34,7 @@ def furrowed(
     renderer.draw_background(style)
     values = np.zeros(len(shape.triangles), np.uint8)
     renderer.draw_mesh(
-        stream, facing(), style, values=values, wrinkles=renderer.load_wrinkles(texels, STEEP)
+        stream, facing(), style, values=values, bumps=renderer.load_bumps(texels, STEEP)
     )
     surface.end()
     return surface.read().astype(np.int32)
@@ -71,8 +71,8 @@ def test_a_texel_follows_its_own_amount(surface: render.Surface) -> None:
 def test_none_without_amounts_or_strength(
     surface: render.Surface, amounts: tuple[float, float] | None
 ) -> None:
-    """A style without wrinkles, and skin that does not wrinkle, are drawn to the same bytes."""
-    smooth = replace(PLAIN, wrinkles=0.0)
+    """A style without bumps, and skin that does not bump, are drawn to the same bytes."""
+    smooth = replace(PLAIN, bumps=0.0)
     style = smooth if amounts == (1.0, 1.0) else PLAIN
     texel = (190, 90, 200, 128)
     assert (furrowed(surface, texel, amounts, style) == furrowed(surface, texel, None)).all()
@@ -83,8 +83,8 @@ def test_per_pixel_shading_alone_has_them(surface: render.Surface, shading: rend
     """Nothing else has a normal for each pixel."""
     style = replace(PLAIN, shading=shading)
     texel = (190, 90, 200, 128)
-    wrinkled = furrowed(surface, texel, (1.0, 1.0), style)
-    assert (wrinkled == furrowed(surface, texel, None, style)).all()
+    furrows = furrowed(surface, texel, (1.0, 1.0), style)
+    assert (furrows == furrowed(surface, texel, None, style)).all()
 
 
 @pytest.mark.parametrize("colour_by", render.ColourBy)
@@ -98,12 +98,12 @@ def test_goes_with_every_style(
     assert (frame != furrowed(surface, LEVEL, (1.0, 1.0), style)).any()
 
 
-def test_part_of_a_mesh_wrinkles_without_a_crack(surface: render.Surface) -> None:
-    """With a level map, a sphere half of whose vertices wrinkle looks as it does without."""
+def test_part_of_a_mesh_has_bumps_without_a_crack(surface: render.Surface) -> None:
+    """With a level map, a sphere half of whose vertices bump looks as it does without."""
     shape = sphere()
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape, columns=8)
-    level = renderer.load_wrinkles(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    level = renderer.load_bumps(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     frames = []
     for share in (0.0, 0.5):
         rows = np.zeros((len(shape.positions), 2), np.float32)
@@ -111,7 +111,7 @@ def test_part_of_a_mesh_wrinkles_without_a_crack(surface: render.Surface) -> Non
         stream.upload(len(shape.positions), len(shape.triangles), rows)
         surface.begin()
         renderer.draw_background(PLAIN)
-        renderer.draw_mesh(stream, facing(), PLAIN, wrinkles=level)
+        renderer.draw_mesh(stream, facing(), PLAIN, bumps=level)
         surface.end()
         frames.append(surface.read().astype(np.int32))
     assert np.abs(frames[0] - frames[1]).max() <= 1
@@ -120,12 +120,12 @@ def test_part_of_a_mesh_wrinkles_without_a_crack(surface: render.Surface) -> Non
 def test_what_does_not_fit_is_refused(surface: render.Surface) -> None:
     """A map that is none, amounts for other vertices, a stream without texture coordinates."""
     renderer = render.Renderer(surface)
-    with pytest.raises(ValueError, match="map of wrinkles"):
-        renderer.load_wrinkles(np.zeros((4, 4, 3), np.uint8), STEEP)
+    with pytest.raises(ValueError, match="the bump map has shape"):
+        renderer.load_bumps(np.zeros((4, 4, 3), np.uint8), STEEP)
     shape = square()
     stream = lent(renderer, shape)
-    with pytest.raises(ValueError, match="wrinkling has shape"):
+    with pytest.raises(ValueError, match="bump_amounts has shape"):
         stream.upload(4, 2, np.zeros((3, 2), np.float32))
-    level = renderer.load_wrinkles(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    level = renderer.load_bumps(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     with pytest.raises(ValueError, match="8 columns"):
-        renderer.draw_mesh(stream, facing(), PLAIN, wrinkles=level)
+        renderer.draw_mesh(stream, facing(), PLAIN, bumps=level)
