@@ -1,14 +1,11 @@
 """Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, and what paints it.
 
-trimesh reads all but OBJ. It likes to merge, split and reorder vertices on loading, and to open the
-pictures and materials that a file names; here every vertex and triangle stays where the file has
-it, because landmarks and animation caches count on their numbers. What paints an OBJ file is in
-files beside it; see pictures.py.
+trimesh reads all but OBJ, in a process of its own (foreign.py). It likes to merge and reorder
+vertices on loading, and to open the pictures and materials that a file names; here every vertex and
+triangle stays where the file has it, because landmarks and animation caches count on their numbers.
+What paints an OBJ file is in files beside it; see pictures.py.
 """
 
-import io
-import logging
-import warnings
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -18,9 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import AssetError
-from .glb_claims import pictures_apart
-from .mesh_claims import CHECKS
-from .pictures import Texture, libraries_missing, read_packed, texture_of
+from .foreign import Arrays, read_arrays_apart
+from .pictures import Texture, libraries_missing, texture_of
 from .topology import unique_points
 from .user_files import MOST_VERTICES, named, read_file
 from .wavefront import read_obj
@@ -30,9 +26,6 @@ MOST_BYTES = 100_000_000
 FARTHEST = (
     1e9  # of a coordinate, in any unit: far beyond all meshes, and its cube is still a number
 )
-
-# What trimesh warns of is told by our one line, or does not concern the surface.
-logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
 
 @dataclass(frozen=True)
@@ -82,14 +75,9 @@ def read_mesh(path: str | Path) -> Mesh:
             texture = texture_of(surface, Path(path).parent)
             notes = libraries_missing(surface, Path(path).parent)
         else:
-            content = CHECKS[suffix](content)
-            if suffix == "glb":
-                content, pictures = pictures_apart(content)
-            pieces = _read_by_trimesh(content, suffix)
-            vertices, faces = _joined(pieces)
-            colours = _colours(pieces)
-            if suffix == "glb":  # the only one of these that holds the pictures themselves
-                texture = _texture(pieces, pictures)
+            arrays = read_arrays_apart(content, suffix)
+            vertices, faces, colours = arrays["vertices"], arrays["faces"], arrays.get("colours")
+            texture = _texture(arrays) if "uv" in arrays else None
         if suffix == "stl":
             vertices = vertices + 0.0  # no zero with a sign
             first, number = unique_points(vertices)
@@ -105,70 +93,14 @@ def read_mesh(path: str | Path) -> Mesh:
     return Mesh(vertices.astype(np.float64), faces.astype(np.int32), texture, colours, same, notes)
 
 
-def _read_by_trimesh(content: bytes, suffix: str) -> list[Any]:
-    """The pieces of a mesh, in their places; AssetError for whatever trimesh may raise."""
-    import trimesh  # half a second, needed by nothing else here
-
-    try:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            # numpy's way to say that a number is none, after which it would read no further
-            warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
-            scene = trimesh.load_scene(
-                io.BytesIO(content),
-                file_type=suffix,
-                process=False,
-                maintain_order=True,
-                skip_materials=suffix != "glb",  # whose pictures were taken out
-                fix_texture=False,
-            )
-            return [each for each in scene.dump() if hasattr(each, "faces")]
-    except Exception as error:  # every reader of trimesh has its own kinds
-        reason = " ".join(str(error).split())[:200]
-        raise AssetError(
-            f"broken, or not what its name says ({type(error).__name__}: {reason}); open it in a "
-            "modelling program, triangulate it and save it anew"
-        ) from None
-
-
-def _joined(pieces: list[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-    """Vertices and triangles of all pieces, one after the other."""
-    starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
-    faces = [each.faces.reshape(-1, 3) + start for each, start in zip(pieces, starts, strict=False)]
-    vertices = [each.vertices for each in pieces]
-    return np.vstack([np.zeros((0, 3)), *vertices]), np.vstack([np.zeros((0, 3), np.int64), *faces])
-
-
-def _colours(pieces: list[Any]) -> npt.NDArray[np.uint8] | None:
-    """The colours of all vertices; None where a piece has none."""
-    if not pieces or any(each.visual.kind != "vertex" for each in pieces):
-        return None
-    found = [np.asarray(each.visual.vertex_colors)[:, :3] for each in pieces]
-    return np.vstack(found).astype(np.uint8)
-
-
-def _texture(pieces: list[Any], pictures: list[bytes | None]) -> Texture | None:
-    """What pictures the pieces of a GLB file have, and where; None where there are none."""
-    uv, picture, is_painted = [], [], False
-    for each in pieces:
-        material, found = -1, getattr(each.visual, "uv", None)
-        if found is not None and len(found) == len(each.vertices):
-            name = each.visual.material.name
-            material = int(name) if pictures[int(name)] is not None else -1
-        else:
-            found = np.zeros((len(each.vertices), 2))
-        uv.append(np.asarray(found, np.float32)[:, :2])
-        picture.append(np.full(len(each.faces), material))
-        is_painted |= material >= 0
-    if not is_painted:
-        return None
-    readers = tuple(partial(read_packed, each) for each in pictures if each is not None)
-    place = np.cumsum([each is not None for each in pictures]) - 1
-    numbers = np.concatenate(picture)
+def _texture(arrays: Arrays) -> Texture:
+    """How a GLB file, the only one of these that holds pictures itself, paints its mesh."""
+    count = sum(name.startswith("picture_") for name in arrays)
     return Texture(
-        np.vstack(uv),
-        _joined(pieces)[1].astype(np.int32),
-        np.where(numbers < 0, -1, place[numbers]),
-        readers,
+        arrays["uv"].astype(np.float32),
+        arrays["faces"].astype(np.int32),
+        arrays["picture"],
+        tuple(partial(arrays.__getitem__, f"picture_{number}") for number in range(count)),
     )
 
 

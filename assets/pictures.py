@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -103,14 +104,6 @@ def _reader(path: Path) -> Callable[[], Image]:
     return read
 
 
-def read_packed(content: bytes) -> Image:
-    """A picture that lies in the mesh file itself."""
-    try:
-        return read_picture(content)
-    except AssetError as error:
-        raise AssetError(f"its picture: {error}") from None
-
-
 def read_picture(content: bytes) -> Image:
     """A PNG or JPEG picture, sRGB, shape (H, W, 3), shrunk to LARGEST."""
     import PIL.Image  # which to load a head takes no time for
@@ -119,17 +112,21 @@ def read_picture(content: bytes) -> Image:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Pillow's own limit is near ours
             with PIL.Image.open(io.BytesIO(content), formats=FORMATS) as picture:
-                if picture.width * picture.height > MOST_PIXELS:
-                    raise AssetError(
-                        f"has {picture.width} x {picture.height} pixels; allowed are "
-                        f"{MOST_PIXELS}: shrink it"
-                    )
-                picture.draft("RGB", (LARGEST, LARGEST))
-                colours = picture.convert("RGB")
-                colours.thumbnail((LARGEST, LARGEST))
-                return np.asarray(colours)
+                return shrunk(picture)
     except AssetError:
         raise
     except Exception as error:  # every format of Pillow has its own kinds
         reason = " ".join(str(error).split())[:200]
         raise AssetError(f"is broken, or neither PNG nor JPEG ({reason}); save it anew") from None
+
+
+def shrunk(picture: Any) -> Image:
+    """A picture that Pillow has opened, sRGB, shape (H, W, 3), at most LARGEST each way."""
+    if picture.width * picture.height > MOST_PIXELS:
+        raise AssetError(
+            f"has {picture.width} x {picture.height} pixels; allowed are {MOST_PIXELS}: shrink it"
+        )
+    picture.draft("RGB", (LARGEST, LARGEST))
+    colours = picture.convert("RGB")
+    colours.thumbnail((LARGEST, LARGEST))
+    return np.asarray(colours)
