@@ -145,34 +145,15 @@ def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
     [
         ("[kind]", "unknown key 'kind'; did you mean 'kinds'? Allowed: kinds"),
         ("kinds = 3", "'kinds': was 3"),
-        ("camera = 3", "'camera': was 3"),
         ("[kinds]\nsmile = 1", "'kinds', 'smile': was 'smile', must be one of neutral"),
         ("[letters]\nA = 0", "'letters': all shares are 0"),
-        ("[units]\nAU3 = 1.0", "'units', 'AU3': was 'AU3', must be one of AU1,"),
-        ("[units]\nAU12_left = 1.0", "'units', 'AU12_left': was"),
         ("[units]\nAU51 = 1.0", "'units', 'AU51': was"),
-        ("[units]\nAU12 = -1", "'units', 'AU12': was -1"),
         ("[units]\nAU12 = nan", "'units', 'AU12': was nan"),
-        ("[units]\nAU12 = true", "'units', 'AU12': was True"),
-        ("[units]", "'units': all shares are 0"),
-        ("[together]\nAU6 = 3", "'together', 'AU6': was 3"),
         ("[together]\nAU6 = { AU12 = 1.5 }", "'together', 'AU6', 'AU12': was 1.5"),
-        ("[together]\nsmile = { AU12 = 1 }", "'together', 'smile': was 'smile', must be"),
-        ("[expressions]\njoy = 1", "'expressions', 'joy': was 1"),
         ("[expressions]\njoy = { AU12 = 1 }", "'expressions': all shares are 0"),
         ("[expressions]\njoy = { share = 1, AU12 = 2 }", "'expressions', 'joy', 'AU12': was 2"),
-        ("[excluded]\npairs = [['AU1']]", "'excluded', 'pairs': was ['AU1']"),
-        (
-            "[excluded]\npairs = [['AU1', 'AU99']]",
-            "'excluded', 'pairs' 1 2: was 'AU99'",
-        ),
         ("[excluded]\npairs = [['AU1', 'AU1']]", "'excluded', 'pairs': was ['AU1', 'AU1']"),
-        (
-            "[speech]\nviseme_x = 1",
-            "'viseme_x', must be one of viseme_sil",
-        ),
         ("[camera]\nyaw = [3, 1]", "'camera', 'yaw': was [3.0, 1.0]"),
-        ("[camera]\nyaw = 3", "'camera', 'yaw': was 3"),
         ("[persons]\ncount = 0", "'persons', 'count': was 0"),
         ("[kinds", "not valid TOML"),
     ],
@@ -190,7 +171,7 @@ def test_a_missing_table_is_told(tmp_path: Path) -> None:
         load_table(tmp_path / "none.toml")
 
 
-@pytest.mark.parametrize("text", ["a", "1,2,3,4", "10:5", "95", "0,0,0", "1:2:3", "nan", ""])
+@pytest.mark.parametrize("text", ["a", "1,2,3,4", "10:5", "95", "1:2:3", "nan", ""])
 def test_a_wrong_camera_is_told(text: str) -> None:
     with pytest.raises(UserError, match=f"--camera {text}"):
         with_camera(TABLE, text)
