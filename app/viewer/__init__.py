@@ -5,11 +5,10 @@ marking/    landmarks of a mesh, marked in place of the face
 panels/     what stands at the left of the picture, and its help
 timeline/   the script below it: keys in rows and as curves, the sound
 documents/  scripts, heads and exports: opened, asked for, saved
-picture/    the mouse in the picture
+picture/    what is seen: camera, meshes and colours, when it is drawn; the mouse in it
 session/    what the user does: controls, script, recording, undo, unsaved work; knows no window
 interface/  Dear ImGui, commands, small widgets
 settings.py what is remembered, how the scene is displayed among it
-view.py, stage.py, painter.py    what is seen: camera, meshes and colours, when it is drawn
 """
 
 from typing import TYPE_CHECKING, Any

@@ -21,7 +21,7 @@ from risorius.app.refining.looks import FIRST_LOOK, PAPERS_LOOK
 from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES
-from risorius.app.viewer.level_of_detail import LEVELS, LevelOfDetail
+from risorius.app.viewer.picture.painter import LEVELS, LevelOfDetail
 from risorius.app.viewer.settings import Display
 from risorius.app.viewer.window.window import REFRESH
 

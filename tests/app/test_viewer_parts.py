@@ -25,11 +25,11 @@ from risorius.app.script import (
 )
 from risorius.app.script.places import Places
 from risorius.app.script.recorder import Recorder
-from risorius.app.viewer.level_of_detail import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.messages import Messages
 from risorius.app.viewer.overlays import LINES, overlays_of
 from risorius.app.viewer.panels.rows import rows_of, search_rows
 from risorius.app.viewer.picture import picking
+from risorius.app.viewer.picture.painter import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.session.document import Document
 from risorius.app.viewer.session.history import MOST_GROWTH, History
 from risorius.app.viewer.session.physics import EARLIEST, MOST_STEPS, STEP, Clock

@@ -27,10 +27,10 @@ from ...workers.progress import Task
 from ..frame_times import FrameTimes
 from ..interface.gui import wake_up
 from ..messages import Message
+from ..picture.stage import Stage, style_of
+from ..picture.view import View
 from ..session.session import Session
 from ..settings import FRAMES, KINDS, SHEET, Display, ExportChoices, Kind, Settings
-from ..stage import Stage, style_of
-from ..view import View
 
 
 def free_name(folder: Path, stem: str, suffix: str) -> Path:

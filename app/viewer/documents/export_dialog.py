@@ -13,9 +13,9 @@ from imgui_bundle import imgui
 from ..interface.gui import NOTE_FLAGS, Gui, colour, em
 from ..interface.widgets import button, choose, muted, shortened
 from ..messages import Message
+from ..picture.view import View
 from ..setting_rules import SIDES_EXPORTED
 from ..settings import KINDS, SHEET, SOURCES, ExportChoices
-from ..view import View
 from .export import Exporter, is_there
 from .file_dialogs import FileDialogs
 

@@ -10,9 +10,9 @@ from imgui_bundle import imgui
 from ..interface.gui import NOTE_FLAGS, Gui, em
 from ..interface.widgets import button
 from ..messages import Message, Task
+from ..picture.view import View
 from ..session.recovery import Recovery
 from ..session.session import Session
-from ..view import View
 from .scripts import Question, ScriptCommands
 
 UNSAVED = "Unsaved work"

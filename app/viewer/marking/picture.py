@@ -15,8 +15,8 @@ from ...passes.labels import CameraLabels
 from ...pipeline import Pipeline, Viewport
 from ...refining.looks import STATIC, Refinement
 from ...scenes import Scene, build_scene
+from ..picture.view import View
 from ..settings import Display, Settings
-from ..view import View
 from .marking import Marking
 from .marks import GROUP_OF, name_of
 

@@ -15,7 +15,7 @@ from ..documents.scripts import Question
 from ..interface.commands import Command, MenuBar, set_keys
 from ..interface.gui import Gui
 from ..messages import Message, Messages, Task
-from ..painter import Painter
+from ..picture.painter import Painter
 from ..session.session import Session
 from ..settings import Settings
 from .marking import Marking

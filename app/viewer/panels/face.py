@@ -13,9 +13,9 @@ from ...controls.mirror import twin_of
 from ...controls.vocabulary import Pad, called, filters, pads
 from ..interface.gui import LEFT, NOTE_FLAGS, RIGHT, Gui, colour, em, ink_of
 from ..interface.widgets import Sliders, button, button_width, heading, hint, muted, stay_in_line
+from ..picture.view import View
 from ..session.session import Session
 from ..settings import Settings
-from ..view import View
 from .pose_grid import PoseGrid
 from .rows import ControlRows, Row, search_rows
 

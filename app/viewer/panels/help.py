@@ -10,8 +10,8 @@ from ...controls.vocabulary import readable
 from ..interface.commands import Command, pressed_key, set_keys
 from ..interface.gui import NOTE_FLAGS, TICK, Gui, colour, em, ink_of
 from ..interface.widgets import button, muted
+from ..picture.view import View
 from ..settings import PanelState
-from ..view import View
 
 STEPS = (
     ("Pull the cheek", "with the left mouse button"),

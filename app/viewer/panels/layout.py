@@ -13,9 +13,9 @@ from imgui_bundle import imgui
 from ..interface.commands import MenuBar
 from ..interface.gui import LEFT, NOTE_FLAGS, PANEL, Gui, colour, em, fixed_panel
 from ..messages import Messages
+from ..picture.view import View
 from ..settings import PanelState, Settings
 from ..timeline.timeline import Timeline
-from ..view import View
 
 
 def draw_message(gui: Gui, messages: Messages, view: View) -> None:

@@ -25,10 +25,10 @@ from ..interface.gui import Gui, em
 from ..interface.widgets import LabelledRows, button, heading, muted
 from ..messages import Messages
 from ..overlays import overlays_of
+from ..picture.stage import Stage
+from ..picture.view import View
 from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
 from ..settings import Display, Settings, switch
-from ..stage import Stage
-from ..view import View
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {

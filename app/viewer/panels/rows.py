@@ -11,9 +11,9 @@ from ...controls.mirror import OPPOSITE, parted, twin_of
 from ...controls.vocabulary import is_found, readable, title_of
 from ..interface.gui import Gui, colour, em, ink_of
 from ..interface.widgets import Sliders, button, hint
+from ..picture.view import View
 from ..session.session import Session
 from ..settings import Settings
-from ..view import View
 
 
 @dataclass(frozen=True)

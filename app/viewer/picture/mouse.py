@@ -15,10 +15,10 @@ from risorius import render
 
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
-from ..stage import Stage
-from ..view import View
 from .picking import Ray, skin_under
 from .skin_drag import SkinDrag
+from .stage import Stage
+from .view import View
 
 Grab = Callable[..., SkinDrag]
 Select = Callable[[str], None]

@@ -173,24 +173,12 @@ class Graph:
 
         duration: of the script [s]. is_held: by the mouse, so that values stay where they are.
         """
-        axis, theme, lines = self._axis, self._gui.theme, imgui.get_window_draw_list()
+        axis, lines = self._axis, imgui.get_window_draw_list()
         if not is_held:
-            ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
-            self._low, self._high = axis.values or (min(ends), max(ends))
-            self._bottom = edges[1] - em(PADDING)
-            height = max(self._bottom - edges[0] - em(PADDING), 1.0)
-            self.slope = -height / (self._high - self._low)
+            self._fit(edges)
         left, right = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
-        end = min(max(axis.x(duration), left), right)
-        lines.add_rect_filled((left, edges[0]), (right, edges[1]), ink_of(theme.field, 0.45))
-        lines.add_rect_filled((left, edges[0]), (end, edges[1]), ink_of(theme.field))
-        step = next((each for each in STEPS if -each * self.slope >= em(LABEL_ROOM)), STEPS[-1])
-        first, last = int(np.ceil(self._low / step - SAME)), int(self._high / step + SAME)
-        for number in range(first, last + 1):
-            y, label = round(self.y(number * step)) + 0.5, f"{number * step:g}"
-            lines.add_line((left, y), (right, y), ink_of(theme.muted, 0.2 if number else 0.5))
-            place = left - em(0.3) - imgui.calc_text_size(label).x, y - 0.5 * em()
-            lines.add_text(place, ink_of(theme.muted), label)
+        self._draw_ground((left, edges[0]), (right, edges[1]), axis.x(duration))
+        self._draw_values(left, right)
         lines.push_clip_rect((left, edges[0]), (right, edges[1]), True)
         columns = round(min(0.5 * (right - left), MOST_POINTS / (len(self.curves) + 1)))
         for curve in self.curves:
@@ -199,11 +187,41 @@ class Graph:
             times, values = curve.channel.outline(axis.start, axis.end, max(columns, 8))
             draw_line(axis.x(times), self.y(values), ink, em(0.12))
             self._draw_keys(curve, ink)
-        accent = ink_of(theme.accent)
+        self._draw_handles()
+        lines.pop_clip_rect()
+
+    def _fit(self, edges: Point) -> None:
+        """Let the axis of values reach from edge to edge: all of them, unless it was zoomed."""
+        ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
+        self._low, self._high = self._axis.values or (min(ends), max(ends))
+        self._bottom = edges[1] - em(PADDING)
+        height = max(self._bottom - edges[0] - em(PADDING), 1.0)
+        self.slope = -height / (self._high - self._low)
+
+    def _draw_ground(self, low: Point, high: Point, script_end: float) -> None:
+        """What curves stand on, between two corners: darker as far as the script goes."""
+        theme, lines = self._gui.theme, imgui.get_window_draw_list()
+        end = min(max(script_end, low[0]), high[0])
+        lines.add_rect_filled(low, high, ink_of(theme.field, 0.45))
+        lines.add_rect_filled(low, (end, high[1]), ink_of(theme.field))
+
+    def _draw_values(self, left: float, right: float) -> None:
+        """Lines at round values, with numbers at their left."""
+        theme, lines = self._gui.theme, imgui.get_window_draw_list()
+        step = next((each for each in STEPS if -each * self.slope >= em(LABEL_ROOM)), STEPS[-1])
+        first, last = int(np.ceil(self._low / step - SAME)), int(self._high / step + SAME)
+        for number in range(first, last + 1):
+            y, label = round(self.y(number * step)) + 0.5, f"{number * step:g}"
+            lines.add_line((left, y), (right, y), ink_of(theme.muted, 0.2 if number else 0.5))
+            place = left - em(0.3) - imgui.calc_text_size(label).x, y - 0.5 * em()
+            lines.add_text(place, ink_of(theme.muted), label)
+
+    def _draw_handles(self) -> None:
+        """Of the ways to selected keys, each with the line that it bends."""
+        accent, lines = ink_of(self._gui.theme.accent), imgui.get_window_draw_list()
         for handle in self.handles():
             lines.add_line(handle.root, handle.place, accent)
             lines.add_circle_filled(handle.place, em(0.8 * KEY), accent)
-        lines.pop_clip_rect()
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
         """The visible keys; before selected ones the way that the script takes to them."""

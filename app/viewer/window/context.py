@@ -25,7 +25,6 @@ from ..interface.commands import Command, MenuBar, set_keys
 from ..interface.gui import Gui, wake_up
 from ..marking import Marking, Room
 from ..messages import Message, Messages
-from ..painter import Painter
 from ..panels.face import FacePanel, MuscleNote
 from ..panels.help import FirstSteps, Help
 from ..panels.layout import Layout
@@ -33,7 +32,10 @@ from ..panels.live import LivePanel
 from ..panels.mechanism import MechanismPanel
 from ..panels.pose_grid import PoseGrid
 from ..picture.mouse import Mouse
+from ..picture.painter import Painter
 from ..picture.skin_drag import SkinDrag
+from ..picture.stage import Stage
+from ..picture.view import View
 from ..session.live_commands import LiveCommands
 from ..session.physics import IdleLife, Physics
 from ..session.recovery import Recovery
@@ -48,13 +50,11 @@ from ..settings import (
     rename_unusable,
     save_settings,
 )
-from ..stage import Stage
 from ..timeline.dope_sheet import DopeSheet
 from ..timeline.key_selection import KeySelection
 from ..timeline.time_axis import TimeAxis
 from ..timeline.timeline import Timeline
 from ..timeline.waveform import Waveform
-from ..view import View
 from . import menus
 from .placement import Placement
 from .splash_screen import SplashScreen

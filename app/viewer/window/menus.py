@@ -18,12 +18,12 @@ from ..documents.file_drop import FileDrop
 from ..documents.scripts import ScriptCommands
 from ..interface.commands import Command
 from ..messages import Message, Task
+from ..picture.view import View
 from ..session.live_commands import LiveCommands
 from ..session.session import Session
 from ..settings import PanelState, Settings, switch
 from ..timeline.key_selection import KeySelection
 from ..timeline.time_axis import TimeAxis
-from ..view import View
 from .placement import Placement
 
 Menu = tuple[Command, ...]

@@ -20,8 +20,8 @@ from ..documents.file_drop import LANDMARKS
 from ..documents.questions import draw_question, draw_recovery
 from ..interface.commands import run_pressed
 from ..interface.gui import on_drop
-from ..painter import Painter
 from ..panels.layout import draw_message
+from ..picture.painter import Painter
 from ..session.live_commands import PACING
 from .context import ApplicationContext
 

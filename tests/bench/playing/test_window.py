@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from risorius.app.viewer.level_of_detail import LEVELS
+from risorius.app.viewer.picture.painter import LEVELS
 from risorius.bench.playing import window
 
 pytestmark = [

@@ -10,18 +10,18 @@ from typing import Any
 
 from risorius import render
 
-from ..capture.captions import SPLITS_BAR, Label, captioned, labels
-from ..files import Image
-from ..pipeline import DrawnMesh, Pipeline, Viewport
-from ..refining.looks import STATIC, Refinement
-from ..refining.refiners import open_choices, options_of
-from ..scenes import Scene
-from .colours import COLOURS
-from .frame_times import FrameTimes
-from .level_of_detail import FULL
-from .overlays import LINES, pointed_lines
-from .setting_rules import SKINS, TONES
-from .settings import Display
+from ...capture.captions import SPLITS_BAR, Label, captioned, labels
+from ...files import Image
+from ...pipeline import DrawnMesh, Pipeline, Viewport
+from ...refining.looks import STATIC, Refinement
+from ...refining.refiners import open_choices, options_of
+from ...scenes import Scene
+from ..colours import COLOURS
+from ..frame_times import FrameTimes
+from ..overlays import LINES, pointed_lines
+from ..setting_rules import SKINS, TONES
+from ..settings import Display
+from .painter import FULL
 from .view import View
 
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps

@@ -11,11 +11,11 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ..capture.cameras import whole_scene
-from .interface.gui import THEMES, em
-from .session.session import Session
-from .setting_rules import BACKGROUNDS
-from .settings import Display, Settings
+from ...capture.cameras import whole_scene
+from ..interface.gui import THEMES, em
+from ..session.session import Session
+from ..setting_rules import BACKGROUNDS
+from ..settings import Display, Settings
 
 WHITE = (1.0, 1.0, 1.0)
 
