@@ -116,7 +116,7 @@ class Pipeline:
         scene = self.scene
         if scene.albedo is not None:
             albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
-            self.texture = self.renderer.load_texture(albedo, scene.openness())
+            self.texture = self.renderer.load_texture(albedo, scene.ambient_occlusion())
 
     def step(self, seconds: float) -> None:
         """The upper half of the figure: time passes, and the triangle mesh follows."""

@@ -4,9 +4,9 @@ Seeds are fixed: one machine makes the same files each time. Other processors ro
 the last digits, other versions of scipy may order a triangulation differently; the shipped files
 are therefore part of the package, and a test compares them with a fresh build.
 
-The light on the skin takes the simulation, which nothing here may import:
-`python -m risorius.app.scenes.ambient` bakes it for the head that is made here, and until then it
-is baked wherever the head is shown.
+The ambient occlusion takes the simulation, which nothing here may import:
+`python -m risorius.app.scenes.ambient_occlusion` bakes it for the head that is made here, and until
+then it is baked wherever the head is shown.
 """
 
 import argparse
@@ -170,7 +170,7 @@ def main(arguments: list[str]) -> None:
         _write(staging / given.file.name, given.size)
         for made in staging.iterdir():
             os.replace(made, given.file.parent / made.name)
-    load_head(given.file).openness_file.unlink(missing_ok=True)
+    load_head(given.file).ambient_occlusion_file.unlink(missing_ok=True)
 
 
 def _write(file: Path, size: int) -> None:

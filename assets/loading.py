@@ -66,7 +66,7 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
 
     The image of the skin lies beside the data file, as a PNG file of the same name; so do the files
     of its tones (`_tints.npz`), of its wrinkles (`_wrinkles.npz`), of its classes
-    (`_segments.png`), of the light on it (`_openness.npz`) and of the finer meshes
+    (`_segments.png`), of the light on it (`_ambient_occlusion.npz`) and of the finer meshes
     (`_finer.npz`). All six are read only when they are asked for.
 
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
@@ -124,7 +124,7 @@ def _assemble(
         tints_file=head_file.with_name(f"{head_file.stem}_tints.npz"),
         wrinkles_file=head_file.with_name(f"{head_file.stem}_wrinkles.npz"),
         segments_file=head_file.with_name(f"{head_file.stem}_segments.png"),
-        openness_file=head_file.with_name(f"{head_file.stem}_openness.npz"),
+        ambient_occlusion_file=head_file.with_name(f"{head_file.stem}_ambient_occlusion.npz"),
         finer_file=head_file.with_name(f"{head_file.stem}_finer.npz"),
         rig=rig,
         layers=layers,

@@ -204,7 +204,7 @@ class Head:
     tints_file: maps with which that image takes on another tone.
     wrinkles_file: the map of its wrinkles.
     segments_file: the map of what is nose, lip, neck, ...
-    openness_file: how open it is to light from all around; app/scenes/ambient.py makes it.
+    ambient_occlusion_file: app/scenes/ambient_occlusion.py makes it.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up; () where there
@@ -228,7 +228,7 @@ class Head:
     tints_file: Path
     wrinkles_file: Path
     segments_file: Path
-    openness_file: Path
+    ambient_occlusion_file: Path
     finer_file: Path
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
@@ -276,15 +276,15 @@ class Head:
         return read_image(self.segments_file, mode="L")
 
     @cached_property
-    def openness(self) -> Image:
+    def ambient_occlusion(self) -> Image:
         """How open the skin is to light from all around, 255 = wholly; shape (H, W), uint8.
 
         Texel by texel that of `albedo`. Raises AssetError when the file is missing, broken or that
         of another head.
         """
-        names, program = ("openness",), "app.scenes.ambient"
-        file = self.openness_file
-        return read_arrays_of(self.fingerprint, file, names, program=program)["openness"]
+        names, program = ("ambient_occlusion",), "app.scenes.ambient_occlusion"
+        file = self.ambient_occlusion_file
+        return read_arrays_of(self.fingerprint, file, names, program=program)["ambient_occlusion"]
 
     def finer(self, level: int) -> FineMesh:
         """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.

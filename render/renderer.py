@@ -64,15 +64,15 @@ class Renderer:
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
 
-    def load_texture(self, image: Image, openness: Image | None = None) -> Texture:
+    def load_texture(self, image: Image, occlusion: Image | None = None) -> Texture:
         """Hand an image to OpenGL, from which draw_mesh takes the albedo.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
-        openness: how much of the light from all around gets there, 255 = all, shape (H, W), uint8.
+        occlusion: how much of the light from all around gets there, 255 = all, (H, W), uint8.
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
         self.surface.make_current()
-        return Texture(self._gl, image, openness)
+        return Texture(self._gl, image, occlusion)
 
     def load_bumps(self, texels: Image, steepest: float) -> BumpMap:
         """Hand a bump map to OpenGL, from which draw_mesh takes the fine shape of a surface.

@@ -45,16 +45,16 @@ class Texture(_Mipmaps):
     redness: median of red over green light; where the image is redder, lips are, and they gloss.
     """
 
-    def __init__(self, gl: moderngl.Context, image: Image, openness: Image | None = None) -> None:
+    def __init__(self, gl: moderngl.Context, image: Image, occlusion: Image | None = None) -> None:
         albedo = _checked(image, int(gl.info["GL_MAX_TEXTURE_SIZE"]))
         wanted = albedo.shape[:2]
-        if openness is not None and (openness.shape != wanted or openness.dtype != np.uint8):
+        if occlusion is not None and (occlusion.shape != wanted or occlusion.dtype != np.uint8):
             raise ValueError(
-                f"openness has shape {openness.shape} and dtype {openness.dtype}; it must be "
+                f"occlusion has shape {occlusion.shape} and dtype {occlusion.dtype}; it must be "
                 f"{wanted} uint8, as the texture's image"
             )
         self.redness = _median_redness(albedo)
-        alpha = np.full(wanted, 255, np.uint8) if openness is None else openness
+        alpha = np.full(wanted, 255, np.uint8) if occlusion is None else occlusion
         light = to_linear(np.arange(256) / 255.0).astype(np.float32)[albedo]
         texels = np.dstack([light, alpha / np.float32(255.0)])
         super().__init__(gl, _roots(texels))
@@ -77,7 +77,7 @@ class Texture(_Mipmaps):
         return around
 
     def set_uniforms(self, program: moderngl.Program, unit: int, occlusion: float) -> None:
-        """Let a program look it up, through a texture unit; occlusion: of its openness, 0 or 1."""
+        """Let a program look it up, through a unit; occlusion: whether it counts, 0 or 1."""
         program["albedo_texture"], program["around_texture"] = unit, _AROUND_UNIT
         self._texture.use(unit)
         self._around.use(_AROUND_UNIT)

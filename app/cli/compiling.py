@@ -68,7 +68,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
 
     from ..anatomy.muscle_bands import Muscles
     from ..scenes import ClothScene, FaceScene, PlaneScene
-    from ..scenes.ambient import openness
+    from ..scenes.ambient_occlusion import ambient_occlusion
     from ..script import thinned
 
     face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()
@@ -86,7 +86,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "muscles and springs", simulate
     yield "keys of recordings", partial(thinned, [0.0, 1.0], [0.0, 1.0])
     yield "muscles as solids", partial(Muscles.of, face)
-    yield "light", partial(openness, face.head, face.simulation)
+    yield "light", partial(ambient_occlusion, face.head, face.simulation)
     for look in LOOKS:
         for scene in (face, plane):
             yield (

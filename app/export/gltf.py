@@ -147,9 +147,9 @@ def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:
         rough["baseColorFactor"] = [*to_linear(render.CLAY), 1.0]
         return glb.add("materials", material)
     rough["baseColorTexture"] = {"index": glb.texture(scene.albedo)}
-    openness = scene.openness()
-    if openness is not None:
-        material["occlusionTexture"] = {"index": glb.texture(openness)}
+    ambient_occlusion = scene.ambient_occlusion()
+    if ambient_occlusion is not None:
+        material["occlusionTexture"] = {"index": glb.texture(ambient_occlusion)}
     return glb.add("materials", material)
 
 

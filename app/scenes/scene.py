@@ -72,7 +72,7 @@ class Scene:
         """What each control is set to."""
         raise NotImplementedError
 
-    def openness(self) -> npt.NDArray[np.uint8] | None:
+    def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
         """How open the skin is to light from all around, over the texture (H, W); None: all.
 
         The scene stays as it is.
@@ -170,19 +170,20 @@ class FaceScene(Scene):
     def values(self) -> Mapping[str, float]:
         return self.simulation.values
 
-    def openness(self) -> npt.NDArray[np.uint8] | None:
-        """That of the built-in head's file, or baked now; see `Scene.openness`."""
+    def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
+        """That of the built-in head's file, or baked now; see `Scene.ambient_occlusion`."""
         head, simulation = self.head, self.simulation
         if isinstance(head, Person):  # same triangles, hardly another form
-            return head.openness
-        if isinstance(head, assets.Head) and head.openness_file.exists():
-            return head.openness
-        from .ambient import openness  # only who brings a head waits for it to be compiled
+            return head.ambient_occlusion
+        if isinstance(head, assets.Head) and head.ambient_occlusion_file.exists():
+            return head.ambient_occlusion
+        # Only who brings a head waits for it to be compiled.
+        from .ambient_occlusion import ambient_occlusion
 
         is_at_rest = np.array_equal(self.positions, self.rest_positions)
         if any(self.values.values()) or not is_at_rest:
             simulation = sim.create(head)  # baking moves it
-        return openness(head, simulation)
+        return ambient_occlusion(head, simulation)
 
     def pose(self, channels: Mapping[str, float]) -> None:
         self.simulation.pose(clamped(self.limits, channels))

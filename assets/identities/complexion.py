@@ -95,7 +95,7 @@ class _Tints:
     brow: SingleArray  # (H, W)
     scalp: SingleArray  # (H, W)
     detail: SingleArray  # what of the picture's lightness is relief, in powers of e (H, W)
-    openness: Image  # of the bare skin to light from all around (H, W)
+    ambient_occlusion: Image  # of the bare skin to light from all around (H, W)
     skin: FloatArray  # (5,)
     melanins: FloatArray  # of the tones in `angles`
     angles: FloatArray  # ITA, rising
@@ -234,7 +234,7 @@ def coloured(
         shape = head.albedo.shape[0], head.albedo.shape[1]
         parted = bared(CUTS[head.identity.cut], head.vertices, head.faces, places, shape)
         in_tone = partial(in_tone, haired_as=angle, parted=parted)  # hair stays, whatever the skin
-        head = replace(head, openness=_openness(head, parts), in_tone=in_tone)
+        head = replace(head, ambient_occlusion=_ambient_occlusion(head, parts), in_tone=in_tone)
     return replace(head, albedo=in_tone(angle), parts=parts, segments=segments)
 
 
@@ -247,15 +247,15 @@ def with_hair(
     return (*others, *grown(person.identity.cut, vertices, faces, colour, receded=receded))
 
 
-def _openness(person: Person, parts: Sequence[Part]) -> Image:
+def _ambient_occlusion(person: Person, parts: Sequence[Part]) -> Image:
     """How open the skin of a person is to light from all around, with the hair that it has."""
     hair = [part for part in parts if part.name.startswith(HAIR)]
-    openness = _tints().openness
+    ambient_occlusion = _tints().ambient_occlusion
     if not hair:
-        return openness
+        return ambient_occlusion
     normals = vertex_normals(person.vertices, person.faces)
     places = person.uv[person.face_uv].astype(np.float64)
-    return shaded(openness, hair, person.vertices, normals, person.faces, places)
+    return shaded(ambient_occlusion, hair, person.vertices, normals, person.faces, places)
 
 
 def drawn_irises(
@@ -363,7 +363,7 @@ def _tints() -> _Tints:
         **soft,
         hair=hair,
         detail=detail,
-        openness=head.openness,
+        ambient_occlusion=head.ambient_occlusion,
         skin=arrays["skin"],
         melanins=melanins,
         angles=typology_angle(tones),

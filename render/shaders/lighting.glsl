@@ -49,14 +49,14 @@ Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpn
     return lit;
 }
 
-// `lightness` is 1 in the key's light and 0 in its full shadow; `openness` 1 where all light comes
+// `lightness` is 1 in the key's light and 0 in its full shadow; `ambient_occlusion` 1 where all light comes
 // in from all around, 0 where none does.
-vec3 lit_colour(Lit lit, vec3 albedo, float lightness, float subsurface, float openness) {
+vec3 lit_colour(Lit lit, vec3 albedo, float lightness, float subsurface, float ambient_occlusion) {
     // What skin nearby takes away it gives back in part, redder.
-    vec3 open = openness * (vec3(1.0) + (1.0 - openness) * subsurface * OCCLUDED_BOUNCE);
+    vec3 open = ambient_occlusion * (vec3(1.0) + (1.0 - ambient_occlusion) * subsurface * OCCLUDED_BOUNCE);
     vec3 glow = subsurface * (1.0 - lightness) * (lightness * BLEED + BOUNCE * open);
-    return albedo * (lit.key * (lightness * mix(1.0, openness, OCCLUDED_KEY) + glow) + lit.rest * open)
-        + lit.specular * (0.25 + 0.75 * lightness) * openness;
+    return albedo * (lit.key * (lightness * mix(1.0, ambient_occlusion, OCCLUDED_KEY) + glow) + lit.rest * open)
+        + lit.specular * (0.25 + 0.75 * lightness) * ambient_occlusion;
 }
 
 // The inner side of the skin: only what the hemisphere and a bounce of the key bring in.

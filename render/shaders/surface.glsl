@@ -223,7 +223,7 @@ uniform sampler2D albedo_texture;
 uniform sampler2D around_texture;  // how light the skin is around
 uniform vec3 lightness_weights;
 uniform float redness;  // of most of the picture: red over green
-uniform float occlusion;  // how much the openness in the picture's alpha counts, 0 or 1
+uniform float occlusion;  // how much the ambient_occlusion in the picture's alpha counts, 0 or 1
 #elif !defined(COLOURED)
 uniform vec3 albedo;
 #endif
@@ -261,7 +261,7 @@ uniform vec4 fade;  // view space: at a place it says how much of the skin shows
 out vec4 pixel_colour;
 
 // How open to light from all around.
-float openness = 1.0;
+float ambient_occlusion = 1.0;
 
 vec3 front_albedo() {
 #if defined(COLOURED)
@@ -270,7 +270,7 @@ vec3 front_albedo() {
     vec4 painted = texture(albedo_texture, surface.uv);
     painted *= painted;  // see texture.py
     vec3 front = painted.rgb;
-    openness = mix(1.0, painted.a, occlusion);
+    ambient_occlusion = mix(1.0, painted.a, occlusion);
 #else
     vec3 front = albedo;
 #endif
@@ -346,7 +346,7 @@ void main() {
     float shown_here = dot(front, lightness_weights);
     float around = texture(around_texture, surface.uv).r;
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
-    lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * openness;
+    lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * ambient_occlusion;
 #endif
 #if defined(BUMPS)
     front *= 1.0 - bump.depth * FURROW;
@@ -365,7 +365,7 @@ void main() {
     // Lids and lips are thin, and what they shade is small: light of a large lamp gets around them.
     lightness = mix(0.6, 1.0, lightness);
 #endif
-    vec3 light = lit_colour(lit, front, lightness, subsurface, openness);
+    vec3 light = lit_colour(lit, front, lightness, subsurface, ambient_occlusion);
 #if defined(COLOURED)
     light *= 0.96;  // parts sit in sockets and mouths, where less light gets in
 #else

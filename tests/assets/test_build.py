@@ -114,7 +114,7 @@ def test_size_is_an_option(
 ) -> None:
     """A skin of 96 texels on request; light that was baked for another is gone."""
     monkeypatch.setattr(build, "build_head", lambda: shipped)
-    light = tmp_path / "small_openness.npz"
+    light = tmp_path / "small_ambient_occlusion.npz"
     light.write_bytes(b"baked for a larger picture")
     build.main([str(tmp_path / "small.npz"), "--size", "96"])
     image = load_head(tmp_path / "small.npz").albedo

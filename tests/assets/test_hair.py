@@ -224,9 +224,9 @@ def test_what_is_left_out_of_locks_is_covered(cut: str) -> None:
 def test_skin_near_hair_gets_less_light_from_all_around() -> None:
     """Under hair little is left of it, beside hair some is missing, the nose has all it had."""
     ada = person_called("ada")
-    height, width = ada.openness.shape
-    missing = (bare(0).openness.astype(float) - ada.openness) / 255.0
-    assert bare(0).openness.shape == (height, width) and missing.min() >= 0.0
+    height, width = ada.ambient_occlusion.shape
+    missing = (bare(0).ambient_occlusion.astype(float) - ada.ambient_occlusion) / 255.0
+    assert bare(0).ambient_occlusion.shape == (height, width) and missing.min() >= 0.0
     uv = np.zeros((len(ada.vertices), 2))
     uv[ada.faces] = ada.uv[ada.face_uv]
 
@@ -238,4 +238,4 @@ def test_skin_near_hair_gets_less_light_from_all_around() -> None:
     assert missing_at(int(ada.landmarks[30])) < 0.02
     assert missing_at(ada.anatomy["temple_left"]) > 0.3
     assert 0.02 < missing_at(ada.anatomy["trichion"])
-    assert np.array_equal(person_called("kofi").openness, bare(0).openness)
+    assert np.array_equal(person_called("kofi").ambient_occlusion, bare(0).ambient_occlusion)

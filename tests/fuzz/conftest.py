@@ -64,8 +64,8 @@ def pytest_terminal_summary(
 def face() -> FaceScene:
     """The built-in face, with its light already baked."""
     scene = FaceScene()
-    image = scene.openness()
-    scene.openness = lambda: image  # type: ignore[method-assign]
+    image = scene.ambient_occlusion()
+    scene.ambient_occlusion = lambda: image  # type: ignore[method-assign]
     return scene
 
 

@@ -23,7 +23,7 @@ def textured(
     shape: Shape | None = None,
     camera: render.OrbitCamera | None = None,
     values: npt.NDArray[np.uint8] | None = None,
-    openness: npt.NDArray[np.uint8] | None = None,
+    occlusion: npt.NDArray[np.uint8] | None = None,
 ) -> SignedImage:
     """A square (or another shape) under the image, which spans x and y from -50 to 50."""
     shape = shape or square()
@@ -31,7 +31,7 @@ def textured(
     stream = lent(renderer, shape, columns=8)
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     stream.upload(len(shape.positions), len(shape.triangles))
-    texture = renderer.load_texture(image, openness)
+    texture = renderer.load_texture(image, occlusion)
     surface.begin()
     renderer.draw_background(style)
     renderer.draw_mesh(stream, camera or facing(), style, values=values, texture=texture)
@@ -176,11 +176,11 @@ def test_size_of_a_texture(surface: render.Surface) -> None:
 @pytest.mark.parametrize("shading", render.Shading)
 def test_less_light_where_it_is_less_open(surface: render.Surface, shading: render.Shading) -> None:
     """It is darker by how open the texture says it is, where all light comes in not at all."""
-    image, openness = plain_image((180, 140, 120)), np.full((8, 8), 255, np.uint8)
-    openness[:, :4], openness[4:, :4] = 128, 0
+    image, occlusion = plain_image((180, 140, 120)), np.full((8, 8), 255, np.uint8)
+    occlusion[:, :4], occlusion[4:, :4] = 128, 0
     style = replace(PLAIN, shading=shading)
     plain = textured(surface, image, style)
-    folded = textured(surface, image, style, openness=openness)
+    folded = textured(surface, image, style, occlusion=occlusion)
     height, width = plain.shape[:2]
     lost = (plain - folded)[..., 1]
     right, upper = np.s_[height // 4, 5 * width // 8], np.s_[3 * height // 8, 3 * width // 8]
@@ -188,14 +188,15 @@ def test_less_light_where_it_is_less_open(surface: render.Surface, shading: rend
     assert lost[right] == 0
     assert 5 < lost[upper] < lost[lower]
     assert folded[lower].min() > 20  # the key light still shines there
-    off = textured(surface, image, replace(style, occlusion=False), openness=openness)
+    off = textured(surface, image, replace(style, occlusion=False), occlusion=occlusion)
     assert np.array_equal(off, plain)
 
 
 @pytest.mark.parametrize(
-    "openness", [np.zeros((8, 4), np.uint8), np.zeros((8, 8), np.float32), np.zeros((8, 8, 1))]
+    "occlusion",
+    [np.zeros((8, 4), np.uint8), np.zeros((8, 8), np.float32), np.zeros((8, 8, 1))],
 )
-def test_bad_openness(surface: render.Surface, openness: npt.NDArray[np.uint8]) -> None:
-    """Openness is of the image's size, a byte for each texel."""
-    with pytest.raises(ValueError, match=r"openness has shape .* must be \(8, 8\) uint8"):
-        render.Renderer(surface).load_texture(plain_image((9, 9, 9)), openness)
+def test_bad_occlusion(surface: render.Surface, occlusion: npt.NDArray[np.uint8]) -> None:
+    """Occlusion is of the image's size, a byte for each texel."""
+    with pytest.raises(ValueError, match=r"occlusion has shape .* must be \(8, 8\) uint8"):
+        render.Renderer(surface).load_texture(plain_image((9, 9, 9)), occlusion)

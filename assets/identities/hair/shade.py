@@ -1,8 +1,8 @@
 """How much of the light from all around hair takes away from the skin.
 
 After Zhukov, Iones, Kronin 1998, "An ambient light illumination model": what lies near shades by
-the angle that it fills, and less the farther it is. `app/scenes/ambient.py` casts rays at the skin
-alone.
+the angle that it fills, and less the farther it is. `app/scenes/ambient_occlusion.py` casts rays at
+the skin alone.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SAMPLES = 12  # places along an edge of a triangle
 
 
 def shaded(
-    openness: Image,
+    ambient_occlusion: Image,
     hair: Sequence[Part],
     vertices: Points,
     normals: Points,
@@ -50,12 +50,12 @@ def shaded(
         (count == 0).reshape(SIZE, SIZE), return_distances=False, return_indices=True
     )
     painted = (total / np.maximum(count, 1)).reshape(SIZE, SIZE)[tuple(nearest)]
-    height, width = openness.shape
+    height, width = ambient_occlusion.shape
     finer = Pictures.fromarray(painted.astype(np.float32)).resize(
         (width, height), Pictures.Resampling.BICUBIC
     )
     shade = np.clip(np.asarray(finer, dtype=np.float32), 0.0, 1.0)
-    return np.asarray(np.round(openness * shade), dtype=np.uint8)
+    return np.asarray(np.round(ambient_occlusion * shade), dtype=np.uint8)
 
 
 def _open(hair: Sequence[Part], vertices: Points, normals: Points) -> Values:

@@ -13,7 +13,7 @@ import pytest
 
 from risorius import assets
 from risorius.app.scenes import FaceScene
-from risorius.app.scenes.ambient import bake, main, open_to_light, openness
+from risorius.app.scenes.ambient_occlusion import ambient_occlusion, bake, main, open_to_light
 from risorius.app.scenes.mouth import shaded_mouth
 from risorius.assets.loading import HEAD_FILE, load_head
 from tests import meshes
@@ -54,7 +54,7 @@ def test_outside_and_inside_of_a_ball() -> None:
 def test_light_on_the_head(face: FaceScene) -> None:
     """Forehead and crown are open, nostrils, lips that touch and the back of ears are not."""
     before = face.positions.copy()
-    image = face.openness()
+    image = face.ambient_occlusion()
     assert image is not None and image.shape == face.head.albedo.shape[:2]
     height, width = image.shape
     places = face.head.uv * [width, -height] + [0, height]
@@ -74,29 +74,33 @@ def test_shipped_light_is_what_the_program_makes() -> None:
     """It belongs to the shipped head; rounding moves few texels, and none so that it is seen."""
     head = assets.load("head")
     fresh = bake(head)
-    with np.load(head.openness_file) as shipped:
+    with np.load(head.ambient_occlusion_file) as shipped:
         assert sorted(shipped.files) == sorted(fresh)
         assert shipped["made_from"] == fresh["made_from"]
-    difference = np.abs(fresh["openness"].astype(int) - head.openness)
+    difference = np.abs(fresh["ambient_occlusion"].astype(int) - head.ambient_occlusion)
     assert difference.mean() < 0.05 and (difference > 8).mean() < 0.001
 
 
 def test_program_writes_the_light_of_a_head(unbaked: FaceScene) -> None:
     """Beside the data file that it is given, to be read from there."""
     head = unbaked.head
-    assert isinstance(head, assets.Head) and not head.openness_file.exists()
-    main([str(head.openness_file.with_name("head.npz"))])
-    assert np.array_equal(unbaked.openness(), head.openness)
-    np.savez(head.openness_file, openness=head.openness, made_from=np.array(1))
+    assert isinstance(head, assets.Head) and not head.ambient_occlusion_file.exists()
+    main([str(head.ambient_occlusion_file.with_name("head.npz"))])
+    assert np.array_equal(unbaked.ambient_occlusion(), head.ambient_occlusion)
+    np.savez(
+        head.ambient_occlusion_file, ambient_occlusion=head.ambient_occlusion, made_from=np.array(1)
+    )
     with pytest.raises(
-        assets.AssetError, match=r"another head; .* 'python -m risorius.app.scenes.ambient'"
+        assets.AssetError,
+        match=r"another head; .* 'python -m .*ambient_occlusion'",
     ):
-        _ = load_head(head.openness_file.with_name("head.npz")).openness
-    head.openness_file.write_bytes(b"nothing")
+        _ = load_head(head.ambient_occlusion_file.with_name("head.npz")).ambient_occlusion
+    head.ambient_occlusion_file.write_bytes(b"nothing")
     with pytest.raises(
-        assets.AssetError, match=r"not a readable npz .* 'python -m risorius.app.scenes.ambient'"
+        assets.AssetError,
+        match=r"not a readable npz .* 'python -m .*ambient_occlusion'",
     ):
-        _ = load_head(head.openness_file.with_name("head.npz")).openness
+        _ = load_head(head.ambient_occlusion_file.with_name("head.npz")).ambient_occlusion
 
 
 @pytest.mark.slow
@@ -105,7 +109,7 @@ def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
     words = ["capture", "--set", "joy", "--size", "64x48", "-o", str(tmp_path / "joy.png")]
     code = (
         f"import sys; from risorius.app.cli import main; main({words}, standalone_mode=False); "
-        "assert 'risorius.app.scenes.ambient' not in sys.modules"
+        "assert 'risorius.app.scenes.ambient_occlusion' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
     assert (tmp_path / "joy.png").exists()
@@ -115,12 +119,12 @@ def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
 def test_baking_leaves_a_posed_face_alone(unbaked: FaceScene) -> None:
     """Baking moves a face: one that is posed already keeps its pose, and gets the same image."""
     rest = unbaked.positions.copy()
-    image = unbaked.openness()
+    image = unbaked.ambient_occlusion()
     assert np.array_equal(unbaked.positions, rest)
     unbaked.pose({"joy": 1.0})
     unbaked.step(0.3)
     before = unbaked.positions.copy()
-    assert np.array_equal(unbaked.openness(), image)
+    assert np.array_equal(unbaked.ambient_occlusion(), image)
     assert np.array_equal(unbaked.positions, before) and unbaked.values["joy"] == 1.0
 
 
@@ -146,7 +150,7 @@ def test_a_head_that_cannot_yawn(face: FaceScene) -> None:
     still = SimpleNamespace(
         positions=face.simulation.positions, faces=face.simulation.faces, limits={}
     )
-    alone, shown = openness(face.head, still), face.openness()
+    alone, shown = ambient_occlusion(face.head, still), face.ambient_occlusion()
     assert shown is not None
     assert alone.mean() < shown.mean()
     assert (alone.astype(int) < shown.astype(int) - 60).any()

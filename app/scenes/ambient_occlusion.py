@@ -1,7 +1,7 @@
 """How open the skin is to light from all around: ambient occlusion, baked once for a head.
 
-That of the built-in head is shipped: `python -m risorius.app.scenes.ambient [FILE]` bakes it anew,
-after `python -m risorius.assets.build`. A head of one's own is baked when it is loaded.
+That of the built-in head is shipped; `python -m risorius.app.scenes.ambient_occlusion [FILE]` bakes
+it anew, after `python -m risorius.assets.build`. A head of one's own is baked when it is loaded.
 
 From each vertex rays go out over its normal, more of them the closer they are to it, as light that
 comes from everywhere counts. What a ray meets within REACH takes its part of the light away, less
@@ -54,7 +54,7 @@ Triangles = npt.NDArray[np.int32]
 Values = npt.NDArray[np.float32]
 
 
-def openness(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
+def ambient_occlusion(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
     """An image over the head's texture: 255 where all light comes in, 0 where none; (H, W).
 
     head: with texture coordinates `uv`, `face_uv` and `albedo` (H, W, 3).
@@ -226,9 +226,9 @@ def _painted(places: Points, values: Values, margin: float, size: tuple[int, int
 
 
 def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
-    """Make everything that `head.openness_file` holds, array name -> array."""
+    """Make everything that `head.ambient_occlusion_file` holds, array name -> array."""
     return {
-        "openness": openness(head, sim.create(head)),
+        "ambient_occlusion": ambient_occlusion(head, sim.create(head)),
         "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 
@@ -236,11 +236,12 @@ def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
 def main(arguments: Sequence[str]) -> None:
     """Bake the light on a head made by `assets.build` into the file beside its data file."""
     parser = argparse.ArgumentParser(
-        prog="python -m risorius.app.scenes.ambient", description=(__doc__ or "").splitlines()[0]
+        prog="python -m risorius.app.scenes.ambient_occlusion",
+        description=(__doc__ or "").splitlines()[0],
     )
     parser.add_argument("file", nargs="?", type=Path, default=HEAD_FILE, help="the data file")
     head = load_head(parser.parse_args(arguments).file)
-    target = head.openness_file
+    target = head.ambient_occlusion_file
     check_file(target)
     arrays = bake(head)
     with written_atomically(target) as part, cannot_be_written(target):
