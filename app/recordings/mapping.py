@@ -8,15 +8,16 @@ see `chosen`.
 from __future__ import annotations
 
 import re
-import tomllib
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
+
+from risorius.schema import MadeFrom, Within, parsed_toml, read
 
 from ..errors import UserError
 from ..files import NoSuchFileError, read_text
@@ -38,11 +39,26 @@ _SHAPE_OF_UNIT = {  # which shapes, by the beginning of their names, tell what a
     "AU45": "eyeBlink", "AU46": "eyeBlink",
 }  # fmt: skip
 _SHAPES = frozenset(ARKIT)
+CHANNELS = (*ARKIT, *VISEMES, *HEAD_ANGLES, *EYE_ANGLES)  # that recordings may have, but units
+Share = Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]
 _LOOKS_OF_ANGLE = {
     f"eye_{angle}_{side.lower()}": frozenset(f"eyeLook{way}{side}" for way in ways)
     for angle, ways in (("yaw", ("In", "Out")), ("pitch", ("Up", "Down")))
     for side in ("Left", "Right")
 }
+
+
+def _channel(name: str) -> str:
+    """The name of a channel, see names.py; ValueError for another."""
+    if name not in CHANNELS and not _ACTION_UNIT.fullmatch(name):
+        raise ValueError(
+            "no recording has such a channel; rows are named as mouthSmileLeft, AU12, viseme_PP, "
+            "head_yaw"
+        )
+    return name
+
+
+Channel = Annotated[str, MadeFrom(str, _channel)]
 
 
 @dataclass(frozen=True)
@@ -128,34 +144,9 @@ def load_mapping(path: Path | None) -> MappingTable:
 def parse_mapping(text: str, *, source: str) -> MappingTable:
     """Turn the TOML text of a table into a MappingTable; `source` names it in error texts."""
     try:
-        table = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise UserError(f"{source}: not valid TOML: {error}") from None
-    for channel, row in table.items():
-        where = f"{source}: row '{channel}'"
-        if not is_channel(channel):
-            raise UserError(
-                f"{where}: no recording has such a channel; rows are named as mouthSmileLeft, AU12,"
-                " viseme_PP, head_yaw"
-            )
-        if not isinstance(row, dict):
-            raise UserError(f"{where}: was {row!r}, must be {{ control = share, ... }}")
-        for control, share in row.items():
-            if not _is_share(share):
-                raise UserError(
-                    f"{where}: '{control}' was {share!r}, must be a number from "
-                    f"{-GREATEST_SHARE:g} to {GREATEST_SHARE:g}"
-                )
-    return MappingTable(table, source)
-
-
-def is_channel(name: str) -> bool:
-    """Whether recordings may have a channel of this name, see names.py."""
-    known: Iterable[str] = (*ARKIT, *VISEMES, *HEAD_ANGLES, *EYE_ANGLES)
-    return name in known or _ACTION_UNIT.fullmatch(name) is not None
-
-
-def _is_share(share: object) -> bool:
-    if isinstance(share, bool) or not isinstance(share, int | float):
-        return False
-    return -GREATEST_SHARE <= share <= GREATEST_SHARE  # neither of them for no number
+        table = parsed_toml(text)
+    except ValueError as error:
+        raise UserError(f"{source}: {error}") from None
+    return MappingTable(
+        read(dict[Channel, dict[str, Share]], table, source, error=UserError), source
+    )

@@ -14,11 +14,12 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from reprlib import repr as shortened
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import scipy
+
+from risorius.schema import Within, parsed_json, read
 
 from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
@@ -36,6 +37,7 @@ FARTHEST_OFF = (
     0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
 )
 OUTER_EYE_CORNERS = [36, 45]
+Point = Annotated[tuple[float, float, float], Within(-FARTHEST, FARTHEST)]
 
 
 def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | None]:
@@ -105,15 +107,9 @@ def _document(path: Path) -> Any:
         path, kind="landmark", most_bytes=MOST_BYTES, cure="keep the list of landmarks alone"
     )
     try:
-        return json.loads(content)  # in UTF-8, 16 or 32, with a byte order mark or without
-    except RecursionError:
-        reason = "brackets are nested too deep"
+        return parsed_json(content)  # in UTF-8, 16 or 32, with a byte order mark or without
     except ValueError as error:
-        is_long = "set_int_max_str_digits" in str(error)  # advice for programmers
-        reason = "a number has thousands of digits" if is_long else str(error)
-    raise AssetError(
-        f'not readable as JSON: {reason}; it must be {{"{KEY}": [...]}} with {COUNT} entries'
-    )
+        raise AssetError(f'{error}; it must be {{"{KEY}": [...]}} with {COUNT} entries') from None
 
 
 def _all_in(document: Any) -> list[Any]:
@@ -149,34 +145,28 @@ def _list_in(document: Any) -> list[Any]:
     return fitting[0]
 
 
-def _numbers(found: list[int], count: int) -> IndexArray:
-    for place, number in enumerate(found):
-        if not 0 <= number < count:
-            raise AssetError(
-                f"landmark {place} is vertex {shortened(number)}; the mesh has vertices 0 to "
-                f"{count - 1}: count from 0, in the mesh that is given"
-            )
-    return np.array(found, dtype=np.int32)
+def _numbers(found: list[Any], count: int) -> IndexArray:
+    vertex: Any = Annotated[int, Within(0, count - 1)]
+    try:
+        return np.array(_read_each(vertex, found), dtype=np.int32)
+    except ValueError as error:
+        raise AssetError(f"{error}: count from 0, in the mesh that is given") from None
 
 
 def _points(found: list[Any]) -> FloatArray:
-    for place, entry in enumerate(found):
-        is_point = isinstance(entry, list) and len(entry) == 3 and all(map(_is_number, entry))
-        if not is_point:
-            raise AssetError(
-                f"landmark {place} is {shortened(entry)}; every landmark must be a vertex number, "
-                "or every one a point [x, y, z]"
-            )
-        if not all(-FARTHEST <= number <= FARTHEST for number in entry):
-            raise AssetError(
-                f"landmark {place} is at {shortened(entry)}; it must be finite numbers up to "
-                f"{FARTHEST:g}, a point on the mesh"
-            )
-    return np.array(found, dtype=np.float64)
+    try:
+        return np.array(_read_each(Point, found))
+    except ValueError as error:
+        raise AssetError(
+            f"{error}; every landmark must be a vertex number, or every one a point [x, y, z] on "
+            "the mesh"
+        ) from None
 
 
-def _is_number(entry: Any) -> bool:
-    return isinstance(entry, int | float) and not isinstance(entry, bool)
+def _read_each(kind: Any, found: list[Any]) -> list[Any]:
+    """Entries of one kind; ValueError that names the landmark of a wrong one, counted from 0."""
+    named_entries = {f"landmark {place}": entry for place, entry in enumerate(found)}
+    return list(read(dict[str, kind], named_entries, "").values())
 
 
 def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:

@@ -88,13 +88,13 @@ def test_a_table_names_controls_that_the_face_has() -> None:
 @pytest.mark.parametrize(
     ("table", "told"),
     [
-        ("jawOpen = 1", r"row 'jawOpen': was 1, must be \{ control = share"),
-        ("jawopen = { jaw_open = 1 }", "row 'jawopen': no recording has such a channel"),
-        ("jawOpen = { jaw_open = true }", "'jaw_open' was True, must be a number from -2 to 2"),
-        ("jawOpen = { jaw_open = nan }", "'jaw_open' was nan, must be a number"),
-        ("jawOpen = { jaw_open = 3 }", "'jaw_open' was 3, must be a number"),
-        (f"jawOpen = {{ jaw_open = 1{'0' * 400} }}", "'jaw_open' was 10+, must be a number"),
-        ("jawOpen = { jaw_open = '1' }", "'jaw_open' was '1', must be a number"),
+        ("jawOpen = 1", r"'jawOpen': was 1, must be a table"),
+        ("jawopen = { jaw_open = 1 }", "'jawopen': no recording has such a channel"),
+        ("jawOpen = { jaw_open = true }", "'jaw_open': was True, must be a number from -2 to 2"),
+        ("jawOpen = { jaw_open = nan }", "'jaw_open': was nan, must be a number"),
+        ("jawOpen = { jaw_open = 3 }", "'jaw_open': was 3, must be a number"),
+        (f"jawOpen = {{ jaw_open = 1{'0' * 400} }}", "'jaw_open': was 10+.*, must be a number"),
+        ("jawOpen = { jaw_open = '1' }", "'jaw_open': was '1', must be a number"),
         ("jawOpen = {", "not valid TOML"),
     ],
 )

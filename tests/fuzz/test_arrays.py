@@ -1,4 +1,4 @@
-"""The programming interfaces of refine/ and sim/: wrong arguments are ValueError or TypeError."""
+"""The programming interfaces of refine/: wrong arguments are ValueError or TypeError."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius import refine, sim
+from risorius import refine
 
 from .refine_inputs import (
     FACES,
@@ -22,7 +22,6 @@ from .refine_inputs import (
     stream,
 )
 from .sandbox import bounded
-from .sim_inputs import CALLS, HEADS, head
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
@@ -41,7 +40,7 @@ def ends_well(name: str) -> Iterator[None]:
     told = str(refusal.value)
     assert 10 < len(told) < 2000, told
     raised_in = refusal.traceback[-1].path.relative_to(ROOT)
-    assert raised_in.parts[0] in ("refine", "sim"), told
+    assert raised_in.parts[0] == "refine", told
 
 
 def sound(mesh: refine.RefinedMesh) -> None:
@@ -109,31 +108,3 @@ def test_views(name: str, criterion: str) -> None:
     refiner = refine.create("kahler", FACES, POSITIONS, criterion=criterion)
     with ends_well(name):
         refiner.refine(POSITIONS, view=VIEWS[name])
-
-
-@pytest.mark.parametrize("name", HEADS)
-def test_heads_for_the_simulation(name: str) -> None:
-    """What can be built can be stepped; the rest is refused."""
-    with ends_well(name):
-        simulation = sim.create(HEADS[name]())
-        simulation.step(1.0 / 60.0)
-        assert np.isfinite(simulation.positions).all()
-
-
-@pytest.fixture(scope="module")
-def face() -> sim.Simulation:
-    """The built-in head."""
-    return sim.create(head())
-
-
-@pytest.mark.parametrize("name", CALLS)
-def test_calls_of_the_simulation(name: str, face: sim.Simulation) -> None:
-    """A refused call changes nothing; the face moves on."""
-    values = face.values
-    with ends_well(name):
-        CALLS[name](face)
-    if not name.startswith("*"):
-        assert face.values == values
-    face.step(1.0 / 60.0)
-    assert np.isfinite(face.positions).all()
-    face.reset()
