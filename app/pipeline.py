@@ -20,7 +20,7 @@ import numpy.typing as npt
 from risorius import refine, render
 
 from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Layers
-from .refining.looks import Refinement
+from .refining.presets import Refinement
 from .refining.refiners import refiner_for
 from .refining.wrinkling import Amounts, Compression, Relief, on_rows, relief_of
 from .scenes import Scene

@@ -19,7 +19,7 @@ from ..motion import play
 from ..passes.labelled import Labelled, labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, side_by_side
-from ..refining.looks import Refinement
+from ..refining.presets import Refinement
 from ..scenes import Scene
 from ..script import Script
 from .cameras import camera_for

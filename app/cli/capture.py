@@ -10,7 +10,7 @@ import click
 
 from ..errors import UserError, in_one_line
 from ..recordings.conversion import Playback
-from ..refining.looks import STATIC, Refinement
+from ..refining.presets import STATIC, Refinement
 from .options import (
     PATH,
     SCENE,

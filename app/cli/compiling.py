@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from ..refining.looks import LOOKS, PAPERS_LOOK, Refinement
+from ..refining.presets import PAPERS_PRESET, PRESETS, Refinement
 
 if TYPE_CHECKING:
     from ..scenes import Scene
@@ -87,7 +87,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "keys of recordings", partial(thinned, [0.0, 1.0], [0.0, 1.0])
     yield "muscles as solids", partial(Muscles.of, face)
     yield "light", partial(ambient_occlusion, face.head, face.simulation)
-    for look in LOOKS:
+    for look in PRESETS:
         for scene in (face, plane):
             yield (
                 f"refinement of the {scene.name}: {look}",
@@ -104,7 +104,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     )
     for options in choices:
         text = " ".join(f"{name}={value}" for name, value in options.items())
-        asked = Refinement(PAPERS_LOOK, options=options)
+        asked = Refinement(PAPERS_PRESET, options=options)
         yield f"refinement {text}".rstrip(), partial(_refine, face, asked)
     yield "uniform subdivision", partial(_refine, face, Refinement(refiner="loop"))
     yield "the cloth", partial(cloth.step, 1 / 60)

@@ -13,7 +13,7 @@ from click.core import ParameterSource
 
 from ..errors import UserError
 from ..recordings.conversion import LEAD, Playback
-from ..refining.looks import FIRST_LOOK, LOOKS, Refinement
+from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
 from .parameters import FiniteRange, PersonName
 
 if TYPE_CHECKING:
@@ -92,8 +92,8 @@ class Subject:
         help="Another person than the built-in head: for each number one, and some by name.",
     )
     look: str = option(
-        type=click.Choice(list(LOOKS)),
-        default=FIRST_LOOK,
+        type=click.Choice(list(PRESETS)),
+        default=FIRST_PRESET,
         show_default=True,
         help="How the mesh is refined; paper is the paper's own rule.",
     )

@@ -24,7 +24,7 @@ from ..passes.labelled import Labelled
 from ..passes.labels import CameraLabels
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, Viewport
-from ..refining.looks import Refinement
+from ..refining.presets import Refinement
 from ..scenes import FaceScene
 from .folder import name_of
 from .labels import labels_of_face

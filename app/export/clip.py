@@ -17,7 +17,7 @@ from risorius import refine
 
 from ..errors import UserError
 from ..motion import play, scene_of
-from ..refining.looks import Refinement
+from ..refining.presets import Refinement
 from ..refining.refiners import refiner_for
 from ..refining.wrinkling import Compression, on_rows, relief_of
 from ..scenes import FaceScene, Scene

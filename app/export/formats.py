@@ -26,7 +26,7 @@ from ..stopping import cleaned_up_if_stopped
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
 
-    from ..refining.looks import Refinement
+    from ..refining.presets import Refinement
     from ..script import Script
     from .clip import Clip
 

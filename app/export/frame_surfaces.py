@@ -9,7 +9,7 @@ import numpy as np
 
 from risorius.geometry.normals import vertex_normals
 
-from ..refining.looks import Refinement
+from ..refining.presets import Refinement
 from .clip import Clip, Floats, Indices, Singles, Surface
 
 GREY = 0.8  # of what has neither colours nor a texture

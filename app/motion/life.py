@@ -39,7 +39,7 @@ EYE_RANGE = 30.0  # that gaze = 1 stands for
 FACE_SPREAD = 1.1, 0.7  # of glances over the viewer's face, across and along
 FACE_LARGEST = 2.4
 FACE_MEDIAN, FACE_DURATION_SPREAD = 1.3, 0.55
-FIRST_LOOK = 2.5  # at the viewer, straight
+FIRST_PRESET = 2.5  # at the viewer, straight
 AWAY = 0.18  # share of glances that leave the viewer: eyes stay some 8 s, as a listener's
 AWAY_MEAN, AWAY_LEAST, AWAY_MOST = 6.9, 4.0, 12.0  # exponential, cut off
 AWAY_FLATNESS = 0.55  # up and down is shorter
@@ -160,7 +160,7 @@ class Glances:
 
     def __init__(self, generator: np.random.Generator) -> None:
         self._generator = generator
-        self.starts = [0.0, FIRST_LOOK]  # [s] in order, as far as drawn
+        self.starts = [0.0, FIRST_PRESET]  # [s] in order, as far as drawn
         self.places = [(0.0, 0.0), self._on_face()]  # that is looked at from then on
 
     def at(self, time: float) -> Place:

@@ -1,1 +1,1 @@
-"""How scenes are refined: looks by name, refiners bound as a look has them, and wrinkles."""
+"""How scenes are refined: presets by name, refiners bound as a preset has them, and wrinkles."""

@@ -1,4 +1,4 @@
-"""Refiners for scenes: bound as a look has them, and options as words of the command line."""
+"""Refiners for scenes: bound as a preset has them, and options as words of the command line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from risorius import refine
 
 from ..errors import UserError
 from ..scenes import Scene
-from .looks import LOOKS, STATIC, Refinement, named
+from .presets import PRESETS, STATIC, Refinement, named
 from .wrinkling import FoldCriterion
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
@@ -40,18 +40,18 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
             name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **bound
         )
     except (ValueError, TypeError) as error:
-        raise UserError(f"refiner {name}: {error}{_of_look(refinement, options)}") from None
+        raise UserError(f"refiner {name}: {error}{_of_preset(refinement, options)}") from None
 
 
-def _of_look(refinement: Refinement, options: Mapping[str, Any]) -> str:
-    """Words for what the look tells beside the user, who may not know that it does."""
+def _of_preset(refinement: Refinement, options: Mapping[str, Any]) -> str:
+    """Words for what the preset tells beside the user, who may not know that it does."""
     told = [
         f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
         for name, value in options.items()
         if name not in refinement.options and name != DETAIL
     ]
     is_mixed = told and refinement.options
-    return f"; the look {refinement.look} has {', '.join(told)}" if is_mixed else ""
+    return f"; the look {refinement.preset} has {', '.join(told)}" if is_mixed else ""
 
 
 def options_of(name: str) -> dict[str, Any]:
@@ -124,7 +124,7 @@ def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
 
 
 def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any]:
-    """What `--option NAME=VALUE ...` tells a refiner (None: that of the look).
+    """What `--option NAME=VALUE ...` tells a refiner (None: that of the preset).
 
     Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
     drawn as it is.
@@ -155,12 +155,12 @@ def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinem
     """
     beside: list[Refinement] = []
     for name in [] if names is None else names.split(","):
-        if name not in LOOKS and name not in refine.available():
+        if name not in PRESETS and name not in refine.available():
             raise UserError(
-                f"--compare: '{name}' is neither a look ({', '.join(LOOKS)}) nor a refiner "
+                f"--compare: '{name}' is neither a look ({', '.join(PRESETS)}) nor a refiner "
                 f"({', '.join(refine.available())}); a SCRIPT goes before --compare"
             )
-        other = named(name, refinement.look)
+        other = named(name, refinement.preset)
         if other in (refinement, *beside):
             raise UserError(
                 f"--compare: '{name}' would stand beside itself; choose a --look or a --refiner "

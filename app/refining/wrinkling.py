@@ -24,7 +24,7 @@ from risorius.assets.model import HIGHEST_FOLD
 from risorius.geometry.normals import vertex_normals
 
 from ..scenes import Scene
-from .looks import Refinement
+from .presets import Refinement
 
 Amounts = npt.NDArray[np.float32]
 
@@ -161,7 +161,7 @@ def on_rows(amounts: Amounts, refiner: refine.Refiner) -> Amounts | None:
 
 
 def relief_of(scene: Scene, refinement: Refinement) -> Relief | None:
-    """The shape of the scene's wrinkles; None where it has none, or the look shows none."""
+    """The shape of the scene's wrinkles; None where it has none, or the preset shows none."""
     if scene.wrinkles is None or not refinement.raises_wrinkles(scene.name):
         return None
     return Relief(scene.wrinkles)

@@ -25,7 +25,7 @@ from ..capture.encoder import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, save_text
-from ..refining.looks import CHANGED, FIRST_LOOK, LOOKS, STATIC, Refinement, named
+from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement, named
 from ..refining.refiners import refiner_for
 from ..scenes import Scene
 from . import setting_rules as rules
@@ -85,14 +85,14 @@ class Refiners:
         yield from (*self._others, *(name for name in refine.available() if name != STATIC))
 
 
-Side = Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *LOOKS), "a look or a refiner")]
+Side = Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *PRESETS), "a look or a refiner")]
 
 
 @dataclass
 class Display(Record):
     """How the scene is shown; the names are those that panels show."""
 
-    look: Annotated[str, OneOf(LOOKS)] = FIRST_LOOK
+    look: Annotated[str, OneOf(PRESETS)] = FIRST_PRESET
     # None: that of the look.
     refiner: Annotated[str | None, OneOf(Refiners(None), "a refiner")] = None
     # What refiners are told over the look, by their names.
@@ -100,10 +100,8 @@ class Display(Record):
     is_refined: Flag = True
     compare: Annotated[str, OneOf(rules.COMPARISONS)] = "off"
     # What is compared, at the left and at the right.
-    a: Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *LOOKS), "a look or a refiner")] = STATIC
-    b: Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *LOOKS), "a look or a refiner")] = (
-        rules.CHOSEN
-    )
+    a: Side = STATIC
+    b: Side = rules.CHOSEN
     divider: rules.Share = 0.5  # of a wipe, of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
@@ -126,7 +124,7 @@ class Display(Record):
         structures = tuple(name for name in STRUCTURES if name in self.overlays)
         return AnatomyView(structures, self.skin_opacity, self.dissect)
 
-    def choose_look(self, name: str) -> None:
+    def choose_preset(self, name: str) -> None:
         """Refine by a look, and by nothing but it."""
         self.look, self.refiner, self.options = name, None, {}
 
@@ -136,9 +134,9 @@ class Display(Record):
 
     def choose_refiner(self, scene: Scene, name: str) -> None:
         """Refine by another refiner, or by that of the look again."""
-        self.refiner = None if name == LOOKS[self.look][scene.name].refiner else name
+        self.refiner = None if name == PRESETS[self.look][scene.name].refiner else name
 
-    def look_as_changed(self, scene: Scene) -> str:
+    def preset_as_changed(self, scene: Scene) -> str:
         """The look's name, and whether what is seen of this scene is still what it was."""
         asked = self.refinement_on(scene)
         return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED}"
@@ -240,7 +238,7 @@ def display_of(
 ) -> Display:
     """How the scene of this name is shown as the command line asks for; style: further fields."""
     display = Display(
-        look=refinement.look,
+        look=refinement.preset,
         colours="splits" if splits else "none",
         overlays=list(anatomy.structures),
         skin_opacity=anatomy.opacity,

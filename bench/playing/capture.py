@@ -23,7 +23,7 @@ import numpy as np
 from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
 from risorius.app.motion import scene_of
 from risorius.app.performances import script_for
-from risorius.app.refining.looks import STATIC, Refinement
+from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.script import Script
 
 from ..report import processor, table

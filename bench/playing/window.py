@@ -17,7 +17,7 @@ import numpy as np
 
 from risorius import render
 from risorius.app.performances import script_for
-from risorius.app.refining.looks import FIRST_LOOK, PAPERS_LOOK
+from risorius.app.refining.presets import FIRST_PRESET, PAPERS_PRESET
 from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES
@@ -53,7 +53,7 @@ class _Case:
 
     name: str
     level: int | None = None  # None: as the window chooses
-    look: str = FIRST_LOOK
+    look: str = FIRST_PRESET
     compare: str = "off"
     is_refined: bool = True
     shows_muscles: bool = False
@@ -72,7 +72,7 @@ def report(seconds: float, size: tuple[int, int]) -> str:
         _Case("smile, wipe", compare="wipe"),
         _Case("smile, side by side", compare="side by side"),
         _Case("smile, muscles", shows_muscles=True),
-        _Case("smile, look paper", look=PAPERS_LOOK),
+        _Case("smile, look paper", look=PAPERS_PRESET),
         _Case("panels in each frame", are_panels_cached=False),
         *(_Case(f"level {level}: {_described(each)}", level) for level, each in enumerate(LEVELS)),
     ]

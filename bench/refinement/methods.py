@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
-from risorius.app.refining.looks import FIRST_LOOK, LOOKS
+from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 from risorius.refine.kahler.criterion import Thresholds
 
 from ..subjects import Points, Subject
@@ -48,7 +48,7 @@ CRITERIA: Mapping[str, Callable[[], Any]] = {
     "screen": refine.ScreenEdge,
     "bulge": refine.Bulge,
 }
-_TOLD = LOOKS[FIRST_LOOK]["face"].told("kahler")
+_TOLD = PRESETS[FIRST_PRESET]["face"].told("kahler")
 LOOK: tuple[str, str] = _TOLD["scheme"], _TOLD["criterion"]
 """Scheme and criterion by which the application shows a head, with thresholds as they are."""
 UNIFORM = ("uniform Loop", "Loop limit", "PN", "Phong")

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 from risorius.assets.plane import CELL, COLUMNS, ROWS, make_grid
 
@@ -72,7 +72,7 @@ class Waving:
     def image(self, variant: Variant, style: render.Style, phase: float) -> tuple[Image, int]:
         """The picture of a variant, and the number of its triangles."""
         scene = self._wave(phase)
-        papers = LOOKS[PAPERS_LOOK][scene.name]
+        papers = PRESETS[PAPERS_PRESET][scene.name]
         options = {**papers.told(variant.refiner), **variant.options}
         refiner = refine.create(variant.refiner, scene.faces, scene.rest_positions, **options)
         image = self._canvas.draw_image(refiner, scene.positions, Drawing(self._camera, style))

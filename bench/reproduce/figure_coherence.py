@@ -14,7 +14,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 
 from ..canvas import RED, Canvas, Drawing, image_table
@@ -52,7 +52,7 @@ def coherence(size: tuple[int, int] = (250, 200)) -> Outcome:
                 scene.faces,
                 scene.rest_positions,
                 coherent=is_coherent,
-                **LOOKS[PAPERS_LOOK][scene.name].told("kahler"),
+                **PRESETS[PAPERS_PRESET][scene.name].told("kahler"),
             )
             cells, values[f"lines turned {memory} memory"] = _moments(scene, refiner, canvas)
             rows.append((title, cells))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import SupportsFloat
 
-from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 from risorius.assets.plane import CELL, COLUMNS, ROWS
 from risorius.refine.kahler import criterion, smoothing
@@ -33,7 +33,7 @@ def _share(weight: SupportsFloat) -> str:
     return str(Fraction(float(weight)).limit_denominator(64))
 
 
-_PLANE = LOOKS[PAPERS_LOOK]["plane"].told("kahler")
+_PLANE = PRESETS[PAPERS_PRESET]["plane"].told("kahler")
 
 INFERRED = (
     Inferred("4.1", "weights of vertex normals", "area of the triangles around", "usual"),

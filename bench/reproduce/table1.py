@@ -26,7 +26,7 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.capture.cameras import camera_for
 from risorius.app.performances import script_for
-from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 
 from ..canvas import Canvas, Drawing
@@ -86,7 +86,7 @@ def measure(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
 
 def papers_refiner(scene: Scene) -> refine.Refiner:
     """The paper's refiner, bound to the scene's mesh, with thresholds that suit it."""
-    options = LOOKS[PAPERS_LOOK][scene.name].told("kahler")
+    options = PRESETS[PAPERS_PRESET][scene.name].told("kahler")
     return refine.create("kahler", scene.faces, scene.rest_positions, **options)
 
 

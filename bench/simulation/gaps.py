@@ -15,7 +15,7 @@ from dataclasses import astuple, dataclass
 from typing import Any
 
 from risorius import assets, refine, sim
-from risorius.app.refining.looks import FIRST_LOOK, LOOKS
+from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 
 from ..report import Target, at_most, table
 from ..subjects import settled_positions
@@ -46,7 +46,7 @@ def measure(head: Any = None) -> list[PoseGaps]:
     """Measure every pose, of the built-in head unless told."""
     head = assets.load("head") if head is None else head
     simulation = sim.create(head)
-    told = LOOKS[FIRST_LOOK]["face"].told("kahler")
+    told = PRESETS[FIRST_PRESET]["face"].told("kahler")
     refiner = refine.create("kahler", head.faces, head.vertices, **told)
     poses = []
     for name, is_shut in _rows(simulation):

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from risorius import assets, refine, render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.refining.looks import STATIC, Refinement
+from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.refining.wrinkling import Compression, Relief, on_rows, relief_of
 from risorius.app.scenes import FaceScene, PlaneScene

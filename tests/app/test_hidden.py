@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.refining.looks import STATIC, Refinement
+from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.scenes import FaceScene
 from risorius.render import hidden
 from risorius.render.hidden import Occluder

@@ -15,7 +15,7 @@ from risorius import refine, render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.labels import CameraLabels, landmarks_in, points_of
 from risorius.app.passes.passes import IMAGES, Passes
-from risorius.app.refining.looks import Refinement
+from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import ClothScene, FaceScene
 from risorius.assets import Segment
 from risorius.assets.fitting.head import fit

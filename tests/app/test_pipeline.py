@@ -12,7 +12,7 @@ from risorius import refine, render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.motion import SETTLING
 from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport, side_by_side, splits_of_source
-from risorius.app.refining.looks import Refinement
+from risorius.app.refining.presets import Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import parse_script

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine
 from risorius.app.errors import UserError
-from risorius.app.refining.looks import Refinement
+from risorius.app.refining.presets import Refinement
 from risorius.app.refining.refiners import open_choices, options_of, parse_options, refiner_for
 from risorius.app.scenes import PlaneScene
 from risorius.refine.border import registry

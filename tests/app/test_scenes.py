@@ -9,7 +9,7 @@ from risorius import refine
 from risorius.app.capture.cameras import whole_scene
 from risorius.app.cli.options import SCENE_NAMES
 from risorius.app.errors import UserError
-from risorius.app.refining.looks import LOOKS, Refinement
+from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import SCENES, ClothScene, FaceScene, PlaneScene, clamped
 from risorius.bench.simulation.lines_of_sight import meshes_of, widest_slit
@@ -42,7 +42,7 @@ def test_the_cloth_falls_and_is_taken_up() -> None:
     """Let go it hangs around the ball, of four to five times its triangles in every look."""
     cloth = ClothScene()
     assert len(cloth.faces) == 1152
-    refiners = {name: refiner_for(cloth, Refinement(name)) for name in LOOKS}
+    refiners = {name: refiner_for(cloth, Refinement(name)) for name in PRESETS}
     for refiner in refiners.values():
         assert len(refiner.refine(cloth.positions).triangles) == 1152
     cloth.pose({"drop": 1.0, "turn": -1.25})
@@ -135,7 +135,7 @@ def test_a_long_step_is_divided(face: FaceScene) -> None:
 def test_the_face_is_round_at_rest(face: FaceScene) -> None:
     """The outline of the crown, seen from aside, has no high corners, and there are no cracks."""
     highest = {}
-    for name in LOOKS:
+    for name in PRESETS:
         refiner = refiner_for(face, Refinement(name))
         mesh = refiner.refine(face.rest_positions)
         refine.check(refiner, mesh, face.rest_positions)

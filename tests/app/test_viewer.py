@@ -180,7 +180,7 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
     for name in ("Muscles", "Springs", "Skull", "Landmarks"):
         click(viewer, name)
     assert viewer.settings.display.overlays == ["muscles", "springs", "skull", "landmarks"]
-    viewer.settings.display.choose_look("paper")
+    viewer.settings.display.choose_preset("paper")
     assert until(viewer, lambda: viewer.is_idle)
     few = viewer.stage.refined.triangle_count
     viewer.settings.display.options["kahler"] = {"threshold_once": 0.0, "threshold_twice": 0.01}

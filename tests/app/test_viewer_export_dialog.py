@@ -16,7 +16,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture import capture as film_of
 from risorius.app.capture.cameras import camera_for
 from risorius.app.motion import scene_of
-from risorius.app.refining.looks import Refinement
+from risorius.app.refining.presets import Refinement
 from risorius.app.script import parse_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices

@@ -12,7 +12,7 @@ import pytest
 from risorius import assets, refine, sim
 from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.refining.looks import FIRST_LOOK, LOOKS
+from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 from risorius.app.scenes import ClothScene
 from risorius.assets.cloth import CELL, CELLS
 from risorius.assets.plane import make_grid
@@ -20,7 +20,7 @@ from risorius.bench.canvas import Canvas, Drawing
 from risorius.bench.reproduce.figure_9 import levels_apart, outline_apart
 from risorius.bench.reproduce.figure_coherence import FLAT, GOURAUD
 
-SMOOTH = LOOKS[FIRST_LOOK]["cloth"].told("kahler")
+SMOOTH = PRESETS[FIRST_PRESET]["cloth"].told("kahler")
 
 
 @pytest.fixture(scope="module")

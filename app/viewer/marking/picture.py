@@ -13,7 +13,7 @@ from risorius.sim.landmarks import MIRRORED
 
 from ...passes.labels import CameraLabels
 from ...pipeline import Pipeline, Viewport
-from ...refining.looks import STATIC, Refinement
+from ...refining.presets import STATIC, Refinement
 from ...scenes import Scene, build_scene
 from ..picture.view import View
 from ..settings import Display, Settings

@@ -15,7 +15,7 @@ from risorius.assets.identities import NAMED, person_in_words
 
 from ...anatomy import OPACITY, SIDES
 from ...controls.vocabulary import readable
-from ...refining.looks import FIRST_LOOK, LOOKS, STATIC, THRESHOLDS, named, words_of_looks
+from ...refining.presets import FIRST_PRESET, PRESETS, STATIC, THRESHOLDS, named, words_of_presets
 from ...refining.refiners import DETAIL, can_detail
 from ...scenes import BUILT_IN, OWN
 from ..colours import COLOURS
@@ -129,8 +129,8 @@ class MechanismPanel:
         for label, name in FIELDS.items():
             if getattr(display, name) != getattr(first, name):
                 resets[label] = partial(setattr, display, name, getattr(first, name))
-        if display.look_as_changed(scene) != FIRST_LOOK:
-            resets["Look"] = partial(display.choose_look, FIRST_LOOK)
+        if display.preset_as_changed(scene) != FIRST_PRESET:
+            resets["Look"] = partial(display.choose_preset, FIRST_PRESET)
         if scene.called not in ("", BUILT_IN):
             resets["Person"] = partial(self._show, None)
         return resets
@@ -138,8 +138,8 @@ class MechanismPanel:
     def _draw_refinement(self) -> None:
         display, stage = self._display, self._stage
         self._switch("Refine")
-        look = display.look_as_changed(stage.scene)
-        self._choose("Look", look, tuple(LOOKS), display.choose_look)
+        look = display.preset_as_changed(stage.scene)
+        self._choose("Look", look, tuple(PRESETS), display.choose_preset)
         names = [name for name in refine.available() if name != STATIC]
         put = partial(display.choose_refiner, stage.scene)
         self._choose("Refiner", display.refiner_on(stage.scene), names, put)
@@ -149,9 +149,9 @@ class MechanismPanel:
                 self._draw_option(name, default)
         self._pick("Compare", COMPARISONS)
         if display.compare != "off":
-            labels = {name: named(name, display.look).label for name in (STATIC, *LOOKS, *names)}
-            self._pick("A", (STATIC, *LOOKS, *names, CHOSEN), labels)
-            self._pick("B", (STATIC, *LOOKS, *names, CHOSEN), labels)
+            labels = {name: named(name, display.look).label for name in (STATIC, *PRESETS, *names)}
+            self._pick("A", (STATIC, *PRESETS, *names, CHOSEN), labels)
+            self._pick("B", (STATIC, *PRESETS, *names, CHOSEN), labels)
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
             count = drawn.triangle_count
@@ -166,7 +166,7 @@ class MechanismPanel:
         """A slider, a checkbox or a list for an option, by what its default is."""
         scene, refiner = self._stage.scene, self._display.refiner_on(self._stage.scene)
         stored = self._display.options.setdefault(refiner, {})
-        told = LOOKS[self._display.look][scene.name].told(refiner)
+        told = PRESETS[self._display.look][scene.name].told(refiner)
         value = stored.get(name, told.get(name, default))
         label, put = name.replace("_", " "), partial(stored.__setitem__, name)
         if isinstance(default, bool):
@@ -287,7 +287,7 @@ def _choices(option: str) -> tuple[str, ...]:
     registered = {"scheme": refine.schemes.available, "criterion": refine.criteria.available}
     if option not in registered:
         return ()
-    return tuple(dict.fromkeys((*registered[option](), *words_of_looks(option))))
+    return tuple(dict.fromkeys((*registered[option](), *words_of_presets(option))))
 
 
 def _keep_in_order(

@@ -13,7 +13,7 @@ from risorius import render
 from ...capture.captions import SPLITS_BAR, Label, captioned, labels
 from ...files import Image
 from ...pipeline import DrawnMesh, Pipeline, Viewport
-from ...refining.looks import STATIC, Refinement
+from ...refining.presets import STATIC, Refinement
 from ...refining.refiners import open_choices, options_of
 from ...scenes import Scene
 from ..colours import COLOURS

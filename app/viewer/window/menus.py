@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from ...controls.vocabulary import readable
-from ...refining.looks import FIRST_LOOK, PAPERS_LOOK
+from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
 from ...script.easing import EASINGS
 from ..documents.export import Exporter
 from ..documents.file_drop import FileDrop
@@ -170,7 +170,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
     def toggle_look() -> Message:
         """The paper's own rule, or the look that is first; either as it is."""
         display = settings.display
-        display.choose_look(FIRST_LOOK if display.look == PAPERS_LOOK else PAPERS_LOOK)
+        display.choose_preset(FIRST_PRESET if display.look == PAPERS_PRESET else PAPERS_PRESET)
         return f"Look: {display.look}"
 
     def toggle_full() -> Message:
@@ -186,7 +186,7 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
     full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
     return (
         display_switch("Refine", "R", "is_refined"),
-        command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_LOOK),
+        command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_PRESET),
         display_switch("Compare: wipe", "D", "compare", "wipe", "off"),
         display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
         display_switch("Compare: A or B alone", "B", "compare", "B alone", "A alone"),

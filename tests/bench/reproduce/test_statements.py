@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from risorius import refine
-from risorius.app.refining.looks import LOOKS, PAPERS_LOOK
+from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene, Scene
 from risorius.bench.reproduce import statements
 from risorius.bench.reproduce.experiments import EXPERIMENTS, Experiment
@@ -51,7 +51,7 @@ def measured(waving: pytest.MonkeyPatch, function: str, **options: Any) -> dict[
     """What is measured of a refiner with these options, over the plane's own."""
 
     def refiner(scene: Scene) -> refine.Refiner:
-        merged = {**LOOKS[PAPERS_LOOK][scene.name].told("kahler"), **options}
+        merged = {**PRESETS[PAPERS_PRESET][scene.name].told("kahler"), **options}
         if "criterion" in options:
             del merged["threshold_once"], merged["threshold_twice"]
         return refine.create("kahler", scene.faces, scene.rest_positions, **merged)

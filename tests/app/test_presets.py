@@ -12,7 +12,7 @@ from risorius import refine, render
 from risorius.app.capture.cameras import whole_scene
 from risorius.app.errors import UserError
 from risorius.app.pipeline import Pipeline, Viewport
-from risorius.app.refining.looks import FIRST_LOOK, LOOKS, Look, Refinement, named
+from risorius.app.refining.presets import FIRST_PRESET, PRESETS, Preset, Refinement, named
 from risorius.app.refining.refiners import parse_comparison, refiner_for
 from risorius.app.scenes import SCENES, Scene
 from risorius.refine.border.registry import refiners
@@ -43,7 +43,7 @@ def scenes() -> dict[str, Scene]:
 
 
 @pytest.mark.parametrize("refiner", [None, *refine.available()])
-@pytest.mark.parametrize("look", LOOKS)
+@pytest.mark.parametrize("look", PRESETS)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_look_is_drawn_by_every_refiner(
     surface: Any, scenes: dict[str, Scene], name: str, look: str, refiner: str | None
@@ -79,14 +79,16 @@ def test_the_papers_look_is_the_papers_rule(scenes: dict[str, Scene]) -> None:
 
 def test_looks_know_every_scene() -> None:
     """None is left out, and no other is named."""
-    assert {frozenset(by_scene) for by_scene in LOOKS.values()} == {frozenset(SCENES)}
-    assert FIRST_LOOK in LOOKS
+    assert {frozenset(by_scene) for by_scene in PRESETS.values()} == {frozenset(SCENES)}
+    assert FIRST_PRESET in PRESETS
 
 
 def test_what_is_asked_for_is_over_the_look(monkeypatch: pytest.MonkeyPatch) -> None:
     """A look says which refiner and what it is told; both can be replaced; others get nothing."""
     told = {"kahler": {"scheme": "cubic", "blend": True}, "loop": {"levels": 2}}
-    monkeypatch.setattr("risorius.app.refining.looks.LOOKS", {"x": {"face": Look("loop", told)}})
+    monkeypatch.setattr(
+        "risorius.app.refining.presets.PRESETS", {"x": {"face": Preset("loop", told)}}
+    )
     assert Refinement("x").on("face") == ("loop", {"levels": 2})
     assert Refinement("x", "kahler").on("face") == ("kahler", told["kahler"])
     changed = Refinement("x", "kahler", {"blend": None}).on("face")
@@ -100,7 +102,9 @@ def test_a_refusal_tells_what_the_look_has(
 ) -> None:
     """An option may not go with what the look says; who asked for nothing is told no more."""
     told = {"kahler": {"scheme": "cubic", "blend": True}}
-    monkeypatch.setattr("risorius.app.refining.looks.LOOKS", {"x": {"face": Look(options=told)}})
+    monkeypatch.setattr(
+        "risorius.app.refining.presets.PRESETS", {"x": {"face": Preset(options=told)}}
+    )
     with pytest.raises(UserError, match=r"one of the two; the look x has scheme=cubic, blend=on$"):
         refiner_for(scenes["face"], Refinement("x", options={"coherent": True}))
     options = {"scheme": "loop", "blend": True, "coherent": True}

@@ -1,4 +1,4 @@
-"""Looks: how the application refines each scene, under names that a user chooses from.
+"""Refinement presets: how each scene is refined, under names that a user chooses from as looks.
 
 `smooth` looks best, and is what films and the window show unless told; `paper` is the rule of
 Kähler, Haber, Seidel 2003 alone. Whatever is drawn asks here by which refiner, told what.
@@ -15,13 +15,13 @@ from ..errors import UserError
 
 STATIC = "none"  # the refiner that leaves the mesh as it is
 CHANGED = ", changed"  # after the name of what has options over its own
-FIRST_LOOK, PAPERS_LOOK = "smooth", "paper"  # the one that is seen unless told, and the paper's
+FIRST_PRESET, PAPERS_PRESET = "smooth", "paper"  # the one that is seen unless told, and the paper's
 THRESHOLDS = "threshold_once", "threshold_twice"  # options of this criterion alone:
 PAPERS_CRITERION = "normal"
 
 
 @dataclass(frozen=True)
-class Look:
+class Preset:
     """How one scene is refined: by which refiner, and what each refiner is told there."""
 
     refiner: str = "kahler"
@@ -35,45 +35,45 @@ class Look:
 
 # By `bulge` alone the outlines of crown and chin would stay polygons: edges there are long and turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
-SMOOTH = Look(
+SMOOTH = Preset(
     options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}}, raises_wrinkles=True
 )
 # The hem of a cloth turns in the sheet itself.
-SMOOTH_CLOTH = Look(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
-PAPER = Look()
+SMOOTH_CLOTH = Preset(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
+PAPER = Preset()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
 # makes about as many triangles at most as in Table 1 (1328).
 PLANE = {"threshold_once": 0.001, "threshold_twice": 0.005}
-PAPERS_PLANE = Look(options={"kahler": PLANE})
-SMOOTH_PLANE = Look(options={"kahler": {"normals": "refined", **PLANE}})
+PAPERS_PLANE = Preset(options={"kahler": PLANE})
+SMOOTH_PLANE = Preset(options={"kahler": {"normals": "refined", **PLANE}})
 
-LOOKS: Mapping[str, Mapping[str, Look]] = MappingProxyType(  # by name, then by scene
+PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then by scene
     {
-        FIRST_LOOK: {"face": SMOOTH, "plane": SMOOTH_PLANE, "cloth": SMOOTH_CLOTH},
-        PAPERS_LOOK: {"face": PAPER, "plane": PAPERS_PLANE, "cloth": PAPER},
+        FIRST_PRESET: {"face": SMOOTH, "plane": SMOOTH_PLANE, "cloth": SMOOTH_CLOTH},
+        PAPERS_PRESET: {"face": PAPER, "plane": PAPERS_PLANE, "cloth": PAPER},
     }
 )
 
 
-def words_of_looks(option: str) -> list[str]:
-    """What looks tell any refiner by an option that is a word."""
-    looks = [look for by_scene in LOOKS.values() for look in by_scene.values()]
-    return [told[option] for look in looks for told in look.options.values() if option in told]
+def words_of_presets(option: str) -> list[str]:
+    """What presets tell any refiner by an option that is a word."""
+    presets = [preset for by_scene in PRESETS.values() for preset in by_scene.values()]
+    return [told[option] for each in presets for told in each.options.values() if option in told]
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """What a user asks for: a look, or a refiner as that look has it, and options over both."""
+    """What a user asks for: a preset, or a refiner as that has it, and options over both."""
 
-    look: str = FIRST_LOOK
-    refiner: str | None = None  # None: the look's own
-    options: Mapping[str, Any] = field(default_factory=dict)  # over what the look tells it
+    preset: str = FIRST_PRESET
+    refiner: str | None = None  # None: the preset's own
+    options: Mapping[str, Any] = field(default_factory=dict)  # over what the preset tells it
 
     def on(self, scene: str) -> tuple[str, dict[str, Any]]:
         """The refiner's name, and all that it is told, on the scene of this name."""
-        look = LOOKS[self.look][scene]
-        name = look.refiner if self.refiner is None else self.refiner
-        return name, {**look.told(name), **self.options}
+        preset = PRESETS[self.preset][scene]
+        name = preset.refiner if self.refiner is None else self.refiner
+        return name, {**preset.told(name), **self.options}
 
     def has_thresholds(self, scene: str) -> bool:
         """Whether the criterion is, or has in it, the one that THRESHOLDS are of."""
@@ -94,15 +94,15 @@ class Refinement:
 
     def raises_wrinkles(self, scene: str) -> bool:
         """Whether wrinkles become shape; the mesh as it is has no triangles for it."""
-        return LOOKS[self.look][scene].raises_wrinkles and self.on(scene)[0] != STATIC
+        return PRESETS[self.preset][scene].raises_wrinkles and self.on(scene)[0] != STATIC
 
     @property
     def label(self) -> str:
         """What it is called under a picture."""
-        name = "static" if self.refiner == STATIC else self.refiner or self.look
+        name = "static" if self.refiner == STATIC else self.refiner or self.preset
         return f"{name}{CHANGED}" if self.options else name
 
 
-def named(name: str, look: str) -> Refinement:
-    """The look of this name, or else the refiner of this name, told what `look` tells it."""
-    return Refinement(name) if name in LOOKS else Refinement(look, name)
+def named(name: str, preset: str) -> Refinement:
+    """The preset of this name, or else the refiner of it, told what `preset` tells it."""
+    return Refinement(name) if name in PRESETS else Refinement(preset, name)
