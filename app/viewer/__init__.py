@@ -1,6 +1,7 @@
 """The window: a face that answers to sliders, keys, the mouse and a script.
 
-window/     all parts joined (context.py: start reading here), the loop, menus, the splash screen
+window/     all parts joined (application.py: start reading here), loop, menus, splash screen
+context.py  what the parts share, and take what they need from
 marking/    landmarks of a mesh, marked in place of the face
 panels/     what stands at the left of the picture, and its help
 timeline/   the script below it: keys in rows and as curves, the sound

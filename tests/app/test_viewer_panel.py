@@ -32,9 +32,7 @@ def plain_panel(viewer: Viewer) -> Iterator[None]:
     """No filter, sides linked, and the panel as wide as at first afterwards."""
     yield
     viewer.face_panel.search = viewer.face_panel.filter = ""
-    viewer.face_panel.rows.__init__(  # type: ignore[misc]
-        viewer.gui, viewer.session, viewer.settings, viewer.view
-    )
+    viewer.face_panel.rows.__init__(viewer)  # type: ignore[misc]
     viewer.settings.is_linked, viewer.settings.panel_width = True, WIDTH
     settle(viewer)
 

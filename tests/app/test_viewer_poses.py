@@ -59,9 +59,8 @@ def test_a_pose_is_kept_with_a_picture(viewer: Viewer, tmp_path: Path) -> None:
     folder, unusable = tmp_path / "poses", tmp_path / "poses" / "broken.toml"
     folder.mkdir()
     unusable.write_text("[[pose")
-    args = viewer.gui, viewer.session, viewer.messages, viewer.surface, folder
     grid.close()
-    replace_state(grid, PoseGrid(*args))
+    replace_state(grid, PoseGrid(viewer, folder))
     viewer.settings.folds["Pose pictures"], viewer.settings.folds["Expressions"] = True, False
     viewer.session.set("jaw_open", 0.6)
     viewer.settings.zoom = 0.6

@@ -28,7 +28,7 @@ SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size", "Ke
 
 
 class Window(Protocol):
-    """What is needed of the window (window/context.py)."""
+    """What is needed of the window (window/application.py)."""
 
     surface: render.WindowSurface
     gui: Gui

@@ -11,11 +11,9 @@ from imgui_bundle import imgui
 
 from ...controls.mirror import twin_of
 from ...controls.vocabulary import Pad, called, filters, pads
-from ..interface.gui import LEFT, NOTE_FLAGS, RIGHT, Gui, colour, em, ink_of
+from ..context import ApplicationContext
+from ..interface.gui import LEFT, NOTE_FLAGS, RIGHT, colour, em, ink_of
 from ..interface.widgets import Sliders, button, button_width, heading, hint, muted, stay_in_line
-from ..picture.view import View
-from ..session.session import Session
-from ..settings import Settings
 from .pose_grid import PoseGrid
 from .rows import ControlRows, Row, search_rows
 
@@ -25,8 +23,8 @@ PAD_HEIGHT, DOT = 4.6, 0.32  # [em] of a field, and half of the dot in it
 class Pads:
     """Draws those for which the scene has controls."""
 
-    def __init__(self, gui: Gui, session: Session) -> None:
-        self._gui, self._session = gui, session
+    def __init__(self, app: ApplicationContext) -> None:
+        self._gui, self._session = app.gui, app.session
         self._is_reset = False  # by the press that goes on
 
     def draw(self) -> None:
@@ -91,9 +89,10 @@ NOTE_WIDTH = 12.0  # [em] of the slider
 class MuscleNote:
     """A note that a click elsewhere or Escape takes away."""
 
-    def __init__(self, gui: Gui, session: Session, settings: Settings, view: View) -> None:
-        self._gui, self._session, self._settings, self._view = gui, session, settings, view
-        self._sliders = Sliders(gui)
+    def __init__(self, app: ApplicationContext) -> None:
+        self._gui, self._session = app.gui, app.session
+        self._settings, self._view = app.settings, app.view
+        self._sliders = Sliders(app.gui)
         self.name = ""  # of the muscle, "" for none
 
     def draw(self) -> None:
@@ -136,12 +135,9 @@ IN_USE = "In use"  # a filter of all groups
 class FacePanel:
     """Buttons, search, filters and groups of rows."""
 
-    def __init__(
-        self, gui: Gui, session: Session, settings: Settings, view: View, poses: PoseGrid
-    ) -> None:
-        self._gui, self._session, self._settings = gui, session, settings
-        self.rows = ControlRows(gui, session, settings, view)
-        self._pads, self.poses = Pads(gui, session), poses
+    def __init__(self, app: ApplicationContext, poses: PoseGrid) -> None:
+        self._gui, self._session, self._settings = app.gui, app.session, app.settings
+        self.rows, self._pads, self.poses = ControlRows(app), Pads(app), poses
         self.search = ""
         self.filter = ""  # the groups that are shown alone, by what their button reads
         self._in_use: set[str] = set()  # labels of rows

@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from imgui_bundle import imgui
 
 from ...controls.vocabulary import readable
+from ..context import ApplicationContext
 from ..interface.commands import Command, pressed_key, set_keys
-from ..interface.gui import NOTE_FLAGS, TICK, Gui, colour, em, ink_of
+from ..interface.gui import NOTE_FLAGS, TICK, colour, em, ink_of
 from ..interface.widgets import button, muted
-from ..picture.view import View
-from ..settings import PanelState
 
 STEPS = (
     ("Pull the cheek", "with the left mouse button"),
@@ -26,9 +25,9 @@ FAREWELL = 4.0  # [s] that it stays when all is done
 class FirstSteps:
     """Draws the steps, and ticks off what the user does."""
 
-    def __init__(self, gui: Gui, view: View, doing: Callable[[], Iterable[bool]]) -> None:
+    def __init__(self, app: ApplicationContext, doing: Callable[[], Iterable[bool]]) -> None:
         """doing: whether the user does now what each of the steps asks for."""
-        self._gui, self._view, self._doing = gui, view, doing
+        self._gui, self._view, self._doing = app.gui, app.view, doing
         self.done: list[bool] = []  # of each step; empty: nothing is shown
         self._seconds_left = FAREWELL
 
@@ -137,9 +136,8 @@ WIDE = 63.0  # [em] that the wide ones take
 class Help:
     """Draws the list, in which each key can be changed."""
 
-    def __init__(self, gui: Gui, state: PanelState, changed: dict[str, str]) -> None:
-        """changed: the keys of commands that have not their usual ones, by the commands' labels."""
-        self._gui, self._state, self._changed = gui, state, changed
+    def __init__(self, app: ApplicationContext) -> None:
+        self._gui, self._state, self._changed = app.gui, app.panel_state, app.settings.keys
         self._asked: Command | None = None  # for which a key is to be pressed
         self._line = ASK
 

@@ -10,11 +10,11 @@ from collections.abc import Callable, Mapping
 
 from imgui_bundle import imgui
 
+from ..context import ApplicationContext
 from ..interface.commands import MenuBar
 from ..interface.gui import LEFT, NOTE_FLAGS, PANEL, Gui, colour, em, fixed_panel
 from ..messages import Messages
 from ..picture.view import View
-from ..settings import PanelState, Settings
 from ..timeline.timeline import Timeline
 
 
@@ -52,15 +52,13 @@ class Layout:
 
     def __init__(
         self,
-        gui: Gui,
-        settings: Settings,
-        state: PanelState,
+        app: ApplicationContext,
         menus: MenuBar,
         tabs: Mapping[str, Callable[[], None]],
         timeline: Timeline,
     ) -> None:
         """tabs: what draws the panels at the left, by their titles, or label###title."""
-        self._gui, self._settings, self._state = gui, settings, state
+        self._gui, self._settings, self._state = app.gui, app.settings, app.panel_state
         self._menus, self._tabs, self._timeline = menus, tabs, timeline
 
     def draw(self, view: View) -> None:

@@ -10,8 +10,9 @@ from imgui_bundle import imgui
 from ...controls.vocabulary import sentence
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
 from ...recordings.calibration import ANGLES, BLINK_GAIN, HIGHEST_GAIN
+from ..context import ApplicationContext
 from ..interface.commands import Command
-from ..interface.gui import Gui, colour, em
+from ..interface.gui import colour, em
 from ..interface.widgets import (
     LabelledRows,
     button,
@@ -21,9 +22,6 @@ from ..interface.widgets import (
     muted,
     stay_in_line,
 )
-from ..messages import Messages
-from ..session.live_commands import LiveCommands
-from ..settings import Settings
 from .rows import rows_of
 
 LABEL_SHARE = 0.38  # of a row
@@ -49,13 +47,11 @@ HINTS = {
 class LivePanel:
     """Draws the panel, and carries out what is done in it."""
 
-    def __init__(
-        self, gui: Gui, settings: Settings, live: LiveCommands, messages: Messages, record: Command
-    ) -> None:
+    def __init__(self, app: ApplicationContext, record: Command) -> None:
         """record: the command that begins and ends a recording."""
-        self._gui, self._settings, self._live, self._messages = gui, settings, live, messages
-        self._record = record
-        self._rows = LabelledRows(gui, LABEL_SHARE, HINTS)
+        self._gui, self._settings, self._messages = app.gui, app.settings, app.messages
+        self._live, self._record = app.live, record
+        self._rows = LabelledRows(app.gui, LABEL_SHARE, HINTS)
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""

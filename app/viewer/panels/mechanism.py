@@ -19,16 +19,14 @@ from ...refining.presets import FIRST_PRESET, PRESETS, STATIC, THRESHOLDS, named
 from ...refining.refiners import DETAIL, can_detail
 from ...scenes import BUILT_IN, OWN
 from ..colours import COLOURS
+from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
-from ..frame_times import PHASES, FrameTimes
-from ..interface.gui import Gui, em
+from ..frame_times import PHASES
+from ..interface.gui import em
 from ..interface.widgets import LabelledRows, button, heading, muted
-from ..messages import Messages
 from ..overlays import overlays_of
-from ..picture.stage import Stage
-from ..picture.view import View
 from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
-from ..settings import Display, Settings, switch
+from ..settings import Display, switch
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -78,20 +76,11 @@ HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is
 class MechanismPanel:
     """Everything about how the mesh becomes a picture."""
 
-    def __init__(
-        self,
-        gui: Gui,
-        settings: Settings,
-        stage: Stage,
-        view: View,
-        times: FrameTimes,
-        messages: Messages,
-        file_drop: FileDrop,
-    ) -> None:
-        self._gui, self._settings = gui, settings
-        self._messages, self._file_drop = messages, file_drop
-        self._stage, self._view, self._times = stage, view, times
-        self._rows = LabelledRows(gui, LABEL_SHARE, HINTS)
+    def __init__(self, app: ApplicationContext, file_drop: FileDrop) -> None:
+        self._gui, self._settings = app.gui, app.settings
+        self._messages, self._file_drop = app.messages, file_drop
+        self._stage, self._view, self._times = app.stage, app.view, app.times
+        self._rows = LabelledRows(app.gui, LABEL_SHARE, HINTS)
 
     @property
     def _display(self) -> Display:

@@ -25,10 +25,9 @@ from ...errors import UserError
 from ...files import Image
 from ...scenes import FaceScene, Scene
 from ...script import is_pose, load_script, pose_script, save_script
-from ..interface.gui import LEFT, Gui, em, ink_of, wake_up
+from ..context import ApplicationContext
+from ..interface.gui import LEFT, em, ink_of, wake_up
 from ..interface.widgets import button, hint
-from ..messages import Messages
-from ..session.session import Session
 
 SIZE = (150, 150)  # [pixels] of a picture
 VIEW = "0,0,1.7"  # the camera
@@ -121,18 +120,11 @@ MEANING = "a click takes it, a drag to the right blends it in; with Shift mirror
 class PoseGrid:
     """Draws the pictures, one after the other; their places are there at once."""
 
-    def __init__(
-        self,
-        gui: Gui,
-        session: Session,
-        messages: Messages,
-        surface: render.WindowSurface,
-        folder: Path | None,
-    ) -> None:
+    def __init__(self, app: ApplicationContext, folder: Path | None) -> None:
         """folder: where the user's own are kept; None for nowhere."""
-        self._gui, self._session, self._messages = gui, session, messages
-        self._surface, self.folder = surface, folder
-        self._poses = PoseLibrary(session.scene, folder)
+        self._gui, self._session, self._messages = app.gui, app.session, app.messages
+        self._surface, self.folder = app.surface, folder
+        self._poses = PoseLibrary(app.session.scene, folder)
         self._pictures: dict[str, tuple[Values, Any]] = {}  # by title: of which pose, texture
         self._ends: tuple[Values, Values] = ({}, {})  # of the blend that goes on
         self._share = 0.0

@@ -9,11 +9,9 @@ from imgui_bundle import imgui
 
 from ...controls.mirror import OPPOSITE, parted, twin_of
 from ...controls.vocabulary import is_found, readable, title_of
-from ..interface.gui import Gui, colour, em, ink_of
+from ..context import ApplicationContext
+from ..interface.gui import colour, em, ink_of
 from ..interface.widgets import Sliders, button, hint
-from ..picture.view import View
-from ..session.session import Session
-from ..settings import Settings
 
 
 @dataclass(frozen=True)
@@ -103,9 +101,10 @@ SIDES = "R L"  # what the switch of a row reads whose sides can be moved apart
 class ControlRows:
     """Draws rows of controls, and carries out what is done to them."""
 
-    def __init__(self, gui: Gui, session: Session, settings: Settings, view: View) -> None:
-        self._gui, self._session, self._settings, self._view = gui, session, settings, view
-        self._sliders = Sliders(gui)
+    def __init__(self, app: ApplicationContext) -> None:
+        self._gui, self._session = app.gui, app.session
+        self._settings, self._view = app.settings, app.view
+        self._sliders = Sliders(app.gui)
         self._apart: set[str] = set()  # labels of rows whose sides were taken apart
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 

@@ -18,12 +18,11 @@ from imgui_bundle import imgui
 from ...errors import counted
 from ...script import Script, keyframes
 from ...script.places import NOWHERE, Places
+from ..context import ApplicationContext
 from ..interface.commands import MenuBar
-from ..interface.gui import LEFT, MIDDLE, RIGHT, Gui, em, ink_of
+from ..interface.gui import LEFT, MIDDLE, RIGHT, em, ink_of
 from ..interface.widgets import shortened
-from ..messages import Message, Messages, Task
-from ..session.session import Session
-from ..settings import Settings
+from ..messages import Message, Task
 from . import key_marks
 from .graph import Graph
 from .key_selection import KeySelection, PoseNameLine
@@ -60,19 +59,16 @@ class DopeSheet:
 
     def __init__(
         self,
-        gui: Gui,
-        session: Session,
-        settings: Settings,
-        messages: Messages,
+        app: ApplicationContext,
         selection: KeySelection,
         axis: TimeAxis,
         menus: MenuBar,
         waveform: Waveform,
     ) -> None:
-        self._gui, self._session, self.settings = gui, session, settings
-        self._messages, self._menus = messages, menus
+        self._gui, self._session, self.settings = app.gui, app.session, app.settings
+        self._messages, self._menus = app.messages, menus
         self.selection, self.axis, self._waveform = selection, axis, waveform
-        self.graph = Graph(gui, selection, axis)
+        self.graph = Graph(app.gui, selection, axis)
         self._drag: Drag | None = None
         self._number: float | None = None  # the time [s] whose number was pressed on in the ruler
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
@@ -83,7 +79,7 @@ class DopeSheet:
         self._bottom = 0.0  # of all of it [window units]
         self._tops = [0.0]  # of each row, and of what would come below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
-        self._name_line = PoseNameLine(gui, session, messages, selection)
+        self._name_line = PoseNameLine(app, selection)
         self._wants_menu = False
 
     def _is_open(self, name: str) -> bool:

@@ -8,8 +8,9 @@ from ...errors import counted
 from ...script import Pose, Script, keyframes
 from ...script.keyframes import POSES
 from ...script.places import NOWHERE, Places
-from ..interface.gui import Gui, em
-from ..messages import Message, Messages
+from ..context import ApplicationContext
+from ..interface.gui import em
+from ..messages import Message
 from ..session.session import Session
 from ..settings import PanelState
 
@@ -125,10 +126,8 @@ class KeySelection:
 class PoseNameLine:
     """A line for a pose's name, which comes up when one is asked for."""
 
-    def __init__(
-        self, gui: Gui, session: Session, messages: Messages, selection: KeySelection
-    ) -> None:
-        self._gui, self._session, self._messages = gui, session, messages
+    def __init__(self, app: ApplicationContext, selection: KeySelection) -> None:
+        self._gui, self._session, self._messages = app.gui, app.session, app.messages
         self.selection = selection
         self._time, self._name = 0.0, ""  # [s] of the pose, and what is written so far
 

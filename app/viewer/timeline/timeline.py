@@ -7,11 +7,10 @@ from collections.abc import Iterable
 from imgui_bundle import imgui
 
 from ...errors import counted
+from ..context import ApplicationContext
 from ..interface.commands import Command
-from ..interface.gui import LEFT, MIDDLE, RIGHT, Gui, colour, em
+from ..interface.gui import LEFT, MIDDLE, RIGHT, colour, em
 from ..interface.widgets import button, choose, hint, shortened, stay_in_line
-from ..messages import Messages
-from ..session.session import Session
 from ..settings import switch
 from .dope_sheet import DopeSheet
 
@@ -36,15 +35,10 @@ class Timeline:
     """Draws buttons and dope sheet, and carries out what is done with the buttons."""
 
     def __init__(
-        self,
-        gui: Gui,
-        session: Session,
-        messages: Messages,
-        commands: Iterable[Command],
-        dope_sheet: DopeSheet,
+        self, app: ApplicationContext, commands: Iterable[Command], dope_sheet: DopeSheet
     ) -> None:
         """commands: those of the buttons must be among them."""
-        self._gui, self._session, self._messages = gui, session, messages
+        self._gui, self._session, self._messages = app.gui, app.session, app.messages
         self._commands = {command.label: command for command in commands}
         self.dope_sheet = dope_sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow

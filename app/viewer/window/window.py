@@ -1,4 +1,4 @@
-"""The window as it runs: one turn of its loop, and when that rests. Its parts: context.py.
+"""The window as it runs: one turn of its loop, and when that rests. Its parts: application.py.
 
 Physics goes in steps of its own, apart from frames (physics.py). The scene is drawn only when
 something in it has changed, with less detail while it moves if the machine is slow (painter.py);
@@ -23,7 +23,7 @@ from ..interface.gui import on_drop
 from ..panels.layout import draw_message
 from ..picture.painter import Painter
 from ..session.live_commands import PACING
-from .context import ApplicationContext
+from .application import Application
 
 REFRESH = 0.1  # [s] that a picture of the panels may be old while the face moves
 
@@ -65,7 +65,7 @@ LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no 
 FRAMES_AFTER_EVENT = 3  # the GUI answers an event within so many frames
 
 
-class Viewer(ApplicationContext):
+class Viewer(Application):
     """The window with everything in it, as it runs; a context manager."""
 
     _last: float  # when the last frame began [s]

@@ -15,16 +15,13 @@ from ...errors import UserError
 from ...refining.refiners import refiner_for
 from ...scenes import BUILT_IN, Scene, build_scene
 from ...script import Script
-from ..documents.export import Exporter
+from ..context import ApplicationContext
 from ..documents.export_dialog import ExportDialog
-from ..documents.file_dialogs import FileChooser, FileDialogs
+from ..documents.file_dialogs import FileChooser
 from ..documents.file_drop import FileDrop
-from ..documents.scripts import Question, ScriptCommands
-from ..frame_times import FrameTimes
 from ..interface.commands import Command, MenuBar, set_keys
-from ..interface.gui import Gui, wake_up
 from ..marking import Marking, Room
-from ..messages import Message, Messages
+from ..messages import Message
 from ..panels.face import FacePanel, MuscleNote
 from ..panels.help import FirstSteps, Help
 from ..panels.layout import Layout
@@ -34,16 +31,12 @@ from ..panels.pose_grid import PoseGrid
 from ..picture.mouse import Mouse
 from ..picture.painter import Painter
 from ..picture.skin_drag import SkinDrag
-from ..picture.stage import Stage
-from ..picture.view import View
-from ..session.live_commands import LiveCommands
 from ..session.physics import IdleLife, Physics
 from ..session.recovery import Recovery
 from ..session.session import Session
 from ..session.soundtrack import Soundtrack
 from ..settings import (
     Display,
-    PanelState,
     Settings,
     load_settings,
     remove_refused_options,
@@ -62,7 +55,7 @@ from .splash_screen import SplashScreen
 LOG = logging.getLogger("risorius.viewer")  # what is told where there is no window any more
 
 
-class ApplicationContext:
+class Application(ApplicationContext):
     """An open window and all its parts, each with the others that it needs; nothing moves yet."""
 
     def __init__(
@@ -83,33 +76,29 @@ class ApplicationContext:
         Raises UserError for a script that names what the scene has not.
         """
         self._settings_path = settings_path
-        self.settings, complaint = Settings(), ""
+        settings, complaint = Settings(), ""
         if settings_path is not None:
-            self.settings, complaint = load_settings(settings_path)
+            settings, complaint = load_settings(settings_path)
         is_own = script.scene != "face" or head is not None
         splash = splash or SplashScreen(size, settings_path, is_own=is_own)
-        shown = display or self.settings.display
+        shown = display or settings.display
         scene = splash.during(partial(_ready_scene, script, head, shown))
-        self.session = Session(scene, script)
-        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
-        self.recovery.find(self.session)
-        self.soundtrack = Soundtrack(self.session)
         if display is None:
-            refused = remove_refused_options(self.settings.display, scene)
+            refused = remove_refused_options(settings.display, scene)
             if refused and settings_path is not None and not complaint:
                 refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
             complaint = "; ".join(filter(None, (complaint, refused)))
         else:
-            self.settings.display = display
-        self.settings.display.remove_missing_overlays(scene)
-        self.times = FrameTimes()
+            settings.display = display
+        settings.display.remove_missing_overlays(scene)
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
             stack.push(splash)
-            self.surface = splash.surface
-            self.gui = Gui(self.surface.handle)
-            stack.callback(self.gui.close)
-            self.stage = Stage(self.surface, scene, self.settings.display, self.times)
+            super().__init__(Session(scene, script), settings, splash.surface)
+            stack.push(self.opened)
             self._resources = stack.pop_all()
+        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
+        self.recovery.find(self.session)
+        self.soundtrack = Soundtrack(self.session)
         self._join_commands()
         self._join_panels()
         self.is_leaving = False
@@ -119,15 +108,8 @@ class ApplicationContext:
     def _join_commands(self) -> None:
         """What can be done, each with what it needs for that."""
         session, settings = self.session, self.settings
-        self.view = View(session, settings, self.surface)
-        self.placement = Placement(self.surface.handle)
-        self.messages, self.files, self.question = Messages(), FileDialogs(), Question(session)
-        self.panel_state, self.time_axis = PanelState(wanted_tab=settings.tab), TimeAxis()
+        self.placement, self.time_axis = Placement(self.surface.handle), TimeAxis()
         self.selection = KeySelection(session, self.panel_state)
-        self.scripts = ScriptCommands(session, self.files, self.question, settings.note_recent)
-        self.exporter = Exporter(session, settings, self.stage, self.view)
-        show_live = partial(setattr, self.panel_state, "wanted_tab", "Live")
-        self.live = LiveCommands(session, show_live, wake_up)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
         self.file_drop.has_other_head = session.scene.called not in ("", BUILT_IN)
@@ -150,32 +132,26 @@ class ApplicationContext:
 
     def _join_panels(self) -> None:
         """What is around the picture, and the mouse in it."""
-        gui, session, settings, messages = self.gui, self.session, self.settings, self.messages
-        view, commands, axis = self.view, self.commands, self.time_axis
-        bar = MenuBar(gui, messages, commands, lambda: session.unsaved)
-        waveform = Waveform(gui, self.soundtrack, axis)
-        dope_sheet = DopeSheet(
-            gui, session, settings, messages, self.selection, axis, bar, waveform
-        )
-        self.timeline = Timeline(gui, session, messages, commands, dope_sheet)
-        path = self._settings_path
-        self.poses = PoseGrid(gui, session, messages, self.surface, path and path.parent / "poses")
-        self.face_panel = FacePanel(gui, session, settings, view, self.poses)
-        mechanism = MechanismPanel(
-            gui, settings, self.stage, view, self.times, messages, self.file_drop
-        )
-        record = next(each for each in commands if each.label == "Record")
-        live = LivePanel(gui, settings, self.live, messages, record)
+        session, settings, path = self.session, self.settings, self._settings_path
+        bar = MenuBar(self.gui, self.messages, self.commands, lambda: session.unsaved)
+        waveform = Waveform(self.gui, self.soundtrack, self.time_axis)
+        dope_sheet = DopeSheet(self, self.selection, self.time_axis, bar, waveform)
+        self.timeline = Timeline(self, self.commands, dope_sheet)
+        self.poses = PoseGrid(self, path and path.parent / "poses")
+        self.face_panel = FacePanel(self, self.poses)
+        mechanism = MechanismPanel(self, self.file_drop)
+        record = next(each for each in self.commands if each.label == "Record")
+        live = LivePanel(self, record)
         first = "Face" if session.scene.name == "face" else f"{readable(session.scene.name)}###Face"
         tabs = {first: self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
-        self.layout = Layout(gui, settings, self.panel_state, bar, tabs, self.timeline)
-        self.chooser = FileChooser(gui, self.files)
-        self.help = Help(gui, self.panel_state, settings.keys)
-        self.export_dialog = ExportDialog(gui, self.exporter, self.files, view)
-        self.muscle_note = MuscleNote(gui, session, settings, view)
+        self.layout = Layout(self, bar, tabs, self.timeline)
+        self.chooser = FileChooser(self.gui, self.files)
+        self.help = Help(self)
+        self.export_dialog = ExportDialog(self.gui, self.exporter, self.files, self.view)
+        self.muscle_note = MuscleNote(self)
         grab = partial(SkinDrag, session, settings)
-        self.mouse = Mouse(view, self.stage, messages, grab, self.select_muscle)
-        self.first_steps = FirstSteps(gui, view, lambda: (*self.mouse.gestures, session.is_playing))
+        self.mouse = Mouse(self.view, self.stage, self.messages, grab, self.select_muscle)
+        self.first_steps = FirstSteps(self, lambda: (*self.mouse.gestures, session.is_playing))
         if self._settings_path is not None and session.scene.name == "face":
             if not settings.knows_first_steps:
                 self.first_steps.begin()

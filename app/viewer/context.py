@@ -1,0 +1,41 @@
+"""What the parts of an open window share: every panel is handed this, and takes what it needs."""
+
+from __future__ import annotations
+
+import contextlib
+from functools import partial
+
+from risorius import render
+
+from .documents.export import Exporter
+from .documents.file_dialogs import FileDialogs
+from .documents.scripts import Question, ScriptCommands
+from .frame_times import FrameTimes
+from .interface.gui import Gui, wake_up
+from .messages import Messages
+from .picture.stage import Stage
+from .picture.view import View
+from .session.live_commands import LiveCommands
+from .session.session import Session
+from .settings import PanelState, Settings
+
+
+class ApplicationContext:
+    """The session and how it is seen, what is asked and said, and what can be done with files."""
+
+    def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
+        """surface: of the window, which is open and has nothing in it yet."""
+        self.session, self.settings, self.surface = session, settings, surface
+        self.times, self.messages, self.files = FrameTimes(), Messages(), FileDialogs()
+        with contextlib.ExitStack() as stack:
+            self.gui = Gui(surface.handle)
+            stack.callback(self.gui.close)
+            self.stage = Stage(surface, session.scene, settings.display, self.times)
+            self.opened = stack.pop_all()  # to be closed with the window
+        self.view = View(session, settings, surface)
+        self.panel_state = PanelState(wanted_tab=settings.tab)
+        self.question = Question(session)
+        self.scripts = ScriptCommands(session, self.files, self.question, settings.note_recent)
+        self.exporter = Exporter(session, settings, self.stage, self.view)
+        show_live = partial(setattr, self.panel_state, "wanted_tab", "Live")
+        self.live = LiveCommands(session, show_live, wake_up)
