@@ -68,15 +68,6 @@ def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_same_script_gives_the_same_pictures(smile: Path, tmp_path: Path) -> None:
-    """Two captures are the same bytes."""
-    for name in ("a.png", "b.png"):
-        arguments = ("-o", tmp_path / name, "--time", "0.3", "--size", "160x120", "--quiet")
-        assert risorius("capture", smile, *arguments).exit_code == 0
-    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
-
-
-@pytest.mark.slow
 def test_a_picture_beside_a_sheet(smile: Path, tmp_path: Path) -> None:
     """Both of one run are what each would be alone, to the byte."""
     size = ("--size", "160x120", "--samples", "0", "--quiet")
@@ -314,6 +305,7 @@ def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
     assert "--head and --person go with the scene face" in result.stderr or result.exit_code == 2
 
 
+@pytest.mark.slow
 def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
     """`--person` and `--light`: other pictures than without, the same ones every time."""
     seen = []

@@ -89,18 +89,12 @@ def test_curves_need_muscles(name: str, folder: Path) -> None:
         (("-o", "x.glb", "--as", "obj"), "leave out .glb or --as obj"),
         (("-o", "x.usdc", "--as", "npz"), "numpy arrays is written as .npz"),
         (("-o", "cloth.toml", "--as", "obj"), "cloth.toml: is read and would be written"),
-        (("-o", "deep/none", "--as", "obj", "--fps", "0"), None),
+        (("-o", "deep/none", "--as", "obj", "--fps", "0"), "0.0 is not in the range 1<=x<=240"),
     ],
 )
-def test_what_cannot_be_is_one_line(
-    arguments: tuple[str, ...], words: str | None, folder: Path
-) -> None:
+def test_what_cannot_be_is_one_line(arguments: tuple[str, ...], words: str, folder: Path) -> None:
     """It names what is allowed, and nothing is written."""
-    result = export("cloth.toml", *arguments)
-    if words is None:
-        assert result.exit_code == 2
-    else:
-        assert words in refusal(result)
+    assert words in refusal(export("cloth.toml", *arguments))
     assert {item.name for item in folder.iterdir()} == {"cloth.toml", "face.toml"}
 
 
@@ -126,30 +120,8 @@ def test_files_of_somebody_else_stay(folder: Path) -> None:
     assert "head.obj: is read and would be written" in line
 
 
-@pytest.mark.parametrize(
-    ("output", "module", "package"),
-    [("x.usdc", "pxr.Gf", "usd-core"), ("x.vtkhdf", "h5py", "h5py")],
-)
-def test_a_missing_library_is_named(
-    output: str, module: str, package: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Before any work is done, with the words that install it."""
-    monkeypatch.setitem(sys.modules, module, None)
-    writer = next(each for each in FORMATS if output[1:] in each.suffixes)
-    name = f"risorius.app.export.{writer.writer.partition(':')[0]}"
-    monkeypatch.delitem(sys.modules, name, raising=False)
-    line = refusal(export("cloth.toml", "-o", output))
-    assert line.endswith(f" needs {package}; install it: pip install 'risorius[export]'")
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(each, marks=() if each in ("gltf", "obj") else pytest.mark.slow)
-        for each in OUTPUTS
-    ],
-)
+@pytest.mark.parametrize("name", OUTPUTS)
 def test_a_full_disk_is_one_line(name: str, folder: Path) -> None:
     """The system writes no more than so many bytes: one line, and the old file stays."""
     output = Path(OUTPUTS[name])

@@ -321,6 +321,7 @@ def test_targets_come_as_near_as_they_say(
         assert morphs.error <= tolerance + 1e-6
 
 
+@pytest.mark.slow
 def test_long_clips_take_little_memory_beside_their_own() -> None:
     """Positions are never all there in double precision, nor normals of all frames."""
     scene, generator = build_scene("plane"), np.random.default_rng(3)

@@ -98,6 +98,7 @@ def test_a_library_that_does_not_load_is_not_called_missing(
         ("live", "send take.csv --to vmc"),
         ("live", "view --live vmc"),
         ("export", "export --set joy -o joy.usd --quiet"),
+        ("export", "export --set joy -o joy.vtkhdf --quiet"),
         ("passes", "capture --set joy -o joy.png --passes depth --size 64x48 --quiet"),
         ("cluster", "batch list.txt --scheduler tcp://127.0.0.1:9 --quiet"),
     ],
