@@ -42,7 +42,7 @@ class Example:
         faces = self.model.tri_indices.numpy().reshape(-1, 3)
         rest = self.state.particle_q.numpy()
         self.refiner = refine.create(
-            "kahler", faces, rest, scheme="cubic", criterion="bulge+border"
+            "kahler", faces, rest, scheme="cubic", criterion="displacement+border"
         )
         self.triangle_counts: list[int] = []
         viewer.set_model(self.model)

@@ -24,7 +24,7 @@ def wave(rest: pv.PolyData, phase: float) -> pv.PolyData:
 def main(target: Path) -> list[int]:
     """Draw 12 frames offscreen, keep a picture of the last, return the triangles of each."""
     plate = pv.Plane(i_size=1.4, i_resolution=11, j_resolution=7)
-    refiner = plate.risorius.refiner(criterion="bulge+border")
+    refiner = plate.risorius.refiner(criterion="displacement+border")
     shown = refiner.refine(wave(plate, 0.0))
     plotter = pv.Plotter(off_screen=True, window_size=[800, 600])
     plotter.add_mesh(shown, scalars="height", smooth_shading=True, show_edges=True)

@@ -45,15 +45,16 @@ class Quarters(BaseRefiner):
         """`longest`: length at which all is cut, over the longest edge at rest."""
         super().__init__(faces, rest_positions, **values)
         self._limit = longest * self._longest_edge(self.rest_positions)
-        # Wedges and rims are vertices and edges, counted once for each side of a texture seam. The
-        # lowest bit of a triangle's rim tells its direction: middles have no use for that.
+        # Wedges and attribute edges are vertices and edges, counted once for each side of a texture
+        # seam. The lowest bit of a triangle's attribute edge tells its direction: middles have no
+        # use for that.
         mesh = self.connectivity
-        rims = mesh.triangle_rims[~mesh.is_degenerate] >> 1
+        rows = mesh.triangle_attribute_edges[~mesh.is_degenerate] >> 1
         corners = mesh.corners[~mesh.is_degenerate]
-        self._rim_ends = np.zeros((len(mesh.rim_edges), 2), dtype=np.int64)
-        self._rim_ends[rims] = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2)
+        self._attribute_edge_ends = np.zeros((len(mesh.attribute_edges), 2), dtype=np.int64)
+        self._attribute_edge_ends[rows] = np.stack([corners, np.roll(corners, -1, axis=1)], 2)
         a, b, c = corners.T
-        ab, bc, ca = len(mesh.wedge_vertices) + rims.T
+        ab, bc, ca = len(mesh.wedge_vertices) + rows.T
         four = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         pieces = np.array(four).transpose(2, 0, 1).reshape(-1, 3)
         self._cut = np.concatenate([pieces, mesh.corners[mesh.is_degenerate]])
@@ -62,8 +63,8 @@ class Quarters(BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Wedges, and the middle of each rim."""
-        return len(self.connectivity.wedge_vertices) + len(self.connectivity.rim_edges)
+        """Wedges, and the middle of each attribute edge."""
+        return len(self.connectivity.wedge_vertices) + len(self.connectivity.attribute_edges)
 
     @property
     def triangle_capacity(self) -> int:
@@ -86,7 +87,7 @@ class Quarters(BaseRefiner):
         rows[: len(self.points), 3:6] = self.normals
         self.write_wedges(rows)
         middles = rows[first:vertex_count]
-        middles[:] = rows[self._rim_ends[: len(middles)]].mean(axis=1)
+        middles[:] = rows[self._attribute_edge_ends[: len(middles)]].mean(axis=1)
         length = np.linalg.norm(middles[:, 3:6], axis=1, keepdims=True)
         middles[:, 3:6] /= np.where(length > 0.0, length, 1.0)
         out_triangles[: len(triangles)] = triangles
@@ -97,7 +98,7 @@ class Quarters(BaseRefiner):
         """A new point is half of one end and half of the other."""
         if not self.splits.any():
             return super().origins()
-        a, b = self.edges[self.connectivity.rim_edges].T
+        a, b = self.edges[self.connectivity.attribute_edges].T
         halves = np.tile([0.5, 0.5, 0.0], (len(a), 1))
         return super().origins().followed_by(np.column_stack([a, b, a]), halves)
 

@@ -34,10 +34,10 @@ Read border/plugin.py first, then kahler/. docs/refinement.md tells it all with 
 
 from .beyond.blending import Blended
 from .beyond.border_turn import BorderTurn
-from .beyond.bulge import Bulge
 from .beyond.cubic import CubicScheme
 from .beyond.curvature import Curvature, RestCurvature
 from .beyond.detail import DetailScheme
+from .beyond.displacement import Displacement
 from .beyond.measuring import Maximum
 from .beyond.options import create_kahler
 from .beyond.view_dependent import ScreenEdge, Silhouette
@@ -76,11 +76,11 @@ __all__ = [
     "Blended",
     "BorderTurn",
     "BrokenMeshError",
-    "Bulge",
     "Coherent",
     "Connectivity",
     "Criterion",
     "Curvature",
+    "Displacement",
     "FrameBuffers",
     "Kahler",
     "Loop",
@@ -129,7 +129,7 @@ register_criterion("normal", NormalDrop)
 register_criterion("curvature", Curvature)
 register_criterion("rest", RestCurvature)
 register_criterion("border", BorderTurn)
-register_criterion("bulge", Bulge)
+register_criterion("displacement", Displacement)
 register_criterion("silhouette", Silhouette)
 register_criterion("screen", ScreenEdge)
 register_scheme("loop", LoopScheme)

@@ -150,7 +150,7 @@ class RisoriusAccessor:
         **options
             What `risorius.refine.create_kahler` takes, but for texture coordinates and attributes:
             all data go along by themselves. Unless told otherwise, `scheme="cubic"` and
-            `criterion="bulge+rest"`, which round what is coarse at rest and what bends;
+            `criterion="displacement+rest"`, which round what is coarse at rest and what bends;
             `scheme="loop", criterion="normal"` is the paper's rule.
 
         Examples

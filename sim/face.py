@@ -180,16 +180,16 @@ class Simulation:
         self._place_targets()
         self._weight.forget()
 
-    def twin(self) -> Simulation:
+    def clone(self) -> Simulation:
         """Another simulation of this face as it is now, of which no finger has hold."""
-        twin = Simulation(self._anatomy, gravity=self._weight.gravity)
-        twin.copy_from(self)
-        return twin
+        clone = Simulation(self._anatomy, gravity=self._weight.gravity)
+        clone.copy_from(self)
+        return clone
 
     def copy_from(self, other: Simulation) -> None:
-        """Take on controls, positions and velocities of a twin; ValueError for any other."""
+        """Take on controls, positions and velocities of a clone; ValueError for any other."""
         if not isinstance(other, Simulation) or other._anatomy is not self._anatomy:
-            raise ValueError(f"other: was {quoted(other)}, must be a twin of this face")
+            raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
         self._controls.copy_from(other._controls)
         self._state.x[:], self._state.v[:] = other._state.x, other._state.v
         self._positions[:] = other._positions

@@ -12,8 +12,8 @@ along the line of sight, of which a mouse says nothing. The first price keeps co
 second moderate. Targets farther than the few strongest controls reach that way are brought in to
 there: prices are in proportion to d, and beyond that nothing would be worth them any more.
 
-Solved by Gauss and Newton. p is a twin of the face, at rest; its slopes are measured on a second
-twin, by moving one control a little and letting the skin come to rest. A twin's muscles have no
+Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
+clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
 lag, so that takes six steps of 0.3 ms, and it knows what the tangent of the springs does not: lips
 that stick and part, lids on their eyeballs, muscles that stiffen the skin. Such slopes are off by
 2 %; those of the implicit function theorem were by 5 to 60 %, and no faster (60 ms to factorise).
@@ -34,8 +34,8 @@ import numpy.typing as npt
 from .face import Simulation
 from .landmarks import Array
 
-STEP = 1.0 / 60.0  # [s] of a twin
-STEPS_TO_REST = 6  # of a twin after a small change; less than a twentieth of it is left
+STEP = 1.0 / 60.0  # [s] of a clone
+STEPS_TO_REST = 6  # of a clone after a small change; less than a twentieth of it is left
 MOST = 16  # controls that are looked at: those that move the finger's skin most
 MEANT = 0.15  # of how far a control moves any skin: one that moves the finger's less is not meant
 PROBE = 0.25  # of a control's range, to measure its slope
@@ -73,14 +73,14 @@ class Pull:
         controls that may be used, in one tuple those that go together, as both sides of a muscle
         do. sight: direction in which the finger is seen, shape (3,).
         """
-        self._base, self._probe = face.twin(), face.twin()
+        self._base, self._probe = face.clone(), face.clone()
         self._vertices = np.asarray(vertices, np.int64)
         share = np.asarray(firmness, np.float64)
         self._share = share / share.sum()
         axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
         self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
         _rest(self._base, {})
-        self._home, self._from = self._base.twin(), self._base.positions.copy()
+        self._home, self._from = self._base.clone(), self._base.positions.copy()
         self.targets = self._aims = self._from[self._vertices]
         self._area = face.areas / face.areas[self._vertices].sum()
         self._area[self._vertices] = 0.0
@@ -250,10 +250,10 @@ class Pull:
         )  # fmt: skip
 
 
-def _rest(twin: Simulation, values: dict[str, float]) -> None:
-    twin.jump(values)
+def _rest(clone: Simulation, values: dict[str, float]) -> None:
+    clone.jump(values)
     for _ in range(STEPS_TO_REST):
-        twin.step(STEP)
+        clone.step(STEP)
 
 
 class _Lasso(NamedTuple):

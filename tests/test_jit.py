@@ -157,7 +157,8 @@ finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
 detail = {"scheme": "detail", "detail": (finer.positions.copy(), finer.triangles.copy())}
 choices = [{}, {"scheme": "cubic"}, {"blend": True}, {"coherent": True}, detail,
            {**detail, "blend": False}, {"criterion": "curvature+rest"},
-           {"criterion": "silhouette+screen+border"}, {"scheme": "cubic", "criterion": "bulge"}]
+           {"criterion": "silhouette+screen+border"},
+           {"scheme": "cubic", "criterion": "displacement"}]
 found = {}
 def work(k):
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, **choices[k % len(choices)])

@@ -62,7 +62,7 @@ def test_it_is_found_by_itself() -> None:
 def test_data_go_along() -> None:
     """Point data by place and type, cell data by cell, fields, texture, normals, active scalars."""
     mesh = plane()
-    refined = mesh.risorius.refiner(criterion="bulge", blend=False).refine(wavy(mesh))
+    refined = mesh.risorius.refiner(criterion="displacement", blend=False).refine(wavy(mesh))
     assert refined.n_cells > 2 * mesh.n_cells
     assert refined.is_all_triangles
     assert refined.active_scalars_name == "x"

@@ -64,7 +64,7 @@ class Muscles:
         made = cls(none, none, none, none.astype(np.int32), none[:, :2])
         simulation = scene.simulation
         if any(scene.values.values()) or not np.array_equal(scene.positions, scene.rest_positions):
-            simulation = simulation.twin()  # lengths and ends are those at rest
+            simulation = simulation.clone()  # lengths and ends are those at rest
             simulation.reset()
         rest = SimpleNamespace(
             positions=scene.rest_positions,

@@ -96,9 +96,9 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     choices: tuple[dict[str, Any], ...] = (
         {"blend": True},
         {"scheme": "cubic"},
-        {"scheme": "cubic", "criterion": "bulge"},
+        {"scheme": "cubic", "criterion": "displacement"},
         {"scheme": "detail"},
-        {"scheme": "detail", "criterion": "bulge"},
+        {"scheme": "detail", "criterion": "displacement"},
         {"coherent": True},
         *({"criterion": name} for name in ("rest", "curvature", "silhouette", "screen", "border")),
     )

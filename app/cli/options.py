@@ -106,7 +106,7 @@ class Subject:
         "--option",
         multiple=True,
         metavar="NAME=VALUE",
-        help="Of the refiner, over the look: scheme=cubic, criterion=bulge, ... "
+        help="Of the refiner, over the look: scheme=cubic, criterion=displacement, ... "
         "(risorius doctor lists schemes and criteria).",
     )
 

@@ -33,13 +33,13 @@ class Preset:
         return self.options.get(refiner, {})
 
 
-# By `bulge` alone the outlines of crown and chin would stay polygons: edges there are long and turn
+# By `displacement` alone outlines of crown and chin would stay polygons: edges there are long, turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
 SMOOTH = Preset(
-    options={"kahler": {"scheme": "cubic", "criterion": "bulge+rest"}}, raises_wrinkles=True
+    options={"kahler": {"scheme": "cubic", "criterion": "displacement+rest"}}, raises_wrinkles=True
 )
 # The hem of a cloth turns in the sheet itself.
-SMOOTH_CLOTH = Preset(options={"kahler": {"scheme": "cubic", "criterion": "bulge+border"}})
+SMOOTH_CLOTH = Preset(options={"kahler": {"scheme": "cubic", "criterion": "displacement+border"}})
 PAPER = Preset()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
 # makes about as many triangles at most as in Table 1 (1328).

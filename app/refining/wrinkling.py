@@ -27,6 +27,7 @@ from ..scenes import Scene
 from .presets import Refinement
 
 Amounts = npt.NDArray[np.float32]
+Points = npt.NDArray[np.float64]
 
 # Chosen by eye. Skin gives way a little before it folds, and a fold does not deepen for ever.
 ONSET, HALF = 0.015, 0.09  # loss of length at which furrows begin, and beyond which they are half
@@ -47,7 +48,7 @@ class Compression:
         self._resting = wrinkles.resting * np.minimum(self._readiness, 1.0)
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
-    def amounts(self, positions: npt.NDArray[np.float64]) -> Amounts:
+    def amounts(self, positions: Points) -> Amounts:
         """How far each vertex wrinkles in either slot, 0 (not at all) to 1, shape (V, 2).
 
         It begins and ends without a kink: nothing pops.
@@ -105,10 +106,7 @@ class FoldCriterion(refine.Criterion):
         self._uv[scene.faces] = scene.uv[scene.face_uv]  # any of those that a seam's vertex has
 
     def bind(
-        self,
-        connectivity: refine.Connectivity,
-        rest_positions: npt.NDArray[np.float64],
-        rest_normals: Amounts,
+        self, connectivity: refine.Connectivity, rest_positions: Points, rest_normals: Amounts
     ) -> None:
         """Find how far the relief bends over every edge, and over its halves."""
         first, second = (self._uv[connectivity.edges[:, k], None] for k in (0, 1))
@@ -121,12 +119,12 @@ class FoldCriterion(refine.Criterion):
         self._edges = connectivity.edges[self._folding]
         self._once, self._twice = once[self._folding], twice[self._folding]
 
-    def measure(self, positions: npt.NDArray[np.float64], normals: Amounts, need: Amounts) -> None:
-        """Write the need of every edge, shape (E,): above 0 one split, above 1 two."""
+    def measure(self, positions: Points, normals: Amounts, metric: Amounts) -> None:
+        """Write the refinement metric of every edge, shape (E,): above 0 one split, above 1 two."""
         shown = self._compression.amounts(positions)[self._edges].mean(axis=1) / LEAST_BEND
         once, twice = ((shown * bends).sum(axis=1) for bends in (self._once, self._twice))
-        need[:] = -np.inf
-        need[self._folding] = np.maximum(np.minimum(once - 1.0, 1.0), 2.0 * twice - 1.0)
+        metric[:] = -np.inf
+        metric[self._folding] = np.maximum(np.minimum(once - 1.0, 1.0), 2.0 * twice - 1.0)
 
 
 def _mixed(first: npt.NDArray[Any], second: npt.NDArray[Any], share: npt.NDArray[Any]) -> Amounts:

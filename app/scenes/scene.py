@@ -144,9 +144,9 @@ class FaceScene(Scene):
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
         self._moved_by: dict[str, dict[str, float]] = {}
 
-    def twin(self) -> FaceScene:
+    def clone(self) -> FaceScene:
         """The same head once more, at rest, which moves by itself; that takes no time."""
-        simulation = self.simulation.twin()
+        simulation = self.simulation.clone()
         simulation.reset()
         return FaceScene(self.head, simulation)
 

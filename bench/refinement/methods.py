@@ -6,7 +6,7 @@ triangles as it may spend:
     normal      the paper's: where the mesh bends more than at rest       refine.NormalDrop
     curvature   where it is curved, at rest or not         refine.Curvature, relative=False
     screen      edges that are long on the screen, as Blender dices            refine.ScreenEdge
-    bulge       where the scheme would move an edge most                       refine.Bulge
+    displacement    where the scheme would move an edge most              refine.Displacement
 
 and `RULE, blended` is the same with blend=True: nothing pops, at the price of triangles that are
 there before they have grown. Beside these stand the look of the application, with the
@@ -38,15 +38,15 @@ Narrow = npt.NDArray[np.float32]
 BLENDED = ", blended"
 SCHEMES: Mapping[str, tuple[str, ...]] = {
     "loop": ("screen", "normal"),
-    "cubic": ("normal", "curvature", "screen", "bulge", "bulge, blended"),
-    "detail": ("bulge", "bulge, blended"),
+    "cubic": ("normal", "curvature", "screen", "displacement", "displacement, blended"),
+    "detail": ("displacement", "displacement, blended"),
 }
 """Every scheme with the rules that split its edges."""
 CRITERIA: Mapping[str, Callable[[], Any]] = {
     "normal": refine.NormalDrop,
     "curvature": lambda: refine.Curvature(relative=False),
     "screen": refine.ScreenEdge,
-    "bulge": refine.Bulge,
+    "displacement": refine.Displacement,
 }
 _TOLD = PRESETS[FIRST_PRESET]["face"].told("kahler")
 LOOK: tuple[str, str] = _TOLD["scheme"], _TOLD["criterion"]
@@ -136,9 +136,9 @@ class Everywhere(refine.Criterion):
     def __init__(self, splits: int) -> None:
         self._splits = splits
 
-    def measure(self, positions: object, normals: object, need: Narrow) -> None:
-        """Write needs at which all points have grown."""
-        need[:] = self._splits
+    def measure(self, positions: object, normals: object, metric: Narrow) -> None:
+        """Write metrics at which all points have grown."""
+        metric[:] = self._splits
 
 
 class _Sliding:

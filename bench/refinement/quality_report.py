@@ -67,10 +67,10 @@ def worst(scores: Sequence[Score], key: Key, what: str) -> float:
 
 
 def targets(group: str, scores: Sequence[Score]) -> list[Target]:
-    """What the scheme `cubic` is held to where `bulge` splits, at twice the triangles."""
+    """What the scheme `cubic` is held to where `displacement` splits, at twice the triangles."""
     average = means(scores)
     static = average[STATIC_KEY]
-    best, calm = average["cubic", "bulge", 2.0], average["cubic", "bulge, blended", 2.0]
+    best, calm = (average["cubic", f"displacement{how}", 2.0] for how in ("", ", blended"))
     return [
         *(
             at_least(

@@ -31,11 +31,11 @@ from .mouths import MOUTH, Mouths, Variant, wrong_pixels
 VARIANTS = (
     Variant("static", "none"),
     Variant("refined: paper", "kahler"),
-    Variant("refined: cubic", "kahler", {"scheme": "cubic", "criterion": "bulge+border"}),
+    Variant("refined: cubic", "kahler", {"scheme": "cubic", "criterion": "displacement+border"}),
     Variant(
         "refined: detail",
         "kahler",
-        {"scheme": "detail", "criterion": "bulge+border"},
+        {"scheme": "detail", "criterion": "displacement+border"},
         wants_detail=True,
     ),
 )

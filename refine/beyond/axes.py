@@ -5,9 +5,9 @@ They turn with the surface whatever it does, because they are found anew from it
 they change without a jump as long as normals and edges do.
 
 The middle of a triangle is near the middle of what bends: between the centroid and the mean of the
-middles of its edges, weighted by how far each bulges. In the strips of triangles along a folded lip
-two edges of three bend. With its middle in the centroid, a third of the strip's width from one side
-or the other, every second triangle cut across the fold, and small teeth were seen.
+middles of its edges, weighted by how far each is displaced. In the strips of triangles along a
+folded lip two edges of three bend. With its middle in the centroid, a third of the strip's width
+from one side or the other, every second triangle cut across the fold, and small teeth were seen.
 """
 
 import numpy as np
@@ -111,10 +111,10 @@ def triangle_axes(
 
 @njit
 def bend_of(positions: Doubles, normals: Floats, a: np.uint32, b: np.uint32) -> np.float32:
-    """How far an edge bulges, squared, with a little for its length."""
+    """How far the middle of an edge is displaced, squared, with a little for its length."""
     d, at_a, at_b = between(positions, a, b), row_of(normals, a), row_of(normals, b)
     height_a, height_b, cosine = dot(d, at_a), dot(d, at_b), dot(at_a, at_b)
-    # The bulge of the cubic times eight, squared.
+    # The displacement of the cubic times eight, squared.
     bend = height_a * height_a + height_b * height_b - TWO * cosine * height_a * height_b
     return np.float32(bend + FLAT * dot(d, d))
 

@@ -1,13 +1,14 @@
 r"""No popping: the refined surface as a continuous function of the positions.
 
 Kähler, Haber, Seidel 2003, put a new point where it belongs in the very frame in which its edge
-passes a threshold. Here it begins on the straight edge and moves out while the need of its edge
+passes a threshold. Here it begins on the straight edge and moves out while the metric of its edge
 goes on to rise. Two things have to be continuous for that:
 
-*Points.* A criterion measures the `need` of an edge: above 0 it is split once, above 1 twice.
+*Points.* A criterion measures the refinement metric of an edge: above 0 it is split once, above 1
+twice.
 
-    growth once    need / RAMP,         from 0 to 1        where m is between the straight edge and
-    growth twice   (need - 1) / RAMP,   from 0 to 1        its full place; the same for the quarters
+    weight once    metric / RAMP,        from 0 to 1        where m is between the straight edge and
+    weight twice   (metric - 1) / RAMP,  from 0 to 1       its full place; the same for the quarters
 
 *Triangles.* Where two edges of a triangle are split, a quadrangle is left that has two diagonals.
 If one of its splits goes away the diagonal from the other one must stand, whichever it is, so it
@@ -18,12 +19,13 @@ has to turn somewhere in between, and the surface jumps. A point C in the middle
             / | \           two edges    C = 1/2 m + 1/2 m': on the line between them. Along a fold
            /  |  \                       that is the surface, and lines from C to the corners would
           /   C...m'                     be gutters, as between the scales of a fish;
-         / .  |  . \        three edges  C = sum of 1/3 corner + 4/9 bulge: the middle of a cubic
+         / .  |  . \        three edges  C = sum of 1/3 corner + 4/9 displacement: middle of a cubic
         0-----m-----1                    patch (the sixth part of its six inner points; Vlachos et
                                          al. 2001, "Curved PN triangles", give the same).
 
-Here m is the middle of a split edge, and its bulge is how far m stands out of the edge. While edges
-grow, g1 >= g2 >= g3, C is a mean of the three, and of the first rule for all edges at once:
+Here m is the middle of a split edge, and its displacement is how far m stands out of the edge.
+While edges grow, g1 >= g2 >= g3, C is a mean of the three, and of the first rule for all edges at
+once:
 
     1 - g1  of all at once,   g1 - g2  of one edge,   g2 - g3  of two,   g3  of three
 
@@ -64,7 +66,7 @@ from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import HALF, ONE, QUARTER, THIRD, ZERO, row_of, unit, write_row
 
 RAMP = np.float32(0.25)
-"""Need over which a point grows, in what lies between the two thresholds. Chosen: points that are
+"""Metric over which a point grows, in what lies between the two thresholds. Chosen: points that are
 only half grown cost as much as whole ones."""
 TWO_THIRDS, FOUR_NINTHS = np.float32(2 / 3), np.float32(4 / 9)
 
@@ -97,7 +99,7 @@ class Blended(Kahler):
         """Bind to a mesh, as `Kahler`; the criterion has to measure."""
         super().__init__(faces, rest_positions, criterion=criterion, scheme=scheme, **values)
         self._patterns = FANS
-        self._need = np.zeros(len(self.connectivity.edges), dtype=np.float32)
+        self._metric = np.zeros(len(self.connectivity.edges), dtype=np.float32)
 
     @property
     def vertex_capacity(self) -> int:
@@ -108,8 +110,8 @@ class Blended(Kahler):
         """Decide how far the points of every edge have grown, and so how often it is split."""
         frame = self._frame
         self._criterion.set_view(view)
-        self._criterion.measure(frame.positions, frame.normals, self._need)
-        grow(self._need, self.edge_splits, frame.growth_once, frame.growth_twice)
+        self._criterion.measure(frame.positions, frame.normals, self._metric)
+        weigh_geomorphs(self._metric, self.edge_splits, frame.geomorph_once, frame.geomorph_twice)
 
     def _number(self) -> tuple[int, int]:
         """Number the points in the middle of triangles after all others."""
@@ -134,12 +136,14 @@ class Blended(Kahler):
 
 
 @njit
-def grow(need: Floats, splits: Small, growth_once: Floats, growth_twice: Floats) -> None:
-    """Write splits and growth of every edge from its need, all of shape (E,)."""
-    for e in range(need.shape[0]):
-        splits[e] = np.uint8(need[e] > ZERO) + np.uint8(need[e] > ONE)
-        growth_once[e] = min(max(need[e] / RAMP, ZERO), ONE)
-        growth_twice[e] = min(max((need[e] - ONE) / RAMP, ZERO), ONE)
+def weigh_geomorphs(
+    metric: Floats, splits: Small, geomorph_once: Floats, geomorph_twice: Floats
+) -> None:
+    """Write splits and geomorph weights of every edge from its metric, all of shape (E,)."""
+    for e in range(metric.shape[0]):
+        splits[e] = np.uint8(metric[e] > ZERO) + np.uint8(metric[e] > ONE)
+        geomorph_once[e] = min(max(metric[e] / RAMP, ZERO), ONE)
+        geomorph_twice[e] = min(max((metric[e] - ONE) / RAMP, ZERO), ONE)
 
 
 @njit
@@ -164,15 +168,15 @@ def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.fl
 @njit
 def place_centres(mesh: Connectivity, frame: FrameBuffers) -> None:
     """Write the rows of the points in the middle of triangles, attributes too."""
-    vertices, splits, growth = frame.rows, frame.splits, frame.growth_once
+    vertices, splits, geomorph = frame.rows, frame.splits, frame.geomorph_once
     first_points, edges = frame.first_points, mesh.triangle_edges
     for k in range(frame.counts[CENTRES]):
         t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
         a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
         ab, bc, ca = edges[t, 0], edges[t, 1], edges[t, 2]
-        x = growth[ab] if splits[ab] > 0 else ZERO
-        y = growth[bc] if splits[bc] > 0 else ZERO
-        z = growth[ca] if splits[ca] > 0 else ZERO
+        x = geomorph[ab] if splits[ab] > 0 else ZERO
+        y = geomorph[bc] if splits[bc] > 0 else ZERO
+        z = geomorph[ca] if splits[ca] > 0 else ZERO
         all_three, none = min(x, y, z), ONE - max(x, y, z)
         one_x, pair_x = beyond(x, y, z)
         one_y, pair_y = beyond(y, z, x)

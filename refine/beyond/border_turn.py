@@ -87,10 +87,10 @@ class BorderTurn(Measuring):
         self._nearby = find_nearby(connectivity, rest_positions)
         write_turns(rest_positions, rest_normals, self._nearby.curves, self._nearby.rest_turns)
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
-        measure_turns(positions, normals, self._edges, self._nearby, self._turns, need)
-        self.thresholds.scale(need)
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
+        measure_turns(positions, normals, self._edges, self._nearby, self._turns, metric)
+        self.thresholds.scale(metric)
 
 
 def find_nearby(mesh: Connectivity, rest_positions: Doubles) -> Nearby:

@@ -43,11 +43,11 @@ from ..mesh.vectors import (
     unit,
     write_row,
 )
-from .curves import MIDDLE, NEAR_END, NEAR_START, bulge_sizes, place_on_curves
+from .curves import MIDDLE, NEAR_END, NEAR_START, displacement_sizes, place_on_curves
 
 FULLNESS = np.float32(1.2)
-"""How much more than the cubic an inner edge bulges. Triangles between curves are flat, so the best
-fit stands out a little; measured on ellipsoids, a torus and heads, flat between 1.1 and 1.25."""
+"""How much more than the cubic inner edges are displaced. Triangles between curves are flat, so the
+best fit stands out a little; measured on ellipsoids, a torus, heads, flat between 1.1 and 1.25."""
 STEEPER = np.float32(0.15)
 """Share of the mean normal around that is taken off a normal. A first step of undoing the mean that
 vertex normals are; a second, or more of it, finds the noise of decimated meshes. Measured on two
@@ -85,7 +85,7 @@ class CubicScheme(Scheme):
         """Weigh the corners of the mesh at rest, and follow its borders."""
         mesh = self._mesh = connectivity
         self._around = mesh.around
-        self._bulges = np.zeros((len(mesh.edges), 3, 3), dtype=np.float32)
+        self._displacements = np.zeros((len(mesh.edges), 3, 3), dtype=np.float32)
         self._normals = np.zeros_like(rest_normals)
         valences = np.bincount(mesh.edges.ravel(), minlength=len(rest_normals))
         self._weights = np.zeros(mesh.faces.shape, dtype=np.float32)
@@ -98,24 +98,24 @@ class CubicScheme(Scheme):
         )
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find the normals of vertices and the bulges of all edges, middles as if split once."""
-        self._bulge(frame.positions)
+        """Find normals of vertices and displacements of all edges, middles as if split once."""
+        self._displace(frame.positions)
 
     def place(self, frame: FrameBuffers) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
-        place_on_curves(self._around, frame, self._normals, self._bulges)
+        place_on_curves(self._around, frame, self._normals, self._displacements)
 
-    def measure(self, bulges: Floats, turns: Floats) -> None:
+    def measure(self, displacements: Floats, turns: Floats) -> None:
         """Write how far the middle of every edge stands out if it is split once, shape (E,).
 
         A mean of normals turns nothing: `turns`, shape (E,), become zero.
         """
-        bulge_sizes(self._bulges, bulges)
+        displacement_sizes(self._displacements, displacements)
         turns[:] = ZERO
 
-    def _bulge(self, positions: Doubles) -> None:
+    def _displace(self, positions: Doubles) -> None:
         weighted_normals(positions, self._mesh.faces, self._weights, self._normals)
-        bulge_cubic(self._around, positions, self._tangents, self._bulges)
+        displace_cubic(self._around, positions, self._tangents, self._displacements)
 
 
 @njit
@@ -173,34 +173,37 @@ def length_of(d: Vector) -> np.float32:
 
 
 @njit
-def write_cubic(bulges: Floats, e: int, i: int, turn_a: np.float32, turn_b: np.float32) -> None:
-    """Write coordinate i of the bulges of an edge.
+def write_cubic(
+    displacements: Floats, e: int, i: int, turn_a: np.float32, turn_b: np.float32
+) -> None:
+    """Write coordinate i of the displacements of an edge.
 
     `turn_a`, `turn_b`: how much the tangents at both ends turn away from the straight edge.
     """
-    bulges[e, NEAR_START, i] = NEAR * turn_a - FAR * turn_b
-    bulges[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
-    bulges[e, NEAR_END, i] = FAR * turn_a - NEAR * turn_b
+    displacements[e, NEAR_START, i] = NEAR * turn_a - FAR * turn_b
+    displacements[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
+    displacements[e, NEAR_END, i] = FAR * turn_a - NEAR * turn_b
 
 
 @njit
-def bulge_cubic(
-    around: Surroundings, positions: Doubles, tangents: Tangents, bulges: Floats
+def displace_cubic(
+    around: Surroundings, positions: Doubles, tangents: Tangents, displacements: Floats
 ) -> None:
-    """Write the bulges of all edges: those of the cubic with the tangents at both ends.
+    """Write the displacements of all edges: those of the cubic with the tangents at both ends.
 
-    `bulges`: shape (E, 3, 3); with `tangents.normals` of this frame, the steeper ones follow.
+    `displacements`: shape (E, 3, 3); with `tangents.normals` of this frame, the steeper ones
+    follow.
     """
     steepen_normals(around, tangents)
     steeper = tangents.steeper
-    for e in range(bulges.shape[0]):
+    for e in range(displacements.shape[0]):
         a, b = around.points[e, 0], around.points[e, 1]
         d = between(positions, a, b)
         if around.is_interior[e]:
             at_a, at_b = row_of(steeper, a), row_of(steeper, b)
             height_a, height_b = -FULLNESS * dot(d, at_a), -FULLNESS * dot(d, at_b)
             for i in range(3):
-                write_cubic(bulges, e, i, height_a * at_a[i], height_b * at_b[i])
+                write_cubic(displacements, e, i, height_a * at_a[i], height_b * at_b[i])
             continue
         p, q = tangents.beyond[e, 0], tangents.beyond[e, 1]
         length = length_of(d)
@@ -210,4 +213,4 @@ def bulge_cubic(
             straight = np.float32(positions[b, i] - positions[a, i])
             turn_a = share_a * np.float32(positions[b, i] - positions[p, i]) - straight
             turn_b = share_b * np.float32(positions[q, i] - positions[a, i]) - straight
-            write_cubic(bulges, e, i, turn_a, turn_b)
+            write_cubic(displacements, e, i, turn_a, turn_b)

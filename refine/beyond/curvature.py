@@ -49,10 +49,10 @@ class Curvature(Measuring):
             self._rest = heights
         self._unit = mean_length(connectivity, rest_positions)
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
-        arc_heights(positions, normals, self._edges, self._rest, need)
-        self.thresholds.scale(need, self._unit)
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
+        arc_heights(positions, normals, self._edges, self._rest, metric)
+        self.thresholds.scale(metric, self._unit)
 
 
 class RestCurvature(Measuring):
@@ -86,9 +86,9 @@ class RestCurvature(Measuring):
         # Needs at which a blended point has grown: there is nothing that it could grow with.
         self._decided = np.array([-np.inf, RAMP, 1.0 + RAMP], np.float32)[splits]
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
-        need[:] = self._decided
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
+        metric[:] = self._decided
 
 
 def _diagonal(positions: Doubles) -> float:

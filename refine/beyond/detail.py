@@ -73,12 +73,12 @@ class DetailScheme(CubicScheme):
         assert self._finer is not None, "a scheme is bound once"
         mesh = connectivity
         self._axes = np.zeros((len(mesh.edges), 3, 3, 3), dtype=np.float32)
-        self._bulge(rest_positions)
+        self._displace(rest_positions)
         normals = self._normals  # at rest: all directions follow those that the cubic has
         shares = np.zeros((len(mesh.faces), 3), dtype=np.float32)
         centre_axes = np.zeros((len(mesh.faces), 3, 3), dtype=np.float32)
         find_middles(rest_positions, normals, mesh.faces, shares, centre_axes)
-        points, ups = _points_on(self._bulges, mesh, rest_positions, normals)
+        points, ups = _points_on(self._displacements, mesh, rest_positions, normals)
         middles = shares.astype(np.float64), centre_axes[:, 0].astype(np.float64)
         places = fit(self._finer, mesh, rest_positions, normals, (points, ups), middles)
         centres = middles_of(places.of_edges, mesh, rest_positions, middles[0])
@@ -91,16 +91,18 @@ class DetailScheme(CubicScheme):
         self._finer = None
 
     def prepare(self, frame: FrameBuffers) -> None:
-        """Find the bulges of all edges as if each were split once."""
+        """Find the displacements of all edges as if each were split once."""
         super().prepare(frame)
         middle_axes(self._around, frame.positions, self._normals, self._axes)
-        add_offsets_once(self._offsets, self._axes, self._bulges)
+        add_offsets_once(self._offsets, self._axes, self._displacements)
 
     def place(self, frame: FrameBuffers) -> None:
         """Write points with their detail; only once after `prepare` with edges split twice."""
         twice = frame.twice_split_edges
         quarter_axes(self._around, frame.positions, self._normals, twice, self._axes)
-        add_offsets_twice(twice, frame.growth_twice, self._offsets, self._axes, self._bulges)
+        add_offsets_twice(
+            twice, frame.geomorph_twice, self._offsets, self._axes, self._displacements
+        )
         super().place(frame)
 
     def place_centres(self, frame: FrameBuffers) -> None:
@@ -109,12 +111,12 @@ class DetailScheme(CubicScheme):
 
 
 def _points_on(
-    bulges: Floats, mesh: Connectivity, positions: Doubles, normals: Floats
+    displacements: Floats, mesh: Connectivity, positions: Doubles, normals: Floats
 ) -> tuple[Doubles, Doubles]:
     """Points of all edges (fit.Points), and normals around there, both of shape (E, 4, 3)."""
     share = np.array([0.25, 0.5, 0.75])[:, None]
     a, b = mesh.edges[:, 0], mesh.edges[:, 1]
-    points = (1.0 - share) * positions[a][:, None] + share * positions[b][:, None] + bulges
+    points = (1.0 - share) * positions[a][:, None] + share * positions[b][:, None] + displacements
     between = (1.0 - share) * normals[a][:, None] + share * normals[b][:, None]
     return points[:, AXES_OF], between[:, AXES_OF]
 
@@ -126,32 +128,32 @@ def _along(axes: Floats, vectors: Doubles) -> Floats:
 
 
 @njit
-def add_offsets_once(offsets: Floats, axes: Floats, bulges: Floats) -> None:
-    """Add the stored offsets of middles, shape (E, 4, 3), to their bulges, shape (E, 3, 3).
+def add_offsets_once(offsets: Floats, axes: Floats, displacements: Floats) -> None:
+    """Add the stored offsets of middles, shape (E, 4, 3), to their displacements, shape (E, 3, 3).
 
     `axes`: shape (E, 3, 3, 3), edge, point, direction.
     """
-    for e in range(bulges.shape[0]):
+    for e in range(displacements.shape[0]):
         for j in range(3):
             for i in range(3):
-                bulges[e, MIDDLE, i] += offsets[e, ALONE, j] * axes[e, MIDDLE, j, i]
+                displacements[e, MIDDLE, i] += offsets[e, ALONE, j] * axes[e, MIDDLE, j, i]
 
 
 @njit
 def add_offsets_twice(
-    edges: Unsigned, growth_twice: Floats, offsets: Floats, axes: Floats, bulges: Floats
+    edges: Unsigned, geomorph_twice: Floats, offsets: Floats, axes: Floats, displacements: Floats
 ) -> None:
     """Add what a second split of some edges, shape (N,), shows: middles have those of one already.
 
-    `growth_twice`: shape (E,); the rest as for `add_offsets_once`.
+    `geomorph_twice`: shape (E,); the rest as for `add_offsets_once`.
     """
     for e in edges:
         for j in range(3):
-            step = growth_twice[e] * (offsets[e, MIDDLE, j] - offsets[e, ALONE, j])
+            step = geomorph_twice[e] * (offsets[e, MIDDLE, j] - offsets[e, ALONE, j])
             for i in range(3):
-                bulges[e, MIDDLE, i] += step * axes[e, MIDDLE, j, i]
-                bulges[e, START, i] += offsets[e, START, j] * axes[e, START, j, i]
-                bulges[e, END, i] += offsets[e, END, j] * axes[e, END, j, i]
+                displacements[e, MIDDLE, i] += step * axes[e, MIDDLE, j, i]
+                displacements[e, START, i] += offsets[e, START, j] * axes[e, START, j, i]
+                displacements[e, END, i] += offsets[e, END, j] * axes[e, END, j, i]
 
 
 @njit
@@ -166,8 +168,8 @@ def grown_around(mesh: Connectivity, frame: FrameBuffers, t: int) -> tuple[np.fl
     once = twice = ONE
     for i in range(3):
         e = mesh.triangle_edges[t, i]
-        once = min(once, frame.growth_once[e])
-        twice = min(twice, frame.growth_twice[e] if frame.splits[e] == 2 else ZERO)
+        once = min(once, frame.geomorph_once[e])
+        twice = min(twice, frame.geomorph_twice[e] if frame.splits[e] == 2 else ZERO)
     return once, twice
 
 
@@ -193,10 +195,10 @@ def slide_centres(
             e, a, b = mesh.triangle_edges[t, i], mesh.faces[t, i], mesh.faces[t, (i + 1) % 3]
             middle = frame.first_points[e] + (frame.splits[e] >> 1)
             corner = once * (shares[i] - THIRD)
-            bulge = once * (FOUR * shares[i] * shares[(i + 1) % 3] - FOUR_NINTHS)
+            displacement = once * (FOUR * shares[i] * shares[(i + 1) % 3] - FOUR_NINTHS)
             for j in range(3):
                 out = vertices[middle, j] - HALF * (vertices[a, j] + vertices[b, j])
-                vertices[row, j] += corner * vertices[a, j] + bulge * out
+                vertices[row, j] += corner * vertices[a, j] + displacement * out
         offset = mixed_rows(offsets[t], 1, 0, twice)
         for j in range(3):
             for i in range(3):

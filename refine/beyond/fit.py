@@ -107,12 +107,14 @@ def middles_of(
 
     `of_edges`: places of the points of edges; `shares`: where in the triangles, shape (F, 3).
     """
-    bulges = of_edges[:, [MIDDLE, ALONE]] - positions[mesh.edges].mean(axis=1)[:, None]
-    bulges = np.concatenate([bulges, np.zeros((1, 2, 3))])  # found at -1, where there is no edge
+    displacements = of_edges[:, [MIDDLE, ALONE]] - positions[mesh.edges].mean(axis=1)[:, None]
+    displacements = np.concatenate(
+        [displacements, np.zeros((1, 2, 3))]
+    )  # found at -1, where there is no edge
     weights = 4.0 * shares * np.roll(shares, -1, axis=1)
     flat = np.einsum("fi,fij->fj", shares, positions[mesh.faces])
     middles: Doubles = flat[:, None] + np.einsum(
-        "fi,fikj->fkj", weights, bulges[mesh.triangle_edges]
+        "fi,fikj->fkj", weights, displacements[mesh.triangle_edges]
     )
     return middles
 

@@ -13,8 +13,9 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
     screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
     border      angle by which the border turns     how an opened mouth differs from a shut one
                 otherwise than at rest
-    bulge       how far a split moves a middle      for schemes that tell: those with curved edges,
-                and turns the normal there          and all with refined normals (bulge.py)
+    displacement                                    for schemes that tell: those with curved edges,
+                how far a split moves a middle      and all with refined normals (displacement.py)
+                and turns the normal there
 
 Each has two thresholds, above which an edge is split once and twice, and says how much an edge
 needs a split, so that all of them can be blended (blending.py) and any of them combined.
@@ -59,7 +60,7 @@ class Maximum(Criterion):
         for part in self.parts:
             part.bind(connectivity, rest_positions, rest_normals)
         self._splits = np.zeros(len(connectivity.edges), dtype=np.uint8)
-        self._need = np.zeros(len(connectivity.edges), dtype=np.float32)
+        self._metric = np.zeros(len(connectivity.edges), dtype=np.float32)
 
     def set_scheme(self, scheme: Scheme) -> None:
         """Show the scheme to them all."""
@@ -83,12 +84,12 @@ class Maximum(Criterion):
         """Only a whole of measuring parts measures; others decide in whole splits."""
         return all(part.measures for part in self.parts)
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the largest need of every edge, shape (E,)."""
-        need[:] = -np.inf
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the largest metric of every edge, shape (E,)."""
+        metric[:] = -np.inf
         for part in self.parts:
-            part.measure(positions, normals, self._need)
-            np.maximum(need, self._need, out=need)
+            part.measure(positions, normals, self._metric)
+            np.maximum(metric, self._metric, out=metric)
 
 
 def mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:

@@ -37,7 +37,8 @@ def create_kahler(
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
-    - `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "border", "bulge", another
+    - `criterion`: "normal", "curvature", "rest", "silhouette", "screen", "border", "displacement",
+      another
       name of `refine.criteria`, an object, or a list of them, of which the one counts that asks for
       most; "normal+rest" is such a list.
     - `scheme`: "loop", the paper's, "cubic", "detail", another name of `refine.schemes`, or an
@@ -64,7 +65,7 @@ def create_kahler(
     if blend and not decides.measures:
         raise ValueError(
             f"blend=True needs a criterion that measures, but {type(decides).__name__} "
-            "has no method measure(positions, normals, need)"
+            "has no method measure(positions, normals, metric)"
         )
     if blend is None:
         blend = chosen.interpolates and decides.measures and not coherent

@@ -51,8 +51,8 @@ from ..mesh.vectors import (
 )
 
 FULL_CENTRE = np.float32(0.511)
-"""How far the middle of a triangle follows the bulges of its edges: 4/9 (blending.py), and 15 %
-more: curves between these points stand out farther. Chosen: normals are nearer to a dense head."""
+"""How far the middle of a triangle follows the displacements of its edges: 4/9 (blending.py), and
+15 % more: curves between these points stand out farther. So normals are nearer to a dense head."""
 SOON = np.float32(3.0)
 """How much sooner than the place of a new point its normal has gone all the way. Chosen: a turn of
 shading is seen less than a jump of the surface, and half of it is half a triangle wasted."""
@@ -91,13 +91,13 @@ class WholeSurface:
         """Work the normals out, when the rows have been placed."""
         surface_normals(self._mesh, self.rows, self._centres, self.normals)
 
-    def measure(self, bulges: Floats, turns: Floats) -> None:
+    def measure(self, displacements: Floats, turns: Floats) -> None:
         """Write how far middles stand out of their edges, and their normals turn; shape (E,) each.
 
         Against the straight edge, and against the mean of the normals at its ends [rad], times the
         length of the edge.
         """
-        measure_edges(self._mesh, self.rows, self.normals, bulges, turns)
+        measure_edges(self._mesh, self.rows, self.normals, displacements, turns)
 
 
 class RefinedNormals(Scheme):
@@ -133,9 +133,9 @@ class RefinedNormals(Scheme):
         self._scheme.place_centres(frame)
         turn_centres(self._mesh, frame, self._surface.rows)
 
-    def measure(self, bulges: Floats, turns: Floats) -> None:
+    def measure(self, displacements: Floats, turns: Floats) -> None:
         """Write how far middles would stand out, and turn the normal, of every edge, (E,) each."""
-        self._surface.measure(bulges, turns)
+        self._surface.measure(displacements, turns)
 
 
 @njit
@@ -165,7 +165,7 @@ def place_surface_centres(mesh: Connectivity, rows: Floats, centres: Floats) -> 
                 corners += rows[mesh.faces[t, k], i]
                 if e >= 0:
                     middles += rows[vertex_count + e, i]
-            # The sum of bulges is the sum of the middles less that of the corners.
+            # The sum of displacements is the sum of the middles less that of the corners.
             centres[t, i] = THIRD * corners + FULL_CENTRE * (middles - corners)
 
 
@@ -217,11 +217,11 @@ def turn_normals(mesh: Connectivity, frame: FrameBuffers, normals: Floats) -> No
         e = frame.split_once[k]
         a, b = mesh.around.points[e, 0], mesh.around.points[e, 1]
         row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
-        growth = min(ONE, SOON * frame.growth_once[e])
+        geomorph = min(ONE, SOON * frame.geomorph_once[e])
         normal = row_of(normals, np.uint32(vertex_count + e))
-        if growth < ONE:
+        if geomorph < ONE:
             mean = unit(plus(row_of(normals, a), row_of(normals, b)))
-            normal = unit(mix(mean, normal, growth))
+            normal = unit(mix(mean, normal, geomorph))
         write_row(vertices, row, normal, 3)
         if frame.splits[e] == 2:
             write_mean_normal(vertices, a, row, np.uint32(row - 1))
@@ -237,33 +237,33 @@ def turn_centres(mesh: Connectivity, frame: FrameBuffers, rows: Floats) -> None:
     vertices, vertex_count = frame.rows, mesh.vertex_count
     for k in range(frame.counts[CENTRES]):
         t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
-        growth, hexagon = ONE, (ZERO, ZERO, ZERO)
+        geomorph, hexagon = ONE, (ZERO, ZERO, ZERO)
         origin = row_of(rows, mesh.faces[t, 0])
         for i in range(3):
             e, last = mesh.triangle_edges[t, i], mesh.triangle_edges[t, i - 1]
-            growth = min(growth, frame.growth_once[e] if frame.splits[e] > 0 else ZERO)
+            geomorph = min(geomorph, frame.geomorph_once[e] if frame.splits[e] > 0 else ZERO)
             a = less(row_of(rows, mesh.faces[t, i]), ONE, origin)
             after = np.uint32(vertex_count + e)
             before = np.uint32(vertex_count + last)
             hexagon = plus(hexagon, cross(a, between_rows(rows, before, after)))
-        if growth > ZERO:
-            growth = min(ONE, SOON * growth)
+        if geomorph > ZERO:
+            geomorph = min(ONE, SOON * geomorph)
             mean = row_of(vertices, row, 3)
-            write_row(vertices, row, unit(mix(mean, unit(hexagon), growth)), 3)
+            write_row(vertices, row, unit(mix(mean, unit(hexagon), geomorph)), 3)
 
 
 @njit
 def measure_edges(
-    mesh: Connectivity, rows: Floats, normals: Floats, bulges: Floats, turns: Floats
+    mesh: Connectivity, rows: Floats, normals: Floats, displacements: Floats, turns: Floats
 ) -> None:
     """Write the distance of each middle from its edge, and turn of its normal x length, (E,)."""
     vertex_count = mesh.vertex_count
-    for e in range(bulges.shape[0]):
+    for e in range(displacements.shape[0]):
         a, b = mesh.around.points[e, 0], mesh.around.points[e, 1]
         row = np.uint32(vertex_count + e)
         ends = plus(row_of(rows, a), row_of(rows, b))
         out = less(row_of(rows, row), HALF, ends)
-        bulges[e] = np.sqrt(dot(out, out))
+        displacements[e] = np.sqrt(dot(out, out))
         mean = unit(plus(row_of(normals, a), row_of(normals, b)))
         apart = less(row_of(normals, row), ONE, mean)
         # The chord of the angle: within a hundredth of it up to half a radian.

@@ -51,12 +51,12 @@ class Silhouette(ViewDependent):
         """`once`, `twice`: 1 - the cosine between the normals at both ends."""
         super().__init__(once, twice, "1 - the cosine between two normals")
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
         limits = self.thresholds
         most = limits.once + (ONE + RAMP) * limits.width
-        turns_at_silhouette(positions, normals, self._edges, self._eye, most, need)
-        limits.scale(need)
+        turns_at_silhouette(positions, normals, self._edges, self._eye, most, metric)
+        limits.scale(metric)
 
 
 class ScreenEdge(ViewDependent):
@@ -66,10 +66,10 @@ class ScreenEdge(ViewDependent):
         """`once`, `twice`: lengths in pixels."""
         super().__init__(once, twice, "lengths in pixels")
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
-        lengths_on_screen(positions, self._edges, self._eye, self._focal, need)
-        self.thresholds.scale(need)
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
+        lengths_on_screen(positions, self._edges, self._eye, self._focal, metric)
+        self.thresholds.scale(metric)
 
 
 @njit

@@ -22,7 +22,7 @@ class StreamArrays(NamedTuple):
 
 
 class OwnStream:
-    """The stream a refiner uses when none is lent: it grows to what the frames need."""
+    """The stream a refiner uses when none is lent: it grows to what the frames metric."""
 
     def __init__(self, columns: int, vertex_capacity: int, triangle_capacity: int) -> None:
         self._most = vertex_capacity, triangle_capacity

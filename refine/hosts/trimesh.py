@@ -72,7 +72,8 @@ def from_trimesh(mesh: Any, *, weld: bool = True, **options: Any) -> TrimeshRefi
     trimesh has vertices twice where texture coordinates or normals differ. They are welded, so that
     no crack opens, and part again where the mesh carries data. `weld=False` leaves vertices at
     equal places apart, for lips that touch at rest. `options`: what `create_kahler` takes; unless
-    told otherwise `scheme="cubic", criterion="bulge+rest"`, which rounds a mesh at rest, too.
+    told otherwise `scheme="cubic", criterion="displacement+rest"`, which rounds a mesh at rest,
+    too.
 
     Raises ValueError for anything else than a mesh of trimesh, and for what cannot be bound.
     """

@@ -11,7 +11,7 @@ from ..mesh.arrays import Doubles, Wide
 from ..mesh.seams import weld as weld_vertices
 from ..mesh.validation import checked_indices, checked_positions
 
-SMOOTH = {"scheme": "cubic", "criterion": "bulge+rest"}
+SMOOTH = {"scheme": "cubic", "criterion": "displacement+rest"}
 """Rounds what is coarse at rest, and what bends: the look of the application's window."""
 
 
@@ -24,8 +24,8 @@ class WeldedRefiner:
 
     Such a mesh has a vertex twice where two sides of it look different. These are welded for
     refinement, so that no crack opens between them, and part again in what comes out. Unless told
-    otherwise it refines as the window does, `scheme="cubic", criterion="bulge+rest"`, so that a
-    mesh that did not move gets smoother, too.
+    otherwise it refines as the window does, `scheme="cubic", criterion="displacement+rest"`, so
+    that a mesh that did not move gets smoother, too.
     """
 
     def __init__(

@@ -57,7 +57,7 @@ class Criterion:
 
     parts: tuple["Criterion", ...] = ()
     """Criteria that this one asks. Each of them, too, serves one refiner only."""
-    _need: Floats = np.zeros(0, dtype=np.float32)
+    _metric: Floats = np.zeros(0, dtype=np.float32)
     """What `mark` follows from, shape (E,)."""
 
     def set_scheme(self, scheme: Scheme) -> None:
@@ -73,18 +73,18 @@ class Criterion:
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write 0, 1 or 2 for every edge into `splits`, shape (E,)."""
-        if len(self._need) != len(splits):
-            self._need = np.zeros(len(splits), dtype=np.float32)
-        self.measure(positions, normals, self._need)
-        splits_of_needs(self._need, splits)
+        if len(self._metric) != len(splits):
+            self._metric = np.zeros(len(splits), dtype=np.float32)
+        self.measure(positions, normals, self._metric)
+        splits_of_metric(self._metric, splits)
 
     @property
     def measures(self) -> bool:
         """Whether it has a `measure`."""
         return type(self).measure is not Criterion.measure
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,): above 0 one split, above 1 two.
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,): above 0 one split, above 1 two.
 
         It has to be a continuous function of the positions for blending to be one.
         """
@@ -128,19 +128,19 @@ class Thresholds:
 
     @property
     def width(self) -> np.float32:
-        """What lies between the two: the unit of need."""
+        """What lies between the two: the unit of the metric."""
         if np.isinf(self.twice):
             return self.once if 0.0 < self.once < np.inf else ONE
         return np.float32(max(float(self.twice - self.once), NARROWEST))
 
     @property
     def most(self) -> np.float32:
-        """The need that cannot be exceeded: 1 where the second level is switched off."""
+        """The metric that cannot be exceeded: 1 where the second level is switched off."""
         return np.float32(1.0 if np.isinf(self.twice) else np.inf)
 
     def scale(self, measures: Floats, unit: np.float32 = ONE) -> None:
-        """Turn measures of edges, shape (E,), into needs; `unit`: of the thresholds."""
-        scale_needs(measures, self.once * unit, self.width * unit, self.most)
+        """Turn measures of edges, shape (E,), into metrics; `unit`: of the thresholds."""
+        scale_metric(measures, self.once * unit, self.width * unit, self.most)
 
 
 class NormalDrop(Criterion):
@@ -173,11 +173,11 @@ class NormalDrop(Criterion):
         limits = self.thresholds.once, self.thresholds.twice
         mark_drops(normals, self._edges, self._rest_dots, limits, self._dots, splits)
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
-        edge_dots(normals, self._edges, need)
-        np.subtract(self._rest_dots, need, out=need)
-        self.thresholds.scale(need)
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
+        edge_dots(normals, self._edges, metric)
+        np.subtract(self._rest_dots, metric, out=metric)
+        self.thresholds.scale(metric)
 
 
 @njit
@@ -210,17 +210,17 @@ def mark_drops(
 
 
 @njit
-def splits_of_needs(need: Floats, splits: Small) -> None:
+def splits_of_metric(metric: Floats, splits: Small) -> None:
     """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
-    for e in range(need.shape[0]):
-        splits[e] = np.uint8(need[e] > np.float32(0.0)) + np.uint8(need[e] > np.float32(1.0))
+    for e in range(metric.shape[0]):
+        splits[e] = np.uint8(metric[e] > np.float32(0.0)) + np.uint8(metric[e] > np.float32(1.0))
 
 
 @njit
-def scale_needs(need: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
-    """Turn the measures in `need`, shape (E,), into needs (see `Thresholds`)."""
-    for e in range(need.shape[0]):
-        need[e] = min((need[e] - once) / width, most)
+def scale_metric(metric: Floats, once: np.float32, width: np.float32, most: np.float32) -> None:
+    """Turn the measures in `metric`, shape (E,), into metrics (see `Thresholds`)."""
+    for e in range(metric.shape[0]):
+        metric[e] = min((metric[e] - once) / width, most)
 
 
 @njit

@@ -22,7 +22,7 @@ subtriangles, triangles with a point in the middle."""
 
 
 class FrameBuffers(NamedTuple):
-    """One frame of a mesh with V vertices, F triangles, E edges and R rims."""
+    """One frame of a mesh with V vertices, F triangles, E edges and R attribute edges."""
 
     positions: Doubles
     """Deformed vertex positions, shape (V, 3)."""
@@ -31,16 +31,16 @@ class FrameBuffers(NamedTuple):
     normals: Floats
     """Their unit normals, shape (V, 3)."""
     splits: Small
-    """Splits of every rim, edges first, shape (R + 1,); the last stands for where no edge is."""
-    growth_once: Floats
+    """Splits of attribute edges, edges first, shape (R + 1,); the last is where no edge is."""
+    geomorph_once: Floats
     """How far the middle point of an edge is from the straight edge to its place, shape (E,).
 
     Ones, but for frames that are blended (beyond/blending.py); no meaning where no point is.
     """
-    growth_twice: Floats
+    geomorph_twice: Floats
     """How far its quarter points are."""
     first_points: Unsigned
-    """Output row of the first point of every split rim, shape (R + 1,).
+    """Output row of the first point of every split attribute edge, shape (R + 1,).
 
     There is one point on an edge split once, its middle; one split twice has a quarter point, the
     middle and another quarter point, from its first end to its second.
@@ -81,16 +81,17 @@ def buffers_for(
     mesh: Connectivity, positions: Doubles, points: Floats, normals: Floats
 ) -> FrameBuffers:
     """Make the buffers of a mesh, but for `rows`, of which there are none yet."""
-    edge_count, rim_count, face_count = len(mesh.edges), len(mesh.rim_edges), len(mesh.faces)
+    edge_count, face_count = len(mesh.edges), len(mesh.faces)
+    attribute_edge_count = len(mesh.attribute_edges)
     return FrameBuffers(
         positions=positions,
         points=points,
         normals=normals,
-        # One more than rims: triangles without edges refer to it and find zero splits.
-        splits=np.zeros(rim_count + 1, dtype=np.uint8),
-        growth_once=np.ones(edge_count, dtype=np.float32),
-        growth_twice=np.ones(edge_count, dtype=np.float32),
-        first_points=np.zeros(rim_count + 1, dtype=np.uint32),
+        # One more than attribute edges: triangles without edges refer to it and find zero splits.
+        splits=np.zeros(attribute_edge_count + 1, dtype=np.uint8),
+        geomorph_once=np.ones(edge_count, dtype=np.float32),
+        geomorph_twice=np.ones(edge_count, dtype=np.float32),
+        first_points=np.zeros(attribute_edge_count + 1, dtype=np.uint32),
         split_once=np.zeros(edge_count + 1, dtype=np.uint32),
         split_twice=np.zeros(edge_count + 1, dtype=np.uint32),
         configurations=np.zeros(face_count + 1, dtype=np.uint16),
@@ -103,7 +104,7 @@ def buffers_for(
 
 def split_everywhere(frame: FrameBuffers, vertex_count: int) -> FrameBuffers:
     """Fill buffers in so that every edge is split once: points follow vertices in its order."""
-    edge_count = len(frame.growth_once)
+    edge_count = len(frame.geomorph_once)
     every_edge = np.arange(edge_count, dtype=np.uint32)
     frame.splits[:edge_count] = 1
     frame.split_once[:edge_count] = every_edge

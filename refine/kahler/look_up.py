@@ -1,9 +1,9 @@
 """Numbering of new points, and the subtriangles that are looked up for them.
 
 Kähler, Haber, Seidel 2003, section 4.3. The output begins with one row per wedge, so that vertex v
-of the input is row v. The points of a rim follow in a block, in the direction of its edge: the
-middle point, or quarter, middle, quarter. Points in the middle of triangles, which only blending
-has (beyond/blending.py), come last.
+of the input is row v. The points of an attribute edge follow in a block, in the direction of its
+edge: the middle point, or quarter, middle, quarter. Points in the middle of triangles, which only
+blending has (beyond/blending.py), come last.
 
 Attributes (texture coordinates, colours) of new points are
 interpolated linearly along their edge, with the values of their own side of a seam (section 4.4,
@@ -40,7 +40,7 @@ def points_on(split: int) -> int:
 def number_points(
     edge_sides: Unsigned,
     more_sides: Unsigned,
-    rim_edges: Unsigned,
+    attribute_edges: Unsigned,
     wedge_count: int,
     frame: FrameBuffers,
 ) -> int:
@@ -76,8 +76,8 @@ def number_points(
         split, side = splits[more_sides[k, 0]], more_sides[k, 1]
         configurations[side >> SIDE_BITS] += split * PLACE_VALUES[side & SIDE_MASK]
         triangle_count += points_on(split)
-    for r in range(edge_count, rim_edges.shape[0]):
-        splits[r] = splits[rim_edges[r]]
+    for r in range(edge_count, attribute_edges.shape[0]):
+        splits[r] = splits[attribute_edges[r]]
         frame.first_points[r] = row
         row += points_on(splits[r])
     frame.counts[ROWS], frame.counts[ONCE], frame.counts[TWICE] = row, once_count, twice_count
@@ -89,36 +89,36 @@ def number_points(
 def numbering(
     edge_sides: Unsigned,
     more_sides: Unsigned,
-    rim_edges: Unsigned,
+    attribute_edges: Unsigned,
     wedge_count: int,
     frame: FrameBuffers,
 ) -> Iterator[tuple[int, int, int]]:
     """Do `number_points` at each `next`: numbers of output rows and triangles, most splits."""
     while True:
-        most = number_points(edge_sides, more_sides, rim_edges, wedge_count, frame)
+        most = number_points(edge_sides, more_sides, attribute_edges, wedge_count, frame)
         yield int(frame.counts[ROWS]), int(frame.counts[TRIANGLES]), most
 
 
 @njit
-def copy_along_rims(rim_edges: Unsigned, frame: FrameBuffers) -> None:
+def copy_along_attribute_edges(attribute_edges: Unsigned, frame: FrameBuffers) -> None:
     """Copy position and normal of new points on texture seams to their other sides."""
-    for r in range(frame.growth_once.shape[0], rim_edges.shape[0]):
+    for r in range(frame.geomorph_once.shape[0], attribute_edges.shape[0]):
         for point in range(points_on(frame.splits[r])):
-            original = frame.first_points[rim_edges[r]] + point
+            original = frame.first_points[attribute_edges[r]] + point
             copy = frame.first_points[r] + point
             for i in range(GEOMETRY_COLUMNS):
                 frame.rows[copy, i] = frame.rows[original, i]
 
 
 @njit
-def place_rim_attributes(rim_uv: Indices, frame: FrameBuffers, values: Floats) -> None:
-    """Write attributes of new points, linearly along their rim; `values`: shape (A, k)."""
+def place_attributes(attribute_edge_uv: Indices, frame: FrameBuffers, values: Floats) -> None:
+    """Write attributes of new points, linearly along attribute edges; `values`: shape (A, k)."""
     vertices = frame.rows
-    for r in range(rim_uv.shape[0]):
+    for r in range(attribute_edge_uv.shape[0]):
         split, row = frame.splits[r], frame.first_points[r]
         if split == 0:
             continue
-        a, b = rim_uv[r, 0], rim_uv[r, 1]
+        a, b = attribute_edge_uv[r, 0], attribute_edge_uv[r, 1]
         for i in range(values.shape[1]):
             at_a, at_b, column = values[a, i], values[b, i], GEOMETRY_COLUMNS + i
             vertices[row + (split >> 1), column] = HALF * (at_a + at_b)
@@ -130,7 +130,7 @@ def place_rim_attributes(rim_uv: Indices, frame: FrameBuffers, values: Floats) -
 @njit
 def look_up_triangles(
     corners: Unsigned,
-    triangle_rims: Unsigned,
+    triangle_attribute_edges: Unsigned,
     frame: FrameBuffers,
     patterns: Patterns,
     table_rows: Short,
@@ -138,12 +138,13 @@ def look_up_triangles(
 ) -> None:
     """Write the subtriangles of every triangle by its row in the table (section 4.3).
 
-    A rim keeps its points in the direction of the edge; a triangle that runs against it reads the
-    quarter points in reverse. Centres are numbered in the order of the triangles that have one.
+    An attribute edge keeps its points in the direction of the edge; a triangle that runs against it
+    reads the quarter points in reverse. Centres are numbered in the order of the triangles that
+    have one.
     """
     triangles, source, subtriangles = out.triangles, out.source, patterns.subtriangles
     splits, first_points = frame.splits, frame.first_points
-    assert corners.shape[1] == triangle_rims.shape[1] == WIDTH
+    assert corners.shape[1] == triangle_attribute_edges.shape[1] == WIDTH
     assert triangles.shape[1] == subtriangles.shape[2] == WIDTH
     points = np.zeros(CENTRE + 1, np.uint32)
     points[CENTRE] = frame.counts[ROWS]
@@ -158,10 +159,11 @@ def look_up_triangles(
             continue
         # The 12 numbered points; those of edges that are not split are never looked up.
         for i in range(3):
-            rim, against = triangle_rims[t, i] >> one, triangle_rims[t, i] & one
-            first = first_points[rim]
+            side = triangle_attribute_edges[t, i]
+            edge, against = side >> one, side & one
+            first = first_points[edge]
             points[i] = corners[t, i]
-            points[3 + 3 * i] = first + (splits[rim] >> 1)  # the only point, or the second
+            points[3 + 3 * i] = first + (splits[edge] >> 1)  # the only point, or the second
             points[4 + 3 * i] = first + two * against
             points[5 + 3 * i] = first + two - two * against
         for k in range(patterns.counts[row]):
@@ -175,7 +177,7 @@ def look_up_triangles(
 @njit
 def looking_up(
     corners: Unsigned,
-    triangle_rims: Unsigned,
+    triangle_attribute_edges: Unsigned,
     frame: FrameBuffers,
     patterns: Patterns,
     table_rows: Short,
@@ -183,5 +185,5 @@ def looking_up(
 ) -> Iterator[None]:
     """Do `look_up_triangles` at each `next`."""
     while True:
-        look_up_triangles(corners, triangle_rims, frame, patterns, table_rows, out)
+        look_up_triangles(corners, triangle_attribute_edges, frame, patterns, table_rows, out)
         yield

@@ -26,7 +26,7 @@ from ..mesh.arrays import Floats
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
 from .frame import buffers_for
-from .look_up import copy_along_rims, looking_up, numbering, place_rim_attributes
+from .look_up import copy_along_attribute_edges, looking_up, numbering, place_attributes
 from .smoothing import LoopScheme, Scheme
 from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE
 
@@ -62,7 +62,7 @@ class Kahler(BaseRefiner):
         self.edge_splits = self._frame.splits[: len(mesh.edges)]
         sides, more = mesh.edge_sides, mesh.more_sides
         wedge_count = len(mesh.wedge_vertices)
-        self._numbering = numbering(sides, more, mesh.rim_edges, wedge_count, self._frame)
+        self._numbering = numbering(sides, more, mesh.attribute_edges, wedge_count, self._frame)
         self._out: StreamArrays | None = None
         self._looking_up: Iterator[None]
         self._own(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
@@ -73,8 +73,8 @@ class Kahler(BaseRefiner):
 
     @property
     def vertex_capacity(self) -> int:
-        """Most output vertices: every wedge, and three points on every rim."""
-        return len(self.connectivity.wedge_vertices) + 3 * len(self.connectivity.rim_edges)
+        """Most output vertices: every wedge, and three points on every attribute edge."""
+        return len(self.connectivity.wedge_vertices) + 3 * len(self.connectivity.attribute_edges)
 
     @property
     def triangle_capacity(self) -> int:
@@ -119,7 +119,12 @@ class Kahler(BaseRefiner):
         mesh, self._out = self.connectivity, out
         self._frame = self._frame._replace(rows=out.vertices)
         self._looking_up = looking_up(
-            mesh.corners, mesh.triangle_rims, self._frame, self._patterns, self._table_rows, out
+            mesh.corners,
+            mesh.triangle_attribute_edges,
+            self._frame,
+            self._patterns,
+            self._table_rows,
+            out,
         )
 
     def _place(self, rows: Floats) -> None:
@@ -127,8 +132,8 @@ class Kahler(BaseRefiner):
         self._scheme.place(self._frame)
         if self._values is not None:
             self.write_wedges(rows)
-            copy_along_rims(self.connectivity.rim_edges, self._frame)
-            place_rim_attributes(self.connectivity.rim_uv, self._frame, self._values.values)
+            copy_along_attribute_edges(self.connectivity.attribute_edges, self._frame)
+            place_attributes(self.connectivity.attribute_edge_uv, self._frame, self._values.values)
 
     def _look_up(self) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
@@ -142,6 +147,6 @@ class Kahler(BaseRefiner):
         block_starts = np.cumsum(point_counts) - point_counts
         within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
         place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
-        ends = np.repeat(self.edges[mesh.rim_edges], point_counts, axis=0)
+        ends = np.repeat(self.edges[mesh.attribute_edges], point_counts, axis=0)
         weights = np.column_stack([4 - place, place, np.zeros_like(place)]) / 4.0
         return super().origins().followed_by(np.column_stack([ends, ends[:, 0]]), weights)

@@ -33,9 +33,9 @@ mesh/rings.py.
 The paper leaves open, and we decide: m, p, q, r, s enter the second level as the first level left
 them, so that the order of edges cannot matter.
 
-*Growth* is how much of its way from the straight edge a point has gone: 0 to 1, for each level of
-each edge; 1 everywhere unless the frame is blended (beyond/blending.py). A mix with growth 0 or 1
-returns one of its two sides to the last bit.
+The *geomorph weight* is how much of its way from the straight edge a point has gone: 0 to 1, for
+each level of each edge; 1 everywhere unless the frame is blended (beyond/blending.py). A mix with
+weight 0 or 1 returns one of its two sides to the last bit.
 
 Normals of new points are interpolated between their two neighbours on the edge and normalised
 (section 4.4, first paragraph).
@@ -121,8 +121,8 @@ class Scheme:
         """Whether it has a `measure`."""
         return type(self).measure is not Scheme.measure
 
-    def measure(self, bulges: Floats, turns: Floats) -> None:
-        """Tell the criterion `bulge` what a split of each edge would change, shape (E,) each.
+    def measure(self, displacements: Floats, turns: Floats) -> None:
+        """Tell the criterion `displacement` what a split of each edge changes, shape (E,) each.
 
         How far it would move the middle, and by what angle [rad], times the length of the edge, it
         would turn the normal there.
@@ -147,7 +147,7 @@ def register_scheme(name: str, factory: Callable[..., Scheme]) -> None:
 class FirstLevel(NamedTuple):
     """What the second level needs of the first: scratch of a frame."""
 
-    vertex_growth: Floats
+    vertex_geomorph: Floats
     """How far the most grown edge at each vertex has grown, shape (V,); 0 where none is split."""
     middles: Floats
     """First-level points as they are when fully grown, shape (E, 3); only of edges split now."""
@@ -183,36 +183,36 @@ def write_mean_normal(rows: Floats, p: np.uint32, q: np.uint32, row: np.uint32) 
 
 
 @njit
-def grow_vertices(around: Surroundings, frame: FrameBuffers, vertex_growth: Floats) -> None:
+def geomorph_vertices(around: Surroundings, frame: FrameBuffers, vertex_geomorph: Floats) -> None:
     """A vertex moves as much as the most grown edge at it: 0 where none is split."""
-    vertex_growth[:] = ZERO
+    vertex_geomorph[:] = ZERO
     for k in range(frame.counts[ONCE]):
         e = frame.split_once[k]
-        a, b, growth = around.points[e, 0], around.points[e, 1], frame.growth_once[e]
-        vertex_growth[a] = max(vertex_growth[a], growth)
-        vertex_growth[b] = max(vertex_growth[b], growth)
+        a, b, geomorph = around.points[e, 0], around.points[e, 1], frame.geomorph_once[e]
+        vertex_geomorph[a] = max(vertex_geomorph[a], geomorph)
+        vertex_geomorph[b] = max(vertex_geomorph[b], geomorph)
 
 
 @njit
 def place_vertices(
-    points: Floats, normals: Floats, rings: Rings, growth: Floats, vertices: Floats
+    points: Floats, normals: Floats, rings: Rings, geomorph: Floats, vertices: Floats
 ) -> None:
     """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3).
 
-    `growth`: of each vertex, shape (V,).
+    `geomorph`: of each vertex, shape (V,).
     """
     near, others = rings.near, rings.others
     assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR
     for v in range(points.shape[0]):
         point = row_of(points, v)
-        if growth[v] > ZERO:
+        if geomorph[v] > ZERO:
             total = row_of(points, near[v, 0])
             for k in range(1, NEAR):
                 total = plus(total, row_of(points, near[v, k]))
             for k in range(rings.starts[v], rings.starts[v + 1]):
                 total = plus(total, row_of(points, others[k]))
             moved = plus(times(rings.own[v], point), times(rings.ring[v], total))
-            point = mix(point, moved, growth[v])
+            point = mix(point, moved, geomorph[v])
         write_row(vertices, v, point)
         write_row(vertices, v, row_of(normals, v), 3)
 
@@ -232,33 +232,33 @@ def place_middles(around: Surroundings, frame: FrameBuffers, middles: Floats) ->
             wings = plus(row_of(points, c), row_of(points, d))
             middle = plus(times(EDGE_END, ends), times(EDGE_WING, wings))
         write_row(middles, e, middle)
-        if frame.growth_once[e] < ONE:
+        if frame.geomorph_once[e] < ONE:
             straight = times(HALF, plus(row_of(vertices, a), row_of(vertices, b)))
-            middle = mix(straight, middle, frame.growth_once[e])
+            middle = mix(straight, middle, frame.geomorph_once[e])
         write_row(vertices, row, middle)
         write_row(vertices, row, unit(plus(row_of(normals, a), row_of(normals, b))), 3)
 
 
 @njit
 def wing(
-    points: Floats, middles: Floats, ends: tuple[int, int], e: np.uint32, growth: np.float32
+    points: Floats, middles: Floats, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
 ) -> Vector:
     """The first-level point of a neighbour edge, as far as it has grown out of its midpoint."""
     straight = times(HALF, plus(row_of(points, ends[0]), row_of(points, ends[1])))
-    return mix(straight, row_of(middles, e), growth)
+    return mix(straight, row_of(middles, e), geomorph)
 
 
 @njit
-def growth_of_split(splits: Small, growth: Floats, e: np.uint32) -> np.float32:
+def geomorph_of_split(splits: Small, geomorph: Floats, e: np.uint32) -> np.float32:
     """How far the middle of an edge has grown; 0 where it has none."""
-    return growth[e] if splits[e] > 0 else ZERO
+    return geomorph[e] if splits[e] > 0 else ZERO
 
 
 @njit
 def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -> None:
     """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4)."""
     points, vertices = frame.points, frame.rows
-    splits, once = frame.splits, frame.growth_once
+    splits, once = frame.splits, frame.geomorph_once
     for k in range(frame.counts[TWICE]):
         e = frame.split_twice[k]
         near_a = frame.first_points[e]
@@ -270,10 +270,10 @@ def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -
             c, d = around.points[e, 2], around.points[e, 3]
             ac, bc = around.wings[e, 0], around.wings[e, 1]
             ad, bd = around.wings[e, 2], around.wings[e, 3]
-            p = wing(points, middles, (a, c), ac, growth_of_split(splits, once, ac))
-            q = wing(points, middles, (b, c), bc, growth_of_split(splits, once, bc))
-            r = wing(points, middles, (a, d), ad, growth_of_split(splits, once, ad))
-            s = wing(points, middles, (b, d), bd, growth_of_split(splits, once, bd))
+            p = wing(points, middles, (a, c), ac, geomorph_of_split(splits, once, ac))
+            q = wing(points, middles, (b, c), bc, geomorph_of_split(splits, once, bc))
+            r = wing(points, middles, (a, d), ad, geomorph_of_split(splits, once, ad))
+            s = wing(points, middles, (b, d), bd, geomorph_of_split(splits, once, bd))
             wings_a, wings_b = plus(p, r), plus(q, s)
             ring = plus(moved, plus(wings_a, wings_b))
             beside_a = plus(times(EDGE_END, ends_a), times(EDGE_WING, wings_a))
@@ -282,10 +282,10 @@ def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -
         else:
             beside_a, beside_b = times(BORDER_EDGE_END, ends_a), times(BORDER_EDGE_END, ends_b)
             middle = plus(times(BORDER_MIDDLE_OWN, m), times(BORDER_MIDDLE_RING, moved))
-        growth = frame.growth_twice[e]
-        write_row(vertices, near_a, mix(times(HALF, ends_a), beside_a, growth))
-        write_row(vertices, centre, mix(m, middle, growth))
-        write_row(vertices, near_b, mix(times(HALF, ends_b), beside_b, growth))
+        geomorph = frame.geomorph_twice[e]
+        write_row(vertices, near_a, mix(times(HALF, ends_a), beside_a, geomorph))
+        write_row(vertices, centre, mix(m, middle, geomorph))
+        write_row(vertices, near_b, mix(times(HALF, ends_b), beside_b, geomorph))
         write_mean_normal(vertices, a, centre, near_a)
         write_mean_normal(vertices, b, centre, near_b)
 
@@ -296,8 +296,8 @@ def placing(
 ) -> Iterator[None]:
     """Write moved vertices, the first level and the second level at each `next`."""
     while True:
-        grow_vertices(around, frame, first.vertex_growth)
-        place_vertices(frame.points, frame.normals, rings, first.vertex_growth, frame.rows)
+        geomorph_vertices(around, frame, first.vertex_geomorph)
+        place_vertices(frame.points, frame.normals, rings, first.vertex_geomorph, frame.rows)
         place_middles(around, frame, first.middles)
         place_quarters(around, frame, first.middles)
         yield

@@ -17,7 +17,7 @@ An edge is *interior* when exactly two triangles run through it in opposite dire
 else (one side, three sides, two sides in the same direction) is a *border*: it is split by the
 boundary rules, which read the end points only, and so from all sides in the same way.
 
-Wedges and rims, by which texture seams part, are told in seams.py.
+Wedges and attribute edges, by which texture seams part, are told in seams.py.
 
 A triangle that names a vertex twice has no area and no edges: it is handed through as it is.
 """
@@ -47,7 +47,7 @@ class Surroundings(NamedTuple):
 
 
 class Connectivity(NamedTuple):
-    """Index arrays of one mesh; V vertices, F triangles, E edges, W wedges, R rims."""
+    """Index arrays of one mesh; V vertices, F triangles, E edges, W wedges, R attribute edges."""
 
     faces: Unsigned
     """Vertices of each triangle, shape (F, 3)."""
@@ -63,16 +63,16 @@ class Connectivity(NamedTuple):
     """Edges of each triangle, shape (F, 3); -1 for a triangle that names a vertex twice."""
     corners: Unsigned
     """Wedge of each triangle corner, shape (F, 3); equals `faces` without texture seams."""
-    triangle_rims: Unsigned
-    """2 x rim + (1 if the triangle runs against it), shape (F, 3); rim R where there is none."""
+    triangle_attribute_edges: Unsigned
+    """2 x attribute edge + (1 if the triangle runs against it), shape (F, 3); 2 R where is none."""
     wedge_vertices: Unsigned
     """Vertex of each wedge, shape (W,)."""
     wedge_uv: Indices
     """Texture coordinate of each wedge, shape (W,); -1 where no corner gives the vertex one."""
-    rim_edges: Unsigned
-    """Edge of each rim, shape (R,)."""
-    rim_uv: Indices
-    """Texture coordinates at the ends a, b of each rim, shape (R, 2)."""
+    attribute_edges: Unsigned
+    """Edge of each attribute edge, shape (R,)."""
+    attribute_edge_uv: Indices
+    """Texture coordinates at the ends a, b of each attribute edge, shape (R, 2)."""
     vertex_count: int
     """V, isolated vertices included."""
 

@@ -4,8 +4,10 @@ r"""Texture seams: where corners of one vertex look different, and equal vertice
 edge; the output needs one row per
 
   *wedge*: a pair (vertex, texture coordinate). Wedges 0..V-1 are the vertices, seam copies follow;
-  *rim*:   an edge with the texture coordinates of one side. Rims 0..E-1 are the edges, then copies.
-A rim has its own output points, at the very positions of its edge, so a seam cannot crack.
+  *attribute edge*: an edge with the texture coordinates of one side; 0..E-1 are the edges, then
+                    copies.
+An attribute edge has its own output points, at the very positions of its edge, so that no seam
+can crack.
 """
 
 from typing import Any
@@ -25,41 +27,41 @@ def find_seams(
     vertex_count: int,
     face_uv: npt.NDArray[np.integer] | None,
 ) -> dict[str, npt.NDArray[Any]]:
-    """Wedges and rims: those of the vertices and edges, and their copies along seams."""
+    """Wedges and attribute edges: those of the vertices and edges, and their copies along seams."""
     edge_count = len(edges)
     none = np.uint32(2 * edge_count)
     is_proper = edge_of >= 0
     starts = faces.ravel()
     is_reversed = is_proper & (starts != edges[edge_of, 0]) if edge_count else is_proper
     if face_uv is None:
-        rims = np.where(is_proper, 2 * edge_of + is_reversed, none).astype(np.uint32)
+        directed = np.where(is_proper, 2 * edge_of + is_reversed, none).astype(np.uint32)
         return {
             "corners": faces,
-            "triangle_rims": rims.reshape(-1, 3),
+            "triangle_attribute_edges": directed.reshape(-1, 3),
             "wedge_vertices": np.arange(vertex_count, dtype=np.uint32),
             "wedge_uv": np.arange(vertex_count, dtype=np.int32),
-            "rim_edges": np.arange(edge_count, dtype=np.uint32),
-            "rim_uv": edges.copy(),
+            "attribute_edges": np.arange(edge_count, dtype=np.uint32),
+            "attribute_edge_uv": edges.copy(),
         }
     corner_uv = np.asarray(face_uv, dtype=np.int64).reshape(-1, 3)
     proper = is_proper.reshape(-1, 3)[:, 0]
     place = np.cumsum(is_proper) - 1  # of a half-edge among those of proper triangles
-    rim_of, rim_edges, rim_uv = _rims(
+    number, attribute_edges, attribute_edge_uv = _attribute_edges(
         corner_uv[proper],
         edge_of[is_proper].astype(np.int64),
         is_reversed[is_proper],
         place[(sides[:, 0] >> 2) * 3 + (sides[:, 0] & 3)],
     )
     corners, wedge_vertices, wedge_uv = _wedges(faces.astype(np.int64), corner_uv, vertex_count)
-    triangle_rims = np.full(faces.size, 2 * len(rim_edges), dtype=np.uint32)
-    triangle_rims[is_proper] = 2 * rim_of + is_reversed[is_proper]
+    triangle_attribute_edges = np.full(faces.size, 2 * len(attribute_edges), dtype=np.uint32)
+    triangle_attribute_edges[is_proper] = 2 * number + is_reversed[is_proper]
     return {
         "corners": corners.astype(np.uint32),
-        "triangle_rims": triangle_rims.reshape(-1, 3),
+        "triangle_attribute_edges": triangle_attribute_edges.reshape(-1, 3),
         "wedge_vertices": wedge_vertices.astype(np.uint32),
         "wedge_uv": wedge_uv.astype(np.int32),
-        "rim_edges": rim_edges.astype(np.uint32),
-        "rim_uv": rim_uv.astype(np.int32),
+        "attribute_edges": attribute_edges.astype(np.uint32),
+        "attribute_edge_uv": attribute_edge_uv.astype(np.int32),
     }
 
 
@@ -94,21 +96,21 @@ def weld(positions: npt.ArrayLike, faces: npt.ArrayLike) -> tuple[Indices, Indic
     return first_uses.astype(np.int32), number[corners].astype(np.int32)
 
 
-def _rims(
+def _attribute_edges(
     corner_uv: Wide, edge_of: Wide, is_reversed: Flags, first: Wide
 ) -> tuple[Wide, Wide, Wide]:
-    """Rim of each half-edge, edge of each rim, texture coordinates at the ends of each rim."""
+    """Attribute edge of each half-edge; the edge of each, and texture coordinates at its ends."""
     start_uv = corner_uv.ravel()
     end_uv = np.roll(corner_uv, -1, axis=1).ravel()
     uv_at_a = np.where(is_reversed, end_uv, start_uv)
     uv_at_b = np.where(is_reversed, start_uv, end_uv)
     uv_pair, _ = number_by_first_use(uv_at_a * (corner_uv.max(initial=0) + 1) + uv_at_b)
-    number, rim_first = number_by_first_use(edge_of * (uv_pair.max(initial=0) + 1) + uv_pair)
-    number, rim_first = _originals_first(number, rim_first, edge_of[rim_first], first)
+    number, first_uses = number_by_first_use(edge_of * (uv_pair.max(initial=0) + 1) + uv_pair)
+    number, first_uses = _originals_first(number, first_uses, edge_of[first_uses], first)
     return (
         number,
-        edge_of[rim_first],
-        np.stack([uv_at_a[rim_first], uv_at_b[rim_first]], axis=1),
+        edge_of[first_uses],
+        np.stack([uv_at_a[first_uses], uv_at_b[first_uses]], axis=1),
     )
 
 

@@ -167,9 +167,11 @@ class _Refined:
         corner_rows, values = None, self.values
         if values is not None:
             rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
-            middles = len(values) + (mesh.triangle_rims[split] >> 1).astype(np.int64)
+            middles = len(values) + (mesh.triangle_attribute_edges[split] >> 1).astype(np.int64)
             corner_rows = np.concatenate([_children(rows[split], middles), rows[whole]])[order]
-            values = np.concatenate([values, values[mesh.rim_uv].mean(axis=1, dtype=np.float32)])
+            values = np.concatenate(
+                [values, values[mesh.attribute_edge_uv].mean(axis=1, dtype=np.float32)]
+            )
 
         corners = self.barycentric[split]
         children = _children(corners, (corners + np.roll(corners, -1, axis=1)) / 2)

@@ -66,8 +66,8 @@ def test_light_on_the_head(face: FaceScene) -> None:
     assert (shade < 100).any()
     assert np.median(shade) > 200  # a face, not a soot
     mirrored = before * [-1.0, 1.0, 1.0]
-    twins = np.linalg.norm(before[:, None] - mirrored, axis=2).argmin(axis=1)
-    assert abs(shade - shade[twins]).max() < 40
+    clones = np.linalg.norm(before[:, None] - mirrored, axis=2).argmin(axis=1)
+    assert abs(shade - shade[clones]).max() < 40
 
 
 def test_shipped_light_is_what_the_program_makes() -> None:

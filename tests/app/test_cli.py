@@ -153,11 +153,11 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
         ("convert nothing.csv -o .", ".: is a folder"),
         (
             "capture SMILE -o x.mp4 --option threshold_once=0.2",
-            "threshold_once: counts for the criterion normal alone, and here it is bulge+rest;",
+            "threshold_once: counts for the criterion normal alone, and here it is displacement",
         ),
         (
             "export SMILE -o x.usdz --refined --option threshold_twice=0.2",
-            "threshold_twice: counts for the criterion normal alone, and here it is bulge+rest;",
+            "threshold_twice: counts for the criterion normal alone, and here it is displacement",
         ),
         (
             "capture SMILE -o x.mp4 --look paper --option threshold_once=0.2",

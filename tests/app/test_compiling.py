@@ -13,7 +13,7 @@ from risorius.app.cli import compiling
 
 COMMANDS = (
     "capture --set joy",
-    "capture --set joy --option scheme=detail --option criterion=bulge",
+    "capture --set joy --option scheme=detail --option criterion=displacement",
     "capture --set joy --option criterion=silhouette+screen+curvature+border",
     "capture --set joy --option coherent=on",
     "capture --set joy --option blend=on --option criterion=normal",

@@ -145,7 +145,7 @@ def test_at_rest_and_in_the_papers_look_there_are_none(joy: FaceScene) -> None:
         assert relief_of(joy, refinement) is None
     assert relief_of(PlaneScene(), Refinement()) is None
     plain = refine.create(
-        "kahler", joy.faces, joy.rest_positions, scheme="cubic", criterion="bulge+rest"
+        "kahler", joy.faces, joy.rest_positions, scheme="cubic", criterion="displacement+rest"
     )
     bound = refiner_for(joy, Refinement())
     count = len(bound.refine(joy.rest_positions).triangles)

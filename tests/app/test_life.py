@@ -214,10 +214,10 @@ def test_mirrored_viewers_are_looked_at_alike(scene: FaceScene) -> None:
     viewer = np.array([300.0, 120.0, 800.0])
     one = looking_at(scene, viewer)["eyes"]
     other = looking_at(scene, viewer * [-1.0, 1.0, 1.0])["eyes"]
-    for side, twin in (("left", "right"), ("right", "left")):
-        across = other[f"gaze_horizontal_{twin}"]
+    for side, clone in (("left", "right"), ("right", "left")):
+        across = other[f"gaze_horizontal_{clone}"]
         assert one[f"gaze_horizontal_{side}"] == pytest.approx(-across, abs=1e-6)
-        along = other[f"gaze_vertical_{twin}"]
+        along = other[f"gaze_vertical_{clone}"]
         assert one[f"gaze_vertical_{side}"] == pytest.approx(along, abs=1e-6)
 
 

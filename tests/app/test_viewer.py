@@ -226,11 +226,11 @@ def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
     """With the paper's criterion, also beside another; not where they would do nothing."""
     click(viewer, "tab Mechanism")
     offered = {}
-    for criterion in ("bulge", "normal+rest", "normal"):
+    for criterion in ("displacement", "normal+rest", "normal"):
         viewer.settings.display.options["kahler"] = {"criterion": criterion}
         settle(viewer)
         offered[criterion] = "threshold_once" in viewer.gui.places
-    assert offered == {"bulge": False, "normal+rest": True, "normal": True}
+    assert offered == {"displacement": False, "normal+rest": True, "normal": True}
 
 
 def test_wrinkles_have_a_slider(viewer: Viewer) -> None:

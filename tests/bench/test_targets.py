@@ -27,7 +27,11 @@ SOUND = Soak(60.0, 3600, True, 94.0, 0.0, 0.0, True, 1e-12)
 CLOSED = PoseGaps("blink", 0.1, 0.0, 0.2)
 WHOLE = PoseDefects("joy", 0, 0.01, 0.0, 0.0)
 ALIKE = motion.Row("joy", 0.96, 1.0, 0.1, 0.5, 0.8, 0.7)
-KEYS = (quality_report.STATIC_KEY, ("cubic", "bulge", 2.0), ("cubic", "bulge, blended", 2.0))
+KEYS = (
+    quality_report.STATIC_KEY,
+    ("cubic", "displacement", 2.0),
+    ("cubic", "displacement, blended", 2.0),
+)
 NEARER = [Score(key, "joy", 2030, *each, 9.0, 1.1) for key, each in zip(
     KEYS, ((1.0, 9.0, 10.0), (0.6, 6.0, 6.0), (0.8, 7.0, 7.0)), strict=True)]  # fmt: skip
 

@@ -16,20 +16,20 @@ def configuration_of(splits: tuple[int, int, int]) -> int:
     return splits[0] + 3 * splits[1] + 9 * splits[2]
 
 
-class Needed(refine.Criterion):
+class GivenMetric(refine.Criterion):
     """A criterion that measures what it is told."""
 
-    def __init__(self, need: npt.ArrayLike) -> None:
-        self.need = np.asarray(need, dtype=np.float32)
+    def __init__(self, metric: npt.ArrayLike) -> None:
+        self.metric = np.asarray(metric, dtype=np.float32)
 
-    def measure(self, positions: object, normals: object, need: npt.NDArray[np.float32]) -> None:
-        """Write the needs."""
-        need[:] = self.need
+    def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
+        """Write the metrics."""
+        metric[:] = self.metric
 
-    def growth(self, edges: npt.NDArray[np.int32]) -> plain_twin.Growth:
-        """What blending makes of the needs, for the plain twin."""
-        once = np.clip(self.need / RAMP, 0, 1)
-        twice = np.clip((self.need - 1) / RAMP, 0, 1)
+    def geomorph(self, edges: npt.NDArray[np.int32]) -> plain_twin.GeomorphWeights:
+        """What blending makes of the metrics, for the plain twin."""
+        once = np.clip(self.metric / RAMP, 0, 1)
+        twice = np.clip((self.metric - 1) / RAMP, 0, 1)
         names = [plain_twin.edge_name(int(a), int(b)) for a, b in edges]
         return {n: (float(p), float(q)) for n, p, q in zip(names, once, twice, strict=True)}
 

@@ -15,7 +15,7 @@ from typing import TypeVar
 from tests.refine.plain_schemes import CurveRules, Face, cross, cubic, dot
 from tests.refine.plain_twin import (
     EdgeName,
-    Growth,
+    GeomorphWeights,
     Name,
     Placed,
     Vector,
@@ -66,8 +66,8 @@ class Form:
         for a, b in ring(corners):
             chord = mix((1, points[b]), (-1, points[a]))
             turn_a, turn_b = dot(chord, normals[a]), dot(chord, normals[b])
-            bulge = mix((turn_a, normals[a]), (-turn_b, normals[b]))
-            bends.append(dot(bulge, bulge) + 0.02 * dot(chord, chord))
+            displacement = mix((turn_a, normals[a]), (-turn_b, normals[b]))
+            bends.append(dot(displacement, displacement) + 0.02 * dot(chord, chord))
         total = sum(bends)
         return [0.4 / 3 + 0.6 * (bends[i] + bends[i - 1]) / (2 * total) for i in range(3)]
 
@@ -76,8 +76,8 @@ class Form:
         points = self.cubic.positions
         place = mix(*((share, points[v]) for v, share in zip(face, shares, strict=True)))
         for (a, b), (s, t) in zip(ring(face), ring(shares), strict=True):
-            bulge = mix((1, middles[edge_name(a, b)]), (-0.5, points[a]), (-0.5, points[b]))
-            place = mix((1, place), (4 * s * t, bulge))
+            displacement = mix((1, middles[edge_name(a, b)]), (-0.5, points[a]), (-0.5, points[b]))
+            place = mix((1, place), (4 * s * t, displacement))
         return place
 
     def axes(self, name: Name) -> Axes:
@@ -133,7 +133,7 @@ class DetailRules:
         now = self.now.cubic.curve(edge, quarters)
         return mix((1, now), (1, carried(missing, *self._frames(name))))
 
-    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+    def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """Points on these curves."""
         self.twice = {
             edge: twice if count[edge] == 2 else 0.0 for edge, (_, twice) in grown.items()

@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from tests.refine.plain_schemes import Face, cross, dot
 from tests.refine.plain_twin import (
     EdgeName,
-    Growth,
+    GeomorphWeights,
     Placed,
     Rules,
     Surroundings,
@@ -40,7 +40,7 @@ class RefinedNormals:
         self.fans: dict[int, list[Vector]] = {}
         """Corners and middles of each triangle in turn, by its number."""
 
-    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+    def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """Points as the scheme has them, and normals that go from the mean to the surface's."""
         edges = sorted(self.around.opposite)
         whole = self.rules.placed(

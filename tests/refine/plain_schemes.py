@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from tests.refine.plain_twin import (
     AtPoints,
     EdgeName,
-    Growth,
+    GeomorphWeights,
     Placed,
     Surroundings,
     Vector,
@@ -49,7 +49,7 @@ class CurveRules:
     curve: Curve
     normals: list[Vector]
 
-    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+    def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """Points on the curves; normals between those at both ends."""
         points: AtPoints = {}
         normals: AtPoints = {}

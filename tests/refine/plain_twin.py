@@ -131,7 +131,7 @@ def first_level_point(edge: EdgeName, positions: list[Vector], around: Surroundi
     return mix((3 / 8, a), (3 / 8, b), (1 / 8, c), (1 / 8, d))
 
 
-Growth = dict[EdgeName, tuple[float, float]]
+GeomorphWeights = dict[EdgeName, tuple[float, float]]
 AtPoints = dict[EdgeName, dict[int, Vector]]
 
 
@@ -148,7 +148,7 @@ class Placed:
 class Rules(Protocol):
     """A smoothing scheme, in plain words."""
 
-    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+    def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """All points and normals, for these splits."""
 
     def centre(
@@ -163,7 +163,7 @@ class PaperRules:
     def __init__(self, positions: list[Vector], faces: list[tuple[int, int, int]]) -> None:
         self.positions, self.faces = positions, faces
 
-    def placed(self, count: Counter[EdgeName], grown: Growth) -> Placed:
+    def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """Section 4.2."""
         normals, at_points = vertex_normals(self.positions, self.faces), {}
         for a, b in grown:
@@ -185,16 +185,16 @@ def refine(
     faces: list[tuple[int, int, int]],
     splits: dict[EdgeName, int],
     *,
-    growth: Growth | None = None,
+    geomorph: GeomorphWeights | None = None,
     rules: Rules | None = None,
 ) -> Twin:
     """Split each edge as often as `splits` says, 0 where it says nothing.
 
-    `growth`: how far the points of an edge have grown on both levels, for blending, which also
+    `geomorph`: how far the points of an edge have grown on both levels, for blending, which also
     makes fans of the triangles; `rules`: the scheme, by default the paper's.
     """
     twin, count = Twin(), Counter(splits)
-    grown = {e: (1.0, 1.0) if growth is None else growth[e] for e in count if count[e]}
+    grown = {e: (1.0, 1.0) if geomorph is None else geomorph[e] for e in count if count[e]}
     rules = rules or PaperRules(positions, faces)
     place = rules.placed(count, grown)
     for v in range(len(positions)):
@@ -205,7 +205,7 @@ def refine(
             twin.normals["edge", a, b, quarters] = place.point_normals[a, b][quarters]
     for source, face in enumerate(faces):
         edges = [edge_name(face[i], face[(i + 1) % 3]) for i in range(3)]
-        if growth is not None and is_proper(face) and sum(count[e] for e in edges) > 1:
+        if geomorph is not None and is_proper(face) and sum(count[e] for e in edges) > 1:
             fan, centre = _fan(twin, face, count, grown)
             least = (
                 min(grown.get(e, (0.0, 0.0))[0] for e in edges),
@@ -221,9 +221,9 @@ def refine(
 
 def _smoothed(
     positions: list[Vector], faces: list[tuple[int, int, int]], count: Counter[EdgeName],
-    grown: Growth,
+    grown: GeomorphWeights,
 ) -> tuple[list[Vector], AtPoints]:  # fmt: skip
-    """The paper's rules, with growth."""
+    """The paper's rules, with geomorph weights."""
     around = Surroundings(faces)
     moved = []
     for v, position in enumerate(positions):
@@ -266,7 +266,7 @@ def _smoothed(
 
 
 def _fan(
-    twin: Twin, face: tuple[int, int, int], count: Counter[EdgeName], grown: Growth
+    twin: Twin, face: tuple[int, int, int], count: Counter[EdgeName], grown: GeomorphWeights
 ) -> tuple[list[tuple[Name, Name, Name]], Name]:
     """Subtriangles around the middle of a triangle, and that point, which is added to the twin."""
     outline: list[Name] = []
@@ -296,7 +296,7 @@ def _fan(
 
 
 def centre_weights(grown: list[float]) -> tuple[list[float], list[float]]:
-    """Weights of corners, and of how far edges bulge, in the middle of a triangle.
+    """Weights of corners, and of how far edges displacement, in the middle of a triangle.
 
     `grown`: of the edges from corner 0 to 1, 1 to 2, 2 to 0. A mean of four rules.
     """

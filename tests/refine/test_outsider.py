@@ -29,7 +29,7 @@ MESHES = st.one_of(
         lambda m: (m.vertices, m.faces)
     ),
 )
-CRITERIA = ("normal", "curvature", "rest", "silhouette", "screen", "bulge", "normal+rest")
+CRITERIA = ("normal", "curvature", "rest", "silhouette", "screen", "displacement", "normal+rest")
 INDEX_TYPES = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4")
 
 
@@ -41,7 +41,7 @@ def options(draw: st.DrawFn) -> dict[str, Any]:
     return {
         "scheme": scheme,
         "criterion": draw(
-            st.sampled_from([c for c in CRITERIA if scheme != "loop" or c != "bulge"])
+            st.sampled_from([c for c in CRITERIA if scheme != "loop" or c != "displacement"])
         ),
         "blend": blend,
         "coherent": blend is not True and draw(st.booleans()),

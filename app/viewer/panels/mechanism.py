@@ -41,8 +41,8 @@ HINTS = {
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
     "criterion": "by what it is decided which edges split; normal: where the face moves (the "
-    "paper's), rest: where it is round at rest, so that outlines are, bulge: where the scheme "
-    "moves edges, border: where a mouth opens",
+    "paper's), rest: where it is round at rest, so that outlines are, displacement: where the "
+    "scheme moves edges, border: where a mouth opens",
     "scheme": "where the new points go",
     "normals": "what light sees; linear: those of the simulated mesh, in between (the paper's), "
     "refined: those of the refined surface",

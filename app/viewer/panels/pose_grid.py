@@ -81,7 +81,7 @@ class PoseLibrary:
     def _capture(self) -> Capture:
         """The same head once more, which is posed where nobody sees it."""
         assert isinstance(self.scene, FaceScene)
-        return Capture(self.scene.twin(), CaptureOptions(size=SIZE, camera=VIEW))
+        return Capture(self.scene.clone(), CaptureOptions(size=SIZE, camera=VIEW))
 
     def picture(self, values: Values) -> Image:
         """The face as it comes to rest in a pose, shape (H, W, 3).

@@ -13,7 +13,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 LOOKS = {
-    "SMOOTH": {"scheme": "cubic", "criterion": "bulge+rest"},
+    "SMOOTH": {"scheme": "cubic", "criterion": "displacement+rest"},
     "PAPER": {"scheme": "loop", "criterion": "normal", "normals": "linear"},
 }
 _bound: dict[int, "Bound"] = {}  # of each refined copy, by its number in this session

@@ -16,7 +16,7 @@ from risorius.bench.subjects import PosePair, Subject
 
 Points = npt.NDArray[np.float64]
 
-BLENDED = "bulge, blended"
+BLENDED = "displacement, blended"
 
 
 def bent(points: Points, angle: float) -> Points:
@@ -62,7 +62,7 @@ def test_scores_of_a_cylinder() -> None:
     assert pn.distance < 0.5 * static.distance
     assert average["uniform Loop", "", 16.0].triangles == 16 * 72
     assert static.jump == pytest.approx(1.0, abs=1e-4)
-    assert average["cubic", "bulge", 2.0].jump > 2.0 * average["cubic", BLENDED, 2.0].jump
+    assert average["cubic", "displacement", 2.0].jump > 2.0 * average["cubic", BLENDED, 2.0].jump
 
     printed = text(subject, scores)
     for part in ("plane: 72 tri", f"{static.distance:.3f}", "cubic curvature 2x"):
@@ -166,14 +166,14 @@ def test_gains_on_the_built_in_head() -> None:
                 assert getattr(score, what) < static[score.expression], score
     average = quality.means(scores)
     before = average[STATIC_KEY]
-    assert average["cubic", "bulge", 1.6].distance < 0.9 * before.distance
+    assert average["cubic", "displacement", 1.6].distance < 0.9 * before.distance
     assert average["cubic", "", methods.EVERYWHERE].distance < 0.65 * before.distance
-    assert average["detail", "bulge", 2.0].distance < 0.6 * before.distance
+    assert average["detail", "displacement", 2.0].distance < 0.6 * before.distance
     assert average["detail", BLENDED, 2.0].distance < 0.6 * before.distance
     assert average["detail", BLENDED, 2.0].picture < 0.65 * before.picture
     assert average["detail", BLENDED, 2.0].jump < 1.2
     assert average["detail", "", methods.EVERYWHERE].distance < 0.25 * before.distance
-    assert average["detail", "bulge", 2.0].angle < 0.7 * before.angle
+    assert average["detail", "displacement", 2.0].angle < 0.7 * before.angle
 
 
 @pytest.mark.parametrize("missing", ["folder", "array", "motion"])

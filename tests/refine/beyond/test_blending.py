@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from risorius import refine
 from risorius.geometry.normals import vertex_normals
 from tests import meshes
-from tests.refine.cases import Forced, Needed, surface_at
+from tests.refine.cases import Forced, GivenMetric, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
 QUICK_SCHEMES = [
@@ -104,7 +104,7 @@ def test_nothing_pops_at_seams_and_tips(name: str, scheme: str) -> None:
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[::2])
-@pytest.mark.parametrize("criterion", ["curvature", "bulge", "normal+rest"])
+@pytest.mark.parametrize("criterion", ["curvature", "displacement", "normal+rest"])
 def test_nothing_pops_by_other_criteria(criterion: object, scheme: str) -> None:
     """The same for the other criteria and their maximum."""
     assert jumps(scheme, True, criterion)[0] < BOUND
@@ -200,9 +200,9 @@ def test_outlines_do_not_pop(name: str, scheme: str) -> None:
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 def test_any_change_of_needs_is_followed(scheme: str) -> None:
-    """Whatever three edges need, and which of them appears: no jump in the triangle between them.
+    """Whatever three edges metric, and which of them appears: no jump in the triangle between them.
 
-    Largest seen: 0.8 of the change of the needs. A diagonal that turns would be 0.1 at once.
+    Largest seen: 0.8 of the change of the metrics. A diagonal that turns would be 0.1 at once.
     """
     vertices = [[0, 0, 0], [1, 0, 0], [0.3, 0.9, 0], [1.2, 1, -0.6], [-0.6, 0.5, -0.6]]
     positions = np.array([*vertices, [0.4, -0.9, -0.6]])
@@ -212,10 +212,10 @@ def test_any_change_of_needs_is_followed(scheme: str) -> None:
     inner = [numbers[frozenset(edge)] for edge in ((0, 1), (1, 2), (0, 2))]
     places = np.random.default_rng(1).dirichlet([1, 1, 1], 20)
 
-    def surface(needs: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        need = np.full(len(edges), -1.0)
-        need[inner] = needs
-        criterion = Needed(need)
+    def surface(metrics: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        metric = np.full(len(edges), -1.0)
+        metric[inner] = metrics
+        criterion = GivenMetric(metric)
         refiner = refine.create(
             "kahler", faces, positions, scheme=scheme, blend=True, criterion=criterion
         )
@@ -225,10 +225,10 @@ def test_any_change_of_needs_is_followed(scheme: str) -> None:
 
     generator, step = np.random.default_rng(0), 1e-4
     for _ in range(300):
-        needs = generator.uniform(-0.2, 1.5, 3)
-        needs[generator.integers(3)] = generator.choice([0.0, 0.25, 1.0, 1.25, needs[0]])
+        metrics = generator.uniform(-0.2, 1.5, 3)
+        metrics[generator.integers(3)] = generator.choice([0.0, 0.25, 1.0, 1.25, metrics[0]])
         change = generator.uniform(-step, step, 3)
-        assert np.abs(surface(needs + change) - surface(needs)).max() < 2.0 * step
+        assert np.abs(surface(metrics + change) - surface(metrics)).max() < 2.0 * step
 
 
 def test_folds_have_no_scales() -> None:
@@ -240,7 +240,7 @@ def test_folds_have_no_scales() -> None:
     angle, along = 0.5 * grid.vertices[:, 0], grid.vertices[:, 1]
     rolled = np.stack([2.0 * np.sin(angle), along, 2.0 * np.cos(angle)], axis=1)
     refiner = refine.create(
-        "kahler", grid.faces, grid.vertices, scheme="cubic", criterion=Needed(_across(grid))
+        "kahler", grid.faces, grid.vertices, scheme="cubic", criterion=GivenMetric(_across(grid))
     )
     refined = refiner.refine(rolled)
     corners = refined.positions[refined.triangles].astype(np.float64)
@@ -265,17 +265,17 @@ def test_without_blending_it_pops() -> None:
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_begins_at_the_unrefined_surface(scheme: str) -> None:
-    """Edges of hardly any need give the surface of the mesh itself; grown ones the full scheme."""
+    """Edges with metrics near 0 give the surface of the mesh itself; grown ones the full scheme."""
     mesh = meshes.irregular(7, 5, 4, 0)
     deformed = meshes.wrinkled(mesh, 8)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     detail = {"detail": (mesh.vertices + 0.02, mesh.faces)} if scheme == "detail" else {}
     places = np.random.default_rng(9).dirichlet([1, 1, 1], 8)
 
-    def surface(need: float) -> npt.NDArray[np.float64]:
+    def surface(metric: float) -> npt.NDArray[np.float64]:
         refiner = refine.create(
             "kahler", mesh.faces, mesh.vertices, scheme=scheme, blend=True,
-            criterion=Needed(np.full(edge_count, need)), **detail,
+            criterion=GivenMetric(np.full(edge_count, metric)), **detail,
         )  # fmt: skip
         return surface_at(refiner, refiner.refine(deformed), mesh.faces, places)[..., :3]
 

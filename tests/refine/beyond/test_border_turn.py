@@ -35,12 +35,12 @@ def needs_of(mesh: meshes.Mesh, *poses: np.ndarray) -> list[np.ndarray]:
     none = refine.create("none", mesh.faces, mesh.vertices)
     criterion = refine.BorderTurn()
     criterion.bind(connectivity, mesh.vertices, none.refine(mesh.vertices).normals.copy())
-    needs = []
+    metrics = []
     for pose in poses:
-        need = np.zeros(len(connectivity.edges), dtype=np.float32)
-        criterion.measure(pose, none.refine(pose).normals.copy(), need)
-        needs.append(need)
-    return needs
+        metric = np.zeros(len(connectivity.edges), dtype=np.float32)
+        criterion.measure(pose, none.refine(pose).normals.copy(), metric)
+        metrics.append(metric)
+    return metrics
 
 
 @settings(max_examples=60, deadline=None)
@@ -115,7 +115,7 @@ def test_needs_are_continuous(seed: int, amplitude: float) -> None:
         assert np.abs(after - before).max() <= 200.0 * step + 1e-3
 
 
-def plain_needs(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
+def plain_metric(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
                 rest_normals: np.ndarray) -> dict[tuple[int, int], float]:  # fmt: skip
     """The criterion once more, by dictionaries, from the text of its file."""
     around = Surroundings([tuple(int(v) for v in face) for face in mesh.faces])
@@ -149,15 +149,15 @@ def plain_needs(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
         added = {v: (5 - k) / (6 - k) * float(np.mean([turns[w] for w in from_]))
                  for v, from_ in nearer.items() if from_}  # fmt: skip
         turns |= added
-    needs = {}
+    metrics = {}
     for a, b in around.opposite:
         e = unit(a, b, mesh.vertices)
         none = np.zeros((3, 3))
         along = e @ (squares.get(a, none) + squares.get(b, none)) @ e / 2
         share = along if (a, b) in around.inner else 1.0
         measure = share * (turns.get(a, 0.0) + turns.get(b, 0.0)) / 2
-        needs[a, b] = (measure - 0.03) / 0.09
-    return needs
+        metrics[a, b] = (measure - 0.03) / 0.09
+    return metrics
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -168,12 +168,12 @@ def test_equals_plain_twin(seed: int) -> None:
     none = refine.create("none", mesh.faces, mesh.vertices)
     rest_normals = none.refine(mesh.vertices).normals.copy()
     normals = none.refine(pose).normals.copy()
-    (need,) = needs_of(mesh, pose)
-    plain = plain_needs(mesh, normals.astype(float), pose, rest_normals.astype(float))
+    (metric,) = needs_of(mesh, pose)
+    plain = plain_metric(mesh, normals.astype(float), pose, rest_normals.astype(float))
     edges = refine.connect(mesh.faces, len(mesh.vertices)).edges
     expected = np.array([plain[min(a, b), max(a, b)] for a, b in edges.tolist()])
-    np.testing.assert_allclose(need, expected, atol=2e-4)
-    assert 0.1 < (need > 0).mean() < 0.95
+    np.testing.assert_allclose(metric, expected, atol=2e-4)
+    assert 0.1 < (metric > 0).mean() < 0.95
 
 
 def outline(

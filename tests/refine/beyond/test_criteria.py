@@ -11,7 +11,7 @@ from risorius import refine
 from risorius.refine import RestCurvature
 from risorius.refine.kahler.criterion import Thresholds
 from tests import meshes
-from tests.refine.cases import Forced, Needed
+from tests.refine.cases import Forced, GivenMetric
 
 
 def splits_of(
@@ -159,20 +159,24 @@ def test_maximum() -> None:
 
 
 def test_maximum_of_needs() -> None:
-    """Blending takes the largest need; one part that only counts splits cannot be blended."""
+    """Blending takes the largest metric; one part that only counts splits cannot be blended."""
     mesh = meshes.octahedron()
     one, other = np.full(12, 0.2), np.linspace(-1.0, 0.4, 12)
-    pair = [Needed(one), Needed(other)]
+    pair = [GivenMetric(one), GivenMetric(other)]
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, blend=True, criterion=pair)
     expected = refine.create(
-        "kahler", mesh.faces, mesh.vertices, blend=True, criterion=Needed(np.maximum(one, other))
+        "kahler",
+        mesh.faces,
+        mesh.vertices,
+        blend=True,
+        criterion=GivenMetric(np.maximum(one, other)),
     )
     frames = [r.refine(mesh.vertices).positions.tobytes() for r in (refiner, expected)]
     assert frames[0] == frames[1]
     with pytest.raises(ValueError, match="blend=True needs a criterion that measures"):
         refine.create(
             "kahler", mesh.faces, mesh.vertices, blend=True,
-            criterion=[Needed(one), Forced(np.zeros(12))],
+            criterion=[GivenMetric(one), Forced(np.zeros(12))],
         )  # fmt: skip
 
 
@@ -262,16 +266,16 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
     criterion = kind(once, twice if level == "both" else np.inf)
     criterion.bind(connectivity, mesh.vertices, at_rest)
     criterion.set_view(refine.View(EYE, 500.0))
-    need = np.zeros(len(edges), dtype=np.float32)
-    criterion.measure(deformed, now, need)
+    metric = np.zeros(len(edges), dtype=np.float32)
+    criterion.measure(deformed, now, metric)
     wanted = np.minimum((expected - once) / width, np.inf if level == "both" else 1.0)
-    np.testing.assert_allclose(need, wanted, rtol=1e-4, atol=1e-3)
-    assert 0.05 < (need > 0).mean() < 0.95
+    np.testing.assert_allclose(metric, wanted, rtol=1e-4, atol=1e-3)
+    assert 0.05 < (metric > 0).mean() < 0.95
     splits = np.zeros(len(edges), dtype=np.uint8)
     criterion.mark(deformed, now, splits)
-    clear = (abs(need) > 1e-3) & ((abs(need - 1) > 1e-3) | (level == "first only"))
+    clear = (abs(metric) > 1e-3) & ((abs(metric - 1) > 1e-3) | (level == "first only"))
     assert clear.sum() > 0.5 * len(edges)
-    count = (need > 0).astype(int) + (need > 1)
+    count = (metric > 0).astype(int) + (metric > 1)
     np.testing.assert_array_equal(splits[clear], count[clear])
 
 
@@ -324,7 +328,7 @@ def test_bulge(scheme: str) -> None:
     once, twice = np.quantile(heights, [0.4, 0.8])
     refiner = refine.create(
         "kahler", mesh.faces, mesh.vertices, scheme=scheme,
-        criterion=[refine.Bulge(once / unit, twice / unit, turning=0.0)], **detail,
+        criterion=[refine.Displacement(once / unit, twice / unit, turning=0.0)], **detail,
     )  # fmt: skip
     refine.check(refiner, refiner.refine(deformed), deformed)
     expected = (heights > once).astype(int) + (heights > twice)
@@ -336,9 +340,13 @@ def test_bulge_needs_measures() -> None:
     """The paper's scheme does not tell how far it moves edges; its refined normals know."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme tells with normals="refined" only'):
-        refine.create("kahler", mesh.faces, mesh.vertices, criterion="bulge")
+        refine.create("kahler", mesh.faces, mesh.vertices, criterion="displacement")
     refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, criterion=refine.Bulge(0.05, 0.5), normals="refined"
+        "kahler",
+        mesh.faces,
+        mesh.vertices,
+        criterion=refine.Displacement(0.05, 0.5),
+        normals="refined",
     )
     refiner.refine(mesh.vertices)
     assert (refiner.splits > 0).all()

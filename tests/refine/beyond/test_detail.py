@@ -14,7 +14,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from tests import meshes
 from tests.refine import plain_twin
-from tests.refine.cases import Needed, as_lists, assert_equals_twin, point_names
+from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, point_names
 from tests.refine.plain_detail import DetailRules, Seen
 from tests.refine.plain_normals import RefinedNormals
 
@@ -48,7 +48,7 @@ def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.Ref
         options["detail"] = (FINE.vertices, FINE.faces)
     refiner = refine.create(
         "kahler", COARSE.faces, COARSE.vertices, scheme=scheme,
-        criterion=Needed(np.full(edge_count, 9.0)), **options,
+        criterion=GivenMetric(np.full(edge_count, 9.0)), **options,
     )  # fmt: skip
     mesh = refiner.refine(positions)
     refine.check(refiner, mesh, positions)
@@ -94,7 +94,7 @@ def test_no_stars_in_folds() -> None:
     for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat.vertices, flat.faces)})):
         refiner = refine.create(
             "kahler", flat.faces, flat.vertices, scheme=scheme,
-            criterion=Needed(np.full(edge_count, 9.0)), **detail,
+            criterion=GivenMetric(np.full(edge_count, 9.0)), **detail,
         )  # fmt: skip
         mesh = refiner.refine(folded)
         is_middle = refiner.origins().weights.max(axis=1) < 0.4
@@ -125,7 +125,7 @@ def test_no_teeth_along_folds() -> None:
     for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat, grid.faces)})):
         refiner = refine.create(
             "kahler", grid.faces, flat, scheme=scheme,
-            criterion=Needed(np.full(edge_count, 9.0)), **detail,
+            criterion=GivenMetric(np.full(edge_count, 9.0)), **detail,
         )  # fmt: skip
         mesh = refiner.refine(folded)
         places, normals = (
@@ -162,37 +162,38 @@ def test_turns_with_the_mesh(seed: int) -> None:
     blend=st.booleans(),
 )
 def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bool) -> None:
-    """What is seen at rest moves as the plain twin says, for any splits and any growth."""
+    """What is seen at rest moves as the plain twin says, for any splits and geomorph weights."""
     generator = np.random.default_rng(seed)
     lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
 
-    def refiner_of(need: np.ndarray, blend: bool) -> refine.Refiner:
+    def refiner_of(metric: np.ndarray, blend: bool) -> refine.Refiner:
         return refine.create(
             "kahler", mesh.faces, mesh.vertices, scheme="detail", blend=blend,
-            detail=(mesh.vertices + lift, mesh.faces), criterion=Needed(need), normals=normals,
+            detail=(mesh.vertices + lift, mesh.faces), criterion=GivenMetric(metric),
+            normals=normals,
         )  # fmt: skip
 
-    def seen_with(need: float) -> Seen:
-        everything = refiner_of(np.full(edge_count, need), True)
+    def seen_with(metric: float) -> Seen:
+        everything = refiner_of(np.full(edge_count, metric), True)
         still = everything.refine(mesh.vertices)
         points = still.positions.astype(float).tolist()
         names = point_names(everything.origins())
         return {name: (x, y, z) for name, (x, y, z) in zip(names, points, strict=True)}
 
     seen = seen_with(0.9), seen_with(2.0)
-    need = generator.uniform(-0.7, 2.0, edge_count)
+    metric = generator.uniform(-0.7, 2.0, edge_count)
     deformed = meshes.wrinkled(mesh, seed, 0.1)
-    refiner = refiner_of(need, blend)
+    refiner = refiner_of(metric, blend)
     refined = refiner.refine(deformed)
     refine.check(refiner, refined, deformed)
 
     rest, faces = as_lists(mesh.vertices, mesh.faces)
     points, _ = as_lists(deformed, mesh.faces)
-    needed = Needed(need)
+    needed = GivenMetric(metric)
     splits = {
         plain_twin.edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
-        for (a, b), n in zip(refiner.edges, needed.need, strict=True)
+        for (a, b), n in zip(refiner.edges, needed.metric, strict=True)
     }
     rules: plain_twin.Rules = DetailRules(rest, points, faces, seen)
     if normals == "refined":
@@ -201,7 +202,7 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bo
         points,
         faces,
         splits,
-        growth=needed.growth(refiner.edges) if blend else None,
+        geomorph=needed.geomorph(refiner.edges) if blend else None,
         rules=rules,
     )
     # Short edges make long levers: directions are single precision, twice over.

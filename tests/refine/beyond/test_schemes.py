@@ -11,7 +11,7 @@ from risorius import refine
 from risorius.refine.kahler.frame import ONCE
 from tests import meshes
 from tests.refine import plain_schemes
-from tests.refine.cases import Needed, as_lists, assert_equals_twin, soups
+from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, soups
 from tests.refine.plain_normals import RefinedNormals
 from tests.refine.plain_twin import PaperRules, Rules, Twin, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
@@ -26,9 +26,9 @@ MESHES = {**meshes.NAMED, **VALENCES, "irregular": lambda: meshes.irregular(3, 6
 
 
 def bound(
-    mesh: meshes.Mesh, scheme: str, blend: bool, need: np.ndarray, **options: object
+    mesh: meshes.Mesh, scheme: str, blend: bool, metric: np.ndarray, **options: object
 ) -> refine.Refiner:
-    """A refiner whose edges have the given needs; the finer mesh of `detail` is the mesh itself."""
+    """A refiner whose edges have given metrics; the finer mesh of `detail` is the mesh itself."""
     if scheme == "detail":
         options["detail"] = (mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
     return refine.create(
@@ -39,13 +39,13 @@ def bound(
         face_uv=mesh.face_uv,
         scheme=scheme,
         blend=blend,
-        criterion=Needed(need),
+        criterion=GivenMetric(metric),
         **options,
     )
 
 
 def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, normals: str, blend: bool,
-            needed: Needed, edges: np.ndarray) -> Twin:  # fmt: skip
+            needed: GivenMetric, edges: np.ndarray) -> Twin:  # fmt: skip
     """The same frame by the plain implementations."""
     points, faces = as_lists(deformed, mesh.faces)
     rest, _ = as_lists(mesh.vertices, mesh.faces)
@@ -54,12 +54,12 @@ def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, normals: str, 
         rules = plain_schemes.cubic(rest, points, faces)
     if normals == "refined":
         rules = RefinedNormals(rules, faces)
-    growth = needed.growth(edges)
+    geomorph = needed.geomorph(edges)
     splits = {
         edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
-        for (a, b), n in zip(edges, needed.need, strict=True)
+        for (a, b), n in zip(edges, needed.metric, strict=True)
     }
-    return refine_plainly(points, faces, splits, growth=growth if blend else None, rules=rules)
+    return refine_plainly(points, faces, splits, geomorph=geomorph if blend else None, rules=rules)
 
 
 def random_needs(mesh: meshes.Mesh, seed: int) -> np.ndarray:
@@ -76,9 +76,9 @@ def test_equals_plain_twin(normals: str, scheme: str, blend: bool, name: str) ->
     """Points, normals and triangles are those of the plain twin, on meshes of every kind."""
     mesh = MESHES[name]()
     for seed in range(2):
-        needed = Needed(random_needs(mesh, seed))
+        needed = GivenMetric(random_needs(mesh, seed))
         deformed = meshes.wrinkled(mesh, seed, 0.2)
-        refiner = bound(mesh, scheme, blend, needed.need, normals=normals)
+        refiner = bound(mesh, scheme, blend, needed.metric, normals=normals)
         refined = refiner.refine(deformed)
         refine.check(refiner, refined, deformed)
         twin = twin_of(mesh, deformed, scheme, normals, blend, needed, refiner.edges)
@@ -106,15 +106,15 @@ def test_soups(
     blend: bool,
     seams: bool,
 ) -> None:
-    """Any triangles with any needs come out proper from every scheme, with seams and without."""
+    """Any triangles with any metrics come out proper from every scheme, with seams and without."""
     positions, faces = soup
     edge_count = len(refine.connect(faces, len(positions)).edges)
-    need = data.draw(st.lists(st.floats(-1, 3), min_size=edge_count, max_size=edge_count))
+    metric = data.draw(st.lists(st.floats(-1, 3), min_size=edge_count, max_size=edge_count))
     uv = np.random.default_rng(1).random((3, 2)) if seams else None
     face_uv = np.random.default_rng(2).integers(3, size=faces.shape) if seams else None
     mesh = meshes.Mesh(positions, faces, uv, face_uv)
     deformed = meshes.wrinkled(mesh, 3, 0.1)
-    refiner = bound(mesh, scheme, blend, np.array(need), normals=normals)
+    refiner = bound(mesh, scheme, blend, np.array(metric), normals=normals)
     refine.check(refiner, refiner.refine(deformed), deformed)
 
 
@@ -133,13 +133,13 @@ def test_soups_equal_twin(
     normals: str,
     blend: bool,
 ) -> None:
-    """Any triangles with any needs: the fast kernels do what the plain twin does."""
+    """Any triangles with any metrics: the fast kernels do what the plain twin does."""
     positions, faces = soup
     edge_count = len(refine.connect(faces, len(positions)).edges)
     strategy = st.floats(-1, 3, width=32)
-    needed = Needed(data.draw(st.lists(strategy, min_size=edge_count, max_size=edge_count)))
+    needed = GivenMetric(data.draw(st.lists(strategy, min_size=edge_count, max_size=edge_count)))
     mesh = meshes.Mesh(positions, faces)
-    refiner = bound(mesh, scheme, blend, needed.need, normals=normals)
+    refiner = bound(mesh, scheme, blend, needed.metric, normals=normals)
     refined = refiner.refine(positions)
     corners = [tuple(sorted(face)) for face in faces.tolist()]
     if len(set(corners)) == len(corners) and _has_normals(refined):
@@ -242,6 +242,6 @@ def test_scheme_of_somebody_else() -> None:
         mesh.faces,
         mesh.vertices,
         scheme=Straight(),
-        criterion=Needed(np.ones(len(refine.connect(mesh.faces, len(mesh.vertices)).edges))),
+        criterion=GivenMetric(np.ones(len(refine.connect(mesh.faces, len(mesh.vertices)).edges))),
     )
     refine.check(refiner, refiner.refine(mesh.vertices), mesh.vertices)

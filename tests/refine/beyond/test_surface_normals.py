@@ -17,7 +17,7 @@ from scipy.spatial import KDTree
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Needed, surface_at
+from tests.refine.cases import GivenMetric, surface_at
 
 ROOT = Path(__file__).resolve().parents[3]
 SCHEMES = ("loop", "cubic", "detail")
@@ -38,11 +38,13 @@ def bound(
     )  # fmt: skip
 
 
-def needs(mesh: meshes.Mesh, seed: int | None = None, need: float = 0.0) -> npt.NDArray[np.float64]:
-    """Needs of all edges: the same, or random ones of no, one and two splits."""
+def metrics(
+    mesh: meshes.Mesh, seed: int | None = None, metric: float = 0.0
+) -> npt.NDArray[np.float64]:
+    """Metrics of all edges: the same, or random ones of no, one and two splits."""
     count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     if seed is None:
-        return np.full(count, need)
+        return np.full(count, metric)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
 
 
@@ -59,13 +61,13 @@ def test_does_not_depend_on_what_is_split(scheme: str) -> None:
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4, 0.2)
     count = len(mesh.vertices)
-    whole = bound(mesh, scheme, Needed(needs(mesh, need=0.9)))
+    whole = bound(mesh, scheme, GivenMetric(metrics(mesh, metric=0.9)))
     still = whole.refine(deformed)
     vertices, middles = still.normals[:count].copy(), {}
     for edge, normal in zip(whole.edges.tolist(), still.normals[count:], strict=False):
         middles[tuple(edge)] = normal.copy()
-    for criterion in ("bulge", "normal", "rest", 0, 1, 2):
-        decides = Needed(needs(mesh, criterion)) if isinstance(criterion, int) else criterion
+    for criterion in ("displacement", "normal", "rest", 0, 1, 2):
+        decides = GivenMetric(metrics(mesh, criterion)) if isinstance(criterion, int) else criterion
         blend = isinstance(criterion, str)
         refiner = bound(mesh, scheme, decides, blend=blend)
         refined = refiner.refine(deformed)
@@ -100,8 +102,8 @@ def test_normals_do_not_pop(scheme: str) -> None:
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
 
     def most(blend: bool) -> float:
-        refiner = bound(mesh, scheme, [refine.Bulge(0.02, 0.08)], blend=blend)
-        own = bound(mesh, scheme, Needed(needs(mesh, need=0.9)))
+        refiner = bound(mesh, scheme, [refine.Displacement(0.02, 0.08)], blend=blend)
+        own = bound(mesh, scheme, GivenMetric(metrics(mesh, metric=0.9)))
         before, largest, seen = None, 0.0, set()
         for step in range(STEPS):
             positions = smooth_wave(mesh, 0.6 * step / STEPS)
@@ -126,7 +128,7 @@ def test_normals_do_not_pop(scheme: str) -> None:
     edge=st.integers(0, 1000),
     at=st.sampled_from([0.0, 0.25, 1.0, 1.25]),
 )
-def test_growth_has_no_steps(seed: int, scheme: str, edge: int, at: float) -> None:
+def test_geomorph_has_no_steps(seed: int, scheme: str, edge: int, at: float) -> None:
     """Whatever is split around it, an edge that passes a threshold turns no shading at once.
 
     What is left is that normals between more points are interpolated otherwise: 3 degrees where
@@ -135,11 +137,11 @@ def test_growth_has_no_steps(seed: int, scheme: str, edge: int, at: float) -> No
     mesh = meshes.open_grid(5, 4)
     positions = smooth_wave(mesh, 0.4)
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
-    need = needs(mesh, seed)
+    metric = metrics(mesh, seed)
 
     def shading(value: float) -> Points:
-        need[edge % len(need)] = value
-        refiner = bound(mesh, scheme, Needed(need))
+        metric[edge % len(metric)] = value
+        refiner = bound(mesh, scheme, GivenMetric(metric))
         return surface_at(refiner, refiner.refine(positions), mesh.faces, places)[..., 3:]
 
     assert turns(shading(at - 1e-4), shading(at + 1e-4)).max() < 0.05
@@ -179,9 +181,9 @@ def exact(name: str, points: Points) -> Points:
     return normals
 
 
-@pytest.mark.parametrize("need", [0.9, 2.0])
+@pytest.mark.parametrize("metric", [0.9, 2.0])
 @pytest.mark.parametrize("name", ["sphere", "ellipsoid", "torus"])
-def test_nearer_to_the_exact_normals(name: str, need: float) -> None:
+def test_nearer_to_the_exact_normals(name: str, metric: float) -> None:
     """On bodies whose normals are known, refined ones are nearer to them than linear ones."""
     mesh = torus() if name == "torus" else ball()
     if name == "ellipsoid":
@@ -189,7 +191,7 @@ def test_nearer_to_the_exact_normals(name: str, need: float) -> None:
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 40)
     off = {}
     for normals in ("linear", "refined"):
-        refiner = bound(mesh, "cubic", Needed(needs(mesh, need=need)), normals)
+        refiner = bound(mesh, "cubic", GivenMetric(metrics(mesh, metric=metric)), normals)
         seen = surface_at(refiner, refiner.refine(mesh.vertices), mesh.faces, places)
         off[normals] = turns(seen[..., 3:], exact(name, seen[..., :3])).mean()
     assert off["refined"] < 0.75 * off["linear"]
@@ -226,7 +228,7 @@ def test_points_stay(scheme: str) -> None:
     deformed = meshes.wrinkled(mesh, 6)
     frames = []
     for normals in ("linear", "refined"):
-        refiner = bound(mesh, scheme, Needed(needs(mesh, 7)), normals)
+        refiner = bound(mesh, scheme, GivenMetric(metrics(mesh, 7)), normals)
         refined = refiner.refine(deformed)
         frames.append((refined.positions.tobytes(), refined.triangles.tobytes()))
     assert frames[0] == frames[1]
@@ -239,7 +241,7 @@ def test_symmetric_stays_symmetric(scheme: str) -> None:
     positions = meshes.opened(mesh, 0.8)
     x, y = positions[:, 0], positions[:, 1]
     positions[:, 2] = 0.5 * np.cos(0.8 * x) * np.cos(0.9 * y)
-    refined = bound(mesh, scheme, [refine.Bulge(0.01, 0.05)]).refine(positions)
+    refined = bound(mesh, scheme, [refine.Displacement(0.01, 0.05)]).refine(positions)
     assert len(refined.positions) > 1.5 * len(positions)
     for mirror in ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0]):
         mirrored = np.hstack([refined.positions * mirror, 0.1 * refined.normals * mirror])
@@ -254,7 +256,7 @@ def test_planar_is_exact(scheme: str, blend: bool) -> None:
     """No normal of a plane leans to the least, with borders and holes."""
     mesh = meshes.irregular(2)
     flat = mesh.vertices * [1.0, 1.0, 0.0]
-    criterion = Needed(needs(mesh, 3))
+    criterion = GivenMetric(metrics(mesh, 3))
     refiner = bound(meshes.Mesh(flat, mesh.faces), scheme, criterion, blend=blend)
     normals = refiner.refine(flat).normals
     assert (normals[:, :2] == 0.0).all()
@@ -268,7 +270,7 @@ def test_turns_with_the_mesh(scheme: str) -> None:
     """A rigid motion turns all normals along."""
     mesh = meshes.irregular(8)
     deformed, turn = meshes.wrinkled(mesh, 9, 0.2), meshes.rotation(1)
-    refiner = bound(mesh, scheme, Needed(needs(mesh, 2)))
+    refiner = bound(mesh, scheme, GivenMetric(metrics(mesh, 2)))
     still = refiner.refine(deformed).normals.copy()
     moved = refiner.refine(deformed @ turn.T + [3.0, -2.0, 5.0]).normals
     np.testing.assert_allclose(moved, still @ turn.T, rtol=0, atol=1e-4)
@@ -279,7 +281,7 @@ def test_far_from_the_origin(scheme: str) -> None:
     """A mesh that is a hundred thousand edges away has the normals that it has nearby."""
     mesh = meshes.irregular(8)
     deformed = meshes.wrinkled(mesh, 9, 0.2)
-    refiner = bound(mesh, scheme, Needed(needs(mesh, 2)))
+    refiner = bound(mesh, scheme, GivenMetric(metrics(mesh, 2)))
     near = refiner.refine(deformed).normals.copy()
     far = refiner.refine(deformed + 1e5).normals
     np.testing.assert_allclose(far, near, rtol=0, atol=2e-5)
@@ -304,7 +306,7 @@ def test_every_kind_of_mesh(scheme: str, name: str) -> None:
     """Seams, fins, debris, slivers and lonely vertices come out proper, and see no NaN."""
     mesh = ZOO[name]()
     for seed, blend in ((0, True), (1, False)):
-        refiner = bound(mesh, scheme, Needed(needs(mesh, seed)), blend=blend)
+        refiner = bound(mesh, scheme, GivenMetric(metrics(mesh, seed)), blend=blend)
         for amplitude in (0.0, 0.2):
             deformed = meshes.wrinkled(mesh, seed, amplitude)
             refined = refiner.refine(deformed)
@@ -318,12 +320,12 @@ def test_runs_as_python() -> None:
     program = (
         "import sys, numpy as np\n"
         "from tests import meshes\n"
-        "from tests.refine.cases import Needed\n"
-        "from tests.refine.beyond.test_surface_normals import SCHEMES, bound, needs\n"
+        "from tests.refine.cases import GivenMetric\n"
+        "from tests.refine.beyond.test_surface_normals import SCHEMES, bound, metrics\n"
         "mesh = meshes.irregular(3, 4, 3, 1)\n"
         "deformed = meshes.wrinkled(mesh, 1, 0.2)\n"
-        "refiners = [bound(mesh, scheme, Needed(needs(mesh, 2))) for scheme in SCHEMES]\n"
-        "refiners += [bound(mesh, scheme, 'bulge') for scheme in SCHEMES]\n"
+        "refiners = [bound(mesh, scheme, GivenMetric(metrics(mesh, 2))) for scheme in SCHEMES]\n"
+        "refiners += [bound(mesh, scheme, 'displacement') for scheme in SCHEMES]\n"
         "print(np.concatenate([r.refine(deformed).normals for r in refiners]).tolist())\n"
     )
     shown = []

@@ -9,7 +9,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Needed
+from tests.refine.cases import GivenMetric
 
 REFINERS = [
     ("none", {}),
@@ -122,11 +122,11 @@ def test_own_stream_grows(blend: bool) -> None:
     """A refiner's own stream has room for its frames, not for the worst case, and only grows."""
     mesh = meshes.irregular(8, 30, 30)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
-    needed = Needed(np.full(edge_count, -1.0))
+    needed = GivenMetric(np.full(edge_count, -1.0))
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=needed, blend=blend)
     unsplit = room(refiner.refine(mesh.vertices))
     assert unsplit < 1.5 * (24 * len(mesh.vertices) + 16 * len(mesh.faces))
-    needed.need[:] = 2.0
+    needed.metric[:] = 2.0
     all_split = refiner.refine(mesh.vertices)
     refine.check(refiner, all_split, mesh.vertices)
     assert len(all_split.triangles) == refiner.triangle_capacity
@@ -134,7 +134,7 @@ def test_own_stream_grows(blend: bool) -> None:
     assert most > 5 * unsplit
     rows = all_split.positions.base
     assert rows is not None and len(rows) == refiner.vertex_capacity  # no room that is of no use
-    needed.need[:] = -1.0
+    needed.metric[:] = -1.0
     none_split = refiner.refine(mesh.vertices)
     refine.check(refiner, none_split, mesh.vertices)
     assert room(none_split) == most

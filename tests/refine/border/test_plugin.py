@@ -373,7 +373,7 @@ def test_options_by_place_or_by_name() -> None:
 @pytest.mark.parametrize("name", ["criterion", "scheme"])
 def test_an_object_knows_one_mesh(name: str) -> None:
     """A criterion or scheme that serves a refiner is refused to another, alone or in a list."""
-    thing = refine.Bulge() if name == "criterion" else LoopScheme()
+    thing = refine.Displacement() if name == "criterion" else LoopScheme()
     create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")
     first = create(**{name: thing})
     for shared in (thing, [thing, "normal"])[: 2 if name == "criterion" else 1]:

@@ -46,7 +46,7 @@ def test_carried_as_if_bound(name: str, seed: int, options: dict[str, Any]) -> N
         points[used],
         uv=values,
         face_uv=faces,
-        **{"scheme": "cubic", "criterion": "bulge+rest", **options},
+        **{"scheme": "cubic", "criterion": "displacement+rest", **options},
     )
     moved = points * [1.0, 1.0, 0.5] + 0.2 * np.sin(3.0 * points[:, [1, 2, 0]])
     got, expected = welded.refine(moved), bound.refine(moved[used])

@@ -60,7 +60,7 @@ def played(mesh: meshes.Mesh, criterion: Forced, chances: Frames) -> Iterator[Po
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_growth_turns_no_line(seed: int) -> None:
+def test_geomorph_turns_no_line(seed: int) -> None:
     """While splits are only added no line turns; looked up by splits alone, many do."""
     mesh = meshes.irregular(seed)
     counts = {}

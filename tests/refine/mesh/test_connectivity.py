@@ -1,4 +1,4 @@
-"""Edges, neighbourhoods, wedges and rims."""
+"""Edges, neighbourhoods, wedges and attribute edges."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_wedges_of_tube() -> None:
     tube = meshes.tube(segments=8, rings=4)
     connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
     assert len(connectivity.wedge_vertices) == len(tube.vertices) + 5
-    assert len(connectivity.rim_edges) == len(connectivity.edges) + 4
+    assert len(connectivity.attribute_edges) == len(connectivity.edges) + 4
     assert connectivity.wedge_vertices[: len(tube.vertices)].tolist() == list(range(40))
     assert (connectivity.wedge_vertices[connectivity.corners] == tube.faces).all()
     assert (connectivity.wedge_uv[connectivity.corners] == tube.face_uv).all()

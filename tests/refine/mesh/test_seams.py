@@ -34,7 +34,7 @@ def test_no_crack(name: str, options: dict[str, int]) -> None:
     assert refiner.vertex_columns == 8
     if name == "kahler":
         connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
-        on_seam = connectivity.rim_edges[len(connectivity.edges) :]
+        on_seam = connectivity.attribute_edges[len(connectivity.edges) :]
         assert refiner.splits[on_seam].max() == 2
 
 

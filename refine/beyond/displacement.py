@@ -1,10 +1,10 @@
-"""The criterion `bulge`: how far a split would move the middle of an edge, and turn its normal.
+"""The criterion `displacement`: how far a split moves the middle of an edge and turns its normal.
 
 Where the straight edge is far from where the scheme would have it, the unsplit mesh is wrong; and
 where the normal in its middle is not between those at its ends, so is its shading. For schemes that
 tell both (`Scheme.measure`): those with curved edges, and all with `normals="refined"`.
 
-    size of an edge     hypot(bulge, turning x angle x length)      a distance
+    size of an edge     hypot(displacement, turning x angle x length)      a distance
 """
 
 import numpy as np
@@ -17,12 +17,11 @@ from .blending import RAMP
 from .measuring import Measuring, mean_length
 
 HASTE = 0.6
-"""Share of the first threshold of `bulge` in which a blended point grows. Chosen: a point that is
-half grown costs as much as a whole one; with less than this surfaces jump farther than their input
-moves."""
+"""Share of the first threshold in which a blended point grows. Chosen: a point that is half grown
+costs as much as a whole one; with less than this surfaces jump farther than their input moves."""
 
 
-class Bulge(Measuring):
+class Displacement(Measuring):
     """How far a split would move the middle of an edge and turn the normal there.
 
     What is coarse at rest counts as well, unlike in the paper.
@@ -41,7 +40,7 @@ class Bulge(Measuring):
         """Take the scheme of the refiner; raises ValueError for one that does not measure."""
         if not scheme.measures:
             raise ValueError(
-                'criterion "bulge" asks the scheme how far it moves edges, which '
+                'criterion "displacement" asks the scheme how far it moves edges, which '
                 f'{type(scheme).__name__} tells with normals="refined" only'
             )
         self._scheme = scheme
@@ -54,14 +53,14 @@ class Bulge(Measuring):
         self._unit = mean_length(connectivity, rest_positions)
         self._turns = np.zeros(len(connectivity.edges), dtype=np.float32)
 
-    def measure(self, positions: Doubles, normals: Floats, need: Floats) -> None:
-        """Write the need of every edge, shape (E,)."""
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
         limits = self.thresholds
-        self._scheme.measure(need, self._turns)
+        self._scheme.measure(metric, self._turns)
         if self.turning > 0.0:
-            count_turns(need, self._turns, np.float32(self.turning))
-        limits.scale(need, self._unit)
-        advance_needs(need, np.float32(HASTE) * limits.once / limits.width, RAMP)
+            count_turns(metric, self._turns, np.float32(self.turning))
+        limits.scale(metric, self._unit)
+        advance_metric(metric, np.float32(HASTE) * limits.once / limits.width, RAMP)
 
 
 @njit
@@ -73,15 +72,15 @@ def count_turns(sizes: Floats, turns: Floats, scale: np.float32) -> None:
 
 
 @njit
-def advance_needs(need: Floats, soon: np.float32, ramp: np.float32) -> None:
-    """Stretch the needs, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
+def advance_metric(metric: Floats, soon: np.float32, ramp: np.float32) -> None:
+    """Stretch the metrics, shape (E,), so that `soon` becomes `ramp`, where points have grown."""
     if soon >= ramp:
         return
-    for e in range(need.shape[0]):
-        if need[e] <= np.float32(0.0) or need[e] >= np.float32(1.0):
+    for e in range(metric.shape[0]):
+        if metric[e] <= np.float32(0.0) or metric[e] >= np.float32(1.0):
             continue
-        if need[e] < soon:
-            need[e] *= ramp / soon
+        if metric[e] < soon:
+            metric[e] *= ramp / soon
         else:
-            rest = (np.float32(1.0) - need[e]) / (np.float32(1.0) - soon)
-            need[e] = np.float32(1.0) - (np.float32(1.0) - ramp) * rest
+            rest = (np.float32(1.0) - metric[e]) / (np.float32(1.0) - soon)
+            metric[e] = np.float32(1.0) - (np.float32(1.0) - ramp) * rest
