@@ -44,12 +44,9 @@ MIXED = VERTICES.tobytes() + b"\3" + FACES[0].tobytes() + b"\4" + struct.pack("<
 
 PLY_GOOD: dict[str, bytes | str] = {
     "text": PLY,
-    "text crlf": PLY.replace("\n", "\r\n"),
     "text latin-1": PLY.encode().replace(b"1.0\n", b"1.0\ncomment t\xeate\n"),
-    "text blank lines": PLY.replace("\n3 ", "\n\n \n3 "),
     "text mixed polygons": PLY.replace("3 0 2 3", "4 0 1 2 3"),
     "binary": BINARY.encode() + BODY,
-    "binary crlf header": BINARY.replace("\n", "\r\n").encode() + BODY,
     "binary latin-1": BINARY.encode().replace(b"1.0\n", b"1.0\ncomment t\xeate\n") + BODY,
     "big endian": BIG,
     "texture is a device": PLY.replace("1.0\n", "1.0\ncomment TextureFile /dev/zero\n"),
@@ -58,30 +55,17 @@ PLY_GOOD: dict[str, bytes | str] = {
 PLY_BAD: dict[str, tuple[bytes | str, str]] = {
     "one byte": ("p", BROKEN),
     "no end": (PLY.split("end_header", maxsplit=1)[0], BROKEN),
-    "no format": (PLY.replace("format ascii 1.0\n", ""), BROKEN),
-    "other format": (PLY.replace("ascii", "binary_mixed_endian"), BROKEN),
-    "only header": (PLY.split("0 0 0")[0], BROKEN),
-    "cut text": (PLY[:-10], BROKEN),
     "cut binary": (BINARY.encode() + BODY[:-3], "broken, or not what its name says"),
     "binary longer": (BINARY.encode() + BODY + b"x", "broken, or not what its name says"),
     "binary mixed": (BINARY.encode() + MIXED, "broken, .*triangulate it"),
-    "huge vertices": (BINARY.replace("vertex 4", "vertex 4000000000"), BROKEN),
-    "negative": (PLY.replace("face 2", "face -2"), BROKEN),
-    "count is a word": (PLY.replace("face 2", "face two"), BROKEN),
-    "no count": (PLY.replace("element face 2", "element face"), BROKEN),
     "property of nothing": (
         BINARY.replace("element vertex 4\n", ""),
         "broken, or not what its name",
     ),
-    "type unknown": (PLY.replace("float y", "real y"), "broken, or not what its name says"),
-    "no z": (PLY.replace("property float z\n", ""), "broken, or not what its name says"),
     "no faces": (PLY.replace("face 2", "face 0"), "holds no triangles"),
     "nan": (PLY.replace("1 0 0", "nan 0 0"), "must be finite numbers"),
     "beyond": (PLY.replace("3 0 2 3", "3 0 2 9"), r"\[0, 2, 9\]; there are 0 to 3"),
     "before": (PLY.replace("3 0 2 3", "3 0 2 -1"), r"\[0, 2, -1\]; there are 0 to 3"),
-    "face of two": (PLY.replace("3 0 1 2\n3 0 2 3", "2 0 1\n2 0 2"), BROKEN),
-    "word": (PLY.replace("1 0 0", "one 0 0"), "broken, or not what its name says"),
-    "long header": ("ply\n" + "comment x\n" * 10_000 + PLY[4:], BROKEN),
     "list of 255": (BINARY.encode() + BODY.replace(b"\3", b"\xff"), "broken, or not what"),
 }
 
@@ -102,10 +86,8 @@ def stl_of(corners: Any, count: int | None = None, start: bytes = b"") -> bytes:
 
 STL_GOOD: dict[str, bytes | str] = {
     "text": f"solid a\n{STL}endsolid a\n",
-    "text crlf": f"solid a\n{STL}endsolid a\n".replace("\n", "\r\n"),
     "text latin-1": f"solid t\xeate\n{STL}endsolid\n".encode("latin-1"),
     "text upper case": f"solid a\n{STL}endsolid a\n".upper(),
-    "two solids": f"solid a\n{STL}endsolid a\n" * 2,
     "binary": stl_of(VERTICES[FACES]),
     "binary that says solid": stl_of(VERTICES[FACES], start=b"solid t\xeate"),
 }
@@ -115,35 +97,22 @@ STL_BAD: dict[str, tuple[bytes | str, str]] = {
     "text word": (f"solid a\n{STL}endsolid".replace("1.0", "one"), "broken, or not what its name"),
     "text flat": (f"solid a\n{STL}endsolid".replace(" 0.0\n", "\n"), "broken, or not what|finite"),
     "text nan": (f"solid a\n{STL}endsolid".replace("1.0", "nan"), "must be finite numbers"),
-    "many solids": ("solid\nendsolid\n" * 2000, BROKEN),
     "end first": ("endsolid\nsolid\n" + STL, "broken, or not what its name says|no triangles"),
-    "binary cut": (stl_of(VERTICES[FACES])[:-7], BROKEN),
-    "binary huge": (stl_of(VERTICES[FACES], count=2**32 - 1), BROKEN),
-    "binary none": (stl_of([]), "holds no triangles"),
-    "binary nan": (stl_of(VERTICES[FACES] * np.nan), "must be finite numbers"),
-    "picture": (b"\xff\xd8\xff\xe0" + bytes(200), BROKEN),
 }
 
 OFF = "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 2 3\n"
 OFF_GOOD: dict[str, bytes | str] = {
     "plain": OFF,
-    "crlf": OFF.replace("\n", "\r\n"),
-    "one line": OFF.replace("OFF\n", "OFF "),
     "latin-1 remarks": b"# t\xeate\n" + OFF.encode().replace(b"0 0 0", b"\n0 0 0 # \xe9"),
     "colours": OFF.replace("OFF", "COFF").replace("0 0 0", "0 0 0 1 1 1 1"),
     "polygon": OFF.replace("3 0 2 3", "4 0 1 2 3"),
 }
 OFF_BAD: dict[str, tuple[bytes | str, str]] = {
     "no counts": ("OFF\n", BROKEN),
-    "not off": ("hello\n", BROKEN),
-    "huge": (OFF.replace("4 2", "4000000000 2"), BROKEN),
-    "negative": (OFF.replace("4 2", "-4 2"), BROKEN),
-    "cut": (OFF[:-10], BROKEN),
     "beyond": (OFF.replace("3 0 2 3", "3 0 2 4"), "broken, .*outside|there are 0 to 3"),
     "word": (OFF.replace("1 0 0", "one 0 0"), "broken, or not what its name says"),
     "infinity": (OFF.replace("1 0 0", "inf 0 0"), "must be finite numbers"),
     "no faces": (OFF.replace("4 2", "4 0"), "broken, or not what|holds no triangles"),
-    "binary": (b"OFF BINARY\n" + bytes(100), BROKEN),
 }
 
 
@@ -181,14 +150,7 @@ WHOLE = {"bufferView": 1, "componentType": 5125, "count": 6, "type": "SCALAR"}
 
 GLB_GOOD = {
     "plain": glb(),
-    "no indices": glb(
-        {
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-            "accessors": [{**FLOATS, "count": 3}],
-        }
-    ),
     "turned": glb({"nodes": [{"mesh": 0, "rotation": [0, 0, 0.70710678, 0.70710678]}]}),
-    "two places": glb({"nodes": [{"mesh": 0, "children": [1]}, {"mesh": 0}]}),
     "circle of nodes": glb({"nodes": [{"mesh": 0, "children": [1]}, {"children": [0]}]}),
     "picture elsewhere": glb(
         {
@@ -203,24 +165,7 @@ GLB_BAD = {
     "one byte": (b"g", BROKEN),
     "obj inside": (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", BROKEN),
     "version 1": (glb().replace(b"glTF\2", b"glTF\1"), BROKEN),
-    "cut": (glb()[:-9], BROKEN),
-    "cut in json": (glb()[:99], BROKEN),
-    "no json": (glb(text="{nodes"), BROKEN),
-    "deep json": (glb(text="[" * 100_000), BROKEN),
-    "list for json": (glb(text="[]"), BROKEN),
-    "long json": (glb(text=" " * 5_000_000), BROKEN),
-    "nodes no list": (glb({"nodes": 5}), BROKEN),
-    "nodes of numbers": (glb({"nodes": [5]}), BROKEN),
-    "many nodes": (glb({"nodes": [{}] * 20_000}), BROKEN),
-    "mesh of no number": (glb({"nodes": [{"mesh": 7}]}), BROKEN),
     "node of no number": (glb({"scenes": [{"nodes": [9]}]}), "broken, or not what its name says"),
-    "other files": (glb({"buffers": [{"uri": "/dev/zero"}]}), BROKEN),
-    "huge count": (glb({"accessors": [{**FLOATS, "count": 2**30}, WHOLE]}), BROKEN),
-    "huger count": (glb({"accessors": [{**FLOATS, "count": 10**30}, WHOLE]}), BROKEN),
-    "huge count of nothing": (
-        glb({"accessors": [{**FLOATS, "count": 2**30, "bufferView": None}, WHOLE]}),
-        BROKEN,
-    ),
     "negative count": (
         glb({"accessors": [{**FLOATS, "count": -4}, WHOLE]}),
         "broken|there are 0 to -1",
@@ -229,11 +174,7 @@ GLB_BAD = {
         glb({"accessors": [{"componentType": 5126, "count": 2**30, "type": "VEC3"}, WHOLE]}),
         "MemoryError",
     ),
-    "odd type": (glb({"accessors": [{**FLOATS, "type": ["VEC3"]}, WHOLE]}), BROKEN),
-    "views over views": (glb({"bufferViews": [{**VIEW, "byteLength": 2**30}]}), BROKEN),
     "view beyond": (glb({"bufferViews": [{**VIEW, "byteOffset": 999}, VIEW]}), "broken, or not"),
-    "no accessors": (glb({"accessors": []}), BROKEN),
-    "no attributes": (glb({"meshes": [{"primitives": [{}]}]}), BROKEN),
     "draco": (glb({"extensionsRequired": ["KHR_draco_mesh_compression"]}), "is compressed"),
     "nothing": (glb({"meshes": [], "nodes": [], "scenes": [{}]}), "holds no triangles|broken"),
     "points alone": (
