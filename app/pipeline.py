@@ -145,7 +145,8 @@ class Pipeline:
         timer: measures "refinement", "upload" and "draw".
         """
         with timer("refinement"):
-            amounts = self._wrinkling_amounts(style)
+            shows_wrinkles = self.wrinkle_map is not None and style.shows_bumps
+            amounts = self._compression.amounts(self.scene.positions) if shows_wrinkles else None
             self.refine(camera, viewports)
         with timer("upload"):
             for viewport in viewports:
@@ -203,12 +204,6 @@ class Pipeline:
         if style.colour_by is render.ColourBy.SPLITS:
             return splits_of_source(drawn.refiner, drawn.mesh)
         return None if values is None else values(self.scene, drawn.refiner)[drawn.mesh.source]
-
-    def _wrinkling_amounts(self, style: render.Style) -> Amounts | None:
-        """How far each vertex wrinkles now; None where that does not show."""
-        if self.wrinkle_map is None or not style.shows_bumps:
-            return None
-        return self._compression.amounts(self.scene.positions)
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:

@@ -82,7 +82,7 @@ class Part:
     bone: "cranium", "mandible", "eye_left" or "eye_right"; the part moves with it. What is on the
         "neck" stands still.
     shine: strength of the highlight, 0 (dull) to 1 (wet).
-    roots: for a part that grows from the skin and moves with it, for each vertex the one whose
+    roots: for a part that is attached to the skin and moves with it, for each vertex the one whose
         place on the skin it keeps to, shape (n,), int32; None for all others.
     strand_radius: half the thickness of the hairs that it consists of [mm]; 0 where it is none.
     striation: place of each vertex across and along the strands with which it is striped [mm], and

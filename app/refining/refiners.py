@@ -9,10 +9,10 @@ from typing import Any, Literal, get_args, get_origin
 import numpy as np
 import numpy.typing as npt
 
-from risorius import refine
+from risorius import assets, refine
 
 from ..errors import UserError
-from ..scenes import Scene
+from ..scenes import FaceScene, Scene
 from .presets import PRESETS, STATIC, Refinement, named
 from .wrinkling import FoldCriterion
 
@@ -112,14 +112,14 @@ def _check(name: str, options: Mapping[str, Any]) -> None:
 
 def can_detail(scene: Scene) -> bool:
     """Whether the scene's head comes with a finer mesh."""
-    return hasattr(getattr(scene, "head", None), "finer")
+    return isinstance(scene, FaceScene) and isinstance(scene.head, assets.Head)
 
 
 def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]] | None:
     """Vertices and triangles of the scene's head with four times its triangles, if it has them."""
-    if not can_detail(scene):
+    if not (isinstance(scene, FaceScene) and isinstance(scene.head, assets.Head)):
         return None
-    finer = scene.head.finer(1)  # type: ignore[attr-defined]
+    finer = scene.head.finer(1)
     return finer.vertices, finer.faces
 
 

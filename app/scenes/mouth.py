@@ -52,6 +52,7 @@ class Tongue:
     is_enclosed: bool = True
     strand_radius: float = 0.0
     striation: None = None
+    roots: None = None
 
     @classmethod
     def of(cls, part: Any, front: float) -> Tongue:

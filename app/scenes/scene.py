@@ -129,7 +129,7 @@ class FaceScene(Scene):
         )
         self.parts = tuple(
             part
-            if getattr(part, "roots", None) is None
+            if part.roots is None
             else SurfaceAttachment.of(part, self.rest_positions, self.faces)
             for part in shaded_mouth(head.parts)
         )
@@ -137,8 +137,9 @@ class FaceScene(Scene):
         self.wrinkles = head.wrinkles
         self.fade = head.fade() if isinstance(head, FittedHead) else None  # others have a shirt
         is_known = isinstance(head, assets.Head)
-        self.called = BUILT_IN if is_known else getattr(head, "called", "") or OWN
-        self.in_tone = recoloured if is_known else getattr(head, "in_tone", None)
+        person = head if isinstance(head, Person) else None
+        self.called = BUILT_IN if is_known else (person and person.called) or OWN
+        self.in_tone = recoloured if is_known else None if person is None else person.in_tone
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))

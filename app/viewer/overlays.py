@@ -11,10 +11,8 @@ import numpy.typing as npt
 from risorius import render
 from risorius.render import Lines
 
-from ..scenes import Scene
+from ..scenes import FaceScene, Scene
 from .colours import edge_strains
-
-FloatArray = npt.NDArray[np.float64]
 
 # sRGB
 POINTED_AT = np.array([1.0, 0.66, 0.10])
@@ -39,13 +37,9 @@ def spring_lines(scene: Scene, edges: npt.NDArray[np.int32], camera: render.Orbi
 
 def landmark_lines(scene: Any, edges: npt.NDArray[np.int32], camera: render.OrbitCamera) -> Lines:
     """A cross on each of the 68 landmarks, facing the camera."""
-    right, up, _ = camera.axes()
     points = scene.positions[scene.head.landmarks]
-    arms = [
-        np.stack([points - MARK_SIZE * axis, points + MARK_SIZE * axis], axis=1)
-        for axis in (right, up)
-    ]
-    lines = [line for arm in arms for line in arm]
+    arms = MARK_SIZE * np.array([(-axis, axis) for axis in camera.axes()[:2]])
+    lines = list((points[:, None, None] + arms).reshape(-1, 2, 3))
     return Lines(lines, np.tile(MARK, (len(lines), 1)), width=2.0, hidden_opacity=0.5)
 
 
@@ -56,15 +50,15 @@ OVERLAYS = ("muscles", "springs", "skull", "landmarks")  # lines, and STRUCTURES
 
 def overlays_of(scene: Scene) -> tuple[str, ...]:
     """The overlays that this scene has the data for: a mesh alone has springs."""
-    return OVERLAYS if hasattr(scene, "simulation") else ("springs",)
+    return OVERLAYS if isinstance(scene, FaceScene) else ("springs",)
 
 
-def pointed_lines(scene: Any, shares: Mapping[str, float]) -> list[Lines]:
+def pointed_lines(scene: Scene, shares: Mapping[str, float]) -> list[Lines]:
     """The fibres of muscles, for whoever points at a control: the clearer the more each does.
 
     shares: name -> how far it goes. One without sides stands for both.
     """
-    fibres = scene.simulation.fibres() if hasattr(scene, "simulation") else {}
+    fibres = scene.simulation.fibres() if isinstance(scene, FaceScene) else {}
     seen: dict[str, float] = {}
     for name, share in shares.items():
         for side in (name, f"{name}_left", f"{name}_right"):

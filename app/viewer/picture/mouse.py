@@ -13,6 +13,7 @@ from imgui_bundle import imgui
 
 from risorius import render
 
+from ...scenes import FaceScene
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
 from .picking import Ray, skin_under
@@ -144,7 +145,7 @@ class Mouse(CameraMouse):
         if self._is_at_divider(io.mouse_pos.x):
             return "divider"
         scene = self._stage.scene
-        if not hasattr(scene, "simulation"):
+        if not isinstance(scene, FaceScene):
             return "orbit"
         ray = self._ray(io)
         point = skin_under(ray, scene.positions, scene.faces)

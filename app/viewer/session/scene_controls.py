@@ -12,7 +12,7 @@ from risorius.sim.layers import BOTH_SIDES
 from ...controls.mirror import parted, twin_of
 from ...controls.vocabulary import filters
 from ...errors import counted
-from ...scenes import Scene, clamped
+from ...scenes import FaceScene, Scene, clamped
 
 RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
 RANDOM_STRENGTH = 0.8  # most of their range
@@ -29,8 +29,8 @@ class SceneControls:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self.limits = scene.limits
-        simulation = getattr(scene, "simulation", None)
-        self.muscles = frozenset(simulation.controls if simulation is not None else self.limits)
+        own = scene.simulation.controls if isinstance(scene, FaceScene) else self.limits
+        self.muscles = frozenset(own)
         order = [*chain(*filters().values()), *scene.groups]
         self.groups = {
             title: scene.groups[title]
