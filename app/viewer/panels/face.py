@@ -13,7 +13,7 @@ from ...controls.mirror import twin_of
 from ...controls.vocabulary import Pad, called, filters, pads
 from ..context import ApplicationContext
 from ..interface.gui import LEFT, NOTE_FLAGS, RIGHT, colour, em, ink_of
-from ..interface.widgets import Sliders, button, button_width, heading, hint, muted, stay_in_line
+from ..interface.widgets import button, button_width, heading, hint, muted, slider, stay_in_line
 from .pose_grid import PoseGrid
 from .rows import ControlRows, Row, search_rows
 
@@ -92,7 +92,6 @@ class MuscleNote:
     def __init__(self, app: ApplicationContext) -> None:
         self._gui, self._session = app.gui, app.session
         self._settings, self._view = app.settings, app.view
-        self._sliders = Sliders(app.gui)
         self.name = ""  # of the muscle, "" for none
 
     def draw(self) -> None:
@@ -108,7 +107,7 @@ class MuscleNote:
         is_linked = self._settings.is_linked and twin != name and values[name] == values[twin]
         names = (name, twin) if is_linked else (name,)
         imgui.text_unformatted(called(*names).capitalize())
-        slid = self._sliders.draw(name, values[name], limits, width=em(NOTE_WIDTH))
+        slid = slider(self._gui, name, values[name], limits, width=em(NOTE_WIDTH))
         self._gui.places["note"] = self._gui.places[name]
         if slid.is_changed:
             session.set(name, slid.value, linked=is_linked)

@@ -11,7 +11,7 @@ from ...controls.mirror import OPPOSITE, parted, twin_of
 from ...controls.vocabulary import is_found, readable, title_of
 from ..context import ApplicationContext
 from ..interface.gui import colour, em, ink_of
-from ..interface.widgets import Sliders, button, hint
+from ..interface.widgets import button, hint, slider
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,6 @@ class ControlRows:
     def __init__(self, app: ApplicationContext) -> None:
         self._gui, self._session = app.gui, app.session
         self._settings, self._view = app.settings, app.view
-        self._sliders = Sliders(app.gui)
         self._apart: set[str] = set()  # labels of rows whose sides were taken apart
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 
@@ -139,7 +138,7 @@ class ControlRows:
             limits, side = session.controls.limits[name], parted(name)[1].strip("_")[:1].upper()
             mark = (side or "L") if len(names) > 1 else ""
             value = min(max(current[name] + shared, limits[0]), limits[1])
-            slid = self._sliders.draw(name, value, limits, width=width, mark=mark)
+            slid = slider(self._gui, name, value, limits, width=width, mark=mark)
             pointed = (name,) if slid.is_hovered else pointed
             if slid.is_changed:
                 self._part(row, shared)
