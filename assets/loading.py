@@ -14,11 +14,10 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
-from .cloth import make_cloth
 from .errors import AssetError
 from .files import read_arrays, read_toml
 from .model import Cloth, Eye, Head, Layer, Part, Plane
-from .plane import make_plane
+from .sheets import make_cloth, make_plane
 
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .files import Image, read_arrays_of, read_image
-from .subdivision import quarter
+from .topology import quarter
 
 FloatArray = npt.NDArray[np.float64]
 SingleArray = npt.NDArray[np.float32]

@@ -1,12 +1,12 @@
-"""Small questions about triangle lists: edges, boundary loops, angles."""
+"""Small questions about triangle lists: edges, boundary loops, angles; and their subdivision."""
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from .model import FloatArray
-
+FloatArray = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
 
@@ -100,3 +100,32 @@ def halved(vertices: FloatArray, quads: list[list[int]]) -> Faces:
         for pair in (one, other)
     ]
     return np.where((quality[0] >= quality[1])[:, None, None], one, other).reshape(-1, 3)
+
+
+@dataclass(frozen=True)
+class Quartered:
+    """A triangle list after one cut.
+
+    faces: shape (4 F, 3), int32.
+    edges: the ends of the edge that each new vertex lies on, lower number first, shape (E, 2).
+    """
+
+    faces: Faces
+    edges: Faces
+
+
+def quarter(faces: Faces, vertex_count: int) -> Quartered:
+    """Cut every triangle into four; edge e gets the new vertex `vertex_count` + e.
+
+            c           Old vertices keep their numbers. The four children of face f are the faces
+           / \\          4 f to 4 f + 3: corner a, corner b, corner c, middle.
+         ca---bc
+         / \\ / \\
+        a---ab--b
+    """
+    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    edges, number = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
+    ab, bc, ca = vertex_count + number.reshape(-1, 3).T
+    a, b, c = faces.T
+    children = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1)
+    return Quartered(children.reshape(-1, 3).astype(np.int32), edges.astype(np.int32))

@@ -26,7 +26,7 @@ import numpy.typing as npt
 import scipy
 
 from risorius import assets, sim
-from risorius.assets.fitting.coarser import coarser
+from risorius.assets.fitting.decimation import decimated
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.geometry.normals import vertex_normals
@@ -107,7 +107,7 @@ def _looked_through(positions: Points, faces: Triangles) -> tuple[npt.NDArray[np
     """Vertices of a mesh and triangles between them that are enough to see what is open."""
     if len(faces) <= MOST_SEEN:
         return np.arange(len(positions)), faces
-    points, triangles = coarser(positions, faces, MOST_SEEN)
+    points, triangles = decimated(positions, faces, MOST_SEEN)
     numbers, seen = np.unique(
         scipy.spatial.cKDTree(positions).query(points)[1], return_inverse=True
     )

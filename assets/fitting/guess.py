@@ -6,12 +6,16 @@
 The built-in face is laid on the mesh as one lays a cloth: each of its points goes to the nearest
 place that faces the same way, and a warp that bends ever more follows what they did.
 
+Before anything is placed, `upright` lays that face on the mesh in each of the 24 ways in which axes
+can point, at several sizes, since nobody knows how much of neck and shoulders hangs on the mesh.
+
 Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (stiffness that falls from step
 to step; here that of a smoothing thin-plate warp).
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -24,8 +28,8 @@ from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh
 from ..model import FloatArray, Head, IndexArray
-from .soundness import pieces_of
-from .warp import Similarity, Warp, nearest_on
+from .mesh_validation import pieces_of
+from .warp import Similarity, ThinPlateSpline, nearest_on
 
 # Outer corners of the eyes, tip of the nose, corners of the mouth: easily found by anybody, and
 # far apart in every direction.
@@ -36,6 +40,8 @@ MOST_POINTS = 300  # of that part (chosen; more take longer and find the same)
 AROUND = np.array([60.0, 90.0, 120.0])  # [mm] around the first points, in which a face ends
 STIFFNESSES = (1e4, 3e3, 1e3, 300.0, 100.0, 30.0)  # [mm] of the warp, from step to step
 REACH = 18.0  # [mm] beyond which a place on the mesh is not what a point of the face looks for
+SHARES = (1.0, 0.85, 0.7, 0.55, 0.4)  # of the mesh's height that the built-in head may be
+MOST_LOOKED_AT = 1500  # points of the mesh, to find which way it is up
 
 Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
 
@@ -62,7 +68,9 @@ def guess(mesh: Mesh, known: Known) -> FloatArray:
         is_laid = is_free & (np.linalg.norm(feet - laid[chosen], axis=1) < REACH)
         give = np.concatenate([np.zeros(len(numbers)), np.full(is_laid.sum(), stiffness)])
         source = np.vstack([known_points, points[is_laid]])
-        laid = Warp(source, np.vstack([given, feet[is_laid]]), give).points(head.vertices)
+        laid = ThinPlateSpline(source, np.vstack([given, feet[is_laid]]), give).points(
+            head.vertices
+        )
     found = _feet(laid, head, head.landmarks, vertices, faces)
     found[numbers] = given
     return similarity.inverse.points(found)
@@ -124,3 +132,41 @@ def _feet(
     """Where some vertices of the laid head come to lie on a mesh that faces as they do."""
     normals = vertex_normals(laid, head.faces)[chosen]
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)
+
+
+def upright(vertices: FloatArray, radius: float) -> Similarity:
+    """What brings a mesh (V, 3) into the middle, `radius` large, and most likely upright."""
+    middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
+    size = max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
+    scale = radius / size
+    some = vertices[:: max(len(vertices) // MOST_LOOKED_AT, 1)]
+    head = load("head")
+    face = head.vertices[head.vertices[:, 1] > head.vertices[head.landmarks[8], 1] - 10.0]
+    best = min(axes_turned(), key=lambda turn: _off(scale * (some - middle) @ turn.T, face))
+    return Similarity(scale, best, -scale * best @ middle)
+
+
+def axes_turned() -> list[FloatArray]:
+    """The 24 rotations that take axes to axes, the one that leaves them alone first."""
+    turns = []
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1.0, -1.0), repeat=3):
+            turn = np.zeros((3, 3))
+            turn[range(3), order] = signs
+            if np.linalg.det(turn) > 0.0:
+                turns.append(turn)
+    return turns
+
+
+def _off(points: FloatArray, face: FloatArray) -> float:
+    """How far a face is from points at the best of SHARES, as a share of its height."""
+    tree, height = scipy.spatial.cKDTree(points), float(np.ptp(face[:, 1]))
+    top, low = float(points[:, 1].max()), float(points[:, 1].min())
+    found = []
+    for share in SHARES:
+        scale = share * (top - low) / height
+        laid = scale * (face - (0.0, face[:, 1].max(), face[:, 2].mean()))
+        upper = points[points[:, 1] > top - share * (top - low)]
+        laid += (upper[:, 0].mean(), top, upper[:, 2].mean())
+        found.append(float(tree.query(laid)[0].mean() / (scale * height)))
+    return min(found)

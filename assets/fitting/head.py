@@ -40,15 +40,15 @@ from ..model import (
 )
 from ..topology import boundary_loops
 from ..user_files import named
-from .coarser import coarser
-from .collars import with_collars
+from .decimation import decimated
+from .eyelid_rim import with_eyelid_rims
 from .landmark_file import COUNT, nearest_vertices, read_landmarks
 from .landmark_order import check_counting, check_lips, groups_in_disorder
 from .layouts import Layout, drawn_over, maps_in, own_picture
+from .mesh_validation import SkinPiece, check_manifold, check_openings, skin_of, without_bag
 from .organs import FittedSkin, place_eyes, place_parts
 from .painting import plain_picture, spread_uv
-from .soundness import SkinPiece, check_manifold, check_openings, skin_of, without_bag
-from .warp import Similarity, Warp, nearest_on
+from .warp import Similarity, ThinPlateSpline, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
 SMALLEST = 1e-9  # between the outermost landmarks: below it, squares leave too few digits
@@ -155,13 +155,15 @@ def fit(
         notes += (f"its {len(skin.faces)} triangles are too many to move in time; simplified",)
         skin = _simplified(skin, target)
     normals = vertex_normals(skin.vertices, skin.faces)
-    warp = Warp(known.vertices[known.landmarks], target)
+    warp = ThinPlateSpline(known.vertices[known.landmarks], target)
     warped = warp.points(known.vertices)
     nearest = nearest_on(skin.vertices, normals, warped, known.faces)
     weight = nearest.interpolate(known.mandible_weight)
     fitted = FittedSkin(skin.vertices, normals, target, weight)
     eyes = place_eyes(known, fitted)
-    parts = with_collars(place_parts(known, fitted, warp, eyes), skin.vertices, skin.faces, eyes)
+    parts = place_parts(known, fitted, warp, eyes)
+    # Landmarks do not say exactly enough where a lid ends for lashes and tears.
+    parts = tuple(part for part in parts if part.bone != NECK and part.roots is None)
     uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
     across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
     painted = _painted(mesh, whole, skin, Layout(uv, skin.faces), known)
@@ -171,12 +173,7 @@ def fit(
         landmarks=skin.landmarks,
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
-        parts=tuple(
-            part
-            for part in parts
-            # Landmarks do not say exactly enough where a lid ends for lashes and tears.
-            if part.bone != NECK and part.roots is None
-        ),
+        parts=with_eyelid_rims(parts, skin.vertices, skin.faces, eyes),
         uv=painted.layout.uv,
         face_uv=painted.layout.face_uv,
         albedo=painted.albedo,
@@ -238,7 +235,7 @@ def _painted(
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
     """The same form with as many triangles as can be moved in time."""
     for attempt in range(ATTEMPTS):
-        vertices, faces = coarser(skin.vertices, skin.faces, MOST_SIMULATED, attempt)
+        vertices, faces = decimated(skin.vertices, skin.faces, MOST_SIMULATED, attempt)
         with contextlib.suppress(AssetError):
             check_manifold(faces)
             break

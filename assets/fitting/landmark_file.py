@@ -26,7 +26,7 @@ from ..meshes import FARTHEST, Mesh
 from ..model import FloatArray, IndexArray
 from ..user_files import named, read_file
 from .landmark_order import INNER_LIPS, OUTER_LIPS
-from .soundness import path_lengths
+from .mesh_validation import path_lengths
 from .warp import nearest_on
 
 COUNT = 68

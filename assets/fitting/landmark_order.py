@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from ..errors import AssetError
 from ..model import FloatArray, IndexArray
-from .soundness import SkinPiece, path_lengths
-from .warp import Warp
+from .mesh_validation import SkinPiece, path_lengths
+from .warp import bending
 
 Order = npt.NDArray[np.intp]
 
@@ -113,7 +113,7 @@ def check_counting(vertices: FloatArray, landmarks: IndexArray, template: FloatA
     largest, smallest = (f(np.ptp(each, axis=0).max() for each in points) for f in (max, min))
     if not 0.0 < largest < MOST_SPREAD * smallest:  # a landmark is far off, and that is the fault
         return
-    given, before = (Warp(template, each / largest).bending for each in points)
+    given, before = (bending(template, each / largest) for each in points)
     if before < SMOOTHER * given:
         raise AssetError(
             "the landmarks' vertex numbers are counted from 1; count from 0, or subtract 1 from "

@@ -16,11 +16,13 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 
 from risorius.geometry.closest import SurfacePoints, closest_points
 
 from ..model import FloatArray, IndexArray
 
+LITTLE = 1e-6  # that a spline gives whose weights are asked for
 WRONG_SIDE = 12.0  # [mm] that a point seems farther away where the surface faces the other way
 
 
@@ -73,7 +75,7 @@ class Deformation(Protocol):
         ...
 
 
-class Warp:
+class ThinPlateSpline:
     """The smoothest deformation of space that takes some points to others, or near them."""
 
     def __init__(
@@ -84,38 +86,24 @@ class Warp:
         give: how readily points miss their targets where the deformation is less smooth, of all or
         each (n,) [unit of `source`].
         """
-        give = np.full(len(source), give)
         first = np.sort(np.unique(source.round(6), axis=0, return_index=True)[1])
-        source, target, give = source[first], target[first], give[first]
-        count = len(source)
-        self._centres = source
-        ones = np.hstack([np.ones((count, 1)), source])
-        system = np.zeros((count + 4, count + 4))
-        # The kernel r is negative where others are positive: so is what makes it give.
-        system[:count, :count] = _distances(source, source) - np.diag(give)
-        system[:count, count:] = ones
-        system[count:, :count] = ones.T
-        right = np.vstack([target, np.zeros((4, 3))])
-        self._weights: FloatArray = np.asarray(np.linalg.solve(system, right), np.float64)
-        self._bent: FloatArray = system[:count, :count] @ self._weights[:count]
-
-    @property
-    def bending(self) -> float:
-        """How much it bends, in squares of the target's unit over the source's; 0: not at all."""
-        return -float((self._weights[: len(self._centres)] * self._bent).sum())
+        give = np.broadcast_to(give, len(source))[first]
+        self._spline = scipy.interpolate.RBFInterpolator(
+            source[first], target[first], smoothing=give, kernel="linear", degree=1
+        )
 
     def points(self, points: npt.ArrayLike) -> FloatArray:
         """Where points (n, 3) come to lie."""
-        x = np.asarray(points, dtype=np.float64)
-        count = len(self._centres)
-        bent: FloatArray = _distances(x, self._centres) @ self._weights[:count]
-        bent = bent + (self._weights[count] + x @ self._weights[count + 1 :])
-        return bent
+        return np.asarray(self._spline(np.asarray(points, dtype=np.float64)), np.float64)
 
 
-def _distances(a: FloatArray, b: FloatArray) -> FloatArray:
-    distances: FloatArray = np.sqrt(((a[:, None] - b[None]) ** 2).sum(axis=2))
-    return distances
+def bending(source: FloatArray, target: FloatArray) -> float:
+    """How much a spline from points to others bends, in squares of their units; 0: not at all.
+
+    A spline misses its targets by its weights, times what it gives.
+    """
+    missed = target - ThinPlateSpline(source, target, LITTLE).points(source)
+    return float((missed * target).sum()) / LITTLE
 
 
 def nearest_on(

@@ -20,8 +20,7 @@ import numpy.typing as npt
 
 from risorius.geometry.normals import cross_products, vertex_normals
 
-from ..subdivision import quarter
-from ..topology import Faces, edge_faces, edge_key
+from ..topology import Faces, edge_faces, edge_key, quarter
 from .fields import Points, Values, gradient, project, unit
 from .form import broad_distance as distance
 from .intersections import self_intersections

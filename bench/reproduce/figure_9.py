@@ -19,7 +19,7 @@ from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
-from risorius.assets.plane import CELL, COLUMNS, ROWS, make_grid
+from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid
 
 from ..canvas import Canvas, Drawing, image_table
 from .figure_coherence import FLAT, FRAME_SECONDS, GOURAUD

@@ -12,7 +12,7 @@ from typing import SupportsFloat
 
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
-from risorius.assets.plane import CELL, COLUMNS, ROWS
+from risorius.assets.sheets import CELL, COLUMNS, ROWS
 from risorius.refine.kahler import criterion, smoothing
 from risorius.refine.mesh import rings
 

@@ -15,8 +15,7 @@ from risorius.assets.generator import form
 from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import FineMesh, Head
-from risorius.assets.subdivision import quarter
-from risorius.assets.topology import boundary_loops
+from risorius.assets.topology import boundary_loops, quarter
 from risorius.geometry.normals import cross_products
 from tests.assets import checks
 

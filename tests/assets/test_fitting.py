@@ -15,7 +15,7 @@ from risorius import assets, sim
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.painting import is_behind_others
-from risorius.assets.fitting.warp import Similarity, Warp, nearest_on
+from risorius.assets.fitting.warp import Similarity, ThinPlateSpline, nearest_on
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops, edge_faces
 from risorius.bench.simulation.lines_of_sight import eyeballs_of, lid_gaps
@@ -329,11 +329,14 @@ def test_warp_meets_its_points_and_keeps_similarities(generator: np.random.Gener
     """Landmarks go exactly where they should; a similarity is carried on everywhere."""
     source = generator.normal(size=(20, 3))
     target = source + 0.2 * generator.normal(size=(20, 3))
-    assert np.abs(Warp(source, target).points(source) - target).max() < 1e-9
+    assert np.abs(ThinPlateSpline(source, target).points(source) - target).max() < 1e-9
     turn, _ = np.linalg.qr(generator.normal(size=(3, 3)))
     moved = Similarity(2.0, turn, np.array([1.0, 2.0, 3.0]))
     far = 5.0 * generator.normal(size=(50, 3))
-    assert np.abs(Warp(source, moved.points(source)).points(far) - moved.points(far)).max() < 1e-7
+    assert (
+        np.abs(ThinPlateSpline(source, moved.points(source)).points(far) - moved.points(far)).max()
+        < 1e-7
+    )
     again = Similarity.between(source, moved.points(source))
     assert np.abs(again.points(far) - moved.points(far)).max() < 1e-9
     assert again.is_mirrored == (np.linalg.det(turn) < 0.0)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from risorius import assets, sim
 from risorius.app.cli.parameters import PERSON_NAMES
 from risorius.app.scenes import FaceScene
-from risorius.assets.fitting.soundness import SkinPiece, check_manifold, check_openings
+from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings
 from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.identities import (
     NAMED,

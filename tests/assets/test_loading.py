@@ -9,8 +9,8 @@ import pytest
 
 from risorius import assets
 from risorius.assets import loading
-from risorius.assets.cloth import COLOURS
 from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.sheets import COLOURS
 
 COLOURS_OF_BALL = np.array(COLOURS, np.float32)
 MOST_DATA = 2_500_000  # bytes of all data files together; half of it is the painted skin

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import assets
-from risorius.assets.fitting.upright import axes_turned, upright
+from risorius.assets.fitting.guess import axes_turned, upright
 from risorius.assets.model import FloatArray
 
 

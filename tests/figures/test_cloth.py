@@ -14,8 +14,7 @@ from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 from risorius.app.scenes import ClothScene
-from risorius.assets.cloth import CELL, CELLS
-from risorius.assets.plane import make_grid
+from risorius.assets.sheets import CLOTH_CELL, CLOTH_CELLS, make_grid
 from risorius.bench.canvas import Canvas, Drawing
 from risorius.bench.reproduce.figure_9 import levels_apart, outline_apart
 from risorius.bench.reproduce.figure_coherence import FLAT, GOURAUD
@@ -27,12 +26,12 @@ SMOOTH = PRESETS[FIRST_PRESET]["cloth"].told("kahler")
 def pictures() -> dict[str, Image]:
     """Flat shaded: the coarse cloth static, by the paper's rule, in the first look; and dense."""
     cloth = assets.load("cloth")
-    flat, faces = make_grid(2 * CELLS, 2 * CELLS, CELL / 2)
+    flat, faces = make_grid(2 * CLOTH_CELLS, 2 * CLOTH_CELLS, CLOTH_CELL / 2)
     sheet = SimpleNamespace(vertices=flat[:, [1, 2, 0]] + [0, cloth.vertices[0, 1], 0], faces=faces)
     dense = sim.Cloth(sheet, np.zeros(3), cloth.radius)
     dense.held = 0.0
     dense.step(4.0)
-    side = 2 * CELLS + 1
+    side = 2 * CLOTH_CELLS + 1
     coarse = dense.positions.reshape(side, side, 3)[::2, ::2].reshape(-1, 3)
     scene = ClothScene()
     camera = camera_for(scene, "24,12,1.8")

@@ -16,10 +16,9 @@ import numpy.typing as npt
 import scipy
 
 from risorius.assets.errors import AssetError
-from risorius.assets.fitting.guess import guess, placing, skin_around
+from risorius.assets.fitting.guess import guess, placing, skin_around, upright
 from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
-from risorius.assets.fitting.soundness import check_manifold
-from risorius.assets.fitting.upright import upright
+from risorius.assets.fitting.mesh_validation import check_manifold
 from risorius.assets.fitting.warp import Similarity, nearest_on
 from risorius.assets.meshes import read_mesh
 from risorius.geometry.normals import vertex_normals

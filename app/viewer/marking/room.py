@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from risorius import render
-from risorius.assets.fitting.upright import axes_turned
+from risorius.assets.fitting.guess import axes_turned
 
 from ..documents.file_drop import FileDrop
 from ..documents.scripts import Question

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius import refine
-from risorius.assets.plane import make_grid
+from risorius.assets.sheets import make_grid
 from risorius.bench.reproduce import figure_8, folds
 from risorius.bench.reproduce.figure_8 import POSES, Pose
 

@@ -1,4 +1,4 @@
-"""What closes an eye of another head behind its lids: a collar from their edge to the eyeball.
+"""What closes an eye of another head behind its lids: a rim from their edge to the eyeball.
 
 The built-in lids reach behind the front of the ball, and flesh fills their corners. A mesh that is
 brought ends anywhere: between its edge and the ball one would look into the empty head.
@@ -16,24 +16,24 @@ from risorius.geometry.normals import vertex_normals
 from ..model import Eye, FloatArray, IndexArray, Part
 from ..topology import boundary_loops, quads_between
 
-FLESH = "eye_corners"  # the part that collars belong to: they have its colour
+FLESH = "eye_corners"  # the part that rims belong to: they have its colour
 FARTHEST = 1.6  # radii of the ball from its centre: the edge around an eye is nearer
 ROWS = 8  # of vertices, from the lids' edge backward
-BEHIND = 3.0  # [mm] behind the equator of the ball: there a collar ends
+BEHIND = 3.0  # [mm] behind the equator of the ball: there a rim ends
 TUCKED, SUNK = 0.2, 0.3  # [mm] that it begins within the lids and ends within the ball
 DARKEST = 0.6  # of the light at its end: it lies in the shade
 
 
-def with_collars(
+def with_eyelid_rims(
     parts: Sequence[Part], vertices: FloatArray, faces: IndexArray, eyes: Sequence[Eye]
 ) -> tuple[Part, ...]:
-    """The parts of a head, its flesh with a collar for each eye whose skin ends around it.
+    """The parts of a head, its flesh with a rim for each eye whose skin ends around it.
 
     vertices: of the skin [mm], shape (V, 3); faces: its triangles, shape (F, 3).
     """
     loops = [(eye, _edge_around(eye, vertices, faces)) for eye in eyes]
     return tuple(
-        _joined(part, [_collar(eye, vertices[loop]) for eye, loop in loops if loop])
+        _joined(part, [_rim_of(eye, vertices[loop]) for eye, loop in loops if loop])
         if part.name == FLESH
         else part
         for part in parts
@@ -49,7 +49,7 @@ def _edge_around(eye: Eye, vertices: FloatArray, faces: IndexArray) -> list[int]
     return next((loop for loop in loops if away[loop].max() < reach), [])
 
 
-def _collar(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
+def _rim_of(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
     """Vertices (ROWS n, 3), row by row, and faces that are seen from the front.
 
     edge: where the skin ends, shape (n, 3), in the direction of its faces. From each of its points
@@ -72,10 +72,10 @@ def _collar(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
     return points, faces
 
 
-def _joined(part: Part, collars: Sequence[tuple[FloatArray, IndexArray]]) -> Part:
-    """A part with collars of its colour, which darken backward."""
+def _joined(part: Part, rims: Sequence[tuple[FloatArray, IndexArray]]) -> Part:
+    """A part with rims of its colour, which darken backward."""
     colour = part.colours.mean(axis=0)
-    for points, faces in collars:
+    for points, faces in rims:
         light = np.repeat(np.linspace(1.0, DARKEST, ROWS), len(points) // ROWS)
         part = replace(
             part,

@@ -13,7 +13,7 @@ from ..model import FloatArray, IndexArray
 UNEVEN = 5e-5  # of the mesh's size: 0.01 mm on a head
 
 
-def coarser(
+def decimated(
     vertices: FloatArray, faces: npt.NDArray[np.int32], count: int, attempt: int = 0
 ) -> tuple[FloatArray, IndexArray]:
     """Other vertices and about `count` triangles; the edges of openings stay where they are.
