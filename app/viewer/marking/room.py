@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from typing import Protocol
 
 import numpy as np
 
-from risorius import render
 from risorius.assets.fitting.guess import axes_turned
 
-from ..documents.file_drop import FileDrop
-from ..documents.scripts import Question
+from ..context import ApplicationContext
 from ..interface.commands import Command, MenuBar, set_keys
-from ..interface.gui import Gui
-from ..messages import Message, Messages, Task
+from ..messages import Message, Task
 from ..picture.painter import Painter
-from ..session.session import Session
-from ..settings import Settings
 from .marking import Marking
 from .mouse import MarkingMouse
 from .panel import MarkingPanel
@@ -27,37 +22,31 @@ QUARTER = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # cloc
 SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size", "Keys and mouse")
 
 
-class Window(Protocol):
-    """What is needed of the window (window/application.py)."""
-
-    surface: render.WindowSurface
-    gui: Gui
-    settings: Settings
-    session: Session
-    messages: Messages
-    question: Question
-    file_drop: FileDrop
-    commands: tuple[Command, ...]
-
-    def leave_marking(self) -> None:
-        """Back to the face."""
-
-
 class Room:
     """A mesh that is marked, in the window."""
 
-    def __init__(self, marking: Marking, window: Window) -> None:
-        self.marking, self._window = marking, window
-        surface, messages = window.surface, window.messages
-        self.view = MarkingView(marking, window.settings, surface)
+    def __init__(
+        self,
+        marking: Marking,
+        app: ApplicationContext,
+        others: Iterable[Command],
+        open_files: Callable[[Sequence[str]], Message],
+        leave: Callable[[], None],
+    ) -> None:
+        """others: the window's own commands. leave: goes back to the face."""
+        self.marking, self._question = marking, app.question
+        self._open_files, self._leave = open_files, leave
+        gui, surface, messages = app.gui, app.surface, app.messages
+        self.view = MarkingView(marking, app.settings, surface)
         self.picture = MarkingPicture(marking, surface)
         self.painter = Painter(self.picture, self.view, messages)
         self.mouse = MarkingMouse(self.view, surface, marking, messages)
-        self.commands = self._commands()
-        set_keys(self.commands, window.settings.keys)
+        shared = [command for command in others if command.label in SHARED]
+        self.commands = (*self._commands(), *shared)
+        set_keys(self.commands, app.settings.keys)
         by_label = {command.label: command for command in self.commands}
-        menus = MenuBar(window.gui, messages, self.commands, lambda: window.session.unsaved)
-        self.panel = MarkingPanel(window.gui, messages, self.picture, menus, by_label)
+        menus = MenuBar(gui, messages, self.commands, lambda: app.session.unsaved)
+        self.panel = MarkingPanel(gui, messages, self.picture, menus, by_label)
         self._was_upright = marking.is_upright
 
     def paint(self, elapsed: float) -> bool:
@@ -72,17 +61,17 @@ class Room:
         marking = self.marking
         if marking.file is None or marking.unsaved:
             return marking.save(self.use)
-        return self._window.file_drop.open([str(marking.path), str(marking.file)])
+        return self._open_files([str(marking.path), str(marking.file)])
 
     def leave(self, then: Task = lambda: None) -> Message:
         """Back to the face, and on; if marks would be lost, ask first."""
 
         def go() -> Message:
             """Do so."""
-            self._window.leave_marking()
+            self._leave()
             return then()
 
-        return self._window.question.before("Leave", go, other=self.marking)
+        return self._question.before("Leave", go, other=self.marking)
 
     def _step(self, direction: int) -> None:
         """To another landmark, whose side may be turned away."""
@@ -117,5 +106,4 @@ class Room:
             landmarks("Mirror this group", "M", marking.mirror),
             landmarks("Guess again", "G", marking.guess),
             Command("View", "Frame the face", "F", view.fit_scene),
-            *(command for command in self._window.commands if command.label in SHARED),
         )

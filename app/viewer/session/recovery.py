@@ -158,13 +158,15 @@ def work_of(session: Session) -> Work:
     return Work(
         script=session.script if is_unsaved else None,
         path=session.file.path if is_unsaved else None,
-        recording=session.recording_so_far,
+        recording=session.recorder.script() if session.recorder is not None else None,
         pose=pose if _has_pose(session) else None,
     )
 
 
 def _has_pose(session: Session) -> bool:
-    return session.has_unsaved_pose or session.has_moved_in_pause
+    """Whether there is one; what is moved while a recording is paused, that has not."""
+    missed = session.recorder.missed if session.recorder is not None else {}
+    return session.has_unsaved_pose or (bool(missed) and not session.is_playing)
 
 
 def _state(session: Session) -> object:

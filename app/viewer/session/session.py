@@ -41,7 +41,7 @@ class Session:
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.is_following = any(self.values.values())  # the script; a neutral face need not yet
         self._is_touched = False  # by hand, since something was noted
-        self._recorder: Recorder | None = None
+        self.recorder: Recorder | None = None  # of what is being recorded
         self.live_override = LiveOverride()  # leaves no trace in what can be undone
         self.display: object = None  # how the scene is drawn, see `show`
         self.history = History(self._document(), lambda before, after: after.new_keys(before))
@@ -61,8 +61,8 @@ class Session:
         for each in {name, twin_of(name)} if linked else {name}:
             low, high = self.controls.limits[each]
             self.values[each] = min(max(rounded(value), low), high)
-            if self._recorder is not None:  # the script goes on, and this is held
-                self._recorder.held[each] = self.values[each]
+            if self.recorder is not None:  # the script goes on, and this is held
+                self.recorder.held[each] = self.values[each]
         if not self.is_recording:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = self._is_touched = True
@@ -97,8 +97,8 @@ class Session:
         self._set_pose(self.controls.random(generator or np.random.default_rng()), "Random")
 
     def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
-        if self._recorder is not None:
-            self._recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
+        if self.recorder is not None:
+            self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved, self._is_touched = is_unsaved, True
@@ -277,35 +277,35 @@ class Session:
                 self.is_playing = self.is_looping
             self._follow_script()
         current = self.current
-        if self._recorder is not None:
-            self._recorder.add(self.time, current)
+        if self.recorder is not None:
+            self.recorder.add(self.time, current)
         self.scene.pose({**current, **(beneath or {})})
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
         self.is_following = True
-        held = self._recorder.held if self._recorder is not None else {}
+        held = self.recorder.held if self.recorder is not None else {}
         self.values = self.controls.pose({**self.script.at(self.time), **held})
 
     @property
     def is_recording(self) -> bool:
         """Whether movements are being recorded."""
-        return self._recorder is not None
+        return self.recorder is not None
 
     def toggle_recording(self) -> Message:
         """Record what is moved into the script, which plays from the time shown, or end that.
 
         Nothing is recorded while it is paused, or goes through a part again.
         """
-        if self._recorder is None:
+        if self.recorder is None:
             held = {name: self.values[name] for name in self.differing}
             start = self.time % self.script.duration if self.is_looping else self.time
-            self._recorder = Recorder(self.script, start, self.controls.limits, held)
-            self.time, self.pose_is_unsaved = self._recorder.start, False
+            self.recorder = Recorder(self.script, start, self.controls.limits, held)
+            self.time, self.pose_is_unsaved = self.recorder.start, False
             if not self.is_playing:
                 self.toggle_playing()
             return f"Recording from {self.time:.2f} s: what you move replaces the script there"
-        recorder, self._recorder = self._recorder, None
+        recorder, self.recorder = self.recorder, None
         recording, self.is_playing = recorder.script(), False
         if recording is not None:
             self.script = recording
@@ -321,19 +321,9 @@ class Session:
         return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s{apart}"
 
     @property
-    def recording_so_far(self) -> Script | None:
-        """What would be the script if the recording was stopped now."""
-        return self._recorder.script() if self._recorder is not None else None
-
-    @property
     def recorded_seconds(self) -> float:
         """How long the recording is so far."""
-        return self._recorder.time - self._recorder.start if self._recorder is not None else 0.0
-
-    @property
-    def has_moved_in_pause(self) -> bool:
-        """Whether controls were moved while the recording is paused, which it has not."""
-        return self._recorder is not None and not self.is_playing and bool(self._recorder.missed)
+        return self.recorder.time - self.recorder.start if self.recorder is not None else 0.0
 
     # Files
 
@@ -353,7 +343,7 @@ class Session:
 
     def _replace_script(self, script: Script, file: ScriptFile, label: str) -> None:
         """Another script in place of this one."""
-        self._recorder, self._is_touched = None, False
+        self.recorder, self._is_touched = None, False
         self.script, self.file, self.is_playing = script, file, False
         self._go_to(0.0)
         self.note(label)

@@ -205,7 +205,7 @@ class Application(ApplicationContext):
         self.leave_marking()
         self.mouse.forget()
         self.session.is_playing = False
-        self.room = Room(marking, self)
+        self.room = Room(marking, self, self.commands, self.file_drop.open, self.leave_marking)
         return line
 
     def leave_marking(self) -> None:
