@@ -127,7 +127,7 @@ def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
         is_refined=case.is_refined,
         overlays=["muscles"] * case.shows_muscles,
     )
-    viewer.panel_cache.refresh = REFRESH if case.are_panels_cached else 0.0
+    viewer.refresh = REFRESH if case.are_panels_cached else 0.0
     is_software = viewer.surface.is_software
     viewer.painter.level_of_detail = (
         LevelOfDetail(is_software=is_software) if case.level is None else _FixedLevel(case.level)

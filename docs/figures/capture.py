@@ -174,7 +174,7 @@ def live(folder: Path) -> Image:
     take = written(folder / "live.csv", SMILED, 25.0)
     with Viewer(script_for(None, "face"), TALL_WINDOW) as viewer:
         imgui.get_io().config_flags |= imgui.ConfigFlags_.no_mouse
-        viewer.panel_cache.refresh = 0.0  # panels in every frame
+        viewer.refresh = 0.0  # panels in every frame
         viewer.live.start(Listening("livelink"))
         with Sender("livelink", LOOPBACK, None, "my phone") as sender:
             thread = threading.Thread(target=sender.play, args=(read_take(take),))

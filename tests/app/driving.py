@@ -45,7 +45,7 @@ def settle(viewer: Viewer) -> None:
         return shown[-STEADY:] == STEADY * shown[-1:]
 
     # While a face moves, panels may be older than what was set.
-    with mock.patch.object(viewer.panel_cache, "refresh", 0.0):
+    with mock.patch.object(viewer, "refresh", 0.0):
         assert until(viewer, is_steady), shown[-2:]
 
 

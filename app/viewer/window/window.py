@@ -26,39 +26,6 @@ from ..session.live_commands import PACING
 from .application import Application
 
 REFRESH = 0.1  # [s] that a picture of the panels may be old while the face moves
-
-
-class PanelCache:
-    """Says whether panels are due; the window tells when it has drawn them."""
-
-    def __init__(self) -> None:
-        self.refresh = REFRESH
-        self._age = math.inf  # [s]
-        self._size = (0, 0)
-        self._is_over_scene = True
-
-    def age(self, seconds: float) -> None:
-        """Time has passed."""
-        self._age += seconds
-
-    def are_due(self, size: tuple[int, int], *, is_moving: bool, has_input: bool) -> bool:
-        """Whether to draw them in this frame, in a window of `size` pixels.
-
-        is_moving: whether the scene has changed; else there is time. has_input: from the user.
-        """
-        return (
-            not is_moving
-            or has_input
-            or self._is_over_scene
-            or self._age >= self.refresh
-            or size != self._size
-        )
-
-    def note_drawn(self, size: tuple[int, int], *, is_over_scene: bool) -> None:
-        """They were drawn in a window of `size` pixels, some of it over the scene or nothing."""
-        self._age, self._size, self._is_over_scene = 0.0, size, is_over_scene
-
-
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
 WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
 LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no more than live
@@ -70,10 +37,12 @@ class Viewer(Application):
 
     _last: float  # when the last frame began [s]
     _awake: int  # frames that are drawn yet, whatever happens
+    refresh = REFRESH
+    # Of the panels as they were drawn last: how old [s], in what window [pixels], over the scene?
+    _panels_age, _panels_size, _is_scene_covered = math.inf, (0, 0), True
 
     def __enter__(self) -> Viewer:
         self._last, self._awake = time.perf_counter(), FRAMES_AFTER_EVENT
-        self.panel_cache = PanelCache()
         on_drop(self.surface.handle, self.drop)
         for _ in range(2):  # panels and tabs find their places before the first picture
             self._draw_gui(is_visible=False)
@@ -221,13 +190,18 @@ class Viewer(Application):
             self._awake = FRAMES_AFTER_EVENT
 
     def _show_panels(self, elapsed: float, *, is_moving: bool) -> None:
-        """Draw the panels around the scene where their image is not stored."""
+        """Draw the panels around the scene, unless their last picture does.
+
+        On software OpenGL they cost as much as a quarter of the face, and while a script plays only
+        sliders creep in them. Whatever the user does is answered in the same frame.
+        """
         size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
         if not self.is_left_alone:  # what the face does by itself moves no slider
-            self.panel_cache.age(elapsed)
+            self._panels_age += elapsed
         # What is dragged in the scene moves no slider.
         has_input = self.room is not None or (is_answering and not self.mouse.is_dragging)
-        if not self.panel_cache.are_due(size, is_moving=is_moving, has_input=has_input):
+        is_stale = self._panels_age >= self.refresh or size != self._panels_size
+        if is_moving and not (has_input or is_stale or self._is_scene_covered):
             return
         self.surface.resolve()
         if self.room is not None:
@@ -237,7 +211,8 @@ class Viewer(Application):
             self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
             self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_visible=True)
-        self.panel_cache.note_drawn(size, is_over_scene=self.gui.covers(self.view.area))
+        self._panels_age, self._panels_size = 0.0, size
+        self._is_scene_covered = self.gui.covers(self.view.area)
 
     def _draw_gui(self, *, is_visible: bool) -> None:
         """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
