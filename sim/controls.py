@@ -61,6 +61,7 @@ class Controls:
         self.layers = layers.groups
         self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
         self._index = {name: n for n, name in enumerate(self.names)}
+        self._bounds = [self.limits[name] for name in self.names]
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
         self._low = np.array([c.low for c in controls], dtype=np.float64)
         self._high = np.array([c.high for c in controls], dtype=np.float64)
@@ -96,22 +97,24 @@ class Controls:
         place = self._index.get(name, len(self.lowest))
         return float(self.activation[place]) if place < len(self.lowest) else 0.0
 
-    def checked(self, name: str, value: float) -> tuple[int, float]:
-        """Place and value of a setting; ValueError if unknown, not finite or out of limits."""
+    def checked(self, name: str, value: float, *, cut_off: bool = False) -> tuple[int, float]:
+        """Place and value of a setting, if need be cut off; ValueError if it cannot be used."""
         index = self.index(name)
-        low, high = self.limits[name]
+        low, high = self._bounds[index]
         number = finite(f"control '{name}'", value)
-        if not low - SLACK <= number <= high + SLACK:
+        if not cut_off and not low - SLACK <= number <= high + SLACK:
             raise ValueError(
                 f"control '{name}': was {number:g}, allowed is {low:g} to {high:g}; clamp it first"
             )
         return index, min(max(number, low), high)
 
-    def set_all(self, values: Mapping[str, float], *, others_to_zero: bool = False) -> None:
+    def set_all(
+        self, values: Mapping[str, float], *, others_to_zero: bool = False, cut_off: bool = False
+    ) -> None:
         """Set several values at once; nothing is changed if one is refused."""
         if not isinstance(values, Mapping):
             raise ValueError(f"values: was {quoted(values)}, must be a mapping of name to number")
-        checked = [self.checked(name, value) for name, value in values.items()]
+        checked = [self.checked(*each, cut_off=cut_off) for each in values.items()]
         if others_to_zero:
             self._values[:] = 0.0
         for index, value in checked:

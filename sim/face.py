@@ -166,9 +166,10 @@ class Simulation:
         """Set several controls; if one is refused (see `set`), none is set."""
         self._controls.set_all(values)
 
-    def pose(self, values: Mapping[str, float]) -> None:
-        """Set several controls and all others to zero; if one is refused, none is set."""
-        self._controls.set_all(values, others_to_zero=True)
+    def pose(self, values: Mapping[str, float], *, cut_off: bool = False) -> None:
+        """Set several controls, all others to zero; none if one is refused, or cut off instead."""
+        checked.flag("cut_off", cut_off)
+        self._controls.set_all(values, others_to_zero=True, cut_off=cut_off)
 
     def reset(self) -> None:
         """Relax everything and put the face back to rest at once."""

@@ -64,6 +64,8 @@ ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(  # of the name
     {True: SIDES, "Left Right": ("Left", "Right")}
 )
 GREATEST_SHARE = 2.0  # a share beyond it is a slip of the pen
+Share = Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]
+Floor = Annotated[float, Within(0.0, GREATEST_SHARE)]
 LEAST_WHOLE = 0.08  # of what a control is a share of: below it the share fades instead of jumping
 
 
@@ -124,14 +126,12 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
 class _Row(Record):
     """A row of a table, as the head of this module describes it."""
 
-    entries: Rest[Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]]
+    entries: Rest[Share]
     action: str = ""
     pair: Annotated[bool | str, OneOf((False, *ENDINGS), 'true, false or "Left Right"')] = False
     mirror: str | None = None
     share_of: str | None = None
-    at_least: Mapping[str, Annotated[float, Within(0.0, GREATEST_SHARE)]] = field(
-        default_factory=dict
-    )
+    at_least: Mapping[str, Floor] = field(default_factory=dict)
 
     def exchanged(self) -> _Row:
         """The row with left and right exchanged."""
@@ -190,16 +190,12 @@ class _Reader:
                 f"'{row.share_of}'{question(row.share_of, self.shares)}"
             )
         if row.mirror is not None and (row.pair or row.mirror == name):
-            raise ValueError(
-                f"{where}, 'mirror': was '{row.mirror}', must be another name, in a row that is no "
-                "pair"
-            )
+            allowed = "another name, in a row that is no pair"
+            raise ValueError(f"{where}, 'mirror': was '{row.mirror}', must be {allowed}")
         if row.pair:
             for side in (*SIDES, *ENDINGS["Left Right"]):
                 if name.endswith(side):
-                    raise ValueError(
-                        f"{where}: a pair adds the sides by itself; leave '{side}' away"
-                    )
+                    raise ValueError(f"{where}: a pair adds the sides; leave '{side}' away")
             for control in (*row.entries, *row.at_least):
                 if control.endswith(SIDES):
                     raise ValueError(f"{where}: in a pair leave the side of '{control}' away")
@@ -209,8 +205,8 @@ class _Reader:
         """ValueError unless a layer below has all controls, and they can be part of a row."""
         for control in (*row.entries, *row.at_least):
             if control not in below:
-                hint = question(control, below)
-                raise ValueError(f"{where}: no layer below has a control called '{control}'{hint}")
+                told = f"no layer below has a control called '{control}'{question(control, below)}"
+                raise ValueError(f"{where}: {told}")
             if control in self.share_of:
                 raise ValueError(
                     f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
@@ -234,9 +230,7 @@ class _Reader:
 
 def _exchanged(entries: Mapping[str, float]) -> dict[str, float]:
     """Entries of a row with left and right exchanged."""
-    other = {**dict(zip(SIDES, SIDES[::-1], strict=True)), "": ""}
-    result = {}
-    for control, value in entries.items():
-        side = next((side for side in SIDES if control.endswith(side)), "")
-        result[control.removesuffix(side) + other[side]] = value
-    return result
+    left, right = SIDES
+    names = {name: name.removesuffix(left) + right for name in entries if name.endswith(left)}
+    names |= {name: name.removesuffix(right) + left for name in entries if name.endswith(right)}
+    return {names.get(name, name): value for name, value in entries.items()}

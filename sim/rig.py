@@ -48,7 +48,6 @@ GATES = ("none", "upper_lip", "lower_lip")
 LIDS = ("upper_close", "lower_raise", "upper_raise")  # what a lid muscle does
 
 MOUTH = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
-LANDMARKS = tuple(map(str, range(LANDMARK_COUNT)))  # as keys of tables
 
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
@@ -64,9 +63,10 @@ def _mix(weights: dict[str, float]) -> Mix:
     return tuple((int(number), weight) for number, weight in weights.items())
 
 
-Landmark = Annotated[str, OneOf(LANDMARKS, f"a landmark, 0 to {LANDMARK_COUNT - 1}")]
+Landmark = Annotated[
+    str, OneOf(tuple(map(str, range(LANDMARK_COUNT))), f"a landmark, 0 to {LANDMARK_COUNT - 1}")
+]
 Weights = Annotated[Mix, MadeFrom(dict[Landmark, Annotated[float, Within(-5.0, 5.0)]], _mix)]
-Seeds = Annotated[Mix, MadeFrom(dict[Landmark, Annotated[float, Within(-2.0, 2.0)]], _mix)]
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ class Jaw(Record):
     sideways_deg: Annotated[float, Within(0.0, 20.0)] = 6.5  # yaw about the condyle of that side
     condyle: Annotated[Triple, Within(-100.0, 100.0)] = (0.0, -20.0, -20.0)
     softness: Annotated[float, Within(0.0, 1000.0)] = 60.0  # mm2, smooths the mandible weight
-    seeds: Seeds = ()
+    seeds: Weights = ()
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ class MappingTable:
     def controls(self, channels: Mapping[str, Value]) -> dict[str, Value]:
         """The values of the controls that the channels move: arrays or numbers, as given.
 
-        Nothing is cut off, and `app.scenes.clamped` does that.
+        Nothing is cut off; the scene does that.
         """
         controls: dict[str, Value] = {}
         for channel in chosen(channels):

@@ -187,7 +187,10 @@ class FaceScene(Scene):
         return ambient_occlusion(head, simulation)
 
     def pose(self, channels: Mapping[str, float]) -> None:
-        self.simulation.pose(clamped(self.limits, channels))
+        try:
+            self.simulation.pose(channels, cut_off=True)
+        except ValueError as error:  # a name that is no control
+            raise UserError(str(error)) from None
 
     def step(self, seconds: float) -> None:
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
@@ -342,9 +345,8 @@ def clamped(
     limits: Mapping[str, tuple[float, float]], channels: Mapping[str, float]
 ) -> dict[str, float]:
     """The channels, each cut off at its limits. Raises UserError on one that has none."""
-    for name in channels:
-        if name not in limits:
-            raise UserError(f"unknown control '{name}'")
+    for name in channels.keys() - limits.keys():
+        raise UserError(f"unknown control '{name}'")
     return {
         name: min(max(value, limits[name][0]), limits[name][1]) for name, value in channels.items()
     }

@@ -51,9 +51,6 @@ class Places(Set[KeyPlace]):
     def __len__(self) -> int:
         return sum(map(len, self.times.values()))
 
-    def __repr__(self) -> str:
-        return f"Places of {len(self)} keys in {len(self.times)} tracks"
-
     @property
     def first(self) -> float:
         """The earliest time [s]; of a set that is not empty."""

@@ -48,6 +48,7 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
     ("pose", "values", "values", TABLES),
     ("pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("pose", "cut_off", "cut_off", (None, 1, "yes", [])),
     ("jump", "values", "values", TABLES),
     ("jump", "values", "control", tuple({name: 1.0} for name in NAMES)),
     ("jump", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
@@ -61,7 +62,7 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
 RIGHT: dict[str, dict[str, Any]] = {
     "set": {"name": "jaw_open", "value": 0.5},
     "set_all": {"values": {"jaw_open": 0.5}},
-    "pose": {"values": {"jaw_open": 0.5}},
+    "pose": {"values": {"jaw_open": 0.5}, "cut_off": True},
     "drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
     "jump": {"values": {"jaw_open": 0.5}},
     "copy_from": {"other": None},  # its twins are those of the simulation that is asked

@@ -58,6 +58,8 @@ def test_value_must_be_within_limits(simulation: sim.Simulation) -> None:
     """Values out of limits are refused, and the limits named."""
     with pytest.raises(ValueError, match=r"'jaw_open': was -0.5, allowed is 0 to 1"):
         simulation.set("jaw_open", -0.5)
+    simulation.pose({"jaw_open": -0.5, "jaw_forward": 1.5}, cut_off=True)
+    assert (simulation.values["jaw_open"], simulation.values["jaw_forward"]) == (0.0, 1.0)
 
 
 def test_set_all_is_all_or_nothing(simulation: sim.Simulation) -> None:
