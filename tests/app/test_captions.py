@@ -40,13 +40,6 @@ def test_a_caption_without_room_is_left_out() -> None:
     assert [x > 300 for x, _, _ in made] == [True]
 
 
-def test_a_single_picture_has_no_line() -> None:
-    """Nothing is divided where there is one viewport."""
-    whole = [(0, 0, 400, 200)]
-    with_captions = captioned(GREY, labels(["x"], whole, None, STYLE), [0])
-    assert (with_captions[:150] == 128).all()
-
-
 def test_labels_lie_on_transparent_pictures() -> None:
     """Where nothing is, a plate is as opaque as it is; colours stay multiplied by alpha."""
     whole = [(0, 0, 400, 200)]

@@ -20,20 +20,6 @@ from risorius.app.errors import UserError
 GREY = np.full((64, 96, 3), 128, np.uint8)
 
 
-def test_a_film_has_its_frames_and_size(tmp_path: Path) -> None:
-    """What is written can be read back: size, rate and number of frames."""
-    import imageio_ffmpeg
-
-    path = tmp_path / "deep" / "film.mp4"
-    with outputs.film(path, (96, 64), 25.0) as add:
-        for _ in range(10):
-            add(GREY)
-    count, seconds = imageio_ffmpeg.count_frames_and_secs(str(path))
-    assert count == 10
-    assert seconds == pytest.approx(0.4, abs=0.02)
-    assert [item.name for item in path.parent.iterdir()] == ["film.mp4"]
-
-
 def test_a_broken_film_leaves_the_old_one(tmp_path: Path) -> None:
     """If the program fails in the middle, the user's earlier file is untouched."""
     path = tmp_path / "film.mp4"
@@ -99,13 +85,6 @@ def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
     with outputs.folder(target, overwrite=False) as add:
         add(GREY)
     assert not left.exists() and list(target.iterdir()) == [target / "frame_00000.png"]
-
-
-def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
-    """A parent that is a file is one clear line."""
-    (tmp_path / "file").write_text("x")
-    with pytest.raises(UserError, match="cannot be written"):
-        files.save_png(tmp_path / "file" / "picture.png", GREY)
 
 
 def test_a_link_stays_a_link(tmp_path: Path) -> None:

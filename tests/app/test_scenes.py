@@ -7,11 +7,10 @@ import pytest
 
 from risorius import refine
 from risorius.app.capture.cameras import whole_scene
-from risorius.app.cli.options import SCENE_NAMES
 from risorius.app.errors import UserError
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
-from risorius.app.scenes import SCENES, ClothScene, FaceScene, PlaneScene, clamped
+from risorius.app.scenes import ClothScene, FaceScene, PlaneScene, clamped
 from risorius.bench.simulation.lines_of_sight import meshes_of, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
@@ -91,11 +90,6 @@ def test_the_whole_cloth_is_in_the_frame() -> None:
         for points in (flat, cloth.positions, cloth.parts[0].vertices):
             seen = np.column_stack([points, np.ones(len(points))]) @ clip
             assert np.abs(seen[:, :2] / seen[:, 3:]).max() < 1.0, view
-
-
-def test_every_scene_can_be_chosen() -> None:
-    """The names of the command line are those of the scenes."""
-    assert list(SCENE_NAMES.choices) == list(SCENES)
 
 
 @pytest.fixture(scope="module")

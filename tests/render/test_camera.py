@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
-from pyrr import Vector4
 
 from risorius import render
 
@@ -22,17 +21,14 @@ def seen(
 
 
 @pytest.mark.parametrize("view", render.VIEWS)
-def test_target_is_in_the_middle(view: str) -> None:
-    """A point at the target projects to the centre of the frame."""
-    camera = render.OrbitCamera.framing(HEAD, view=view)
-    assert seen(camera, camera.target)[0, :2] == pytest.approx((0.0, 0.0), abs=1e-9)
-
-
-@pytest.mark.parametrize("view", render.VIEWS)
-@pytest.mark.parametrize("aspect", [0.4, 1.0, 16 / 9, 3.0])
-def test_framing_fits_everything(view: str, aspect: float) -> None:
+@pytest.mark.parametrize(
+    ("aspect", "is_orthographic"), [(0.4, False), (1.0, False), (16 / 9, False), (1.5, True)]
+)
+def test_framing_fits_everything(view: str, aspect: float, is_orthographic: bool) -> None:
     """All vertices are in the frame, between the clipping planes, and touch the margin."""
     camera = render.OrbitCamera.framing(HEAD, view=view)
+    camera.is_orthographic = is_orthographic
+    camera.fit(HEAD)
     places = seen(camera, HEAD, aspect)
     assert np.abs(places).max() <= 1.0
     assert np.abs(places[:, :2]).max() == pytest.approx(0.88, abs=0.03)
@@ -44,14 +40,6 @@ def test_framing_a_single_point() -> None:
     assert np.isfinite(seen(camera, (1.0, 2.0, 3.0))).all()
 
 
-def test_pyrr_matrices_multiply_as_in_books() -> None:
-    """projection * view * point is what the renderer computes with rows."""
-    camera = render.OrbitCamera.framing(HEAD, view="three-quarter")
-    point = HEAD[5]
-    clip = camera.projection_matrix(1.5) * camera.view_matrix() * Vector4([*point, 1.0])
-    assert np.asarray(clip)[:3] / clip[3] == pytest.approx(seen(camera, point)[0])
-
-
 def test_views_look_from_where_they_say() -> None:
     """Front is +z, the profile is from the subject's left (+x), below is from below."""
     eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
@@ -59,6 +47,7 @@ def test_views_look_from_where_they_say() -> None:
     assert eyes["profile"] == pytest.approx((1, 0, 0))
     assert eyes["three-quarter"][0] > 0.4 and eyes["three-quarter-right"][0] < -0.4
     assert eyes["below"][1] < -0.4
+    assert eyes["top"] == pytest.approx((0, 1, 0))
 
 
 def test_axes_are_the_frame() -> None:
@@ -68,15 +57,6 @@ def test_axes_are_the_frame() -> None:
     axes = np.stack(camera.axes())
     assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
     assert np.asarray(camera.view_matrix())[:3, :3].T == pytest.approx(axes, abs=1e-12)
-
-
-def test_orbit_full_circle_returns() -> None:
-    """Walking once round in 72 steps ends where it began."""
-    camera = render.OrbitCamera.framing(HEAD, view="three-quarter")
-    before = seen(camera, HEAD)
-    for _ in range(72):
-        camera.orbit(5.0)
-    assert seen(camera, HEAD) == pytest.approx(before, abs=1e-9)
 
 
 def test_orbit_stops_at_the_poles() -> None:
@@ -111,18 +91,6 @@ def test_pan_moves_by_the_height_of_the_frame() -> None:
     old = camera.target
     camera.pan(0.0, 0.5)
     assert seen(camera, old)[0, :2] == pytest.approx((0.0, -1.0))
-
-
-def test_copy_is_independent() -> None:
-    """Moving a copy leaves the original alone."""
-    camera = render.OrbitCamera.framing(HEAD)
-    before = seen(camera, HEAD)
-    other = camera.copy()
-    other.orbit(20.0, 10.0)
-    other.pan(0.3, 0.1)
-    other.target[:] = 0.0
-    other.scene_centre[:] = 0.0
-    assert (seen(camera, HEAD) == before).all()
 
 
 def test_clipping_planes_hold_the_scene_from_anywhere() -> None:
@@ -188,24 +156,6 @@ def test_orthographic_is_as_large_as_perspective_at_the_target() -> None:
     assert seen(camera, beside)[0, :2] == pytest.approx(2.0 * before)
     camera.pan(0.0, 0.5)
     assert seen(camera, beside)[0, 1] == pytest.approx(2.0 * before[1] - 1.0)
-
-
-@pytest.mark.parametrize("view", render.VIEWS)
-def test_orthographic_framing_fits_everything(view: str) -> None:
-    """All vertices are in the frame, between the clipping planes, and touch the margin."""
-    camera = render.OrbitCamera.framing(HEAD, view=view)
-    camera.is_orthographic = True
-    camera.fit(HEAD)
-    places = seen(camera, HEAD)
-    assert np.abs(places).max() <= 1.0
-    assert np.abs(places[:, :2]).max() == pytest.approx(0.88, abs=1e-6)
-
-
-def test_the_view_from_the_top_is_exact() -> None:
-    """It looks straight down, the face toward the lower edge of the frame."""
-    camera = render.OrbitCamera.framing(HEAD, view="top")
-    assert camera.axes()[2] == pytest.approx((0, 1, 0)) and camera.axes()[1][2] < -0.99
-    assert np.isfinite(np.asarray(camera.view_matrix())).all()
 
 
 def test_bad_zoom_and_aspect() -> None:

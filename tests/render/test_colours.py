@@ -26,16 +26,6 @@ def test_wireframe_darkens_edges_only(surface: render.Surface) -> None:
     assert 0.05 < changed.mean() < 0.2
 
 
-def test_wireframe_is_as_wide_as_asked(surface: render.Surface) -> None:
-    """A line of twice the width darkens about twice the pixels."""
-    plain = draw_image(surface, square())
-    loss = []
-    for width in (1.0, 2.0):
-        style = replace(PLAIN, wireframe=True, wire_width=width, wire_opacity=1.0)
-        loss.append(float((plain - draw_image(surface, square(), style)).sum()))
-    assert loss[1] / loss[0] == pytest.approx(2.0, abs=0.3)
-
-
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("wireframe", [False, True])
 def test_split_colours_are_where_the_values_say(

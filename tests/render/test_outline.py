@@ -78,18 +78,6 @@ def test_contours_are_the_edges_of_one_triangle() -> None:
     assert contours(np.zeros((0, 3), np.uint32)).shape == (2, 0)
 
 
-def test_strips_lie_outside_by_a_pixel() -> None:
-    """Each fringe goes from the contour, where it covers all, to a pixel outside, where nothing."""
-    shape, view = square(30.0), CameraView(facing(), (0, 0, 200, 100))
-    rows = fringes(np.hstack([shape.positions, shape.normals]), shape.triangles, view)
-    assert rows.shape == (4 * 6, 9)
-    is_outer = rows[:, 8] == 0.0
-    pixels = rows[:, 6:8] * (100.0, 50.0)
-    assert np.allclose(np.hypot(*pixels[is_outer].T), 1.0, atol=1e-4)
-    assert (pixels[~is_outer] == 0.0).all() and is_outer.sum() == 12
-    assert ((pixels * rows[:, :2]).sum(axis=1) >= 0.0).all()
-
-
 def test_what_lies_behind_the_eye_has_no_fringes() -> None:
     """A camera in the middle of the mesh: nothing fails, and nothing is not a number."""
     shape, camera = sphere(3), facing()

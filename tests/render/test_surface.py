@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from risorius import render
-from risorius.render.surface import clamp_samples
 
 from .scenes import PLAIN, Shape, draw_image, drawn, sphere, square
 
@@ -51,14 +50,6 @@ def test_samples_smooth_edges() -> None:
         red = frame[:, :, 0]
         levels[samples] = int(((red > 235) & (red < 254)).sum())
     assert levels[4] > levels[0] + 20
-
-
-@pytest.mark.parametrize(
-    ("asked", "most", "given"), [(4, 8, 4), (4, 2, 2), (16, 4, 4), (3, 8, 2), (1, 8, 0), (0, 8, 0)]
-)
-def test_samples_are_clamped(asked: int, most: int, given: int) -> None:
-    """The driver's powers of two up to what was asked for."""
-    assert clamp_samples(asked, most) == given
 
 
 def test_more_samples_than_the_driver_has() -> None:
@@ -121,13 +112,6 @@ def test_panel_lies_on_top(surface: render.Surface) -> None:
     frame = surface.read()
     assert (frame[-10:, :10] == (255, 0, 0)).all()
     assert (frame[:80] >= 254).all() and drawn(scene)[:80].any()
-
-
-def test_size_is_that_of_the_frame(surface: render.Surface) -> None:
-    """Offscreen, the size is what was asked for, and lines are one pixel wide by default."""
-    assert surface.size == (96, 96) and surface.pixel_scale == 1.0
-    with render.open_offscreen((30, 20), pixel_scale=2.0) as printed:
-        assert printed.pixel_scale == 2.0
 
 
 @pytest.mark.window

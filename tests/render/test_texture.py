@@ -10,7 +10,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import DARK_SKIN, PLAIN, Shape, draw_image, facing, lent, sphere, square
+from .scenes import PLAIN, Shape, draw_image, facing, lent, sphere, square
 
 SignedImage = npt.NDArray[np.int32]
 
@@ -94,16 +94,6 @@ def test_untextured_style_is_the_plain_picture(surface: render.Surface) -> None:
     assert (textured(surface, quarters()) != expected).any()
 
 
-def test_albedo_has_no_say_under_a_texture(surface: render.Surface) -> None:
-    """The texture is taken as it is, and not tinted."""
-    style = replace(PLAIN, subsurface=1.0)
-    frames = [
-        textured(surface, quarters(), replace(style, albedo=albedo))
-        for albedo in (DARK_SKIN, render.CLAY)
-    ]
-    assert (frames[0] == frames[1]).all()
-
-
 @pytest.mark.parametrize("shading", render.Shading)
 def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shading) -> None:
     """Triangles without splits stay textured; the others have the palette's hue over it."""
@@ -165,12 +155,6 @@ def test_bad_images(surface: render.Surface, image: npt.NDArray[np.uint8], messa
     """Images that are no sRGB images, or too large, are refused."""
     with pytest.raises(ValueError, match=message):
         render.Renderer(surface).load_texture(image)
-
-
-def test_size_of_a_texture(surface: render.Surface) -> None:
-    """Width before height, as with frames; odd sizes are fine."""
-    texture = render.Renderer(surface).load_texture(plain_image((1, 2, 3), (7, 5)))
-    assert texture.size == (7, 5)
 
 
 @pytest.mark.parametrize("shading", render.Shading)
