@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from risorius import render
 
     from ..capture import CaptureOptions
+    from ..script import Script
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,30 @@ class Filming:
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
 
+    def options(self, script: Script, drawing: Drawing) -> CaptureOptions:
+        """All that decides the frames of a script; UserError for what cannot be."""
+        from ..capture import CaptureOptions
+        from ..refining.refiners import parse_comparison
+
+        refinement = drawing.refinement()
+        refinement.check(script.scene)
+        return CaptureOptions(
+            size=self.size,
+            frames_per_second=self.fps,
+            refinement=refinement,
+            beside=parse_comparison(self.compare, refinement),
+            captions=self.captions,
+            camera=self.camera or script.camera,
+            is_turntable=self.turntable,
+            span=self.span,
+            style=replace(drawing.style(), background=self.background),
+            anatomy=drawing.anatomy_view(),
+            samples=self.samples,
+            head=drawing.fitted_head(),
+            is_alive=self.alive,
+            passes=() if self.passes is None else tuple(self.passes.split(",")),
+        )
+
 
 @click.command()
 @SCRIPT
@@ -106,36 +131,19 @@ def capture(
     A recording of a face is a SCRIPT, too: Live Link Face, OpenFace, MediaPipe, ... Without SCRIPT
     the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
-    from ..capture import CaptureOptions
     from ..capture import capture as film_of
     from ..capture.encoder import HEARD
     from ..files import check_apart
     from ..passes.labelled import beside
-    from ..refining.refiners import parse_comparison
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
-    performance = played(script, scene, sound, playback, settings, quiet=filming.quiet)
-    refinement = drawing.refinement()
-    refinement.check(performance.scene)
-    options = CaptureOptions(
-        size=filming.size,
-        frames_per_second=filming.fps,
-        refinement=refinement,
-        beside=parse_comparison(filming.compare, refinement),
-        captions=filming.captions,
-        camera=filming.camera or performance.camera,
-        is_turntable=filming.turntable,
-        span=filming.span,
-        style=replace(drawing.style(), background=filming.background),
-        anatomy=drawing.anatomy_view(),
-        samples=filming.samples,
-        head=drawing.fitted_head(),
-        is_alive=filming.alive,
-        passes=() if filming.passes is None else tuple(filming.passes.split(",")),
+    performance = played(
+        script, scene, playback, settings=settings, sound=sound, quiet=filming.quiet
     )
+    options = filming.options(performance, drawing)
     most = film_of(
         performance,
         options,

@@ -28,11 +28,10 @@ from .options import (
     SILENT,
     SOUND,
     Drawing,
-    mapping_table,
     option,
     packed,
     played,
-    told,
+    printing,
     with_playback,
 )
 from .parameters import Size
@@ -112,7 +111,7 @@ def view(
     is_bare = drawing.head is not None and drawing.landmarks is None and drawing.person is None
     mesh = drawing.head if is_bare else None
     is_plain = (script, scene, sound, playback) == (None, None, None, Playback())
-    performance = None if is_plain else played(script, scene, sound, playback, quiet=quiet)
+    performance = None if is_plain else played(script, scene, playback, sound=sound, quiet=quiet)
     open_window(performance, size, drawing, listening=listening, mesh=mesh)
 
 
@@ -165,14 +164,19 @@ def replay(
     drawing: Drawing,
 ) -> None:
     """Play SCRIPT, or a recording of a face, in the window."""
-    performance = played(script, None, sound, playback, quiet=quiet)
+    performance = played(script, None, playback, sound=sound, quiet=quiet)
     open_window(performance, size, drawing, playing=True, once=once)
 
 
 @click.command()
 @click.argument("recording", type=PATH)
 @click.option("-o", "--output", type=PATH, required=True, help="script.toml")
-@mapping_table
+@printing(
+    "--mapping-table",
+    "risorius.app.recordings",
+    "mapping.toml",
+    "Print the table that --mapping replaces, to be copied and edited.",
+)
 @QUIET
 @with_playback
 def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> None:
@@ -181,14 +185,13 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
     Live Link Face, OpenFace, py-feat, MediaPipe and others write recordings.
     """
     from ..files import check_apart, check_file
-    from ..performances import script_for
     from ..script import save_script
 
     check_apart((output,), (recording, playback.mapping))
     check_file(output)
     if output.suffix.lower() != ".toml":
         raise UserError(f"{output}: scripts are written as .toml; choose a name that ends so")
-    script = script_for(recording, None, playback=playback, tell=None if quiet else told)
+    script = played(recording, None, playback, quiet=quiet)
     if not script.is_converted:
         raise UserError(f"{recording}: is a script already")
     save_script(output, script)
@@ -217,7 +220,7 @@ def open_window(
 
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
-        script = performance or played(None, None, None, Playback(), quiet=True)
+        script = performance or played(None, None, Playback(), quiet=True)
         head = drawing.fitted_head() if mesh is None else None
         import risorius.app.viewer.window.window  # noqa: F401
 

@@ -8,19 +8,10 @@ from typing import Any
 import click
 
 from ..errors import counted, in_one_line
-from .options import PATH, SILENT
+from .options import PATH, SILENT, printing
 from .parameters import Size
 
 MOST = 1_000_000  # samples; their names have six digits
-
-
-def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool) -> None:
-    """Print the table that comes along, and end."""
-    if asked:
-        from ..dataset.table import table_text
-
-        click.echo(table_text(), nl=False)
-        context.exit()
 
 
 @click.command()
@@ -62,13 +53,11 @@ def _write_sample_table(context: click.Context, _: click.Parameter, asked: bool)
 )
 @click.option("--resume", is_flag=True, help="Go on with a set, or make it larger.")
 @SILENT
-@click.option(
+@printing(
     "--sample-table",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_write_sample_table,
-    help="Print the table that --sample replaces, and end.",
+    "risorius.app.dataset",
+    "aus.toml",
+    "Print the table that --sample replaces, and end.",
 )
 def dataset(
     count: int,

@@ -19,7 +19,7 @@ from .options import (
     Subject,
     option,
     packed,
-    told,
+    played,
     with_playback,
 )
 from .parameters import FiniteRange
@@ -73,7 +73,6 @@ def export(
     is held for a second: --set joy.
     """
     from ..files import check_apart
-    from ..performances import script_for
 
     chosen = format_for(output, exporting.name)
     inputs = (script, subject.head, subject.landmarks, playback.mapping)
@@ -85,8 +84,7 @@ def export(
         not exporting.quiet,
     )
     check_request(output, chosen, request)
-    tell = None if exporting.quiet else told
-    performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    performance = played(script, scene, playback, settings=settings, quiet=exporting.quiet)
     if request.refinement is not None:
         request.refinement.check(performance.scene)
     head = subject.fitted_head()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, fields
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -265,7 +266,7 @@ PLAYBACK = (
 with_playback = packed(Playback, PLAYBACK)
 
 
-def told(report: Report) -> None:
+def _print_report(report: Report) -> None:
     """Say on the error stream what a recording was taken for."""
     for line in report.lines:
         click.echo(line, err=True)
@@ -274,35 +275,30 @@ def told(report: Report) -> None:
 def played(
     script: Path | None,
     scene: str | None,
-    sound: Path | None,
     playback: Playback,
-    settings: tuple[str, ...] = (),
     *,
+    settings: tuple[str, ...] = (),
+    sound: Path | None = None,
     quiet: bool,
 ) -> Script:
     """What is played, with its sound; what there is to say of it is said, unless `quiet`."""
     from ..performances import script_for
     from ..sound import with_sound
 
-    tell = None if quiet else told
+    tell = None if quiet else _print_report
     performance = script_for(script, scene, settings, playback=playback, tell=tell)
     return with_sound(performance, sound)
 
 
-def _write_mapping_table(context: click.Context, _: click.Parameter, asked: bool) -> None:
-    """Print the table that comes along, and end."""
-    if asked:
-        from ..recordings.mapping import mapping_text
+def printing(name: str, package: str, file: str, what: str) -> Command:
+    """An option that prints a file of a package, and ends; what: its help."""
 
-        click.echo(mapping_text(), nl=False)
-        context.exit()
+    def show(context: click.Context, _: click.Parameter, asked: bool) -> None:
+        """Print it, if that is asked for."""
+        if asked:
+            click.echo((files(package) / file).read_text("utf-8"), nl=False)
+            context.exit()
 
-
-mapping_table = click.option(
-    "--mapping-table",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_write_mapping_table,
-    help="Print the table that --mapping replaces, to be copied and edited.",
-)
+    return click.option(
+        name, is_flag=True, is_eager=True, expose_value=False, callback=show, help=what
+    )

@@ -104,7 +104,7 @@ def test_a_script_names_its_sound_as_seen_from_itself(tmp_path: Path) -> None:
         assert script.sound == Path(os.path.normpath(tmp_path / "deep" / name))
     assert parse_script(POSE, source="s").sound is None
     for wrong, why in (("7", "must be a text"), ("''", "is empty")):
-        with pytest.raises(UserError, match=f"'sound' .*{why}"):
+        with pytest.raises(UserError, match=f"'sound'.*{why}"):
             parse_script(f"sound = {wrong}\n{POSE}", source="s")
 
 
