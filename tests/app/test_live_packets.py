@@ -80,13 +80,6 @@ def test_nonsense_among_values_is_cut_off_or_left_out() -> None:
     assert not {"cheekPuff", "tongueOut", "head_yaw", "head_pitch"} & channels.keys()
 
 
-@pytest.mark.parametrize("length", [-1, -(2**31), 2**31 - 1, 2000, 37])
-def test_a_length_that_does_not_fit_is_no_packet(length: int) -> None:
-    """Neither below 0, nor beyond the packet, nor one that is off by one."""
-    packet = GOOD["livelink"]
-    assert parse_live_link(packet[:1] + struct.pack(">i", length) + packet[5:]) is None
-
-
 def test_other_versions_and_every_torn_packet_are_none() -> None:
     """Cut anywhere but where the values may be missing, nothing is left of it."""
     assert parse_live_link(live_link({}, version=5)) is None
@@ -250,21 +243,6 @@ def test_random_packets_do_no_harm(kind: str, generator: np.random.Generator) ->
         noise = generator.bytes(int(generator.integers(0, 400)))
         packet = good[: int(generator.integers(1, len(good)))] + noise if index % 2 else noise
         assert is_sound(parse(packet)), packet
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_flipped_bits_do_no_harm(kind: str, generator: np.random.Generator) -> None:
-    """Every single bit of a good packet, and then several at once."""
-    parse, good = PROTOCOLS[kind].parse, GOOD[kind]
-    for bit in range(8 * len(good)):
-        flipped = bytearray(good)
-        flipped[bit // 8] ^= 1 << bit % 8
-        assert is_sound(parse(bytes(flipped))), bit
-    for _ in range(2000):
-        flipped = bytearray(good)
-        for bit in generator.integers(0, 8 * len(good), 5):
-            flipped[bit // 8] ^= 1 << bit % 8
-        assert is_sound(parse(bytes(flipped))), bytes(flipped)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -108,14 +108,6 @@ def test_recorded_nods_come_through(face: FaceScene, a_second: float, share: flo
     assert share < np.ptp(shown) / np.ptp(nods) < 1.0
 
 
-def test_a_script_follows_the_recording_with_fewer_keys() -> None:
-    take = take_of(jawOpen=wave())
-    script, _ = script_of(take, Playback(neutral="none", lead=0.0), limits_of("face"))
-    played = [script.at(float(time))["jawOpen"] for time in take.times]
-    np.testing.assert_allclose(played, take.channels["jawOpen"], atol=2.0 * TOLERANCE)
-    assert len(script.tracks["jawOpen"]) < len(take.times) / 2
-
-
 def test_a_neutral_longer_than_the_recording_is_told() -> None:
     take = take_of(jawOpen=wave())
     _, report = script_of(take, Playback(neutral="first:99"), limits_of("face"))
@@ -125,13 +117,6 @@ def test_a_neutral_longer_than_the_recording_is_told() -> None:
     )
     _, report = script_of(take, Playback(neutral="first:3"), limits_of("face"))
     assert not report.notes
-
-
-@given(st.dictionaries(st.sampled_from(ARKIT), st.floats(0.0, 1.0), min_size=1))
-def test_a_face_that_never_moves_rests(held: dict[str, float]) -> None:
-    script, _ = script_of(take_of(**held), Playback(neutral="first:1"), limits_of("face"))
-    assert not any(script.at(1.0).values())
-    script.check(limits_of("face"))
 
 
 @given(
@@ -234,12 +219,6 @@ def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(
     (tmp_path / name).write_bytes(content)
     with pytest.raises(UserError, match=words):
         read_performance(tmp_path / name)
-
-
-def test_a_file_that_is_not_there_is_what_its_name_says(tmp_path: Path) -> None:
-    for name, kind in (("take.csv", "recording"), ("take.toml", "script")):
-        with pytest.raises(UserError, match=f"no such {kind}"):
-            read_performance(tmp_path / name)
 
 
 def test_a_script_plays_whatever_its_name(tmp_path: Path) -> None:

@@ -71,18 +71,6 @@ def test_openface_1(tmp_path: Path) -> None:
     assert eye == pytest.approx(np.degrees(turn - np.median(turn)), abs=1e-3)
 
 
-def test_units_that_somebody_divided(tmp_path: Path) -> None:
-    """Where `AU12_r` never exceeds 1 it is not divided again."""
-    columns = openface()
-    columns = {
-        name: np.array(values) / 5.0 if name.endswith("_r") else values
-        for name, values in columns.items()
-    }
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.channels["AU12"].max() == pytest.approx(1.0, abs=1e-3)
-    assert told(take.notes, "0 to 1")
-
-
 def test_stamps_of_nonsense(tmp_path: Path) -> None:
     """Steps of a millisecond are no camera's; frames are counted, and the rate is the user's."""
     columns = openface() | {"timestamp": np.arange(60) / 1000.0}
@@ -242,14 +230,6 @@ def test_pyfeat_names_persons(tmp_path: Path) -> None:
     assert take.channels["jawOpen"] == pytest.approx(np.linspace(0.0, 0.5, 20)[1::2], abs=1e-6)
 
 
-def test_one_picture(tmp_path: Path) -> None:
-    """A table of one row is a take of one pose."""
-    columns = {name: [values[-1]] for name, values in pyfeat().items()}
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.duration == 0.0
-    assert take.channels["AU12"] == pytest.approx([0.9])
-
-
 # Named columns
 
 
@@ -265,16 +245,6 @@ def test_spellings_of_a_shape(spelled: str, tmp_path: Path) -> None:
     take = read_take(written(tmp_path / "take.csv", columns))
     assert take.channels.keys() == {"mouthSmileLeft"}
     assert take.channels["mouthSmileLeft"] == pytest.approx(np.arange(5) / 10.0)
-
-
-def test_every_shape_has_a_side_of_its_own(tmp_path: Path) -> None:
-    """All 52 names are told apart, also with L and R."""
-    short = [name.replace("Left", "_L").replace("Right", "_R") for name in ARKIT]
-    columns = {name: np.full(3, place / 100.0) for place, name in enumerate(short)}
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert {name: values[0] for name, values in take.channels.items()} == pytest.approx(
-        {name: place / 100.0 for place, name in enumerate(ARKIT)}
-    )
 
 
 @pytest.mark.parametrize(
@@ -306,25 +276,6 @@ def test_units_of_action_units(largest: float, tmp_path: Path) -> None:
     take = read_take(written(tmp_path / "take.csv", columns))
     assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 1.0, 11))
     assert told(take.notes, "divided") == (largest > 1.0)
-
-
-def test_units_that_are_none(tmp_path: Path) -> None:
-    """One wrong value does not change the unit of all others."""
-    columns = {"t": np.arange(11) / 30.0, "AU12": np.full(11, 0.5), "AU4": np.full(11, 0.2)}
-    columns["AU12"][3] = 1e9
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.channels["AU12"] == pytest.approx(0.5)
-    smile = np.array(openface()["AU12_r"]) / 5.0
-    smile[7] = 1e9
-    take = read_take(written(tmp_path / "take.csv", openface() | {"AU12_r": smile}))
-    assert take.channels["AU12"].max() == pytest.approx(1.0, abs=1e-3)
-
-
-def test_columns_that_nobody_knows(tmp_path: Path) -> None:
-    """They are listed as the file spells them; times are not among them."""
-    columns = {"Frame": range(4), "jawOpen": [0.5] * 4, "Mood": [1] * 4, "jawAjar": [0.2] * 4}
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.unknown == ("Mood", "jawAjar")
 
 
 def test_a_table_of_something_else(tmp_path: Path) -> None:
