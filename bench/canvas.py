@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -19,6 +19,9 @@ from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
 from risorius.app.scenes import Scene
 
 Transforms = Mapping[str, npt.NDArray[np.float64]]
+CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, background=render.WHITE)
+FLAT = replace(CLAY, shading=render.Shading.FLAT)
+GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 POSITION_AND_NORMAL = 6  # columns of a vertex without texture coordinates
 
 RED = (0.85, 0.1, 0.1)
@@ -59,6 +62,7 @@ class Canvas:
         self._scene = _Shown()
         self._pipeline = Pipeline(self._scene, self.renderer)
         self._meshes: dict[refine.Refiner, DrawnMesh] = {}
+        self._room: render.Stream | None = None  # for surfaces that no refiner made
 
     def __enter__(self) -> Canvas:
         return self
@@ -107,9 +111,14 @@ class Canvas:
         drawing: Drawing,
     ) -> Image:
         """Draw a surface whose normals are known, and that no refiner made; read back."""
-        stream = self.renderer.lend_stream(len(positions), len(faces), POSITION_AND_NORMAL)
-        stream.vertices[:] = np.hstack([positions, normals])
-        stream.triangles[:] = faces
+        stream, sizes = self._room, (len(positions), len(faces))
+        if stream is None or not (
+            len(stream.vertices) >= sizes[0] and len(stream.triangles) >= sizes[1]
+        ):
+            stream = self.renderer.lend_stream(2 * sizes[0], 2 * sizes[1], POSITION_AND_NORMAL)
+            self._room = stream
+        stream.vertices[: len(positions)] = np.hstack([positions, normals])
+        stream.triangles[: len(faces)] = faces
         stream.upload(len(positions), len(faces))
         self.surface.begin()
         self.renderer.draw_background(drawing.style)

@@ -2,12 +2,33 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+
 import click
 
-from .playing.commands import COMMANDS as PLAYING
-from .refinement.commands import COMMANDS as REFINEMENT
-from .scans.commands import COMMANDS as SCANS
-from .simulation.commands import COMMANDS as SIMULATION
+from risorius.app.cli.parameters import FiniteRange, Size
+from risorius.app.errors import UserError, in_one_line
+
+from .report import conclude, json_writer, say_progress
+
+PATH = click.Path(path_type=Path)
+FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
+FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+MESHES = ("face", "2k", "20k", "200k", "1M")
+json_option = click.option("--json", "json_file", type=PATH, help="Figures for programs.")
+size_option = click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
+
+
+@contextlib.contextmanager
+def told(before: str = "") -> Iterator[None]:
+    """Tell the user of a ValueError, with some text before its own."""
+    try:
+        yield
+    except ValueError as error:
+        raise UserError(f"{before}{error}") from None
 
 
 @click.group()
@@ -15,5 +36,164 @@ def bench() -> None:
     """Measure: each command prints figures and how they were taken."""
 
 
-for _each in (*REFINEMENT, *SIMULATION, *SCANS, *PLAYING):
-    bench.add_command(_each)
+@bench.command("refine")
+@click.option(
+    "--size",
+    "sizes",
+    type=click.Choice(MESHES),
+    multiple=True,
+    help="Only this mesh; may be given several times. Unless told: all but 2k.",
+)
+@click.option(
+    "--seconds",
+    type=FiniteRange(0.05, 600.0),
+    default=7.0,
+    show_default=True,
+    help="How long each mesh is timed, at least five rounds.",
+)
+@json_option
+def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None) -> None:
+    """Time refinement on the face and on meshes of up to a million triangles, beside peers."""
+    from . import refine
+
+    save = json_writer(json_file)
+    found = refine.measure(sizes or refine.SIZES, seconds, say_progress)
+    click.echo(refine.report(found))
+    save(asdict(found))
+
+
+@bench.command("quality")
+@click.option(
+    "--reference",
+    type=FOLDER,
+    help="A folder with face.npz and coarse_2029.npz: scans and their decimation.",
+)
+@click.option(
+    "--finer",
+    type=click.Choice(["4", "16", "none"]),
+    default="16",
+    show_default=True,
+    help="The built-in head with so many times its triangles as the truth.",
+)
+@click.option(
+    "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
+)
+def bench_quality(reference: Path | None, finer: str, expressions: tuple[str, ...]) -> None:
+    """Measure how near every scheme comes to a dense face and its picture, for what it spends."""
+    from . import quality
+
+    with told():
+        groups = quality.subjects_of(reference, {"4": 1, "16": 2}.get(finer), expressions)
+    scores = {
+        group: quality.measure(members, expressions, say_progress)
+        for group, members in groups.items()
+    }
+    conclude(quality.report(scores), quality.targets(scores))
+
+
+@bench.command("motion")
+@click.option(
+    "--reference",
+    type=FOLDER,
+    required=True,
+    help="a folder with face.npz: vertices, triangles, landmarks68, displacement fields",
+)
+def bench_motion(reference: Path) -> None:
+    """Compare simulated with scanned skin motion, shape by shape."""
+    from . import motion
+
+    with told("--reference: "):
+        found = motion.measure(reference)
+    conclude(motion.report(*found), motion.targets(*found))
+
+
+@bench.command("reference")
+@click.argument("checkout", type=FOLDER)
+@click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
+@click.option(
+    "--landmarks", type=PATH, help="The 68 landmarks, where CHECKOUT's README does not name them."
+)
+def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> None:
+    """Make the folder that --reference takes from CHECKOUT, a checkout of ICT-FaceKit."""
+    from . import reference
+
+    for line in reference.make(checkout, folder, landmarks):
+        click.echo(in_one_line(line))
+
+
+@bench.command("seen")
+@click.option(
+    "--model",
+    type=FILE,
+    required=True,
+    help="face_landmarker.task, the model of MediaPipe's face landmarker.",
+)
+@click.option(
+    "--reference", type=FOLDER, help="A folder with face.npz: scans, to be shown as well."
+)
+@click.option("--pictures", type=PATH, help="A folder for all that the tracker is shown.")
+def bench_seen(model: Path, reference: Path | None, pictures: Path | None) -> None:
+    """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
+    from . import seen
+    from .face_tracker import FaceTracker
+
+    with FaceTracker(model) as tracker, told("--reference: "):
+        click.echo(seen.report(seen.measure(tracker, pictures, reference)))
+
+
+@bench.command("gaps")
+@json_option
+def bench_gaps(json_file: Path | None) -> None:
+    """Look through lips and lids that ought to be shut, in every action unit."""
+    from . import gaps
+
+    save = json_writer(json_file)
+    poses = gaps.measure()
+    save([asdict(pose) for pose in poses])
+    conclude(gaps.report(poses), gaps.targets(poses))
+
+
+@bench.command("soak")
+@click.option(
+    "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."
+)
+def bench_soak(minutes: float) -> None:
+    """Drive the face with random input for a simulated hour: does it stay sound, and come back."""
+    from . import soak
+
+    found = soak.measure(minutes)
+    conclude(soak.report(found), soak.targets(found))
+
+
+@bench.command("tearing")
+@click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
+def bench_tearing(mixtures: int) -> None:
+    """Look for torn skin and for contacts that fail, in all expressions and random mixtures."""
+    from . import tearing
+
+    poses = tearing.measure(mixtures)
+    conclude(tearing.report(poses, mixtures), tearing.targets(poses))
+
+
+@bench.command("window")
+@size_option
+@click.option(
+    "--seconds", type=FiniteRange(0.3, 600.0), default=5.0, show_default=True, help="Of each case."
+)
+def bench_window(size: tuple[int, int], seconds: float) -> None:
+    """Time the window while a smile plays, and while nothing happens; needs a screen."""
+    from . import window
+
+    conclude(*window.measure(seconds, size))
+
+
+@bench.command("capture")
+@size_option
+@click.option(
+    "--seconds", type=FiniteRange(1.0, 60.0), default=8.0, show_default=True, help="Of the script."
+)
+def bench_capture(size: tuple[int, int], seconds: float) -> None:
+    """Time a film without a screen: frames a second, and where its time goes."""
+    from . import capture
+
+    click.echo(capture.report(size, seconds))

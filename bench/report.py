@@ -1,12 +1,18 @@
-"""What all reports are made of: tables, verdicts, names of processor and OpenGL."""
+"""What all commands of `risorius bench` print and write: tables, targets, figures for programs."""
 
 from __future__ import annotations
 
+import json
 import platform
 import re
-from collections.abc import Iterable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
+
+import click
+
+from risorius.app.errors import in_one_line
 
 
 def table(
@@ -48,6 +54,34 @@ def at_most(what: str, value: float, most: float, unit: str = "") -> Target:
 def at_least(what: str, value: float, least: float, unit: str = "") -> Target:
     """A value that must not be smaller; one that is no number misses it."""
     return Target(f"{what}: {value:.4g}{unit}, at least {least:g}{unit}", value >= least)
+
+
+def conclude(text: str, targets: Iterable[Target]) -> None:
+    """Print a report and what it is held to; end with exit code 1 where a target is missed."""
+    targets = list(targets)
+    click.echo("\n".join([text, "", *map(str, targets)]).rstrip())
+    if not all(target.is_met for target in targets):
+        sys.exit(1)
+
+
+def json_writer(target: Path | None) -> Callable[[object], None]:
+    """What writes figures for programs into `target`, if it was given; checked before any work."""
+    from risorius.app.files import check_file, save_text
+
+    def save(figures: object) -> None:
+        if target is not None:
+            save_text(target, json.dumps(figures, indent=1) + "\n")
+            click.echo(f"{in_one_line(target)}: written", err=True)
+
+    if target is not None:
+        check_file(target)
+    return save
+
+
+def say_progress(name: str) -> None:
+    """Say on the error stream what is at work, where a person looks on."""
+    if sys.stderr.isatty():
+        click.echo(f"... {name}", err=True)
 
 
 def driver(information: Mapping[str, object]) -> str:

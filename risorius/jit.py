@@ -2,8 +2,8 @@
 
 Numba keeps machine code itself (`cache=True`), but looks at one file at a time: when a kernel
 changes that is called from another file, old code goes on running. So code lies in a folder that is
-named by a digest of all sources of `refine/` and `sim/`, this file, and the versions of numba and
-Python; where one letter changes, everything is compiled anew, in a new folder. It is
+named by a digest of all sources of `geometry/`, `refine/` and `sim/`, this file, and the versions
+of numba and Python; where one letter changes, everything is compiled anew, in a new folder. It is
 `risorius/compiled-DIGEST` in the folder named by NUMBA_CACHE_DIR, or in the user's cache.
 
 `numba.config.CACHE_DIR` is where numba looks for its folder, once, when it decorates a function. It
@@ -105,7 +105,7 @@ def _digest() -> str:
     """Digest of all that machine code depends on, but for the processor, which numba looks at."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     digest.update(Path(__file__).read_bytes())
-    for package in ("refine", "sim"):  # either may be absent
+    for package in ("geometry", "refine", "sim"):  # either may be absent
         found = importlib.util.find_spec(f"{__package__}.{package}")
         for folder in (found and found.submodule_search_locations) or ():
             for file in sorted(Path(folder).rglob("*.py")):

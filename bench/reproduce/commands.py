@@ -13,6 +13,7 @@ import click
 
 from risorius.app.errors import in_one_line
 
+from ..report import table
 from .experiments import EXPERIMENTS, Experiment, Result
 
 PATH = click.Path(path_type=Path)
@@ -32,19 +33,23 @@ def reproduce() -> None:
 )
 def reproduce_all(folder: Path) -> None:
     """Make everything, and a page that shows it in the paper's order: index.html in a folder."""
-    from .reproduction import PAGE, check_folder, reproduce
+    from . import page
 
-    check_folder(folder)
-    results = reproduce(folder, progress=lambda title: click.echo(f"... {title}", err=True))
+    page.check_folder(folder)
+    results = []
+    for experiment in EXPERIMENTS:
+        click.echo(f"... {experiment.title}", err=True)
+        results.append(experiment.run())
+    page.write(folder, results)
     for result in results:
         click.echo(f"\n{result.experiment.title} ({result.experiment.place})")
         _say(result)
-    click.echo(f"\n{in_one_line(folder / PAGE)}: written")
+    click.echo(f"\n{in_one_line(folder / page.PAGE)}: written")
     _end(results)
 
 
-def _add(experiment: Experiment) -> None:
-    """Add the command of an experiment: a picture goes into out/NAME.png unless told."""
+def _command(experiment: Experiment) -> click.Command:
+    """The command of an experiment: a picture goes into out/NAME.png unless told."""
 
     def make(output: Path | None = None, rounds: int | None = None) -> None:
         """Make it, write its picture, and say what came out."""
@@ -53,51 +58,42 @@ def _add(experiment: Experiment) -> None:
         if output is not None:
             check_png(output)
         result = experiment.run(rounds=rounds)
-        if output is not None:
-            save_png(output, result.outcome.pictures[experiment.name])
+        if output is not None and result.outcome.picture is not None:
+            save_png(output, result.outcome.picture)
             click.echo(f"{in_one_line(output)}: written")
         _say(result)
         _end([result])
 
     options: list[click.Parameter] = []
-    if experiment.has_picture:
+    if experiment.picture:
         default = Path(f"out/{experiment.name}.png")
         options.append(
             click.Option(["-o", "--output"], type=PATH, default=default, show_default=True)
         )
     if experiment.rounds is not None:
+        rounds_type = click.IntRange(3, 10_000)
         options.append(
             click.Option(
-                ["--rounds"],
-                type=click.IntRange(3, 10_000),
-                default=experiment.rounds,
-                show_default=True,
+                ["--rounds"], type=rounds_type, default=experiment.rounds, show_default=True
             )
         )
-    command = click.Command(experiment.name, params=options, callback=make, help=experiment.about)
-    reproduce.add_command(command)
+    return click.Command(experiment.name, params=options, callback=make, help=experiment.about)
 
 
 for _each in EXPERIMENTS:
-    _add(_each)
+    reproduce.add_command(_command(_each))
 
 
 def _say(result: Result) -> None:
     """Print what an experiment has to say."""
-    from ..report import table
-
-    outcome = result.outcome
-    if outcome.renderer:
-        click.echo(f"{outcome.renderer}\n")
-    if outcome.text:
-        click.echo(f"{outcome.text}\n")
+    for text in filter(None, (result.outcome.renderer, result.outcome.text)):
+        click.echo(f"{text}\n")
     rows = [
-        (each.verdict.value, each.claim.value, each.claim.expected, each.ours, each.allowed)
+        (each.verdict.value, each.claim.value, each.claim.paper, each.ours, each.allowed)
         for each in result.findings
     ]
-    width = max((len(name) for _, name, *_ in rows), default=0)
-    for line in table(f":<7|:<{width}|paper:>14|here:>22|allowed:<1", rows) if rows else ():
-        click.echo(line)
+    width = max(len(name) for _, name, *_ in rows)
+    click.echo("\n".join(table(f":<7|:<{width}|paper:>14|here:>22|allowed:<1", rows)))
 
 
 def _end(results: Iterable[Result]) -> None:

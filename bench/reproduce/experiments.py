@@ -1,64 +1,131 @@
-"""What `risorius reproduce` repeats: one table of experiments, in the order of the paper.
+"""What the paper says, by number, and whether what was measured agrees with it.
 
-Each is a function of this package that returns an `Outcome`, or the picture alone, and the claims
-that it is held to. An entry here is a command, a section of the page and a part of the figures for
-programs: nothing else has to be told of a new one.
+`paper.toml` is the one table of experiments, in the order of the paper. An entry there is a
+command, a section of the page and a part of the figures for programs: nothing else has to be told
+of a new one. The command line imports this at once, so it imports nothing that is slow.
 """
 
 from __future__ import annotations
 
+import enum
 import importlib
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-from .claims import Claim, Finding, Measured, Outcome, Verdict
+import math
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
     from risorius.app.files import Image
 
-C_RT = {
-    "all of it, 1280x720": "c_rt, time per triangle, refined over static: at most the paper's",
-    "all of it, 64x36": "the same where pixels cost next to nothing",
-    "without drawing": "the same for refining and uploading",
-    "refinement alone": "the same for refining alone, against handing through",
-}
-AS_EXPECTED = (Verdict.MET, Verdict.DIFFERS)
-PROMISED = 20.0  # frames a second, of software OpenGL on two cores
+
+class Verdict(enum.StrEnum):
+    """What becomes of a claim."""
+
+    MET = "met"
+    MISSED = "MISSED"
+    DIFFERS = "differs"
+    """It is not as the paper says, for a reason that the statement tells."""
+    NOISE = "noise"
+    """The measurement says what cannot be: the machine was busy with something else."""
 
 
 @dataclass(frozen=True)
-class Experiment:
-    """One thing that the paper says, and how it is tried."""
+class Measured:
+    """A number, and how far it can be trusted."""
 
-    name: str
-    """Of the command, and of its picture."""
-    title: str
-    place: str
-    """Where in the paper it stands."""
-    about: str
-    """What the command does, in one sentence."""
-    function: str
-    """MODULE.FUNCTION in this package, imported when it runs."""
-    claims: tuple[Claim, ...] = ()
-    has_picture: bool = False
-    rounds: int | None = None
-    """How often it is timed unless told; None where nothing is."""
+    value: float
+    quartiles: tuple[float, float] | None = None
+    """Half of what was seen lies between these; None for what is counted."""
+    least: float = -math.inf
+    """Nothing below this is possible."""
+
+    @classmethod
+    def median(cls, values: npt.NDArray[np.floating], *, least: float = -math.inf) -> Measured:
+        """The median of what was seen, with its quartiles."""
+        import numpy
+
+        low, middle, high = numpy.percentile(values, (25, 50, 75)).tolist()
+        return cls(middle, (low, high), least)
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper, and the numbers that agree with it; see `paper.toml`."""
+
+    value: str
+    statement: str
+    paper: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    style: str = "g"
+    differs: bool = False
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> Claim:
+        """One of the table."""
+        told = dict(entry)
+        if "exactly" in told:
+            told["low"] = told["high"] = told.pop("exactly")
+        return cls(**told)
+
+    def judge(self, measured: Measured) -> Verdict:
+        """Whether it is so; what is no number misses, too."""
+        if measured.value < measured.least:
+            return Verdict.NOISE
+        if not self.low <= measured.value <= self.high:
+            return Verdict.MISSED
+        return Verdict.DIFFERS if self.differs else Verdict.MET
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A claim beside what was measured."""
+
+    claim: Claim
+    measured: Measured
 
     @property
-    def callable(self) -> Callable[..., Outcome | Image]:
-        """The function, imported now."""
-        module, _, name = self.function.partition(".")
-        function: Callable[..., Outcome | Image]
-        function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
-        return function
+    def verdict(self) -> Verdict:
+        """What becomes of the claim."""
+        return self.claim.judge(self.measured)
 
-    def run(self, *, rounds: int | None = None) -> Result:
-        """Do it."""
-        timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
-        made = self.callable(**timing)
-        outcome = made if isinstance(made, Outcome) else Outcome(pictures={self.name: made})
-        return Result(self, outcome)
+    @property
+    def allowed(self) -> str:
+        """What is allowed, and below what it cannot be."""
+        low, high, style = self.claim.low, self.claim.high, self.claim.style
+        if low == high:
+            return f"exactly {low:{style}}"
+        bounds = [f"at least {low:{style}}"] if low > -math.inf else []
+        bounds += [f"at most {high:{style}}"] if high < math.inf else []
+        least = self.measured.least
+        return ", ".join(bounds) + (f"; possible from {least:{style}}" if least > -math.inf else "")
+
+    @property
+    def ours(self) -> str:
+        """Our number, with its quartiles."""
+        text = f"{self.measured.value:{self.claim.style}}"
+        if self.measured.quartiles is not None:
+            low, high = (f"{each:{self.claim.style}}" for each in self.measured.quartiles)
+            text += f" ({low} to {high})"
+        return text
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What an experiment made."""
+
+    values: Mapping[str, Measured | float]
+    """What was measured, by name."""
+    picture: Image | None = None
+    text: str = ""
+    """A table of more than the claims."""
+    renderer: str = ""
+    """What OpenGL calls itself; empty where nothing is timed."""
 
 
 @dataclass(frozen=True)
@@ -67,309 +134,55 @@ class Result:
 
     experiment: Experiment
     outcome: Outcome
-
-    @property
-    def findings(self) -> list[Finding]:
-        """Each claim beside what was measured; KeyError for a claim that was not."""
-        return [Finding(claim, _measured(self.outcome, claim)) for claim in self.experiment.claims]
+    findings: list[Finding]
 
     @property
     def missed(self) -> list[Finding]:
         """Those that are not met."""
-        return [each for each in self.findings if each.verdict not in AS_EXPECTED]
+        expected = (Verdict.MET, Verdict.DIFFERS)
+        return [each for each in self.findings if each.verdict not in expected]
 
 
-def _measured(outcome: Outcome, claim: Claim) -> Measured:
-    value = outcome.values[claim.value]
-    return value if isinstance(value, Measured) else Measured(float(value))
+@dataclass(frozen=True)
+class Experiment:
+    """One thing that the paper says, and how it is tried; see `paper.toml`."""
+
+    name: str
+    """Of the command, and of its picture."""
+    title: str
+    place: str
+    about: str
+    function: str
+    claims: list[Claim] = field(default_factory=list)
+    picture: bool = False
+    rounds: int | None = None
+
+    @property
+    def callable(self) -> Callable[..., Outcome]:
+        """The function, imported now."""
+        module, _, name = self.function.partition(".")
+        function: Callable[..., Outcome]
+        function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
+        return function
+
+    def run(self, *, rounds: int | None = None) -> Result:
+        """Do it. KeyError for a claim that was not measured."""
+        timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
+        outcome = self.callable(**timing)
+        findings = []
+        for claim in self.claims:
+            value = outcome.values[claim.value]
+            measured = value if isinstance(value, Measured) else Measured(float(value))
+            findings.append(Finding(claim, measured))
+        return Result(self, outcome, findings)
 
 
-def _exactly(value: str, number: float, statement: str, expected: str | None = None) -> Claim:
-    text = f"{number:g}" if expected is None else expected
-    return Claim(value, statement, text, number, number)
-
-
-def _never(value: str, statement: str) -> Claim:
-    return _exactly(value, 0.0, statement, "none")
-
-
-def _ratios(scene: str, expected: float) -> tuple[Claim, ...]:
-    return tuple(
-        Claim(f"{scene}, {way}", statement, f"{expected:g}", high=expected, style=".2f")
-        for way, statement in C_RT.items()
-    )
-
-
-EXPERIMENTS = (
-    Experiment(
-        "overview",
-        "A refined mesh for the renderer alone",
-        "sections 1 and 3",
-        "Count what the overview of the method rules out.",
-        "statements.overview",
-        (
-            _exactly("most splits of an edge", 2, "up to two refinements in one step"),
-            _never("frames that changed the mesh", "the input mesh remains unaltered"),
-            _never("frames that remember others", "nothing of the splits is kept between frames"),
-            _never("points inside triangles", "no new vertices inside an original triangle"),
-            _never("unsplit triangles that differ", "unsplit triangles are drawn as they are"),
-        ),
-    ),
-    Experiment(
-        "criterion",
-        "Splitting criterion",
-        "section 4.1",
-        "Count edges that are split although nothing bends.",
-        "statements.criterion",
-        (
-            _never("edges split at rest", "an undeformed mesh is good enough"),
-            _never("edges split turned and shifted", "so is one that moved as a whole"),
-        ),
-    ),
-    Experiment(
-        "smoothing",
-        "Vertex smoothing",
-        "section 4.2",
-        "Compare smoothing with Loop's, and count vertices that move without need.",
-        "statements.smoothing",
-        (
-            _never(
-                "vertices moved without a split",
-                "the surface changes locally only: other vertices stay, to the last bit",
-            ),
-            Claim(
-                "off Loop [mm]",
-                "where every edge of the head is split once, it is one step of Loop subdivision",
-                "0",
-                high=1e-4,
-            ),
-        ),
-    ),
-    Experiment(
-        "table",
-        "Generating subtriangles",
-        "section 4.3",
-        "Count the configurations, their subtriangles, and cracks.",
-        "statements.table",
-        (
-            _exactly("entries of the table", 27, "the table has one entry for each configuration"),
-            _exactly("longest entry", 10, "a triangle becomes ten subtriangles at most"),
-            Claim("most subtriangles seen", "the same in both animations", "10", high=10.0),
-            _never("frames with cracks", "no cracks appear between neighbours"),
-        ),
-    ),
-    Experiment(
-        "sequences",
-        "Interpolation, and sequences of splits",
-        "section 4.4",
-        "Count the sequences of splits, and compare texture coordinates with linear ones.",
-        "statements.attributes",
-        (
-            Claim(
-                "texture coordinates off linear",
-                "texture coordinates are linear along the edge, on both sides of a seam",
-                "0",
-                high=1e-6,
-            ),
-            _exactly("sequences", 271, "all sequences of splits of a triangle"),
-            _exactly("shortest sequence", 0, "from the one without a split"),
-            _exactly("longest sequence", 6, "to those of two splits on each edge"),
-        ),
-    ),
-    Experiment(
-        "coherence",
-        "Time-coherent splitting",
-        "section 4.4",
-        "Draw a film strip of a growing wave, with and without memory of the splits.",
-        "figure_coherence.coherence",
-        (
-            Claim(
-                "lines turned without memory",
-                "looked up by the splits alone, a split may turn what was there",
-                "some",
-                low=1,
-            ),
-            _never("lines turned with memory", "a new split refines the pattern that was there"),
-        ),
-        has_picture=True,
-    ),
-    Experiment(
-        "figure8",
-        "Long, thin triangles along folds",
-        "section 5, Figure 8",
-        "Draw folds of cloth and skin, and the triangles along them.",
-        "figure_claims.figure_8_outcome",
-        (
-            Claim(
-                "cloth: degrees off the fold, refined",
-                "subtriangles are aligned to the direction of minimum curvature; 45 is chance",
-                "aligned",
-                high=32.0,
-                style=".0f",
-            ),
-            Claim(
-                "face: degrees off the fold, refined", "the same", "aligned", high=32.0, style=".0f"
-            ),
-            Claim(
-                "cloth: degrees nearer to the fold than before",
-                "it is refinement that does it",
-                "",
-                low=5.0,
-                style=".0f",
-            ),
-            Claim(
-                "face: degrees nearer to the fold than before", "the same", "", low=5.0, style=".0f"
-            ),
-            Claim(
-                "cloth: smallest angle, refined over static",
-                "many are long and thin",
-                "",
-                high=0.9,
-                style=".2f",
-            ),
-            Claim(
-                "face: smallest angle, refined over static", "the same", "", high=0.9, style=".2f"
-            ),
-        ),
-        has_picture=True,
-    ),
-    Experiment(
-        "figure9",
-        "A plane under a strong sine",
-        "section 5, Figure 9",
-        "Draw the plane: static and refined, flat and Gouraud shaded.",
-        "figure_claims.figure_9_outcome",
-        (
-            Claim(
-                "flat: shading error, refined over static",
-                "ridges are smoothed out in the curved areas: nearer to the sine itself",
-                "less",
-                high=0.9,
-                style=".2f",
-            ),
-            Claim(
-                "Gouraud: shading error, refined over static",
-                "less shading artifacts in the Gouraud shaded model; interpolated normals, as in "
-                "the paper, leave it as it is",
-                "less",
-                low=0.9,
-                high=1.1,
-                style=".2f",
-                is_met=False,
-            ),
-            Claim(
-                "Gouraud: with normals of the refined surface, over static",
-                "the same, with the option normals=refined",
-                "less",
-                high=0.9,
-                style=".2f",
-            ),
-        ),
-        has_picture=True,
-    ),
-    Experiment(
-        "figure10",
-        "The region of the mouth",
-        "section 5, Figure 10",
-        "Draw the region of the mouth: static and refined, beside a dense mesh.",
-        "figure_claims.figure_10_outcome",
-        (
-            Claim(
-                "pixels that change visibly [%]",
-                "the rendered mesh is visibly smoothed (by cubic)",
-                "visible",
-                low=0.9,
-                style=".1f",
-            ),
-            Claim(
-                "difference from the dense mesh, refined over static",
-                "less shading artifacts (by cubic)",
-                "less",
-                high=0.95,
-                style=".2f",
-            ),
-            Claim(
-                "wrong pixels of the opening, refined over static",
-                "a better silhouette of the opened mouth (by cubic)",
-                "less",
-                high=0.9,
-                style=".2f",
-            ),
-        ),
-        has_picture=True,
-    ),
-    Experiment(
-        "frame-rate",
-        "Frame rate of the animation",
-        "section 5, Figure 10",
-        "Compare the frame rates of the face, simulated and drawn, static and refined.",
-        "frame_rate.experiment",
-        (
-            Claim(
-                "frames a second, static",
-                f"the authors' graphics card drew 60; {PROMISED:g} are asked of software OpenGL",
-                "about 60",
-                low=PROMISED,
-                style=".1f",
-            ),
-            Claim(
-                "frames a second, refined",
-                "the same with refinement",
-                "about 60",
-                low=PROMISED,
-                style=".1f",
-            ),
-            Claim(
-                "frames lost to refinement [%]",
-                "the frame rate does not differ noticeably",
-                "not noticeable",
-                high=10.0,
-                style=".1f",
-            ),
-            Claim(
-                "frames a second but for drawing, refined",
-                "what a graphics card leaves to the processor keeps up with the screen",
-                "about 60",
-                low=60.0,
-                style=".0f",
-            ),
-            Claim(
-                "physics in all but drawing [%]",
-                "the load is mainly the physics",
-                "most",
-                low=50.0,
-                style=".0f",
-            ),
-        ),
-        rounds=200,
-    ),
-    Experiment(
-        "table1",
-        "Triangles and times",
-        "section 5, Table 1",
-        "Print Table 1 of the paper beside our own figures.",
-        "table1.experiment",
-        (
-            _exactly("face, static triangles", 2030, "triangles of the static face"),
-            Claim(
-                "face, most triangles",
-                "most triangles of the refined face, within 25 %: head and animation are others",
-                "3120",
-                low=2340.0,
-                high=3900.0,
-            ),
-            *_ratios("face", 1.75),
-            _exactly("plane, static triangles", 154, "triangles of the static plane"),
-            Claim(
-                "plane, most triangles",
-                "most triangles of the refined plane, within 5 %",
-                "1328",
-                low=1262.0,
-                high=1394.0,
-            ),
-            *_ratios("plane", 2.58),
-        ),
-        rounds=60,
-    ),
+_TABLE = tomllib.loads((Path(__file__).parent / "paper.toml").read_text(encoding="utf-8"))
+EXPERIMENTS = tuple(
+    Experiment(**entry, claims=list(map(Claim.of, claims)))
+    for entry in _TABLE["experiment"]
+    for claims in [entry.pop("claim")]
 )
 """All experiments."""
+INFERRED: list[dict[str, str]] = _TABLE["inferred"]
+"""What the paper does not give: place, what, value and source of each."""

@@ -21,9 +21,9 @@ from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid
 
-from ..canvas import Canvas, Drawing, image_table
-from .figure_coherence import FLAT, FRAME_SECONDS, GOURAUD
-from .mouths import Variant
+from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
+from .experiments import Outcome
+from .figure_10 import Variant
 
 PHASES = (0.0, 0.33, 0.66)  # moments of the wave
 VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
@@ -40,25 +40,34 @@ VARIANTS = (
 )
 
 
-def draw(size: tuple[int, int] = (380, 230), *, variants: Sequence[Variant] = VARIANTS) -> Image:
-    """The rows of each shading in turn, the true sine last; columns are moments."""
+def outcome(size: tuple[int, int] = (380, 230), variants: Sequence[Variant] = VARIANTS) -> Outcome:
+    """How far the shading of each variant is from that of the sine, in the mean over its columns.
+
+    The rows of each shading in turn, the true sine last; columns are moments.
+    """
+    means, rows = {}, []
     with Canvas(size) as canvas:
         plane = Waving(canvas)
         true = [plane.true_image(phase) for phase in PHASES]
-        rows = []
         for shading, style in SHADINGS:
             for variant in variants:
-                if style is FLAT and "normals" in variant.options:
-                    continue  # facets show no normals of vertices
-                cells = []
+                cells, levels = [], []
                 for phase, truth in zip(PHASES, true, strict=True):
                     image, count = plane.image(variant, style, phase)
                     off, outline = levels_apart(image, truth), outline_apart(image, truth)
                     text = f"{count} triangles: {off:.1f} levels, outline {outline:.1%} off"
                     cells.append((text, image))
-                rows.append((f"{variant.title}, {shading} shading", cells))
+                    levels.append(off)
+                means[shading, variant.title] = float(np.mean(levels))
+                if style is not FLAT or "normals" not in variant.options:
+                    rows.append((f"{variant.title}, {shading} shading", cells))
         rows.append(("the sine itself", [("", truth) for truth in true]))
-    return image_table(rows)
+    values = {}
+    for shading, _ in SHADINGS:
+        before, after, own = (means.get((shading, each.title), 0.0) for each in VARIANTS[:3])
+        values[f"{shading}: shading error, refined over static"] = after / before
+        values[f"{shading}: with normals of the refined surface, over static"] = own / before
+    return Outcome(values, image_table(rows))
 
 
 class Waving:
@@ -88,7 +97,7 @@ class Waving:
     def _wave(self, phase: float) -> PlaneScene:
         """The scene at a moment of the full wave."""
         self._scene.pose({"amplitude": 1.0, "phase": phase})
-        self._scene.step(FRAME_SECONDS)
+        self._scene.step(1.0 / 30.0)
         return self._scene
 
 

@@ -25,7 +25,7 @@ from risorius.app.scenes import FaceScene
 
 from ..canvas import Canvas, Drawing
 from ..report import driver, table
-from .claims import Measured, Outcome
+from .experiments import Measured, Outcome
 from .table1 import GOURAUD, SIZE, papers_refiner
 
 FRAME_SECONDS = 1.0 / 60.0
@@ -82,7 +82,7 @@ def _seconds(work: Callable[[], object]) -> float:
     return time.perf_counter() - start
 
 
-def experiment(*, rounds: int) -> Outcome:
+def outcome(*, rounds: int) -> Outcome:
     """Measure the statement, for the page and the command."""
     seconds, renderer = measure(rounds=rounds)
     static, refined = np.moveaxis(seconds.sum(axis=2), 1, 0)

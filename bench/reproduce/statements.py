@@ -19,8 +19,8 @@ from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import CONFIGURATIONS
 
-from ..refinement.methods import Everywhere
-from .claims import Measured, Outcome
+from ..quality import Everywhere
+from .experiments import Measured, Outcome
 from .table1 import papers_refiner
 
 Points = npt.NDArray[np.float64]

@@ -32,7 +32,7 @@ from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from ..canvas import Canvas, Drawing
 from ..report import driver, table
 from ..timing import paired
-from .claims import Measured, Outcome
+from .experiments import Measured, Outcome
 
 Points = npt.NDArray[np.float64]
 
@@ -143,7 +143,7 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
     return positions, best
 
 
-def experiment(*, rounds: int) -> Outcome:
+def outcome(*, rounds: int) -> Outcome:
     """Measure the table, for the page and the command."""
     measured, renderer = measure(rounds=rounds)
     values: dict[str, Measured | float] = {}

@@ -28,8 +28,8 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
     for name in (
         "risorius.app.capture.Capture.play",
-        "risorius.bench.reproduce.figure_9.draw",
-        "risorius.bench.refinement.refine.measure",
+        "risorius.bench.reproduce.figure_9.outcome",
+        "risorius.bench.refine.measure",
     ):
         monkeypatch.setattr(name, work)
     monkeypatch.chdir(tmp_path)

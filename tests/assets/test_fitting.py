@@ -18,7 +18,7 @@ from risorius.assets.fitting.painting import is_behind_others
 from risorius.assets.fitting.warp import Similarity, ThinPlateSpline, nearest_on
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops, edge_faces
-from risorius.bench.simulation.lines_of_sight import eyeballs_of, lid_gaps
+from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import Stranger, closed, stranger
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement

@@ -27,7 +27,7 @@ from risorius.assets.identities import (
 from risorius.assets.identities.traits import LOADINGS, MOST, PRESSED, SHAPES, norms_of
 from risorius.assets.model import Head
 from risorius.assets.norms import NORMS
-from risorius.bench.simulation.lines_of_sight import eyeballs_of, lid_gaps, widest_slit
+from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps, widest_slit
 from tests.assets.checks import mirror_error
 from tests.sim.poses import inverted_triangles
 

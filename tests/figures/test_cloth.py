@@ -15,9 +15,8 @@ from risorius.app.files import Image
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 from risorius.app.scenes import ClothScene
 from risorius.assets.sheets import CLOTH_CELL, CLOTH_CELLS, make_grid
-from risorius.bench.canvas import Canvas, Drawing
+from risorius.bench.canvas import FLAT, GOURAUD, Canvas, Drawing
 from risorius.bench.reproduce.figure_9 import levels_apart, outline_apart
-from risorius.bench.reproduce.figure_coherence import FLAT, GOURAUD
 
 SMOOTH = PRESETS[FIRST_PRESET]["cloth"].told("kahler")
 

@@ -1,4 +1,4 @@
-"""The pictures of docs/refinement.md and the paper's figures."""
+"""The pictures of docs/refinement.md."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import pytest
 import refinement
 from PIL import Image
 
-from risorius.bench.reproduce import figure_coherence
-
 
 @pytest.mark.slow
 def test_figures_are_drawn(tmp_path: Path) -> None:
@@ -20,16 +18,3 @@ def test_figures_are_drawn(tmp_path: Path) -> None:
         drawn = np.asarray(Image.open(tmp_path / f"{name}.webp"))
         assert 0.01 < (drawn.min(axis=2) < 128).mean() < 0.8
         assert name == "refine_tension" or (figure() == drawn).all()
-
-
-def test_film_strip() -> None:
-    """Red lines are in the row without memory, and none in the row with it."""
-    outcome = figure_coherence.coherence((120, 96))
-    drawn = outcome.pictures["coherence"].astype(int)
-    assert drawn.shape[1] == len(figure_coherence.AMPLITUDES) * 120
-    is_red = (drawn[..., 0] > 150) & (drawn[..., 1:].max(axis=2) < 90)
-    half = len(drawn) // 2
-    assert is_red[:half].sum() > 200
-    assert is_red[half:].sum() == 0
-    assert outcome.values["lines turned without memory"] > 100
-    assert outcome.values["lines turned with memory"] == 0

@@ -16,21 +16,21 @@ from .sandbox import furnish
 DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
-    "risorius.bench.reproduce.figure_claims.figure_8_outcome",
-    "risorius.bench.reproduce.figure_claims.figure_9_outcome",
-    "risorius.bench.reproduce.figure_claims.figure_10_outcome",
+    "risorius.bench.reproduce.figure_8.outcome",
+    "risorius.bench.reproduce.figure_9.outcome",
+    "risorius.bench.reproduce.figure_10.outcome",
     "risorius.app.viewer.window.splash_screen.SplashScreen",
     "risorius.bench.reproduce.frame_rate.measure",
-    "risorius.bench.simulation.gaps.measure",
-    "risorius.bench.scans.motion.measure",
-    "risorius.bench.reproduce.figure_coherence.coherence",
-    "risorius.bench.refinement.quality.measure",
-    "risorius.bench.refinement.refine.measure",
-    "risorius.bench.reproduce.reproduction.reproduce",
-    "risorius.bench.simulation.soak.measure",
+    "risorius.bench.gaps.measure",
+    "risorius.bench.motion.measure",
+    "risorius.bench.reproduce.coherence.outcome",
+    "risorius.bench.quality.measure",
+    "risorius.bench.refine.measure",
+    "risorius.bench.reproduce.experiments.Experiment.run",
+    "risorius.bench.soak.measure",
     "risorius.bench.reproduce.table1.measure",
-    "risorius.bench.simulation.tearing.measure",
-    "risorius.bench.playing.window.report",
+    "risorius.bench.tearing.measure",
+    "risorius.bench.window.measure",
 )
 
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.bench.reproduce.turned_lines import Line, inner_lines, point_rows, turned
+from risorius.bench.reproduce.coherence import Line, inner_lines, point_rows, turned
 from tests import meshes
 from tests.refine.cases import Forced
 

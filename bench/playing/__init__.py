@@ -1,1 +1,0 @@
-"""What is played: films, long recordings, live faces, and the window."""

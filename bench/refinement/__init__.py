@@ -1,1 +1,0 @@
-"""What refinement costs and what it gains, beside what others offer for the same work."""

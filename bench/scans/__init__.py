@@ -1,1 +1,0 @@
-"""Skin beside scans of skin: how well muscles move it, and how well they foretell what is new."""

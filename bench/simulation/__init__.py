@@ -1,1 +1,0 @@
-"""The simulated face: its speed, whether it holds, and whether it looks as it should."""

@@ -1,0 +1,181 @@
+"""Frames a second of the window while a smile plays, and what it takes while nothing happens.
+
+The real window is driven as fast as it goes; nothing waits but for what the screen makes it wait.
+Rounds take all cases in turn, forwards and backwards: on a shared machine only cases of one run
+can be compared. A case begins like a new window, with an untimed second in which it finds its
+level of detail.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from risorius import render
+from risorius.app.performances import script_for
+from risorius.app.refining.presets import FIRST_PRESET, PAPERS_PRESET
+from risorius.app.script import Pose, Script
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.frame_times import PHASES
+from risorius.app.viewer.picture.painter import LEVELS, LevelOfDetail
+from risorius.app.viewer.settings import Display
+from risorius.app.viewer.window.window import REFRESH
+
+from .report import Target, at_least, processor, table
+
+PROMISED = 20.0  # frames a second at 1280x720 with software OpenGL on 2 cores
+WARM_UP = 1.0  # [s]
+ROUNDS = 3
+IDLE_SECONDS = 8.0
+
+
+class _FixedLevel(LevelOfDetail):
+    """One level of detail, however long a frame takes."""
+
+    def __init__(self, level: int) -> None:
+        super().__init__(is_software=False)
+        self.level = level
+
+    def begin_motion(self) -> None:
+        """No other level."""
+
+    def note(self, seconds: float) -> None:
+        """No other level."""
+
+
+@dataclass
+class _Case:
+    """A window in one state, and what was seen of it."""
+
+    name: str
+    level: int | None = None  # None: as the window chooses
+    look: str = FIRST_PRESET
+    compare: str = "off"
+    is_refined: bool = True
+    shows_muscles: bool = False
+    are_panels_cached: bool = True
+    seconds: list[float] = field(default_factory=list)  # of each frame
+    stages: list[list[float]] = field(default_factory=list)  # [ms] of each frame
+    spent: list[float] = field(default_factory=list)  # [s] of processor time, of each frame
+    last_level: int = 0
+
+
+def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
+    """Time the window: `seconds` for each case, after a second of warming up.
+
+    The text to print, and what the window is held to where software draws.
+    """
+    cases = [
+        _Case("smile"),
+        _Case("smile, unrefined", is_refined=False),
+        _Case("smile, wipe", compare="wipe"),
+        _Case("smile, side by side", compare="side by side"),
+        _Case("smile, muscles", shows_muscles=True),
+        _Case("smile, look paper", look=PAPERS_PRESET),
+        _Case("panels in each frame", are_panels_cached=False),
+        *(_Case(f"level {level}: {_described(each)}", level) for level, each in enumerate(LEVELS)),
+    ]
+    with Viewer(_smile(), size, Display()) as viewer:
+        viewer.session.is_looping = True
+        for turn in range(ROUNDS):
+            for case in cases if turn % 2 == 0 else reversed(cases):
+                _play(viewer, case, seconds / ROUNDS)
+        idle, alive = (_idle_share(viewer, is_alive=each) for each in (False, True))
+        is_software = viewer.surface.is_software
+        name = viewer.surface.gl.info["GL_RENDERER"]
+        width, height = viewer.surface.size
+    lines = [
+        f"The window at {width}x{height} on {name},",
+        f"{os.cpu_count()} cores of {processor()}; {ROUNDS} interleaved rounds.",
+        "",
+        *table(
+            "case:<30|frames/s:8.1f|median:7.1f|95 %:7.1f|best:7.1f|processor:9.1f|level:5d|"
+            f"{PHASES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in PHASES[1:])}|the rest:9.1f",
+            map(_cells, cases),
+        ),
+        "",
+        "Times in ms: of a frame; processor: what all cores spend on one, which other programs",
+        "disturb least; on the right, medians of its stages; the rest is events, panels, and",
+        "handing the picture over.",
+        f"Nothing moves: {100.0 * idle:.1f} % of a core; the face lives: {100.0 * alive:.0f} %.",
+    ]
+    promised = cases[:4] if is_software else []
+    rates = [at_least(each.name, _rate(each), PROMISED, " frames/s") for each in promised]
+    return "\n".join(lines), rates
+
+
+def _smile() -> Script:
+    strengths = {0.0: 0.0, 0.6: 1.0, 1.2: 1.0, 1.8: 0.0}
+    poses = tuple(Pose(time, {"joy": strength}) for time, strength in strengths.items())
+    return replace(script_for(None, "face"), title="smile", duration=2.0, poses=poses)
+
+
+def _described(detail: render.Detail) -> str:
+    samples = f"{detail.samples} samples" if detail.samples else "1 sample"
+    return samples if detail.scale == 1.0 else f"{samples}, {detail.scale:g} x"
+
+
+def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
+    """Let the window play for a while, and note what its frames took."""
+    viewer.settings.display = Display(
+        look=case.look,
+        compare=case.compare,
+        is_refined=case.is_refined,
+        overlays=["muscles"] * case.shows_muscles,
+    )
+    viewer.refresh = REFRESH if case.are_panels_cached else 0.0
+    is_software = viewer.surface.is_software
+    viewer.painter.level_of_detail = (
+        LevelOfDetail(is_software=is_software) if case.level is None else _FixedLevel(case.level)
+    )
+    if not viewer.session.is_playing:
+        viewer.session.toggle_playing()
+    _run(viewer, WARM_UP, lambda *_: None)
+
+    def note(elapsed: float, spent: float) -> None:
+        case.seconds.append(elapsed)
+        case.spent.append(spent)
+        case.stages.append([viewer.times.milliseconds[stage][-1] for stage in PHASES])
+
+    _run(viewer, seconds, note)
+    case.last_level = viewer.painter.level_of_detail.level
+
+
+def _run(viewer: Viewer, seconds: float, note: Callable[[float, float], None]) -> None:
+    last, used = time.perf_counter(), time.process_time()
+    end = last + seconds
+    while last < end:
+        viewer.frame()
+        now, spent = time.perf_counter(), time.process_time()
+        note(now - last, spent - used)
+        last, used = now, spent
+
+
+def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
+    """How much of one core the window takes while nothing happens, or the face lives by itself."""
+    viewer.session.neutral()
+    viewer.settings.is_alive = is_alive
+    while not (viewer.is_left_alone if is_alive else viewer.is_idle):
+        viewer.frame()
+    begin, used = time.perf_counter(), time.process_time()
+    while time.perf_counter() - begin < IDLE_SECONDS:
+        viewer.wait_for_frame()
+    return (time.process_time() - used) / (time.perf_counter() - begin)
+
+
+def _rate(case: _Case) -> float:
+    return len(case.seconds) / sum(case.seconds)
+
+
+def _cells(case: _Case) -> list[object]:
+    """The row of a case."""
+    elapsed = 1e3 * np.array(case.seconds)
+    rest = np.median(elapsed - np.sum(case.stages, axis=1))
+    times = [np.median(elapsed), np.percentile(elapsed, 95), elapsed.min()]
+    times.append(1e3 * np.median(case.spent))
+    stages = np.median(case.stages, axis=0)
+    return [case.name, _rate(case), *times, case.last_level, *stages, rest]

@@ -1,0 +1,152 @@
+"""Reference data comes out of a checkout of ICT-FaceKit; a small one is written here."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from click.testing import CliRunner, Result
+
+from risorius.__main__ import command
+from risorius.bench import reference
+
+pytest.importorskip("pyvista", reason="decimation needs PyVista, the extra 'peers'")
+
+SIZE = 40  # cells along a side of the face
+COUNT = (SIZE + 1) ** 2  # vertices of the face
+LIFT = np.array([0.0, 0.5, 0.25])
+
+
+def risorius(*arguments: str | Path) -> Result:
+    """Run the command in this process."""
+    return CliRunner().invoke(command(), list(map(str, arguments)))
+
+
+def face() -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    """A dome of quads, and behind it one more vertex, which a last quad reaches for."""
+    x, y = np.meshgrid(*[np.linspace(-8.0, 8.0, SIZE + 1)] * 2)
+    z = 8.0 - 0.05 * (x**2 + y**2) + 0.1 * np.sin(3.0 * x)
+    vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    first = (np.arange(SIZE)[:, None] * (SIZE + 1) + np.arange(SIZE)).ravel()
+    quads = np.stack([first, first + 1, first + SIZE + 2, first + SIZE + 1], axis=1)
+    behind = [[COUNT, 0, 1, 2]]
+    return np.vstack([vertices, [[0.0, 0.0, -9.0]]]), np.vstack([quads, behind])
+
+
+def obj(vertices: npt.NDArray[np.float64], quads: npt.NDArray[np.int64]) -> bytes:
+    """The text of a file as the checkout has it, with texture coordinates."""
+    lines = ["# a head", *("v {:.6f} {:.6f} {:.6f}".format(*each) for each in vertices), "vt 0 0"]
+    lines += ["f " + " ".join(f"{corner + 1}/1" for corner in quad) for quad in quads]
+    return "\n".join(lines).encode()
+
+
+@pytest.fixture
+def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Neutral head, two expressions (one file packed), one component, licence and README."""
+    monkeypatch.setattr(reference, "FACE_VERTICES", COUNT)
+    model = tmp_path / "checkout" / "FaceXModel"
+    model.mkdir(parents=True)
+    vertices, quads = face()
+    (model / "generic_neutral_mesh.obj").write_bytes(obj(vertices, quads))
+    (model / "jawOpen.obj").write_bytes(obj(vertices + LIFT, quads))
+    (model / "mouthSmile_L.obj.gz").write_bytes(gzip.compress(obj(vertices - LIFT, quads)))
+    (model / "identity000.obj").write_bytes(obj(1.01 * vertices, quads))
+    (model.parent / "LICENSE").write_text("as you like")
+    numbers = ", ".join(map(str, range(68)))
+    (model.parent / "README.md").write_text(f"Landmarks:\n\n    {numbers}\n\nJaw:\n\n    1, 2\n")
+    return model.parent
+
+
+def made(checkout: Path) -> dict[str, dict[str, npt.NDArray[Any]]]:
+    """What the command writes, by file."""
+    folder = checkout.parent / "made"
+    result = risorius("bench", "reference", checkout, "-o", folder)
+    assert result.exit_code == 0, result.output
+    assert "not in the checkout: mouthSmile_R" in result.output
+    assert (folder / "LICENSE").read_text() == "as you like"
+    return {path.stem: dict(np.load(path)) for path in folder.glob("*.npz")}
+
+
+def test_the_face_and_its_motion(checkout: Path) -> None:
+    """Vertices stay, quads are fans, motion is a difference, and all else of the head is left."""
+    vertices, quads = face()
+    arrays = made(checkout)["face"]
+    assert set(arrays) == {"vertices", "triangles", "landmarks68", "jawOpen", "mouthSmile_L"}
+    np.testing.assert_allclose(arrays["vertices"], vertices[:-1], atol=1e-5)
+    assert arrays["triangles"][:2].tolist() == [quads[0, :3].tolist(), quads[0, [0, 2, 3]].tolist()]
+    assert len(arrays["triangles"]) == 2 * SIZE**2  # none that reaches behind the face
+    np.testing.assert_allclose(arrays["jawOpen"], np.tile(LIFT, (COUNT, 1)), atol=2e-6)
+    np.testing.assert_allclose(arrays["mouthSmile_L"], -arrays["jawOpen"], atol=2e-6)
+    assert arrays["landmarks68"].tolist() == list(range(68))
+
+
+def test_the_coarse_face_lies_on_the_dense_one(checkout: Path) -> None:
+    """About as many triangles as it is called after; places follow from where vertices lie."""
+    files = made(checkout)
+    dense, coarse = files["face"], files["coarse_2029"]
+    assert 2027 <= len(coarse["triangles"]) <= 2029
+    assert coarse["triangles"].max() == len(coarse["vertices"]) - 1
+    corners = dense["vertices"][dense["triangles"][coarse["fine_triangle"]]]
+    places = np.einsum("vi,vij->vj", coarse["barycentric"], corners)
+    np.testing.assert_allclose(places, coarse["vertices"], atol=1e-4)
+    assert coarse["barycentric"].min() > -1e-6
+    a, b, c = np.moveaxis(coarse["vertices"][coarse["triangles"]], 1, 0)
+    assert (np.cross(b - a, c - a)[:, 2] > 0.0).all()  # no triangle of the dome is turned over
+
+
+def test_other_persons(checkout: Path) -> None:
+    """Each is the neutral face along the components, and no two are alike."""
+    files = made(checkout)
+    rest = files["face"]["vertices"]
+    scales = [float((each * rest).sum() / (rest**2).sum()) for each in files["identities"].values()]
+    assert len(set(np.round(scales, 5))) == len(scales) == 5
+    for scale, each in zip(scales, files["identities"].values(), strict=True):
+        assert 0.001 < abs(scale - 1.0) < 0.05
+        np.testing.assert_allclose(each, scale * rest, atol=1e-4)
+
+
+@pytest.mark.slow
+def test_bench_quality_runs_on_it(checkout: Path) -> None:
+    """The folder is what `--reference` takes."""
+    made(checkout)
+    result = risorius(
+        "bench", "quality", "--reference", checkout.parent / "made", "--finer", "none"
+    )
+    assert result.exit_code == 0, result.output
+    assert "scan\n" in result.output and "other persons\n" in result.output
+    rows = [line for line in result.output.splitlines() if line.startswith("cubic twice ")]
+    triangles, _, better = rows[0].removeprefix("cubic twice").split()[:3]
+    assert float(triangles) > 10 and float(better.rstrip("%")) > 50, "nearer to the dense face"
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda folder: (folder / "README.md").unlink(), "names no 68 landmarks"),
+        (
+            lambda folder: (folder / "FaceXModel/jawOpen.obj").write_text("v 0 0 0\nf 1 1 1\n"),
+            "1 vert",
+        ),
+        (lambda folder: (folder / "FaceXModel/jawOpen.obj").write_text("v 0 x 0\n"), "line 1"),
+        (
+            lambda folder: (folder / "FaceXModel/mouthSmile_L.obj.gz").write_text("no"),
+            "smile_l.obj.gz",
+        ),
+        (
+            lambda folder: (folder / "FaceXModel/generic_neutral_mesh.obj").unlink(),
+            "must be a checkout of ICT-FaceKit",
+        ),
+    ],
+)
+def test_a_broken_checkout_is_told_in_one_line(checkout: Path, spoil: Any, words: str) -> None:
+    """The file is named, and nothing is written."""
+    spoil(checkout)
+    result = risorius("bench", "reference", checkout, "-o", checkout.parent / "made")
+    assert result.exit_code == 2
+    assert words.lower() in result.stderr.lower()
+    assert len(result.stderr.strip().splitlines()) == 1
+    assert not (checkout.parent / "made" / "face.npz").exists()

@@ -1,0 +1,133 @@
+"""What benchmarks print, and are held to: a target that is missed ends with exit code 1."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from risorius.bench import commands, gaps, motion, quality, soak, tearing
+from risorius.bench.gaps import PoseGaps
+from risorius.bench.quality import BEST, CALM, STATIC, Score
+from risorius.bench.report import at_least, at_most, table
+from risorius.bench.soak import Soak
+from risorius.bench.tearing import PoseDefects
+
+SOUND = Soak(60.0, 3600, True, 94.0, 0.0, 0.0, True, 1e-12)
+CLOSED = PoseGaps("blink", 0.1, 0.0, 0.2)
+WHOLE = PoseDefects("joy", 0, 0.01, 0.0, 0.0)
+ALIKE = motion.Row("joy", 0.96, 1.0, 0.1, 0.5)
+NEARER = [
+    Score(STATIC, "joy", 1.0, 1.0, 10.0, 9.0, 1.0),
+    Score(BEST, "joy", 2.0, 0.6, 6.0, 9.0, 9.0),
+    Score(CALM, "joy", 2.0, 0.8, 7.0, 9.0, 1.1),
+]
+
+
+def run(
+    command: click.Command, measured: dict[tuple[Any, str], Any], *words: str
+) -> tuple[int, str]:
+    """Exit code and output of a benchmark that measured this."""
+    with pytest.MonkeyPatch.context() as patch:
+        for (module, name), value in measured.items():
+            patch.setattr(module, name, lambda *_, value=value, **__: value)
+        ended = CliRunner().invoke(command, words)
+    return ended.exit_code, ended.output
+
+
+def of_soak(**change: Any) -> tuple[int, str]:
+    return run(commands.bench_soak, {(soak, "measure"): replace(SOUND, **change)})
+
+
+def of_gaps(**change: Any) -> tuple[int, str]:
+    return run(commands.bench_gaps, {(gaps, "measure"): [CLOSED, replace(CLOSED, **change)]})
+
+
+def of_tearing(**change: Any) -> tuple[int, str]:
+    poses = [*[WHOLE] * 99, replace(WHOLE, **change)]
+    return run(commands.bench_tearing, {(tearing, "measure"): poses})
+
+
+def of_motion(**change: Any) -> tuple[int, str]:
+    rows = [*[ALIKE] * 9, replace(ALIKE, **change)]
+    return run(
+        commands.bench_motion, {(motion, "measure"): (rows, [], {"ada": rows})}, "--reference", "."
+    )
+
+
+def of_quality(**change: Any) -> tuple[int, str]:
+    scores = [NEARER[0], *(replace(each, **change) for each in NEARER[1:])]
+    measured = {(quality, "subjects_of"): {"head": []}, (quality, "measure"): scores}
+    return run(commands.bench_quality, measured)
+
+
+@pytest.mark.parametrize(
+    ("bench", "broken"),
+    [
+        (of_soak, {"finite": False}),
+        (of_soak, {"furthest": 500.0}),
+        (of_soak, {"rest_error": 0.1}),
+        (of_soak, {"growth": 1e-3}),
+        (of_soak, {"same_bytes": False}),
+        (of_soak, {"mirror_error": float("nan")}),
+        (of_gaps, {"lips": 0.3}),
+        (of_gaps, {"lids": 0.3}),
+        (of_tearing, {"inverted": 4}),
+        (of_tearing, {"teeth": 0.2}),
+        (of_motion, {"cosine": 0.87}),
+        (of_motion, {"cosine": 0.1}),
+        (of_quality, {"distance": 0.9}),
+        (of_quality, {"picture": 9.9}),
+        (of_quality, {"jump": 1.6}),
+    ],
+)  # fmt: skip
+def test_a_missed_target_is_told_and_ends_with_one(
+    bench: Callable[..., tuple[int, str]], broken: dict[str, Any]
+) -> None:
+    """All that is as it should be ends with 0, and says "met" for each target."""
+    code, told = bench()
+    assert code == 0 and "  met     " in told and "MISSED" not in told
+    code, told = bench(**broken)
+    assert code == 1 and "  MISSED  " in told
+
+
+def test_what_is_no_number_meets_nothing() -> None:
+    """Neither an upper nor a lower bound."""
+    assert not at_most("x", float("nan"), 1.0).is_met
+    assert not at_least("x", float("nan"), 1.0).is_met
+
+
+def test_figures_are_written_though_a_target_is_missed(tmp_path: Path) -> None:
+    """A program that reads them wants these most."""
+    file = tmp_path / "gaps.json"
+    measured = {(gaps, "measure"): [replace(CLOSED, lips=3.0)]}
+    assert run(commands.bench_gaps, measured, "--json", str(file))[0] == 1 and file.exists()
+
+
+@pytest.mark.slow
+def test_soak_table() -> None:
+    """A few seconds of wild input are reported, and the face stays sound."""
+    found = soak.measure(0.05)
+    text = soak.report(found)
+    assert "NO" not in text and all(target.is_met for target in soak.targets(found))
+    assert "0.1 simulated minutes" in text or "0.0 simulated minutes" in text
+
+
+@pytest.mark.slow
+def test_tearing_table() -> None:
+    """Expressions and mixtures are looked at, and the worst is named."""
+    text = tearing.report(tearing.measure(3), 3)
+    assert "3 random mixtures" in text
+    assert text.splitlines()[-1].startswith("teeth")
+
+
+def test_table() -> None:
+    """Titles stand over their columns; text goes left, and for None stands what is asked."""
+    lines = table("name:<6|ms:6.2f|n:3d", [("a", 1.0, 2), ("b", None, 30)], empty="-")
+    assert lines == ["name       ms   n", "a        1.00   2", "b           -  30"]
+    assert table("x:>4", [(None,)], indent="  ") == ["     x", ""]

@@ -1,0 +1,128 @@
+"""What a face tracker sees: how its scores are counted, and a run with the tracker itself.
+
+The run needs MediaPipe (the extra 'mediapipe') and its model, the file that the environment
+variable FACE_LANDMARKER names.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from risorius.__main__ import command
+from risorius.app.recordings.names import ARKIT
+from risorius.bench import seen
+from risorius.bench.face_tracker import FaceTracker, Scores, in_mirror, mean_of
+
+MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
+needs_model = pytest.mark.skipif(
+    not MODEL.is_file(), reason="FACE_LANDMARKER names no model of the face tracker"
+)
+CALM = dict.fromkeys(ARKIT, 0.05)
+
+
+def risorius(*arguments: str | Path) -> Result:
+    """Run the command in this process."""
+    return CliRunner().invoke(command(), list(map(str, arguments)))
+
+
+def over(**scores: float) -> Scores:
+    """Scores that are so far above those of the neutral face."""
+    return {**CALM, **{name: 0.05 + score for name, score in scores.items()}}
+
+
+def test_every_shape_is_asked_for_once() -> None:
+    """Pairs by their name without side, jaw and mouth among them; all 52 shapes are there."""
+    found = dict(seen.bases())
+    assert sorted(name for names in found.values() for name in names) == sorted(ARKIT)
+    assert found["eyeBlink"] == ("eyeBlinkLeft", "eyeBlinkRight")
+    assert found["jawLeft, Right"] == ("jawLeft", "jawRight")
+    assert found["jawOpen"] == ("jawOpen",)
+
+
+def test_a_pair_counts_by_its_mean() -> None:
+    """A smile of both sides is seen beside one side of a squint; the neutral face is taken off."""
+    scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
+    own, highest, score = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
+    assert (own, highest, score) == (pytest.approx(0.4), "eyeSquint", pytest.approx(0.35))
+
+
+def test_one_side_counts_by_itself() -> None:
+    """Of other pairs the greater side counts; what is posed besides is no mistake."""
+    scores = over(eyeLookInLeft=0.5, eyeLookOutRight=0.9, eyeLookInRight=0.8, jawOpen=0.2)
+    scores["eyeSquintRight"] += 0.3
+    posed = ("eyeLookInLeft", "eyeLookOutRight")
+    own, highest, score = seen.compared(scores, CALM, posed[:1], posed)
+    assert (own, highest, score) == (pytest.approx(0.5), "eyeSquint", pytest.approx(0.3))
+
+
+@pytest.mark.parametrize(
+    ("own", "score", "told"),
+    [
+        (0.5, 0.4, "seen"),
+        (0.4, 0.5, "as jawOpen"),
+        (0.02, 0.09, "not seen"),
+        (-0.1, 0.0, "not seen"),
+    ],
+)
+def test_verdicts(own: float, score: float, told: str) -> None:
+    """Seen under its own name, under another, or not at all."""
+    assert seen.verdict(own, "jawOpen", score) == told
+
+
+def test_mirrors_swap_sides() -> None:
+    """Left and right of a mirrored picture change places, twice is once more the same."""
+    scores = {"jawLeft": 0.1, "jawRight": 0.2, "jawOpen": 0.3, "_neutral": 0.4}
+    mirrored = {"jawRight": 0.1, "jawLeft": 0.2, "jawOpen": 0.3, "_neutral": 0.4}
+    assert in_mirror(scores) == mirrored
+    assert in_mirror(mirrored) == scores
+
+
+def test_pictures_without_a_face_do_not_count() -> None:
+    """The mean is that of the others; of none it is nothing."""
+    assert mean_of([{"jawOpen": 0.2}, {}, {"jawOpen": 0.4}]) == {"jawOpen": pytest.approx(0.3)}
+    assert mean_of([{}, {}]) == {}
+
+
+def test_without_mediapipe_one_line_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is an extra: the line says how to get it."""
+    monkeypatch.setitem(sys.modules, "mediapipe", None)
+    (tmp_path / "model.task").write_bytes(b"model")
+    result = risorius("bench", "seen", "--model", tmp_path / "model.task")
+    assert result.exit_code == 2
+    assert result.stderr == (
+        "risorius: the face tracker needs MediaPipe; install it: "
+        "pip install 'risorius[mediapipe]'\n"
+    )
+
+
+@pytest.mark.parametrize("content", [b"", b"no model", b"PK\x03\x04 cut short"])
+def test_what_is_no_model_is_named(tmp_path: Path, content: bytes) -> None:
+    """One line with the file, and what it ought to be."""
+    pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
+    (tmp_path / "other.task").write_bytes(content)
+    result = risorius("bench", "seen", "--model", tmp_path / "other.task")
+    assert result.exit_code == 2
+    (line,) = result.stderr.splitlines()
+    assert "other.task: is no model of MediaPipe's face landmarker" in line
+
+
+@needs_model
+def test_the_tracker_sees_an_open_jaw(tmp_path: Path) -> None:
+    """Our face looks to it like one; an empty picture does not; pictures are kept."""
+    pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
+    with FaceTracker(MODEL) as tracker:
+        assert tracker.scores(np.zeros((64, 64, 3), dtype=np.uint8)) == {}
+        with seen.Sitting(tracker, seen.FaceScene(), tmp_path) as sitting:
+            neutral = sitting.pose("neutral", ())
+            opened = sitting.pose("jawOpen", ("jawOpen",))
+        own, _, score = seen.compared(opened, neutral, ("jawOpen",))
+        assert own > 0.5 > score
+    assert len(list(tmp_path.glob("jawOpen_*.png"))) == len(seen.VIEWS)

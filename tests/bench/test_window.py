@@ -1,0 +1,27 @@
+"""What `risorius bench window` prints."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from risorius.app.viewer.picture.painter import LEVELS
+from risorius.bench import window
+
+pytestmark = [
+    pytest.mark.window,
+    pytest.mark.slow,
+    pytest.mark.skipif(not os.environ.get("DISPLAY"), reason="needs a display"),
+]
+
+
+def test_the_window_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`risorius bench window` plays each case, and says what the idle window takes."""
+    monkeypatch.setattr(window, "IDLE_SECONDS", 0.1)
+    monkeypatch.setattr(window, "WARM_UP", 0.02)
+    table, targets = window.measure(0.1, (640, 400))
+    rates = [float(line[30:39]) for line in table.splitlines() if line.startswith(("smile", "lev"))]
+    assert len(rates) == 6 + len(LEVELS) and min(rates) > 0.0
+    assert len(targets) in (0, 4)  # where software draws
+    assert "Nothing moves:" in table and "% of a core" in table
