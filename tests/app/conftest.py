@@ -12,12 +12,16 @@ import pytest
 from risorius.app import process_cache
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
+from risorius.app.script import load_script
+from risorius.app.script.places import NOWHERE
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display
 
 from .driving import SIZE, replace_state, settle, xdotool
+
+HELLO = Path(__file__).parents[2] / "docs" / "hello.toml"
 
 
 @pytest.fixture(scope="session")
@@ -51,6 +55,19 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.panel_state.wanted_tab = "Face"
     viewer.view.fit_scene()
     settle(viewer)
+
+
+@pytest.fixture
+def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
+    """A script of the user's own, of poses and a blink, opened in rows of keys."""
+    path = tmp_path / "own.toml"
+    path.write_text(HELLO.read_text(encoding="utf-8"))
+    viewer.session.open(load_script(path))
+    viewer.selection.places = NOWHERE
+    viewer.settings.shows_curves, viewer.settings.timeline_height = False, 0.0
+    viewer.time_axis.show_whole()
+    settle(viewer)
+    return path
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
+from risorius.app.script.places import KeyPlace
 from risorius.app.viewer import Viewer
 
 import glfw  # isort: skip - after imgui_bundle, which the viewer imports
@@ -148,3 +149,33 @@ def drop(viewer: Viewer, *paths: Path) -> None:
     assert until(viewer, lambda: source.poll() is not None)
     assert source.returncode == 0, source.communicate()[1]
     settle(viewer)
+
+
+def where_key(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
+    """Where a key is, in the first row that has it [window units]."""
+    row = next(row for row in viewer.timeline.dope_sheet.rows if place in row.places)
+    _, top, _, bottom = viewer.gui.places[f"row {row.name}"]
+    return viewer.time_axis.x(place.time), 0.5 * (top + bottom)
+
+
+def key_at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
+    """The same, on the screen."""
+    return on_screen(viewer, *where_key(viewer, place))
+
+
+def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
+    """Click somewhere, with keys held down; never the second half of a double click."""
+    usual, viewer.gui.double_click_time = viewer.gui.double_click_time, 0.0
+    xdotool(viewer, "mousemove", *place)
+    for key in keys:
+        xdotool(viewer, "keydown", key)
+    xdotool(viewer, "mousedown", button)
+    xdotool(viewer, "mouseup", button)
+    for key in keys:
+        xdotool(viewer, "keyup", key)
+    viewer.gui.double_click_time = usual
+
+
+def pose_times(viewer: Viewer) -> list[float]:
+    """When the script has poses [s]."""
+    return [pose.time for pose in viewer.session.script.poses]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.script import Channel, Script, load_script, parse_script, script_text
+from risorius.app.script import Channel, Script, parse_script, script_text
 from risorius.app.script.keyframes import FRAME, POSES, on_frame
 from risorius.app.script.places import NOWHERE, KeyPlace, Places
 from risorius.app.viewer import Viewer
@@ -18,17 +18,11 @@ from .driving import NEEDS_A_SCREEN, SIZE, click, drag, middle, on_screen, settl
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "curves")]
 
-SCRIPT = Path("docs/hello.toml").absolute()
-
 
 @pytest.fixture
-def curves(viewer: Viewer, calm: None) -> None:
-    """A script of poses and a blink, seen as curves."""
-    viewer.session.open(load_script(SCRIPT))
-    viewer.selection.places = NOWHERE
+def curves(viewer: Viewer, own: Path) -> None:
+    """Values in place of the rows."""
     viewer.settings.shows_curves, viewer.settings.counts_frames = True, False
-    viewer.settings.timeline_height = 0.0
-    viewer.time_axis.show_whole()
     settle(viewer)
 
 

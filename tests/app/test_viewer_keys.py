@@ -20,13 +20,13 @@ from .driving import (
     NEEDS_A_SCREEN,
     clear_search,
     click,
+    key_at,
     middle,
     settle,
     show_controls,
     until,
     xdotool,
 )
-from .test_viewer_timeline import at
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -69,7 +69,7 @@ def test_a_pose_is_named_in_a_slow_window(viewer: Viewer) -> None:
     """Words typed right after the double click are the name; none of them is a shortcut."""
     viewer.session.open(load_script(Path(__file__).parents[2] / "docs" / "hello.toml"))
     settle(viewer)
-    place = at(viewer, KeyPlace(POSES, 1.0))
+    place = key_at(viewer, KeyPlace(POSES, 1.0))
     xdotool(viewer, "mousemove", *place)
     double = ("click", "--repeat", 2, "--delay", 100, 1)
     slowly(viewer, *double, *typed("big smile"))

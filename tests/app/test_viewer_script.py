@@ -14,17 +14,18 @@ from .driving import (
     clear_search,
     click,
     drag,
+    key_at,
     middle,
     on_screen,
+    pose_times,
+    press,
     settle,
     show_controls,
     until,
     write,
     xdotool,
 )
-from .test_viewer_timeline import at, own, pose_times, press
 
-__all__ = ["own"]
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "own")]
 
 JOY = KeyPlace(POSES, 1.0)
@@ -81,7 +82,7 @@ def test_auto_key(viewer: Viewer) -> None:
 def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
     """Never by Backspace; by Delete when the timeline was touched last, not after other work."""
     settle(viewer)
-    press(viewer, at(viewer, JOY))
+    press(viewer, key_at(viewer, JOY))
     assert viewer.selection.places == {JOY}
     xdotool(viewer, "key", "BackSpace")
     assert viewer.selection.places == {JOY}
@@ -95,7 +96,7 @@ def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
     assert until(viewer, lambda: "timeline" in viewer.messages.text)
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
     clear_search(viewer)
-    press(viewer, at(viewer, JOY))
+    press(viewer, key_at(viewer, JOY))
     xdotool(viewer, "key", "Delete")
     assert pose_times(viewer) == [0.0, 3.0, 4.0]
 

@@ -12,9 +12,8 @@ from risorius.app.script import load_script
 from risorius.app.sound import player
 from risorius.app.viewer import Viewer
 
-from .driving import NEEDS_A_SCREEN, drag, middle, on_screen, settle, until, xdotool
+from .driving import NEEDS_A_SCREEN, drag, drop, middle, on_screen, settle, until, xdotool
 from .sounds import noise, write_wav
-from .test_viewer_files import drop
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 SCRIPT = "duration = 8.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.script import load_script
 from risorius.app.script.keyframes import POSES
-from risorius.app.script.places import NOWHERE, KeyPlace
+from risorius.app.script.places import KeyPlace
 from risorius.app.viewer import Viewer
 
 from .driving import (
@@ -17,31 +14,22 @@ from .driving import (
     clear_search,
     click,
     drag,
+    key_at,
     middle,
     nose,
     on_screen,
+    pose_times,
+    press,
     settle,
     show_controls,
     until,
     xdotool,
 )
-from .test_viewer_timeline import at, pose_times, press
 
-pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "opened")]
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "own")]
 
-SCRIPT = Path("docs/hello.toml").absolute()
 JOY = KeyPlace(POSES, 1.0)
 BUTTONS = ("play", "record", "loop", "set key", "auto-key", "curves")
-
-
-@pytest.fixture
-def opened(viewer: Viewer, calm: None) -> None:
-    """A script of poses and a blink, in rows of keys."""
-    viewer.session.open(load_script(SCRIPT))
-    viewer.selection.places = NOWHERE
-    viewer.settings.shows_curves, viewer.settings.timeline_height = False, 0.0
-    viewer.time_axis.show_whole()
-    settle(viewer)
 
 
 # Undo while the mouse drags
@@ -66,7 +54,7 @@ def test_undo_takes_back_a_slider_that_is_held(viewer: Viewer) -> None:
 
 def test_undo_takes_back_a_key_that_is_held(viewer: Viewer) -> None:
     """The key is where it was, whatever the mouse does then; redo brings it where it was let go."""
-    drag(viewer, at(viewer, JOY), (40, 0))
+    drag(viewer, key_at(viewer, JOY), (40, 0))
     moved = pose_times(viewer)
     assert moved[1] > 1.0
     xdotool(viewer, "key", "ctrl+z")

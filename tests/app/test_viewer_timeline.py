@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from risorius.app.script import Channel, Script, load_script, save_script
 from risorius.app.script.keyframes import POSES, on_frame, places_of
-from risorius.app.script.places import NOWHERE, KeyPlace, Places
+from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.timeline.dope_sheet import ROW
 
@@ -20,69 +20,30 @@ from .driving import (
     clear_search,
     click,
     drag,
+    key_at,
     middle,
     on_screen,
+    pose_times,
+    press,
     settle,
     show_controls,
     until,
+    where_key,
     write,
     xdotool,
 )
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "own")]
 
-SCRIPT = Path("docs/hello.toml").absolute()
 JOY = KeyPlace(POSES, 1.0)
 REST = KeyPlace(POSES, 3.0)
-
-
-@pytest.fixture
-def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
-    """A script of the user's own, opened."""
-    path = tmp_path / "own.toml"
-    path.write_text(SCRIPT.read_text(encoding="utf-8"))
-    viewer.session.open(load_script(path))
-    viewer.selection.places = NOWHERE
-    viewer.time_axis.is_whole = True
-    settle(viewer)
-    return path
-
-
-def where(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
-    """Where a key is, in the first row that has it [window units]."""
-    row = next(row for row in viewer.timeline.dope_sheet.rows if place in row.places)
-    _, top, _, bottom = viewer.gui.places[f"row {row.name}"]
-    return viewer.time_axis.x(place.time), 0.5 * (top + bottom)
-
-
-def at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
-    """The same, on the screen."""
-    return on_screen(viewer, *where(viewer, place))
-
-
-def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
-    """Click somewhere, with keys held down; never the second half of a double click."""
-    usual, viewer.gui.double_click_time = viewer.gui.double_click_time, 0.0
-    xdotool(viewer, "mousemove", *place)
-    for key in keys:
-        xdotool(viewer, "keydown", key)
-    xdotool(viewer, "mousedown", button)
-    xdotool(viewer, "mouseup", button)
-    for key in keys:
-        xdotool(viewer, "keyup", key)
-    viewer.gui.double_click_time = usual
-
-
-def pose_times(viewer: Viewer) -> list[float]:
-    """When the script has poses [s]."""
-    return [pose.time for pose in viewer.session.script.poses]
 
 
 def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> None:
     """A drag goes to whole frames, the face follows, the file keeps it, one undo takes it back."""
     before = viewer.session.script
     viewer.session.seek(1.0)
-    drag(viewer, at(viewer, JOY), (40, 0))
+    drag(viewer, key_at(viewer, JOY), (40, 0))
     xdotool(viewer, "mousemove_relative", "--", 13, 0)
     assert viewer.session.values["joy"] < 1.0  # seen while it is dragged
     xdotool(viewer, "mouseup", 1)
@@ -101,7 +62,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> N
 
 def test_ctrl_leaves_frames_and_escape_leaves_all(viewer: Viewer) -> None:
     """With Ctrl a key goes anywhere; Escape during a drag puts it back."""
-    drag(viewer, at(viewer, JOY), (40, 0))
+    drag(viewer, key_at(viewer, JOY), (40, 0))
     for _ in range(3):  # at least one of three places next to each other is between frames
         xdotool(viewer, "keydown", "ctrl")
         xdotool(viewer, "mousemove_relative", "--", 1, 0)
@@ -118,27 +79,27 @@ def test_ctrl_leaves_frames_and_escape_leaves_all(viewer: Viewer) -> None:
 
 def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
     """The pose under the mouse is selected and shown; Shift adds another and stays."""
-    press(viewer, at(viewer, JOY))
+    press(viewer, key_at(viewer, JOY))
     assert viewer.selection.places == {JOY}
     assert viewer.session.time == 1.0 and viewer.session.values["joy"] == 1.0
-    press(viewer, at(viewer, REST), "shift")
+    press(viewer, key_at(viewer, REST), "shift")
     assert viewer.selection.places == {JOY, REST} and viewer.session.time == 1.0
-    press(viewer, at(viewer, JOY), "shift")
+    press(viewer, key_at(viewer, JOY), "shift")
     assert viewer.selection.places == {REST}
-    x, y = at(viewer, KeyPlace(POSES, 1.0))
+    x, y = key_at(viewer, KeyPlace(POSES, 1.0))
     press(viewer, (x + 50, y))
     assert not viewer.selection.places and not viewer.session.unsaved
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
     """A drag over nothing takes the keys inside, of poses and tracks; they keep their distance."""
-    x, y = at(viewer, JOY)
-    right, low = at(viewer, KeyPlace("blink", 2.4))
+    x, y = key_at(viewer, JOY)
+    right, low = key_at(viewer, KeyPlace("blink", 2.4))
     drag(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
     xdotool(viewer, "mouseup", 1)
     chosen = viewer.selection.places
     assert {place.track for place in chosen} == {POSES, "blink"} and len(chosen) == 5
-    drag(viewer, at(viewer, JOY), (-30, 0))
+    drag(viewer, key_at(viewer, JOY), (-30, 0))
     xdotool(viewer, "mouseup", 1)
     by = viewer.session.script.poses[1].time - 1.0
     assert by < -0.1
@@ -152,7 +113,7 @@ def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
 
 def test_delete_and_duplicate(viewer: Viewer) -> None:
     """Delete takes selected keys, Ctrl+D copies them to the time shown; both can be undone."""
-    press(viewer, at(viewer, JOY))
+    press(viewer, key_at(viewer, JOY))
     viewer.session.seek(2.0)
     xdotool(viewer, "key", "ctrl+d")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -182,7 +143,7 @@ def test_the_face_becomes_a_key(viewer: Viewer) -> None:
     assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
     assert viewer.session.unsaved == "the script"
     xdotool(viewer, "key", "Home")
-    press(viewer, at(viewer, KeyPlace(POSES, 2.0)))
+    press(viewer, key_at(viewer, KeyPlace(POSES, 2.0)))
     assert viewer.session.values == pytest.approx(wanted)
     click(viewer, "set key")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -190,7 +151,7 @@ def test_the_face_becomes_a_key(viewer: Viewer) -> None:
 
 def test_a_pose_is_named(viewer: Viewer) -> None:
     """A double click on a pose asks for its name; Escape leaves it."""
-    xdotool(viewer, "mousemove", *at(viewer, REST))
+    xdotool(viewer, "mousemove", *key_at(viewer, REST))
     xdotool(viewer, "click", "--repeat", 2, "--delay", 50, 1)
     write(viewer, "half a smile")
     xdotool(viewer, "key", "Return")
@@ -207,17 +168,17 @@ def test_a_pose_is_named(viewer: Viewer) -> None:
 
 def test_the_menus_do_the_same(viewer: Viewer) -> None:
     """A right click on a key brings up its menu, in which there is more than keys have."""
-    press(viewer, at(viewer, REST), button=3)
+    press(viewer, key_at(viewer, REST), button=3)
     assert viewer.selection.places == {REST}
     click(viewer, "menu Keys: Easing: hold")
     assert viewer.session.script.poses[2].easing == "hold"
-    press(viewer, at(viewer, REST), button=3)
+    press(viewer, key_at(viewer, REST), button=3)
     click(viewer, "menu Keys: Delete")
     assert pose_times(viewer) == [0.0, 1.0, 4.0]
     click(viewer, "menu Edit")
     click(viewer, "menu Edit: Undo")
     assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
-    press(viewer, at(viewer, REST), button=3)
+    press(viewer, key_at(viewer, REST), button=3)
     click(viewer, "menu Keys: Name of the pose ...")
     assert until(viewer, lambda: "pose name" in viewer.gui.places)
     xdotool(viewer, "key", "Escape")
@@ -256,7 +217,7 @@ def test_a_key_under_the_mouse_tells_what_it_is(viewer: Viewer) -> None:
         windows = imgui.get_current_context().windows
         return any(each.active and each.name.startswith("##Tooltip") for each in windows)
 
-    x, y = at(viewer, JOY)
+    x, y = key_at(viewer, JOY)
     xdotool(viewer, "mousemove", x, y)
     assert until(viewer, is_told)
     xdotool(viewer, "mousemove", x + 40, y)
@@ -267,12 +228,12 @@ def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     """A click on the arrow gives each track a row; its keys are then selected alone."""
     left = viewer.gui.places["keys"][0]
     rows = viewer.timeline.height()
-    _, y = where(viewer, KeyPlace("blink", 2.0))
+    _, y = where_key(viewer, KeyPlace("blink", 2.0))
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
     xdotool(viewer, "click", 1)
     assert viewer.timeline.height() > rows and viewer.settings.folds["Tracks"]
     settle(viewer)
-    x, y = where(viewer, KeyPlace("blink", 2.4))
+    x, y = where_key(viewer, KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
     assert viewer.selection.places == {KeyPlace("blink", 2.4)}
 
@@ -281,7 +242,7 @@ def test_while_recording_keys_stay(viewer: Viewer) -> None:
     """A drag then says why not, and the script stays as it was."""
     before = viewer.session.script
     xdotool(viewer, "key", "ctrl+r")
-    drag(viewer, at(viewer, JOY), (40, 0))
+    drag(viewer, key_at(viewer, JOY), (40, 0))
     xdotool(viewer, "mouseup", 1)
     assert viewer.messages.is_error and "Stop the recording" in viewer.messages.text
     assert viewer.session.script is before and viewer.session.is_recording
@@ -319,7 +280,7 @@ def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> 
     for name, value in take.at(viewer.session.time).items():
         assert viewer.session.values[name] == pytest.approx(value)
     first, second = list(take.tracks)[:2]
-    row = where(viewer, KeyPlace(second, float(take.tracks[second].times[0])))[1]
+    row = where_key(viewer, KeyPlace(second, float(take.tracks[second].times[0])))[1]
     # The first row that has it is that of all tracks, then come its group and the first track.
     row += 3.0 * ROW * imgui.get_font_size()
     low = on_screen(viewer, axis.x(100.0), row)
@@ -346,7 +307,7 @@ def test_what_is_selected_of_a_dense_track_is_dragged(viewer: Viewer, take: Scri
     settle(viewer)
     chosen = places_of(take).between(100.0, 200.0) & Places({name: take.tracks[name].times})
     viewer.selection.places = chosen
-    row = where(viewer, KeyPlace(name, 0.0))[1] + 2.0 * ROW * imgui.get_font_size()
+    row = where_key(viewer, KeyPlace(name, 0.0))[1] + 2.0 * ROW * imgui.get_font_size()
     drag(viewer, on_screen(viewer, axis.x(150.0), row), (40, 0))
     xdotool(viewer, "mouseup", 1)
     moved = viewer.selection.places
