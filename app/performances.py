@@ -13,8 +13,8 @@ from pathlib import Path
 from .errors import UserError
 from .recordings import is_recording, read_take
 from .recordings.conversion import Playback, script_of
+from .recordings.reading import read_beginning
 from .recordings.report import Report
-from .recordings.text import read_beginning
 from .scenes import SCENES
 from .script import POSE_SECONDS, Limits, Pose, Script, load_script
 

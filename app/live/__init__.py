@@ -1,8 +1,7 @@
 """Faces that are sent while they move: sockets, packets, and what is done when nobody sends."""
 
-from .addresses import ANYWHERE, LOOPBACK, own_address
 from .live_face import LOST_AFTER, LiveFace, State
-from .protocols import PROTOCOLS, Listening
+from .protocols import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, own_address
 from .receiver import Receiver
 
 __all__ = [

@@ -105,11 +105,6 @@ class LiveFace:
         return self._receiver.has_frame
 
     @property
-    def came_at(self) -> float | None:
-        """When the newest frame came [s of the clock], None before the first."""
-        return self._last
-
-    @property
     def silence(self) -> float:
         """How long ago the newest frame came [s]; infinite before the first."""
         return float("inf") if self._last is None else max(self._clock() - self._last, 0.0)

@@ -14,9 +14,8 @@ from collections import deque
 from collections.abc import Callable
 
 from ..errors import UserError
-from .addresses import ANYWHERE, LOOPBACK, resolved
 from .frame import MOST_BYTES, LiveFrame
-from .protocols import Listening
+from .protocols import ANYWHERE, LOOPBACK, Listening, resolved
 
 MOST_WAITING = 256  # frames or parts of them; of more, the oldest are dropped
 STILL_THERE = 0.2  # [s] after which a frame wakes although it says nothing new

@@ -14,8 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from ..errors import UserError, in_one_line
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
 from ..recordings.take import Take
-from .addresses import resolved
-from .protocols import PROTOCOLS
+from .protocols import PROTOCOLS, resolved
 
 SHAPES_OF_UNITS = {
     1: "browInnerUp", 2: "browOuterUp", 4: "browDown", 5: "eyeWide", 6: "cheekSquint",

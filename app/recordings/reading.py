@@ -1,4 +1,4 @@
-"""A file -> a Take: its format is recognised from what it holds, never from its name.
+"""A file -> a Take: encoding and format are recognised from what it holds, never from its name.
 
 `TABLES` and `DOCUMENTS` list the formats, the most special first. A new one is two functions, one
 that recognises it and one that reads it, and a row here.
@@ -6,6 +6,7 @@ that recognises it and one that reads it, and a row here.
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import re
 from collections.abc import Callable
@@ -15,10 +16,10 @@ from typing import Any, NamedTuple
 from risorius.schema import parsed_json
 
 from ..errors import UserError
+from ..files import read_bytes
 from . import mediapipe_json, named_columns, openface, pyfeat, speech
 from .table import Table, header_of, table_in
 from .take import Request, Take
-from .text import read_beginning, read_recording
 
 
 class TableFormat(NamedTuple):
@@ -52,6 +53,14 @@ KNOWN = (
     "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
     "MediaPipe JSON, OpenFaceFX and Rhubarb tracks"
 )
+LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about as long
+BEGINNING = 2**16  # [bytes] that tell whether a file is a recording; a header of 2183 names fits
+MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no text and no table
 JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no script in TOML begins so
 SPEAKS_OF_FACES = re.compile(
     r'"(category_?name|(face_?)?blend_?shapes|mouthcues|viseme_set|facsnames|jaw_?open|'
@@ -116,3 +125,43 @@ def _strange(names: tuple[str, ...]) -> str:
         return "is no table and no JSON"
     listed = ", ".join(f"'{name}'" for name in names[:4])
     return f"is a table of which no column is known ({listed}, ...)"
+
+
+def read_recording(path: Path) -> str:
+    """The whole text of a file. UserError for what is not there, too long, or no text."""
+    content = read_bytes(path, what="recording", longest=LONGEST_FILE)
+    if not content.strip():
+        raise UserError(f"{path}: is empty; a recording is a table (CSV) or JSON")
+    text = _decoded(content)
+    if text is None:
+        raise UserError(
+            f"{path}: is not a text file; a recording of a face is a table (CSV) or JSON, no film"
+        )
+    return text
+
+
+def read_beginning(path: Path) -> str:
+    """The first lines of a file, '' for what is not there or no text."""
+    try:
+        content = read_bytes(path, what="recording", longest=LONGEST_FILE, first=BEGINNING)
+    except UserError:
+        return ""
+    return _decoded(content) or ""
+
+
+def _decoded(content: bytes) -> str | None:
+    """The text in these bytes; None where they are no text. What is torn at the end is left out."""
+    for mark, encoding in MARKS:
+        if content.startswith(mark):
+            return _checked(content.decode(encoding, errors="ignore"))
+    try:
+        return _checked(codecs.getincrementaldecoder("utf-8")().decode(content))
+    except UnicodeDecodeError:
+        return _checked(content.decode("cp1252", errors="replace"))
+
+
+def _checked(text: str) -> str | None:
+    """The text with line ends of one kind, unless it holds what no text does."""
+    if NOT_IN_TEXT.search(text, 0, BEGINNING):
+        return None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
