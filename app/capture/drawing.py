@@ -28,8 +28,8 @@ from .captions import SPLITS_BAR, captioned, labels
 UNSEEN = 0.05  # [pixels] of motion: within that, the last picture is shown once more
 
 
-class Painter(Protocol):
-    """Draws a scene onto an offscreen surface in a way of its own, as a window shows it."""
+class Picture(Protocol):
+    """A scene on an offscreen surface, drawn in a way of its own, as a window shows it."""
 
     def refine(self, camera: render.OrbitCamera) -> None:
         """Refine a frame that nobody draws."""
@@ -51,7 +51,7 @@ class CaptureOptions:
     is_turntable: bool = False  # the camera goes round once, by the last frame
     span: tuple[float, float] | None = None  # [s] of the script that is seen; None: all of it
     # What draws it instead of these refinements and this style.
-    painted: Callable[[Scene, render.OffscreenSurface], Painter] | None = None
+    picture: Callable[[Scene, render.OffscreenSurface], Picture] | None = None
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
@@ -98,7 +98,7 @@ class Capture:
         self.viewports = side_by_side(self.surface.size, meshes)
         self._frame: Frame | None = None  # the last one
         self._shown = np.zeros(0)  # what it was drawn of
-        self._painter = None if options.painted is None else options.painted(scene, self.surface)
+        self._picture = None if options.picture is None else options.picture(scene, self.surface)
         view = options.camera
         self.camera = (
             view.copy() if isinstance(view, render.OrbitCamera) else camera_for(scene, view)
@@ -113,8 +113,8 @@ class Capture:
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
-        if self._painter is not None:
-            image = self._painter.draw_image(self.camera)
+        if self._picture is not None:
+            image = self._picture.draw_image(self.camera)
             return straight(image) if self.options.is_transparent else image
         self.surface.begin()
         options = self.options
@@ -130,10 +130,10 @@ class Capture:
 
     def refine(self) -> None:
         """Refine a frame that nobody draws: a refiner may remember it in the next one."""
-        if self._painter is None:
+        if self._picture is None:
             self.pipeline.refine(self.camera, self.viewports)
         else:
-            self._painter.refine(self.camera)
+            self._picture.refine(self.camera)
 
     def is_still(self) -> bool:
         """Whether nothing has moved so far that anybody could see it, since this last said no.

@@ -24,7 +24,7 @@ def test_some_controls_are_drawn(tmp_path: Path) -> None:
 
 def test_an_unknown_control_is_named(tmp_path: Path) -> None:
     """A typing error is no traceback."""
-    with pytest.raises(UserError, match="unknown control 'AU127'"):
+    with pytest.raises(UserError, match="there is no control called 'AU127'"):
         controls.main([str(tmp_path), "--width", "48", "--only", "AU127"])
 
 

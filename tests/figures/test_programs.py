@@ -17,7 +17,7 @@ PROGRAMS = Path(__file__).parents[2] / "docs" / "figures"
         ("controls", ["/dev/null/x"], "risorius: /dev/null/x/action_units.webp: cannot be written"),
         ("head", ["/dev/null/x"], "risorius: /dev/null/x/head_views.webp: cannot be"),
         ("refinement", ["/dev/null/x"], "risorius: /dev/null/x/refine_cases.webp: can"),
-        ("controls", ["--only", "AU127"], "risorius: unknown control 'AU127'"),
+        ("controls", ["--only", "AU127"], "risorius: there is no control called 'AU127'"),
         ("head", ["--only", "foot"], "risorius: unknown figure 'foot'; there are head_views, "),
         ("controls", ["--width", "99999"], "error: argument --width: '99999' is no width; write"),
         ("head", ["--width", "0"], "argument --width: '0' is no width; write 16 to 8192"),

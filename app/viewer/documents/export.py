@@ -47,7 +47,7 @@ def is_there(path: Path) -> bool:
 
 
 @dataclass
-class StagePainter:
+class StagePicture:
     """Draws as the window does, in a process that makes a film; stands for a `View` there."""
 
     display: Display
@@ -59,7 +59,7 @@ class StagePainter:
     pointed: Mapping[str, float] = field(default_factory=dict)
     stage: Any = None
 
-    def on(self, scene: Scene, surface: Any) -> StagePainter:
+    def on(self, scene: Scene, surface: Any) -> StagePicture:
         """Draw this scene onto that surface."""
         self.stage = Stage(surface, scene, self.display, FrameTimes())
         return self
@@ -159,7 +159,7 @@ class Exporter:
             camera=view.camera.copy(),
             is_turntable=choices.is_turntable and not is_sheet,
             span=None if is_sheet else span,
-            painted=StagePainter(display, background, area, choices.has_captions, letter).on,
+            picture=StagePicture(display, background, area, choices.has_captions, letter).on,
             style=style_of(display, background),
             head=head,
             is_alive=self._settings.is_alive,
