@@ -25,9 +25,9 @@ all, and geometry/, which lie beside this folder:
     border/     what goes in and out: plugin.py says what a refiner is
     kahler/     the paper: refiner.py is a frame, then sections 4.1 to 4.4, one file each
     beyond/     other criteria and schemes, and blending
-    others/     refiners to compare with
-    strain/     how far the skin is stretched
-    hosts/      meshes as other programs keep them
+    others.py   refiners to compare with
+    strain.py   how far the skin is stretched
+    hosts.py    meshes as other programs keep them
 
 Read border/plugin.py first, then kahler/. docs/refinement.md tells it all with pictures.
 """
@@ -47,8 +47,7 @@ from .border.corner_values import Values
 from .border.plugin import Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, available, create, parameters, refiners, register
 from .border.stream import StreamArrays
-from .hosts.trimesh import TrimeshRefiner, from_trimesh
-from .hosts.welded import WeldedRefiner
+from .hosts import TrimeshRefiner, WeldedRefiner, from_trimesh
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
     THRESHOLD_ONCE,
@@ -64,10 +63,8 @@ from .kahler.smoothing import LoopScheme, Scheme, register_scheme, schemes
 from .mesh.connectivity import Connectivity, connect
 from .mesh.reorder import Order, reorder
 from .mesh.seams import weld
-from .others.loop import Loop
-from .others.passthrough import PassThrough
-from .strain.shortening import Shortening
-from .strain.tension import Tension, TensionMap
+from .others import Loop, PassThrough
+from .strain import Shortening, Tension, TensionMap
 
 __all__ = [
     "THRESHOLD_ONCE",

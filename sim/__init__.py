@@ -17,9 +17,8 @@ from .cloth import Cloth
 from .face import Simulation, SimulationUnstable
 from .pulling import Pull
 from .rig import Rig, read_rig
-from .trial import Trial
 
-__all__ = ["Cloth", "Pull", "Rig", "Simulation", "SimulationUnstable", "Trial"]
+__all__ = ["Cloth", "Pull", "Rig", "Simulation", "SimulationUnstable"]
 __all__ += ["create", "read_rig"]
 
 

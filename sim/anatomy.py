@@ -16,7 +16,7 @@ Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landm
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -41,7 +41,7 @@ from .layers import Layers, read_layers
 from .lids import Lids, place_lids
 from .lip_lid_sides import lip_side
 from .muscle_forces import MuscleForces, build_muscle_forces
-from .muscles import PlacedMuscle, place_muscles, sides_of
+from .muscles import place_muscles, sides_of
 from .rig import Rig, read_rig
 from .skin_model import SkinModel
 from .skull import (
@@ -154,20 +154,6 @@ def build_anatomy(head: Any) -> Anatomy:
         closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
         controls=controls, layers=_layers(head, rig, controls),
     )  # fmt: skip
-
-
-def with_muscles(anatomy: Anatomy, rig: Rig, placed: tuple[PlacedMuscle, ...]) -> Anatomy:
-    """The same face with other muscles under the same names."""
-    surface, skin = anatomy.surface, anatomy.skin
-    weight, lips = anatomy.skull.mandible_weight, skin.lips.members
-    muscles = build_muscle_forces(
-        placed, rig, surface, weight, lips, anatomy.landmarks, anatomy.lip_side
-    )
-    passive, greatest = _holds(muscles, anatomy.lids, surface.vertex_count)
-    mass = _masses(surface, skin.tissue, skin.edges, greatest)
-    return replace(
-        anatomy, rig=rig, muscles=muscles, passive_hold=passive, skin=skin._replace(mass=mass)
-    )
 
 
 def _masses(surface: Surface, springs: TissueSprings, edges: EdgeSprings, greatest: Array) -> Array:

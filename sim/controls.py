@@ -1,4 +1,4 @@
-"""Controls: the named values a caller sets, and how the face follows them.
+"""Controls: the named values a caller sets, how the face follows them, and what each muscle feels.
 
 Lowest are muscles, jaw and gaze; controls of the layers above (layers.py) are set in the same way
 and add to them. What is `wanted` of a lowest control is that sum, cut off at its limits.
@@ -22,9 +22,11 @@ import numpy as np
 
 from ..jit import njit
 from ..schema import quoted
+from .checked import flag
 from .checked import number as finite
 from .landmarks import Array
 from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, share_of_whole
+from .rig import Rig
 
 MUSCLE_RATE = 45.0  # rad/s
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
@@ -147,6 +149,103 @@ class Controls:
         """All values and activations to zero at once."""
         for array in (self._values, self.wanted, self.activation, self._speed):
             array[:] = 0.0
+
+
+class Controllable:
+    """What follows named controls: how they are set, and what they are."""
+
+    def __init__(self, controls: Controls) -> None:
+        self._controls = controls
+
+    @property
+    def controls(self) -> tuple[str, ...]:
+        """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
+        return self._controls.lowest
+
+    @property
+    def layers(self) -> Mapping[str, tuple[str, ...]]:
+        """Names of the controls above, by the title of their layer, from the bottom up."""
+        return self._controls.layers
+
+    @property
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        """Least and greatest value of each control, those of the layers included."""
+        return self._controls.limits
+
+    @property
+    def groups(self) -> Mapping[str, tuple[str, ...]]:
+        """Control names by the title under which a panel may list them, layers last."""
+        return self._controls.groups
+
+    @property
+    def actions(self) -> Mapping[str, str]:
+        """What each control does, in words; "" where its file does not say."""
+        return self._controls.actions
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The value last set of each control, those of the layers included.
+
+        The face follows within some 0.1 s.
+        """
+        return {name: self._controls.value(name) for name in self._controls.names}
+
+    @property
+    def sums(self) -> dict[str, float]:
+        """What each lowest control adds up to: its own value and those of the layers above it."""
+        return dict(zip(self.controls, self._controls.wanted.tolist(), strict=True))
+
+    def set(self, name: str, value: float) -> None:
+        """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
+        self._controls.index(name)  # what is no name may not even be a key
+        self._controls.set_all({name: value})
+
+    def set_all(self, values: Mapping[str, float]) -> None:
+        """Set several controls; if one is refused (see `set`), none is set."""
+        self._controls.set_all(values)
+
+    def pose(self, values: Mapping[str, float], *, cut_off: bool = False) -> None:
+        """Set several controls, all others to zero; none if one is refused, or cut off instead."""
+        flag("cut_off", cut_off)
+        self._controls.set_all(values, others_to_zero=True, cut_off=cut_off)
+
+
+class MuscleDrive:
+    """From control values to the activation and the pull of each muscle.
+
+    A muscle has its own control; one whose halves usually act together (the lips, procerus) also
+    has a control for both. They add up. The pull is a power of the activation,
+
+        pull = activation ^ drive_power
+
+    because a muscle that contracts by half is also only half as stiff, so that the skin would go
+    less than half way; with the power, half an activation gives half the motion. One power does not
+    suit every muscle: the muscle's own `drive` multiplies it. Source: own; fitted to the motion of
+    skin at half activations.
+    """
+
+    def __init__(self, rig: Rig, names: tuple[str, ...], controls: Controls) -> None:
+        self._controls = controls
+        halved = {muscle.name for muscle in rig.muscles if muscle.halves}
+        self._own = np.array([controls.index(name) for name in names], dtype=np.int64)
+        wholes = [name.removesuffix("_left").removesuffix("_right") for name in names]
+        drive = {muscle.name: muscle.drive for muscle in rig.muscles}
+        self._power = rig.tissue.drive_power * np.array([drive[w] for w in wholes], np.float64)
+        self._has_whole = np.array([whole in halved for whole in wholes], dtype=np.bool_)
+        self._whole = np.array(
+            [controls.index(w if w in halved else n) for w, n in zip(wholes, names, strict=True)],
+            dtype=np.int64,
+        )
+
+    def activation(self) -> Array:
+        """Activation 0..1 of each muscle, shape (M,): its own control plus that of both halves."""
+        reached = self._controls.activation
+        whole = np.where(self._has_whole, reached[self._whole], 0.0)
+        return np.minimum(np.maximum(reached[self._own] + whole, 0.0), 1.0)
+
+    def pull(self, activation: Array) -> Array:
+        """What the fibres feel: a power that makes the skin's motion about linear, shape (M,)."""
+        return activation**self._power
 
 
 def _limits(controls: tuple[Control, ...], layers: Layers) -> dict[str, tuple[float, float]]:

@@ -2,7 +2,7 @@
 
     controls  ->  activations                                            controls.py
                       |
-    jaw, gaze  ->  bones and lids carry the tissue springs' far ends     skull.py, lids.py
+    jaw, gaze  ->  bones and lids carry the tissue springs' far ends     bones.py, lids.py
     muscles    ->  one anchor per skin vertex                            muscles.py, fibres.py
                       |
     tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, springs.py
@@ -30,41 +30,35 @@ import numpy.typing as npt
 from ..schema import quoted
 from . import checked, integrator
 from .anatomy import Anatomy
+from .bones import Bones
 from .contact import SEALED
-from .controls import Controls
+from .controls import Controllable, Controls, MuscleDrive
 from .coordinates import to_posed_head
-from .drive import MuscleDrive
+from .finger import RATE, Finger, checked_drag
 from .landmarks import Array
 from .layers import Layers
 from .lids import turn_lids
 from .skin_model import Tick
-from .skull import REST, RigidMotion
 from .state import State
 from .substep import advance
 from .tissue import carry, tissue_energy
 from .weight import Weight
-
-FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
 
 
 class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole project uses
     """A position is no longer a finite number: the input was broken, or the model has an error."""
 
 
-class Simulation:
+class Simulation(Controllable):
     """A face that follows its controls; made by `sim.create`."""
 
     def __init__(self, anatomy: Anatomy, *, gravity: bool = False, inertia: bool = False) -> None:
         self._anatomy = anatomy
-        self._controls = Controls(anatomy.controls, anatomy.layers)
+        super().__init__(Controls(anatomy.controls, anatomy.layers))
         surface = anatomy.surface
         self._state = State.at_rest(surface)
         self._grip = SEALED
-        self._jaw = (0.0, 0.0, 0.0)
-        self._mandible: RigidMotion = REST
-        self._head_values = (0.0, 0.0, 0.0)
-        self._head: RigidMotion = REST
-        self._turn = np.eye(4)
+        self._bones, self._finger = Bones(anatomy.skull, anatomy.space), Finger()
         self._axes = anatomy.space.axes * anatomy.space.scale
         heaviness = anatomy.rig.tissue.heaviness
         self._weight = Weight(surface.areas, heaviness, gravity=gravity, inertia=inertia)
@@ -79,53 +73,12 @@ class Simulation:
             self._resting_tongue.flags.writeable = False
         self._view = self._positions.view()
         self._view.flags.writeable = False
-        self.end_drag()
         self._place_targets()
-
-    # What a caller may set and read.
-
-    @property
-    def controls(self) -> tuple[str, ...]:
-        """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
-        return self._controls.lowest
-
-    @property
-    def layers(self) -> Mapping[str, tuple[str, ...]]:
-        """Names of the controls above, by the title of their layer, from the bottom up."""
-        return self._controls.layers
 
     @property
     def tables(self) -> Layers:
         """What each control of the layers adds to the C lowest `controls`, in their order."""
         return self._anatomy.layers
-
-    @property
-    def limits(self) -> Mapping[str, tuple[float, float]]:
-        """Least and greatest value of each control, those of the layers included."""
-        return self._controls.limits
-
-    @property
-    def groups(self) -> Mapping[str, tuple[str, ...]]:
-        """Control names by the title under which a panel may list them, layers last."""
-        return self._controls.groups
-
-    @property
-    def actions(self) -> Mapping[str, str]:
-        """What each control does, in words; "" where its file does not say."""
-        return self._controls.actions
-
-    @property
-    def values(self) -> dict[str, float]:
-        """The value last set of each control, those of the layers included.
-
-        The face follows within some 0.1 s.
-        """
-        return {name: self._controls.value(name) for name in self._controls.names}
-
-    @property
-    def sums(self) -> dict[str, float]:
-        """What each lowest control adds up to: its own value and those of the layers above it."""
-        return dict(zip(self.controls, self._controls.wanted.tolist(), strict=True))
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -157,27 +110,13 @@ class Simulation:
         """Triangles, shape (F, 3); they never change."""
         return self._anatomy.surface.faces
 
-    def set(self, name: str, value: float) -> None:
-        """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
-        self._controls.index(name)  # what is no name may not even be a key
-        self._controls.set_all({name: value})
-
-    def set_all(self, values: Mapping[str, float]) -> None:
-        """Set several controls; if one is refused (see `set`), none is set."""
-        self._controls.set_all(values)
-
-    def pose(self, values: Mapping[str, float], *, cut_off: bool = False) -> None:
-        """Set several controls, all others to zero; none if one is refused, or cut off instead."""
-        checked.flag("cut_off", cut_off)
-        self._controls.set_all(values, others_to_zero=True, cut_off=cut_off)
-
     def reset(self) -> None:
         """Relax everything and put the face back to rest at once."""
         self._controls.reset()
         self._state.x[:] = self._anatomy.surface.positions
         self._state.v[:] = 0.0
         self._positions[:] = self._rest
-        self.end_drag()
+        self._finger.let_go()
         self._place_targets()
         self._weight.forget()
 
@@ -207,7 +146,8 @@ class Simulation:
         Raises ValueError for another shape, and for what is not finite.
         """
         added = checked.numbers("velocities", velocities, self._state.v.shape)
-        self._state.v[:] += self._anatomy.space.vectors_to_standard(added) @ self._head.rotation
+        turned = self._anatomy.space.vectors_to_standard(added) @ self._bones.head.rotation
+        self._state.v[:] += turned
 
     def drag(
         self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
@@ -218,28 +158,14 @@ class Simulation:
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
         shape (n,). Raises ValueError where they do not fit together.
         """
-        wanted = "different vertex numbers, shape (n,)"
-        numbers = checked.vertex_numbers("vertices", vertices, (None,), len(self._rest), wanted)
-        points = checked.numbers("targets", targets, (len(numbers), 3))
-        share = checked.numbers("firmness", firmness, (len(numbers),))
-        if not ((share >= 0.0) & (share <= 1.0)).all():
-            raise ValueError(
-                f"firmness: runs from {share.min():g} to {share.max():g}, must be from 0 to 1"
-            )
-        if len(np.unique(numbers)) < len(numbers):
-            raise ValueError(f"vertices: some are there twice, must be {wanted}")
+        numbers, points, share = checked_drag(vertices, targets, firmness, len(self._rest))
         away = self._anatomy.space.vectors_to_standard(points - self._positions[numbers])
-        self._dragged = numbers
-        self._dragged_to = self._state.x[numbers] + away @ self._head.rotation
-        self._drag_stiffness = share * self._anatomy.skin.mass[numbers] * FINGER_RATE**2
+        to = self._state.x[numbers] + away @ self._bones.head.rotation
+        self._finger.hold(numbers, to, share * self._anatomy.skin.mass[numbers] * RATE**2)
 
     def end_drag(self) -> None:
         """End every `drag`; the skin swings back."""
-        self._dragged = np.zeros(0, np.int64)
-        self._dragged_to = np.zeros((0, 3))
-        self._drag_stiffness = np.zeros(0)
-
-    # The simulation.
+        self._finger.let_go()
 
     def step(self, dt: float) -> None:
         """Advance by `dt` [s], 0 < dt <= 1/20; ValueError otherwise.
@@ -252,17 +178,19 @@ class Simulation:
                 f"dt: was {dt!r} s, must be above 0 and at most {integrator.LONGEST_FRAME:g} s; "
                 "take several steps for a longer time"
             )
+        anatomy, state, bones = self._anatomy, self._state, self._bones
         ticks = integrator.ticks_in(dt)
+        tick = dt / ticks
+        count = integrator.substeps_in(tick)
         for _ in range(ticks):
-            self._controls.advance(dt / ticks / 2.0)
+            self._controls.advance(tick / 2.0)
             self._place_targets()
             if self._weighs:
-                self._weight.add(self._head, dt / ticks, self._state.x, self._state.pull)
-            self._advance(dt / ticks)
-            self._controls.advance(dt / ticks / 2.0)
-        anatomy, state = self._anatomy, self._state
+                self._weight.add(bones.head, tick, state.x, state.pull)
+            advance(state, anatomy.skin, Tick(count, tick / count, self._grip, bones.mandible))
+            self._controls.advance(tick / 2.0)
         broken = to_posed_head(
-            state.x, anatomy.surface.positions, self._axes, self._rest, self._turn, anatomy.turns,
+            state.x, anatomy.surface.positions, self._axes, self._rest, bones.turn, anatomy.turns,
             self._positions,
         )  # fmt: skip
         if broken:
@@ -273,70 +201,31 @@ class Simulation:
 
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
-        anatomy, now = self._anatomy, self._controls.now
+        anatomy, now, bones = self._anatomy, self._controls.now, self._bones
         state, surface, muscles = self._state, anatomy.surface, anatomy.muscles
-        jaw = now("jaw_open"), now("jaw_forward"), now("jaw_sideways")
-        if jaw != self._jaw:
-            self._jaw = jaw
-            self._mandible = anatomy.skull.mandible_motion(*jaw)
-        head = now("head_pitch"), now("head_yaw"), now("head_roll")
-        if head != self._head_values:
-            self._head_values = head
-            self._head = anatomy.skull.head_motion(*head)
-            self._turn = np.eye(4) if self._head is REST else self._head.matrix(anatomy.space)
+        bones.follow(now)
         weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
         if closed > 0.0:
             weight = weight + closed * (anatomy.closed_weight - weight)
-        carry(state, surface.positions, surface.normals, weight, self._mandible)
+        carry(state, surface.positions, surface.normals, weight, bones.mandible)
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
         if anatomy.lids is not None:
             drive = anatomy.lids.drive(self._controls.activation)
-            angles = np.radians(anatomy.skull.eyes.gaze_deg) * self._gaze()
+            angles = np.radians(anatomy.skull.eyes.gaze_deg) * bones.gaze(now)
             turn_lids(state, surface.positions, anatomy.lids.vertices, drive, angles)
         activation = self._drive.activation()
-        muscles.add(self._drive.pull(activation), self._mandible, weight, state)
-        if len(self._dragged):
-            drawn = self._dragged_to - state.carried[self._dragged]
-            state.hold[self._dragged] += self._drag_stiffness
-            state.pull[self._dragged] += self._drag_stiffness[:, None] * drawn
-        self._grip = anatomy.grip(activation, jaw, closed)
-
-    def _advance(self, tick: float) -> None:
-        """One tick [s] in substeps: all forces on the skin (substep.py)."""
-        count = integrator.substeps_in(tick)
-        now = Tick(count, tick / count, self._grip, self._mandible)
-        advance(self._state, self._anatomy.skin, now)
-
-    def _gaze(self) -> Array:
-        """Where each eyeball looks: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
-        sides = [ball.side.value for ball in self._anatomy.skull.eyeballs]
-        ways = ("horizontal", "vertical")
-        gaze = [[self._controls.now(f"gaze_{way}_{side}") for way in ways] for side in sides]
-        return np.array(gaze, dtype=np.float64).reshape(-1, 2)
-
-    # What others draw or check.
+        muscles.add(self._drive.pull(activation), bones.mandible, weight, state)
+        self._finger.add(state)
+        self._grip = anatomy.grip(activation, bones.jaw, closed)
 
     def bone_transforms(self) -> dict[str, npt.NDArray[np.float64]]:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
-        anatomy = self._anatomy
-        transforms = {
-            "neck": np.eye(4),
-            "cranium": self._head.matrix(anatomy.space),
-            "mandible": self._head.after(self._mandible).matrix(anatomy.space),
-        }
-        for ball, gaze in zip(anatomy.skull.eyeballs, self._gaze(), strict=True):
-            motion = anatomy.skull.eye_motion(ball, *gaze)
-            transforms[f"eye_{ball.side.value}"] = self._head.after(motion).matrix(anatomy.space)
-        return transforms
+        return self._bones.transforms(self._controls.now)
 
     def pivots(self) -> dict[str, npt.NDArray[np.float64]]:
         """What each bone turns about at rest, name of `bone_transforms` -> (3,) [head units]."""
-        skull, space = self._anatomy.skull, self._anatomy.space
-        middle = skull.condyles.mean(axis=0)
-        points = {"cranium": middle + skull.head.joint, "mandible": middle}
-        points.update({f"eye_{ball.side.value}": ball.centre for ball in skull.eyeballs})
-        return {name: space.to_head(point) for name, point in points.items()}
+        return self._bones.pivots()
 
     def tongue(self) -> npt.NDArray[np.float64] | None:
         """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
@@ -350,14 +239,14 @@ class Simulation:
         out, up = max(now("tongue_out"), 0.0), max(now("tongue_up"), 0.0)
         if out == up == 0.0:
             return self._resting_tongue
-        bent = anatomy.tongue.bent(out, up, self._state.x, self._mandible)
+        bent = anatomy.tongue.bent(out, up, self._state.x, self._bones.mandible)
         return anatomy.space.to_head(bent)
 
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         pull = self._drive.pull(self._drive.activation())
-        lines = self._anatomy.muscles.lines(pull, self._mandible, self._state.x)
-        space, head = self._anatomy.space, self._head
+        lines = self._anatomy.muscles.lines(pull, self._bones.mandible, self._state.x)
+        space, head = self._anatomy.space, self._bones.head
         return {
             name: [space.to_head(line + head.displacements(line)) for line in found]
             for name, found in lines.items()
@@ -373,7 +262,7 @@ class Simulation:
         return {
             "lips": skin.lips.deepest(x, skin.rest, self._grip.overlap),
             "lids": skin.eyes.deepest(x),
-            "teeth": skin.teeth.deepest(x, self._mandible),
+            "teeth": skin.teeth.deepest(x, self._bones.mandible),
         }
 
     def energy(self) -> float:

@@ -20,9 +20,8 @@ import math
 
 LONGEST_FRAME = 1.0 / 20.0  # s, the longest `dt` a caller may ask for
 LONGEST_TICK = 1.0 / 60.0  # s: half as long is no more exact than the middle of this
-LONGEST_SUBSTEP = (
-    1.0 / 300.0
-)  # s: skin is 24 % heavier in sum than its own mass; 14 % at 1/360, a fifth dearer
+# s: skin is 24 % heavier in sum than its own mass; 14 % at 1/360, a fifth dearer
+LONGEST_SUBSTEP = 1.0 / 300.0
 ROUNDING = 0.02  # parts: 1/60 s given as 0.0167 is still one tick, not two
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.normals import cross_products
 from .contact import EYE_CLEARANCE
 from .landmarks import Array
 from .skull import Eyeball
@@ -36,9 +37,8 @@ def lift_off(
     away = x - ball.centre
     ways = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), NEAR_ENOUGH)
     faces = faces[moves[faces].any(axis=1)]
-    corners = away[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    faces = faces[(normals * corners.sum(axis=1)).sum(axis=1) > 0.0]  # not the inner side of a lid
+    outward = (cross_products(away, faces) * away[faces].sum(axis=1)).sum(axis=1)
+    faces = faces[outward > 0.0]  # not the inner side of a lid
     shares, lift = _shares(), np.zeros(len(x))
     before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)

@@ -47,10 +47,11 @@ import numpy.typing as npt
 from ...jit import njit
 from ..border.corner_values import Values
 from ..border.plugin import Origins, View
+from ..border.rows import GEOMETRY_COLUMNS
 from ..kahler.criterion import Criterion
 from ..kahler.frame import CENTRES, ROWS, TRIANGLES, FrameBuffers
 from ..kahler.refiner import Kahler
-from ..kahler.smoothing import Scheme
+from ..kahler.smoothing import Scheme, geomorph_of_split
 from ..kahler.table import (
     CENTRE,
     CONFIGURATION_COUNT,
@@ -61,9 +62,22 @@ from ..kahler.table import (
     subdivide,
     table_of,
 )
-from ..mesh.arrays import Floats, Small
+from ..mesh.arrays import Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import HALF, ONE, QUARTER, THIRD, ZERO, row_of, unit, write_row
+from ..mesh.vectors import (
+    HALF,
+    ONE,
+    QUARTER,
+    THIRD,
+    ZERO,
+    Vector,
+    less,
+    plus,
+    row_of,
+    times,
+    unit,
+    write_row,
+)
 
 RAMP = np.float32(0.25)
 """Metric over which a point grows, in what lies between the two thresholds. Chosen: points that are
@@ -166,44 +180,62 @@ def beyond(own: np.float32, other: np.float32, third: np.float32) -> tuple[np.fl
 
 
 @njit
+def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, Vector]:
+    """Shares of the corners in the middle of a triangle, and of the displacements of its edges.
+
+    x, y, z: geomorph weights of the edges, which say how much of each rule above counts.
+    """
+    all_three, none = min(x, y, z), ONE - max(x, y, z)
+    one_x, pair_x = beyond(x, y, z)
+    one_y, pair_y = beyond(y, z, x)
+    one_z, pair_z = beyond(z, x, y)
+    of_edges = (
+        TWO_THIRDS * (none + one_x) + HALF * pair_x + FOUR_NINTHS * all_three,
+        TWO_THIRDS * (none + one_y) + HALF * pair_y + FOUR_NINTHS * all_three,
+        TWO_THIRDS * (none + one_z) + HALF * pair_z + FOUR_NINTHS * all_three,
+    )
+    thirds = THIRD * (none + one_x + one_y + one_z + all_three)
+    of_corners = (
+        thirds + QUARTER * (pair_z + pair_x),
+        thirds + QUARTER * (pair_x + pair_y),
+        thirds + QUARTER * (pair_y + pair_z),
+    )
+    return of_corners, of_edges
+
+
+@njit
+def mixed_corners(rows: Floats, corners: Unsigned, shares: Vector, first: int) -> Vector:
+    """Shares of three rows, from column `first` on."""
+    a, b = row_of(rows, corners[0], first), row_of(rows, corners[1], first)
+    c = row_of(rows, corners[2], first)
+    return plus(plus(times(shares[0], a), times(shares[1], b)), times(shares[2], c))
+
+
+@njit
 def place_centres(mesh: Connectivity, frame: FrameBuffers) -> None:
     """Write the rows of the points in the middle of triangles, attributes too."""
-    vertices, splits, geomorph = frame.rows, frame.splits, frame.geomorph_once
-    first_points, edges = frame.first_points, mesh.triangle_edges
+    rows = frame.rows
     for k in range(frame.counts[CENTRES]):
         t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
-        a, b, c = mesh.faces[t, 0], mesh.faces[t, 1], mesh.faces[t, 2]
-        ab, bc, ca = edges[t, 0], edges[t, 1], edges[t, 2]
-        x = geomorph[ab] if splits[ab] > 0 else ZERO
-        y = geomorph[bc] if splits[bc] > 0 else ZERO
-        z = geomorph[ca] if splits[ca] > 0 else ZERO
-        all_three, none = min(x, y, z), ONE - max(x, y, z)
-        one_x, pair_x = beyond(x, y, z)
-        one_y, pair_y = beyond(y, z, x)
-        one_z, pair_z = beyond(z, x, y)
-        u = TWO_THIRDS * (none + one_x) + HALF * pair_x + FOUR_NINTHS * all_three
-        v = TWO_THIRDS * (none + one_y) + HALF * pair_y + FOUR_NINTHS * all_three
-        w = TWO_THIRDS * (none + one_z) + HALF * pair_z + FOUR_NINTHS * all_three
-        thirds = THIRD * (none + one_x + one_y + one_z + all_three)
-        of_a = thirds + QUARTER * (pair_z + pair_x)
-        of_b = thirds + QUARTER * (pair_x + pair_y)
-        of_c = thirds + QUARTER * (pair_y + pair_z)
-        write_row(frame.centre_weights, k, (of_a, of_b, of_c))
-        p = first_points[ab] + (splits[ab] >> 1)
-        q = first_points[bc] + (splits[bc] >> 1)
-        r = first_points[ca] + (splits[ca] >> 1)
-        for i in range(6):
-            at_a, at_b, at_c = vertices[a, i], vertices[b, i], vertices[c, i]
-            middle = of_a * at_a + of_b * at_b + of_c * at_c
-            if splits[ab] > 0:
-                middle += u * (vertices[p, i] - HALF * (at_a + at_b))
-            if splits[bc] > 0:
-                middle += v * (vertices[q, i] - HALF * (at_b + at_c))
-            if splits[ca] > 0:
-                middle += w * (vertices[r, i] - HALF * (at_c + at_a))
-            vertices[row, i] = middle
-        write_row(vertices, row, unit(row_of(vertices, row, 3)), 3)
+        corners, edges = mesh.faces[t], mesh.triangle_edges[t]
+        of_corners, of_edges = centre_shares(
+            geomorph_of_split(frame.splits, frame.geomorph_once, edges[0]),
+            geomorph_of_split(frame.splits, frame.geomorph_once, edges[1]),
+            geomorph_of_split(frame.splits, frame.geomorph_once, edges[2]),
+        )
+        write_row(frame.centre_weights, k, of_corners)
+        for first in (0, 3):  # position, normal
+            centre = mixed_corners(rows, corners, of_corners, first)
+            for i in range(3):
+                e, a, b = edges[i], corners[i], corners[(i + 1) % 3]
+                if frame.splits[e] > 0:
+                    middle = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
+                    straight = plus(row_of(rows, a, first), row_of(rows, b, first))
+                    out = less(row_of(rows, middle, first), HALF, straight)
+                    centre = plus(centre, times(of_edges[i], out))
+            write_row(rows, row, centre, first)
+        write_row(rows, row, unit(row_of(rows, row, 3)), 3)
         a, b, c = mesh.corners[t, 0], mesh.corners[t, 1], mesh.corners[t, 2]
-        for i in range(6, vertices.shape[1]):
-            mixed = of_a * vertices[a, i] + of_b * vertices[b, i] + of_c * vertices[c, i]
-            vertices[row, i] = mixed
+        of_a, of_b, of_c = of_corners
+        for i in range(GEOMETRY_COLUMNS, rows.shape[1]):
+            rows[row, i] = of_a * rows[a, i] + of_b * rows[b, i] + of_c * rows[c, i]

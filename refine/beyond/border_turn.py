@@ -30,7 +30,7 @@ import numpy as np
 
 from ...jit import njit
 from ..kahler.criterion import find_undefined_normals
-from ..mesh.arrays import Doubles, Floats, Unsigned
+from ..mesh.arrays import Doubles, Floats, Indices, Unsigned, Wide
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import (
@@ -103,40 +103,59 @@ def find_nearby(mesh: Connectivity, rest_positions: Doubles) -> Nearby:
     find_undefined_normals(mesh.faces, rest_positions, undefined)
     vertices = np.flatnonzero((neighbours[:, 0] != neighbours[:, 1]) & ~undefined)
     curves = np.column_stack([neighbours[vertices, 0], vertices, neighbours[vertices, 1]])
-    is_border = ~mesh.around.is_interior
     directions = np.diff(rest_positions[mesh.edges], axis=1)[:, 0]
     directions /= np.maximum(np.linalg.norm(directions, axis=1, keepdims=True), TINY)
+    ring = rings_from_border(mesh)
+    spread, spread_shares = ways_inward(mesh, ring)
 
-    # The direction of the border beside a vertex has no sign, so it is kept as a square.
+    # The direction of the border beside a vertex has no sign, so it is kept as a square, d d^T.
     squares = np.zeros((mesh.vertex_count, 3, 3))
-    ring = np.full(mesh.vertex_count, REACH)
+    is_border = ~mesh.around.is_interior
+    along = directions[is_border]
     for end in mesh.edges[is_border].T:
-        along = directions[is_border]
         np.add.at(squares, end, 0.5 * along[:, :, None] * along[:, None, :])
-        ring[end] = 0
-    spread, shares = [np.zeros((0, 2), np.int64)], [np.zeros(0)]
-    both_ways = np.concatenate([mesh.edges, mesh.edges[:, ::-1]])
-    for k in range(1, REACH):
-        start, end = both_ways.T
-        is_next = (ring[start] == k - 1) & (ring[end] > k - 1)
-        start, end = start[is_next], end[is_next]
-        ring[end] = k
-        means = 1.0 / np.bincount(end, minlength=mesh.vertex_count)[end]
+    for (end, start), means in zip(spread, spread_shares, strict=True):
         np.add.at(squares, end, means[:, None, None] * squares[start])
-        spread.append(np.column_stack([end, start]))
-        shares.append(means * (REACH - k) / (REACH - k + 1))
 
     is_near = (ring[mesh.edges] < REACH).any(axis=1)
     near = squares[mesh.edges[is_near]].mean(axis=1)
     cosines = np.einsum("ei,eij,ej->e", directions[is_near], near, directions[is_near])
+    faded = [means * (REACH - k) / (REACH - k + 1) for k, means in enumerate(spread_shares, 1)]
     return Nearby(
         curves=curves.astype(np.uint32),
         rest_turns=np.zeros((len(curves), 3), dtype=np.float32),
-        spread=np.concatenate(spread).astype(np.uint32),
-        spread_shares=np.concatenate(shares).astype(np.float32),
+        spread=np.concatenate(spread, axis=1).T.astype(np.uint32),
+        spread_shares=np.concatenate(faded).astype(np.float32),
         edges=np.flatnonzero(is_near).astype(np.uint32),
         edge_shares=(0.5 * np.where(is_border[is_near], 1.0, cosines)).astype(np.float32),
     )
+
+
+def rings_from_border(mesh: Connectivity) -> Wide:
+    """How many edges each vertex is away from the border, REACH at most, shape (V,)."""
+    ring = np.full(mesh.vertex_count, REACH)
+    ring[mesh.edges[~mesh.around.is_interior]] = 0
+    for k in range(1, REACH):
+        is_beside = (ring[mesh.edges] == k - 1).any(axis=1)
+        beside = mesh.edges[is_beside]
+        ring[beside] = np.minimum(ring[beside], k)
+    return ring
+
+
+def ways_inward(mesh: Connectivity, ring: Wide) -> tuple[list[Indices], list[Doubles]]:
+    """For each ring but the first, the ways along edges to its vertices from the ring before.
+
+    Returns their ends and starts, shape (2, S), and the share of each in the mean of all ways that
+    end there, shape (S,).
+    """
+    ways, shares = [], []
+    both_ways = np.concatenate([mesh.edges, mesh.edges[:, ::-1]])
+    start_ring, end_ring = ring[both_ways].T
+    for k in range(1, REACH):
+        start, end = both_ways[(start_ring == k - 1) & (end_ring == k)].T
+        ways.append(np.stack([end, start]))
+        shares.append(1.0 / np.bincount(end, minlength=mesh.vertex_count)[end])
+    return ways, shares
 
 
 @njit

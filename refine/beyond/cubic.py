@@ -15,6 +15,16 @@ what bends less than it does; so where heights are taken, not where light falls,
 further from those of their neighbours than they are: n - 0.15 x mean of the neighbours, normalised.
 On a plane and a sphere of equal triangles that changes nothing. An edge on a border is cubic in the
 border curve itself, because a surface's normal says nothing about where it ends.
+
+How far the points of an edge stand out of the straight edge is its *displacement*. Those of split
+edges are put there as far as their geomorph weights say (blending.py):
+
+                 .  m  .                 m      =  (a + b) / 2          +  displacement
+              n           n              n at a =  (3 a + b) / 4        +  displacement
+            a---------------b            grown   =  mix of (a + m) / 2 and n
+
+The normal at m is the mean of those at a and b, and at n that of its neighbours, as in the paper
+(section 4.4); surface_normals.py has others.
 """
 
 from typing import NamedTuple
@@ -22,13 +32,17 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import njit
-from ..kahler.frame import FrameBuffers
-from ..kahler.smoothing import Scheme
+from ..border.rows import place_unmoved
+from ..kahler.frame import ONCE, FrameBuffers
+from ..kahler.smoothing import Scheme, write_mean_normal
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.normals import cross_product, normalise
 from ..mesh.vectors import (
+    HALF,
+    QUARTER,
+    THREE_QUARTERS,
     TINY,
     ZERO,
     Vector,
@@ -38,13 +52,16 @@ from ..mesh.vectors import (
     difference,
     dot,
     less,
+    mix,
+    plus,
     row_of,
     times,
     unit,
     write_row,
 )
-from .curves import MIDDLE, NEAR_END, NEAR_START, displacement_sizes, place_on_curves
 
+NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
+"""Points of an edge in an array of displacements, shape (E, 3, 3): edge, point, x y z."""
 FULLNESS = np.float32(1.2)
 """How much more than the cubic inner edges are displaced. Triangles between curves are flat, so the
 best fit stands out a little; measured on ellipsoids, a torus, heads, flat between 1.1 and 1.25."""
@@ -214,3 +231,43 @@ def displace_cubic(
             turn_a = share_a * np.float32(positions[b, i] - positions[p, i]) - straight
             turn_b = share_b * np.float32(positions[q, i] - positions[a, i]) - straight
             write_cubic(displacements, e, i, turn_a, turn_b)
+
+
+@njit
+def displacement_sizes(displacements: Floats, sizes: Floats) -> None:
+    """Write how far the middle of every edge is displaced, shape (E,)."""
+    for e in range(sizes.shape[0]):
+        middle = row_of(displacements[e], MIDDLE)
+        sizes[e] = np.sqrt(dot(middle, middle))
+
+
+@njit
+def place_on_curves(
+    around: Surroundings, frame: FrameBuffers, normals: Floats, displacements: Floats
+) -> None:
+    """Write vertices as they are, and the one or three points of every split edge.
+
+    `normals`: unit normals of vertices, shape (V, 3); `displacements`: of edges, shape (E, 3, 3).
+    """
+    points, vertices = frame.points, frame.rows
+    place_unmoved(points, normals, vertices)
+    for k in range(frame.counts[ONCE]):
+        e = frame.split_once[k]
+        a, b = around.points[e, 0], around.points[e, 1]
+        row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
+        near_a, near_b = np.uint32(row - 1), np.uint32(row + 1)
+        at_a, at_b, displacement = row_of(points, a), row_of(points, b), displacements[e]
+        out = times(frame.geomorph_once[e], row_of(displacement, MIDDLE))
+        middle = plus(times(HALF, plus(at_a, at_b)), out)
+        write_row(vertices, row, middle)
+        write_mean_normal(vertices, a, b, row)
+        if frame.splits[e] == 2:
+            full_a = plus(times(THREE_QUARTERS, at_a), times(QUARTER, at_b))
+            full_b = plus(times(THREE_QUARTERS, at_b), times(QUARTER, at_a))
+            full_a = plus(full_a, row_of(displacement, NEAR_START))
+            full_b = plus(full_b, row_of(displacement, NEAR_END))
+            geomorph = frame.geomorph_twice[e]
+            write_row(vertices, near_a, mix(times(HALF, plus(at_a, middle)), full_a, geomorph))
+            write_row(vertices, near_b, mix(times(HALF, plus(at_b, middle)), full_b, geomorph))
+            write_mean_normal(vertices, a, row, near_a)
+            write_mean_normal(vertices, b, row, near_b)

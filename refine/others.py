@@ -1,4 +1,12 @@
-"""Loop subdivision of the whole mesh, level by level: what the adaptive refiner is compared with.
+"""Refiners to compare with: the mesh as it is, and Loop subdivision of all of it.
+
+*None* does nothing: the mesh itself, in the form in which refined meshes come.
+
+Kähler, Haber, Seidel 2003, compare with the static mesh in every figure and in Table 1. Positions,
+normals and texture coordinates are those that `kahler` hands out where no edge is split, to the
+last bit, so that switching between the two shows nothing but refinement.
+
+*Loop* subdivides the whole mesh, level by level: what the adaptive refiner is compared with.
 
 Loop 1987 with Warren's vertex weights (Warren 2001), the scheme that Kähler, Haber, Seidel 2003,
 section 4.2, borrow their rules from. Every edge is split, every vertex is smoothed, borders follow
@@ -19,15 +27,15 @@ from typing import Any, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..border.base import BaseRefiner
-from ..border.corner_values import Values
-from ..border.plugin import Origins, Stream, View
-from ..border.rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
-from ..kahler.frame import buffers_for, split_everywhere
-from ..kahler.smoothing import place_middles, place_vertices
-from ..mesh.arrays import Floats, Indices
-from ..mesh.connectivity import Connectivity, connect
-from ..mesh.rings import vertex_rings
+from .border.base import BaseRefiner
+from .border.corner_values import Values
+from .border.plugin import Origins, Stream, View
+from .border.rows import GEOMETRY_COLUMNS, place_unmoved, wedge_values, write_wedges
+from .kahler.frame import buffers_for, split_everywhere
+from .kahler.smoothing import place_middles, place_vertices
+from .mesh.arrays import Floats, Indices
+from .mesh.connectivity import Connectivity, connect
+from .mesh.rings import vertex_rings
 
 CHILDREN = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
@@ -191,3 +199,35 @@ def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArr
     """
     points = np.concatenate([corners, middles], axis=1)
     return points[:, CHILDREN].reshape(-1, *corners.shape[1:])
+
+
+class PassThrough(BaseRefiner):
+    """Hands the mesh through with normals; the refiner named `none`."""
+
+    def __init__(
+        self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike, **values: Unpack[Values]
+    ) -> None:
+        """Bind to a mesh (see `registry.create`); there are no options."""
+        super().__init__(faces, rest_positions, **values)
+        self._source = np.arange(len(self.connectivity.faces), dtype=np.int32)
+
+    @property
+    def vertex_capacity(self) -> int:
+        """One output vertex per wedge."""
+        return len(self.connectivity.wedge_vertices)
+
+    @property
+    def triangle_capacity(self) -> int:
+        """The triangles of the input."""
+        return len(self.connectivity.faces)
+
+    def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        """Write the mesh as it is."""
+        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertices, triangles, source = self.reserve(stream, vertex_count, triangle_count)
+        self.find_normals()
+        place_unmoved(self.points, self.normals, vertices)
+        self.write_wedges(vertices)
+        triangles[:triangle_count] = self.connectivity.corners
+        source[:triangle_count] = self._source
+        return vertex_count, triangle_count

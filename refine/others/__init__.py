@@ -1,1 +1,0 @@
-"""Refiners to compare with: the mesh as it is, and Loop subdivision of all of it."""
