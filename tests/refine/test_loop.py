@@ -72,14 +72,6 @@ def test_named_meshes(name: str, levels: int) -> None:
     assert_is_plain(mesh, meshes.wrinkled(mesh, 3), levels)
 
 
-@pytest.mark.parametrize("levels", [1, 2])
-@pytest.mark.parametrize("seed", range(4))
-def test_irregular_meshes(seed: int, levels: int) -> None:
-    """Irregular meshes with holes."""
-    mesh = meshes.irregular(seed)
-    assert_is_plain(mesh, meshes.wrinkled(mesh, seed), levels)
-
-
 @settings(max_examples=60, deadline=None)
 @given(soup=soups(), levels=st.integers(1, 3))
 def test_soups(soup: tuple[np.ndarray, np.ndarray], levels: int) -> None:
@@ -98,18 +90,6 @@ def test_interpolated_normals() -> None:
     for _ in range(2):
         points, faces, normals = loop_plainly(points, faces, normals)
     np.testing.assert_allclose(refined.normals, np.array(normals), rtol=0, atol=4e-6)
-
-
-def test_tetrahedron_by_hand() -> None:
-    """Warren's weights on the smallest closed mesh: 7/16 and 3/16, midpoints 3/8 and 1/8."""
-    mesh = meshes.tetrahedron()
-    refiner = refine.create("loop", mesh.faces, mesh.vertices)
-    refined = refiner.refine(mesh.vertices)
-    # The corners sum to zero, so 7/16 p + 3/16 (-p) = p / 4, and 3/8 s - 1/8 s = s / 4.
-    np.testing.assert_array_equal(refined.positions[:4], mesh.vertices / 4)
-    ends = mesh.vertices[refiner.edges]
-    np.testing.assert_array_equal(refined.positions[4:], ends.sum(axis=1) / 4)
-    assert len(refined.triangles) == 16
 
 
 def test_equals_kahler_at_one_level() -> None:

@@ -65,7 +65,7 @@ RIGHT: dict[str, dict[str, Any]] = {
     "pose": {"values": {"jaw_open": 0.5}, "cut_off": True},
     "drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
     "jump": {"values": {"jaw_open": 0.5}},
-    "copy_from": {"other": None},  # its twins are those of the simulation that is asked
+    "copy_from": {"other": None},  # its clones are those of the simulation that is asked
     "kick": {"velocities": np.zeros((COUNT, 3))},
     "step": {"dt": 1 / 60},
 }

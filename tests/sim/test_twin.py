@@ -136,7 +136,7 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
 
 def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
     """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw."""
-    muscles, mandible = stirred._anatomy.muscles, stirred._mandible
+    muscles, mandible = stirred._anatomy.muscles, stirred._bones.mandible
     bundle = muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
     table = np.zeros_like(muscles.motion.contracted)
@@ -157,7 +157,7 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
 
 def test_muscle_pull(stirred: sim.Simulation) -> None:
     """Attachment and pull of all muscles, summed muscle by muscle and line by line."""
-    anatomy, mandible = stirred._anatomy, stirred._mandible
+    anatomy, mandible = stirred._anatomy, stirred._bones.mandible
     muscles, weight = anatomy.muscles, anatomy.skull.mandible_weight
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
     hold, force = np.zeros(len(weight)), np.zeros((len(weight), 3))
@@ -191,7 +191,7 @@ def test_muscle_pull(stirred: sim.Simulation) -> None:
 
 def test_bones_carry_anchors(stirred: sim.Simulation) -> None:
     """Anchors blend between cranium and mandible by weight; their normals stay unit."""
-    anatomy, mandible, state = stirred._anatomy, stirred._mandible, stirred._state
+    anatomy, mandible, state = stirred._anatomy, stirred._bones.mandible, stirred._state
     surface, weight = anatomy.surface, anatomy.skull.mandible_weight
     carry(state, surface.positions, surface.normals, weight, mandible)
     moved = mandible.displacements(surface.positions)

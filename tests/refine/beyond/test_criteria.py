@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from risorius import refine
-from risorius.refine import RestCurvature
-from risorius.refine.kahler.criterion import Thresholds
 from tests import meshes
 from tests.refine.cases import Forced, GivenMetric
 
@@ -350,41 +348,6 @@ def test_bulge_needs_measures() -> None:
     )
     refiner.refine(mesh.vertices)
     assert (refiner.splits > 0).all()
-
-
-@pytest.mark.parametrize("names", ["normal+rest", "rest+normal", "normal+normal", "rest", "normal"])
-def test_several_criteria_mark(names: str) -> None:
-    """Several criteria together mark what the one marks that asks for most.
-
-    Also after their thresholds have been replaced, or moved.
-    """
-    mesh = meshes.irregular(4)
-    deformed = meshes.wrinkled(mesh, 5)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=names)
-    parts = [refine.NormalDrop() if name == "normal" else RestCurvature()
-             for name in names.split("+")]  # fmt: skip
-    plain = refine.create("none", mesh.faces, mesh.vertices)
-    rest_normals = plain.refine(mesh.vertices).normals.copy()
-    normals = plain.refine(deformed).normals.copy()
-    for part in parts:
-        part.bind(refiner.connectivity, mesh.vertices, rest_normals)
-    drops = [refiner._criterion, *refiner._criterion.parts]
-    drops = [one for one in drops if isinstance(one, refine.NormalDrop)]
-    for change in (None, 0.3, 0.05):
-        if change == 0.3:
-            for one in (*drops, *(p for p in parts if isinstance(p, refine.NormalDrop))):
-                one.thresholds = Thresholds(0.3, 0.5, "drops")
-        elif change:
-            for one in (*drops, *(p for p in parts if isinstance(p, refine.NormalDrop))):
-                one.thresholds.once = change
-        refiner.refine(deformed)
-        asked = []
-        for part in parts:
-            splits = np.zeros(len(refiner.edges), np.uint8)
-            part.mark(deformed, normals, splits)
-            asked.append(splits)
-        assert (refiner.splits == np.max(asked, axis=0)).all()
-    assert refiner.splits.any()
 
 
 def test_a_rule_of_ones_own_is_asked() -> None:

@@ -58,16 +58,6 @@ def test_named_meshes(name: str, amplitude: float) -> None:
         assert_is_twin(mesh, deformed, refiner, refined)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_irregular_meshes(seed: int) -> None:
-    """Irregular meshes with holes in random deformations: proper, and the twin's."""
-    mesh = meshes.irregular(seed)
-    deformed = meshes.wrinkled(mesh, seed, amplitude=0.3)
-    refiner, refined = refine_and_check(mesh, deformed)
-    assert len(set(refiner.splits.tolist())) > 1
-    assert_is_twin(mesh, deformed, refiner, refined)
-
-
 @settings(max_examples=200, deadline=None)
 @given(soup=soups(), data=st.data())
 def test_soups(soup: tuple[np.ndarray, np.ndarray], data: st.DataObject) -> None:
@@ -107,18 +97,6 @@ def test_counts_follow_splits(seed: int) -> None:
     assert len(refined.triangles) == CONFIGURATIONS.counts[s @ np.array([1, 3, 9])].sum()
     times = Counter(refiner.splits.tolist())
     assert len(refined.positions) == len(mesh.vertices) + times[1] + 3 * times[2]
-
-
-def test_euler_characteristic() -> None:
-    """Refinement keeps the topology: V - E + F does not change."""
-    mesh = meshes.irregular(2)
-    _, refined = refine_and_check(mesh, meshes.wrinkled(mesh, 3))
-    used = len(np.unique(mesh.faces))
-    fine_edges = len(refine.connect(refined.triangles, len(refined.positions)).edges)
-    coarse_edges = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
-    unused = len(mesh.vertices) - used
-    fine = len(refined.positions) - unused - fine_edges + len(refined.triangles)
-    assert fine == used - coarse_edges + len(mesh.faces)
 
 
 def test_capacity_is_reached() -> None:

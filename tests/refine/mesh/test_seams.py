@@ -53,25 +53,6 @@ def test_same_geometry_as_without(name: str, options: dict[str, int]) -> None:
     assert len(with_uv.positions) > len(without.positions)
 
 
-@pytest.mark.parametrize(("name", "options"), REFINERS)
-def test_texture_is_linear(name: str, options: dict[str, int]) -> None:
-    """Every corner has the coordinate of its place in its own triangle, also on the seam."""
-    tube, deformed = bent_tube()
-    assert tube.uv is not None and tube.face_uv is not None
-    refiner = refine.create(
-        name, tube.faces, tube.vertices, uv=tube.uv, face_uv=tube.face_uv, **options
-    )
-    refined = refiner.refine(deformed)
-    assert refined.uv is not None
-    origins = refiner.origins()
-    faces = tube.faces[refined.source]
-    vertices, weights = origins.vertices[refined.triangles], origins.weights[refined.triangles]
-    at_corner = vertices[..., None] == faces[:, None, None, :]
-    places = (weights[..., None] * at_corner).sum(axis=2)
-    expected = np.einsum("tci,tiu->tcu", places, tube.uv[tube.face_uv[refined.source]])
-    np.testing.assert_allclose(refined.uv[refined.triangles], expected, rtol=0, atol=1e-6)
-
-
 def test_uv_per_vertex() -> None:
     """Without face_uv each vertex has one coordinate, and nothing is doubled."""
     mesh = meshes.open_grid(3, 3)
