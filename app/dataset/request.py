@@ -43,6 +43,7 @@ class Request:
     def options(self) -> dict[str, Any]:
         """What decides the samples, as JSON has it: resumed is what was begun with the same."""
         table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
+        table["expressions"] = {name: row.row for name, row in self.table.expressions.items()}
         options = {
             "risorius": self.version,
             "seed": self.seed,
@@ -52,8 +53,7 @@ class Request:
             "heads": digest(self.heads) if self.heads else None,
             **{f"[{name}]": section for name, section in table.items()},
         }
-        plain: dict[str, Any] = json.loads(json.dumps(options))
-        return plain
+        return dict(json.loads(json.dumps(options)))
 
 
 def request_of(

@@ -6,7 +6,7 @@ Sources of what stands in it are named there. This reads and checks it.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -39,10 +39,6 @@ def _units() -> list[str]:
     return [unit for unit in _layer("Action units") if unit not in {BLINK, *OF_EYES_AND_HEAD}]
 
 
-def _visemes() -> list[str]:
-    return list(_layer("Visemes"))
-
-
 def _drawn(shares: dict[str, float]) -> Shares:
     """Shares from which one name is drawn; ValueError where none can be."""
     if not any(shares.values()):
@@ -69,7 +65,7 @@ def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
 Weight = Annotated[float, Within(0.0, 1e6)]
 Share = Annotated[float, Within(0.0, 1.0)]
 Degrees = Annotated[float, Within(0.0, 15.0)]
-Unit = Annotated[str, OneOf(_units)]
+Pairs = list[list[Annotated[str, OneOf(_units)]]]
 
 
 @dataclass(frozen=True)
@@ -80,17 +76,16 @@ class Expression(Record):
     share: Weight = 0.0
     one_sided: Share = 0.0
 
+    @property
+    def row(self) -> Shares:
+        """As the table has it."""
+        found = {"share": self.share, "one_sided": self.one_sided, **self.units}
+        return {name: value for name, value in found.items() if value}
+
 
 def _expressions(rows: dict[str, Expression]) -> Mapping[str, Expression]:
     _drawn({name: row.share for name, row in rows.items()})
     return rows
-
-
-@dataclass(frozen=True)
-class Excluded(Record):
-    """Units that are not there together."""
-
-    pairs: Annotated[tuple[frozenset[str], ...], MadeFrom(list[list[Unit]], lambda p: _pairs(p))]
 
 
 def _pairs(pairs: list[list[str]]) -> tuple[frozenset[str], ...]:
@@ -98,6 +93,13 @@ def _pairs(pairs: list[list[str]]) -> tuple[frozenset[str], ...]:
         if len(set(pair)) != 2 or len(pair) != 2:
             raise ValueError(f"was {pair}, must be two different action units")
     return tuple(map(frozenset, pairs))
+
+
+@dataclass(frozen=True)
+class Excluded(Record):
+    """Units that are not there together."""
+
+    pairs: Annotated[tuple[frozenset[str], ...], MadeFrom(Pairs, _pairs)]
 
 
 @dataclass(frozen=True)
@@ -157,7 +159,7 @@ class SampleTable(Record):
     units: Annotated[Shares, _drawn_from(_units)]
     together: Annotated[Mapping[str, Shares], Rows(_units, Annotated[Shares, Rows(_units, Share)])]
     excluded: Excluded
-    speech: Annotated[Shares, _drawn_from(_visemes)]
+    speech: Annotated[Shares, _drawn_from(lambda: _layer("Visemes"))]
     sides: Sides
     eyes: Eyes
     head: Head
@@ -211,13 +213,11 @@ def with_camera(table: SampleTable, text: str) -> SampleTable:
             raise ValueError
     except ValueError:
         raise UserError(
-            f"--camera {text}: write yaw[,pitch[,zoom]], each a number or LOW:HIGH, as in "
-            "-30:30,0:10"
+            f"--camera {text}: write yaw[,pitch[,zoom]], numbers or LOW:HIGH, as in -30:30,0:10"
         ) from None
     pairs = {name: ends * 2 if len(ends) == 1 else ends for name, ends in given.items()}
-    camera = {each.name: list(getattr(table.camera, each.name)) for each in fields(Camera)}
-    found = read(Camera, {**camera, **pairs}, f"--camera {text}", error=UserError)
-    return replace(table, camera=found)
+    camera = asdict(table.camera) | pairs
+    return replace(table, camera=read(Camera, camera, f"--camera {text}", error=UserError))
 
 
 @cache
