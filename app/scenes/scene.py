@@ -135,9 +135,10 @@ class FaceScene(Scene):
         )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles = head.wrinkles
-        self.fade = head.fade() if isinstance(head, FittedHead) else None  # others have a shirt
         is_known = isinstance(head, assets.Head)
         person = head if isinstance(head, Person) else None
+        if isinstance(head, FittedHead) and person is None:  # others have a shirt
+            self.fade = head.fade()
         self.called = BUILT_IN if is_known else (person and person.called) or OWN
         self.in_tone = recoloured if is_known else None if person is None else person.in_tone
         self.landmarks = head.landmarks
@@ -181,8 +182,7 @@ class FaceScene(Scene):
         # Only who brings a head waits for it to be compiled.
         from .ambient_occlusion import ambient_occlusion
 
-        is_at_rest = np.array_equal(self.positions, self.rest_positions)
-        if any(self.values.values()) or not is_at_rest:
+        if any(self.values.values()) or not np.array_equal(self.positions, self.rest_positions):
             simulation = sim.create(head)  # baking moves it
         return ambient_occlusion(head, simulation)
 

@@ -160,6 +160,7 @@ def test_hair_keeps_its_colour_in_other_tones_of_skin() -> None:
 def test_hair_is_seen_framed_and_labelled() -> None:
     """It is in the picture as a whole, has its class, and is away where muscles are shown."""
     scene = FaceScene(person_called("ada"))
+    assert scene.fade is None  # the shirt covers the end of the neck
     top = max(part.vertices[:, 1].max() for part in scene.parts if part.name.startswith(HAIR))
     assert scene.framed[:, 1].max() >= top
     options = CaptureOptions(size=(160, 160), passes=("segmentation",))
