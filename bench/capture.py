@@ -12,8 +12,10 @@ import os
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -30,7 +32,8 @@ from .report import processor, table
 
 ROUNDS = 3
 WARM_UP = 5  # frames that are not counted
-STAGES = ("simulate", "refine", "upload", "draw", "read back", "captions", "encode")
+REST, WITHIN = "read back, captions", ("refinement", "upload", "draw")
+STAGES = ("simulate", *WITHIN, REST, "encode")
 
 
 def report(size: tuple[int, int], seconds: float) -> str:
@@ -74,7 +77,7 @@ def report(size: tuple[int, int], seconds: float) -> str:
             *table("drawn by:<16|frames/s:9.1f|wall [s]:9.1f|processor [s]:14.1f", rows),
             "",
             "Where the time of one process goes, in a frame that is drawn:",
-            *table("stage:<16|ms a frame:11.2f", [*stages, ("all", sum(ms for _, ms in stages))]),
+            *table("stage:<20|ms a frame:11.2f", [*stages, ("all", sum(ms for _, ms in stages))]),
         ]
     )
 
@@ -99,51 +102,40 @@ def _time_stages(
     spent: dict[str, float] = defaultdict(float)
     drawn_count = 0
 
-    def timed(stage: str, call: Callable[..., Any], *outer: str) -> Callable[..., Any]:
-        """The same call; its time is its stage's, and no longer that of those it is part of."""
-
-        def measured(*arguments: Any, **options: Any) -> Any:
-            """Call, and note the time."""
-            begin = time.perf_counter()
-            result = call(*arguments, **options)
-            elapsed = 1e3 * (time.perf_counter() - begin)
-            spent[stage] += elapsed
-            for each in outer:
-                spent[each] -= elapsed
-            return result
-
-        return measured
+    @contextmanager
+    def timed(stage: str) -> Iterator[None]:
+        begin = time.perf_counter()
+        yield
+        spent[stage] += 1e3 * (time.perf_counter() - begin)
 
     with (
         Capture(scene_of(script), options) as studio,
         outputs.film(film, options.size, options.frames_per_second) as add,
     ):
-        pipeline, surface, end = studio.pipeline, studio.surface, studio.surface.end
+        pipeline, gl = studio.pipeline, studio.surface.gl
+        step, draw = pipeline.step, partial(pipeline.draw, timer=timed)
 
-        def end_and_wait() -> None:
-            """Have everything drawn."""
-            end()
-            surface.gl.finish()
+        def simulate(*arguments: Any) -> None:
+            with timed("simulate"):
+                step(*arguments)
 
-        changed: list[tuple[Any, str, Callable[..., Any]]] = [
-            (pipeline, "step", timed("simulate", pipeline.step)),
-            (pipeline, "draw", timed("draw", pipeline.draw, "captions")),
-            (surface, "end", timed("draw", end_and_wait, "captions")),
-            (surface, "read_scene", timed("read back", surface.read_scene, "captions")),
-        ]
-        for drawn, *_ in studio.viewports:
-            changed.append((drawn, "refine", timed("refine", drawn.refine, "draw")))
-            changed.append((drawn, "upload", timed("upload", drawn.upload, "draw")))
-        for thing, attribute, call in changed:
-            setattr(thing, attribute, call)
-        draw, write = timed("captions", studio.next_frame), timed("encode", add)
+        def draw_and_wait(*arguments: Any, **options: Any) -> None:
+            draw(*arguments, **options)
+            with timed("draw"):
+                gl.finish()
+
+        studio.pipeline.step, studio.pipeline.draw = simulate, draw_and_wait  # type: ignore[method-assign]
         frame = None
         for _ in studio.play(script, progress=False):
-            before, frame = frame, draw()
-            write(frame.image)
+            before = frame
+            with timed("whole"):
+                frame = studio.next_frame()
+            with timed("encode"):
+                add(frame.image)
             drawn_count += frame is not before
             if frame is not before and drawn_count > WARM_UP:
+                spent[REST] = spent["whole"] - sum(spent[stage] for stage in WITHIN)
                 for stage in STAGES:
                     found[stage].append(spent[stage])
             spent.clear()
-        return str(surface.gl.info["GL_RENDERER"]), drawn_count
+        return str(gl.info["GL_RENDERER"]), drawn_count

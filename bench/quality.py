@@ -186,8 +186,11 @@ def _bound(
 def _slid(
     refiner: refine.Refiner, criterion: Any, positions: Points, most: float, view: refine.View
 ) -> refine.RefinedMesh:
-    """Refine with thresholds, scaled together, that give `most` triangles or a few less."""
-    usual = criterion.thresholds
+    """Refine with thresholds, scaled together, that give `most` triangles or a few less.
+
+    They stay, for frames.
+    """
+    usual = type(criterion)().thresholds
 
     def refined(logarithm: float) -> refine.RefinedMesh:
         scale = float(np.exp(logarithm))
@@ -199,9 +202,7 @@ def _slid(
     for _ in range(SEARCH_STEPS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if len(refined(middle).triangles) > most else (low, middle)
-    mesh = refined(high)
-    criterion.thresholds = usual
-    return mesh
+    return refined(high)
 
 
 class _Pictures:

@@ -115,9 +115,7 @@ def decimated(vertices: Points, triangles: npt.NDArray[np.int32], count: int) ->
     if len(triangles) <= count:
         raise UserError(f"the face has {len(triangles)} triangles, and {count} are to be left")
     dense = pyvista.PolyData.from_regular_faces(vertices, triangles)
-    coarse = dense.decimate(
-        1.0 - count / len(triangles), boundary_constraints=True, boundary_weight=BORDER_WEIGHT
-    )
+    coarse = dense.decimate(1.0 - count / len(triangles), boundary_weight=BORDER_WEIGHT)
     found = closest_points(coarse.points, vertices, triangles)
     return {
         "triangles": coarse.regular_faces.astype(np.int32),
