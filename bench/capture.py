@@ -115,16 +115,17 @@ def _time_stages(
         pipeline, gl = studio.pipeline, studio.surface.gl
         step, draw = pipeline.step, partial(pipeline.draw, timer=timed)
 
-        def simulate(*arguments: Any) -> None:
+        def simulate(seconds: float) -> None:
             with timed("simulate"):
-                step(*arguments)
+                step(seconds)
 
         def draw_and_wait(*arguments: Any, **options: Any) -> None:
             draw(*arguments, **options)
             with timed("draw"):
                 gl.finish()
 
-        studio.pipeline.step, studio.pipeline.draw = simulate, draw_and_wait  # type: ignore[method-assign]
+        pipeline.step = simulate  # type: ignore[method-assign]
+        pipeline.draw = draw_and_wait  # type: ignore[method-assign]
         frame = None
         for _ in studio.play(script, progress=False):
             before = frame
