@@ -103,32 +103,6 @@ def test_nothing_is_imported_by_its_folder() -> None:
             assert not bare, f"{file}:{node.lineno}: write `from risorius import {bare.pop()}`"
 
 
-@pytest.mark.slow
-def test_no_file_is_loaded_twice() -> None:
-    """All modules at once, with the checkout as the current folder."""
-    modules = [
-        package if file.stem == "__init__" else f"{package}.{file.stem}"
-        for package, file in files_of_packages()
-        if file.suffix == ".py" and file.stem != "__main__"
-    ]
-    code = (
-        "import importlib, json, sys\n"
-        f"for name in {modules}:\n    importlib.import_module(name)\n"
-        "print(json.dumps({n: getattr(m, '__file__', None) for n, m in sys.modules.items()}))"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    ours = {str(file) for _, file in files_of_packages()}
-    loaded = {
-        name: os.path.realpath(file)
-        for name, file in json.loads(result.stdout).items()
-        if file and os.path.realpath(file) in ours
-    }
-    assert sorted(loaded) == sorted(modules)
-    assert len(set(loaded.values())) == len(loaded)
-
-
 @dataclass(frozen=True)
 class Built:
     """Wheels of the checkout and of its sdist, and an environment with the second installed."""

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from risorius import assets
 from risorius.app.scenes import FaceScene
-from risorius.app.scenes.ambient_occlusion import ambient_occlusion, bake, main, open_to_light
+from risorius.app.scenes.ambient_occlusion import bake, main, open_to_light
 from risorius.app.scenes.mouth import shaded_mouth
 from risorius.assets.loading import HEAD_FILE, load_head
 from tests import meshes
@@ -104,18 +101,6 @@ def test_program_writes_the_light_of_a_head(unbaked: FaceScene) -> None:
 
 
 @pytest.mark.slow
-def test_the_built_in_head_waits_for_no_baking(tmp_path: Path) -> None:
-    """A picture of it is drawn without the code that bakes, let alone its compiling."""
-    words = ["capture", "--set", "joy", "--size", "64x48", "-o", str(tmp_path / "joy.png")]
-    code = (
-        f"import sys; from risorius.app.cli import main; main({words}, standalone_mode=False); "
-        "assert 'risorius.app.scenes.ambient_occlusion' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
-    assert (tmp_path / "joy.png").exists()
-
-
-@pytest.mark.slow
 def test_baking_leaves_a_posed_face_alone(unbaked: FaceScene) -> None:
     """Baking moves a face: one that is posed already keeps its pose, and gets the same image."""
     rest = unbaked.positions.copy()
@@ -143,14 +128,3 @@ def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
     red, _, blue = (lower / given.colours)[given.vertices[:, 2].argmin()]
     assert blue < 0.5 and blue < 0.8 * red  # grey ones look like one broken tooth
     assert shaded_mouth(()) == ()
-
-
-def test_a_head_that_cannot_yawn(face: FaceScene) -> None:
-    """Without a pose that reveals what touches, rest alone counts, and is darker."""
-    still = SimpleNamespace(
-        positions=face.simulation.positions, faces=face.simulation.faces, limits={}
-    )
-    alone, shown = ambient_occlusion(face.head, still), face.ambient_occlusion()
-    assert shown is not None
-    assert alone.mean() < shown.mean()
-    assert (alone.astype(int) < shown.astype(int) - 60).any()

@@ -94,17 +94,6 @@ def test_no_skin_is_seen_at_opacity_0_and_one_side_alone_is_opened(studio: Captu
 
 
 @pytest.mark.slow
-def test_more_skin_hides_more(studio: Capture) -> None:
-    """From 0 to 1 the picture goes evenly to the usual one."""
-    posed(studio.scene)  # type: ignore[arg-type]
-    usual = picture(studio, AnatomyView())
-    opacities = (0.0, 0.3, 0.6, 0.9)
-    shown = [picture(studio, AnatomyView(STRUCTURES, opacity)) for opacity in opacities]
-    off = [float(np.abs(each - usual).mean()) for each in shown]
-    assert off == sorted(off, reverse=True) and off[0] > 5.0 * off[3]
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("pose", [{}, {"joy": 1.0}, {"jaw_open": 1.0, "head_yaw": 0.6}])
 def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
     """At rest, in a smile, in a turned head that yawns."""
@@ -167,17 +156,6 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
 
 
-def test_holes_that_meet_leave_a_head_its_anatomy(tmp_path: Path) -> None:
-    """Two triangles that share a vertex of the crown are missing; the neck still has its end."""
-    mine = stranger()
-    faces, crown = mine.mesh.faces, mine.mesh.vertices[:, 2].argmax()
-    ring = np.flatnonzero((faces == crown).any(axis=1))
-    opposite = next(n for n in ring[1:] if len({*faces[n]} & {*faces[ring[0]]}) == 1)
-    kept = np.delete(faces, [ring[0], opposite], axis=0)
-    anatomy = Anatomy(FaceScene(fit_head(*mine.write(tmp_path, faces=kept))))
-    assert "neck_section" in [part.name for part in anatomy.layers(BOTH).parts]
-
-
 @pytest.mark.slow
 def test_the_command_draws_anatomy(tmp_path: Path) -> None:
     """`--anatomy` opens the side that is told; what is not there is told in one line."""
@@ -198,23 +176,6 @@ def test_the_command_draws_anatomy(tmp_path: Path) -> None:
     assert wrong.exit_code == 2 and "muscles, skull" in wrong.output
     lonely = run("--skin-opacity", "0.5", "-o", str(plain))
     assert lonely.exit_code == 2 and "--anatomy" in lonely.output
-
-
-def test_muscles_need_no_skull_and_rest_with_the_face() -> None:
-    """Bones are formed only when they are asked for; where nothing moved, nothing is shaped."""
-    scene = FaceScene()
-    anatomy, view = Anatomy(scene), AnatomyView(("muscles",))
-    parts = anatomy.layers(view).parts
-    muscles = next(part for part in parts if part.name == "muscles")
-    assert [part.name for part in parts if "skull" in part.name] == ["skull_nose"]
-    shape = muscles.vertices
-    anatomy.layers(view)
-    assert muscles.vertices is shape
-    scene.pose({"joy": 1.0})
-    for _ in range(5):
-        scene.step(1.0 / 60.0)
-    anatomy.layers(view)
-    assert np.abs(muscles.vertices - shape).max() > 0.1
 
 
 @pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])

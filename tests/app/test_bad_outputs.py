@@ -81,11 +81,3 @@ def test_a_script_that_is_a_circle_of_links(arguments: tuple[str, ...]) -> None:
     assert "circle: cannot be read: Too many levels" in refusal(risorius(*arguments))
     line = refusal(risorius(*(word.replace("circle", "no\nscript\x1b[31m") for word in arguments)))
     assert line == r"risorius: no\nscript\x1b[31m: no such script"
-
-
-def test_a_folder_for_frames_that_is_a_circle_of_links() -> None:
-    """Nothing is replaced."""
-    Path("circle").symlink_to("circle")
-    line = refusal(risorius("capture", "--set", "joy", "-o", "circle", "--quiet"))
-    assert line == "risorius: circle: is a link that leads back to itself; choose another name"
-    assert Path("circle").is_symlink()

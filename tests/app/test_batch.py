@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import os
 import random
 import signal
@@ -15,9 +14,6 @@ from typing import Any
 
 import pytest
 from click.testing import Result
-
-from risorius.app.batch.journal import Journal, made_from
-from risorius.app.batch.listing import Job
 
 from .command_line import refusal, risorius
 from .test_workers import is_running, wait_until
@@ -186,14 +182,6 @@ def test_a_list_of_nothing(text: str | None, told: str) -> None:
     assert told in refusal(batch())
 
 
-def test_thousands_of_wrong_lines_are_counted() -> None:
-    """The first are told, the others are counted."""
-    Path("clips.txt").write_text("nonsense\n" * 5000)
-    ended = batch()
-    assert ended.exit_code == 2
-    assert len(ended.stderr.splitlines()) == 21 and "4980 more wrong lines" in ended.stderr
-
-
 def test_jobs_and_scheduler_exclude_each_other() -> None:
     """A cluster has the workers that it has; one that is not there is told in one line."""
     told = refusal(batch("--jobs", "2", "--scheduler", "tcp://a:1"))
@@ -214,24 +202,6 @@ def test_what_fails_fails_alone() -> None:
     Path("sadness.toml").write_text(SCRIPT.format(0.5, "sadness"))
     assert batch("--resume").exit_code == 0
     assert statuses() == ["skipped", "ok", "skipped", "skipped"]
-
-
-def test_a_journal_that_was_cut_off_costs_its_last_line() -> None:
-    """Whatever is in it: what cannot be read is made once more, and added below."""
-    file = Path("journal.jsonl")
-    job = Job(1, "a", "b:c", (), Path.cwd(), (Path("joy.toml"),), (Path("fear.toml"),))
-    other = Job(2, "x", "b:c", (), Path.cwd(), (), (Path("joy.toml"),))
-    for each in (job, other):
-        Journal(file).add(each, made_from(each), 3, 1.5)
-    whole = file.read_text()
-    assert json.loads(whole.splitlines()[-1])["frames"] == 3
-    for cut in (*range(0, len(whole), 7), len(whole)):
-        file.write_text(whole[:cut])
-        assert Journal(file).made(other) is None or cut == len(whole)
-        Journal(file).add(other, made_from(other), 3, 1.5)
-        assert Journal(file).made(other)
-    file.write_text('[1]\n7\nnull\n{"line": 3}\n{"begun": 3}\n\x00' + whole)
-    assert Journal(file).made(job)
 
 
 def films(count: int) -> list[str]:

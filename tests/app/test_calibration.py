@@ -18,7 +18,7 @@ from risorius.app.recordings.calibration import (
     neutral_now,
     neutral_of,
 )
-from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
 
 Frame = dict[str, float]
 SHAPES = (*ARKIT, "AU12", "AU12_left", "AU4_right")
@@ -37,12 +37,6 @@ def take_of(kind: str = "Live Link Face", seconds: float = 4.0, **channels: obje
         for name, values in channels.items()
     }
     return Take(kind, "take.csv", times, arrays)
-
-
-@given(frames)
-def test_two_mirrors_show_the_face_itself(frame: Frame) -> None:
-    mirror = Calibration(mirror=True)
-    assert mirror.apply(mirror.apply(frame)) == frame
 
 
 def test_a_mirror_swaps_sides_and_turns_the_head() -> None:
@@ -89,26 +83,6 @@ def test_the_head_is_straight_in_the_first_second() -> None:
     calibrated = Calibration(neutral_of(turning)).apply(turning.channels)
     assert calibrated["head_yaw"][0] == pytest.approx(0.0)
     assert calibrated["head_yaw"][-1] == pytest.approx(22.0)
-
-
-def test_visemes_are_as_they_were_written() -> None:
-    take = take_of(viseme_sil=0.4)
-    for method in (None, "first:1", "percentile"):
-        assert set(neutral_of(take, method)) & set(VISEMES) == set()
-
-
-def test_short_and_calibrated_takes_keep_their_faces() -> None:
-    assert neutral_of(take_of(seconds=1.0, browDownLeft=0.3)) == {}
-    calibrated = take_of(browDownLeft=0.3)
-    object.__setattr__(calibrated, "is_calibrated", True)
-    assert neutral_of(calibrated) == {}
-
-
-def test_eyes_look_where_they_were_seen_to_look() -> None:
-    """A gaze is no neutral face; only a neutral second that was asked for makes it straight."""
-    looking = take_of(eye_pitch_left=-6.0)
-    assert neutral_of(looking) == {}
-    assert neutral_of(looking, "first:1") == {"eye_pitch_left": -6.0}
 
 
 def test_gains_suit_the_kind_of_file() -> None:

@@ -7,10 +7,7 @@ import numpy as np
 from risorius import render
 from risorius.app.capture.captions import (
     LEAST_CAPTION,
-    PLATE,
-    SPLITS_BAR,
     captioned,
-    colour_bar,
     contact_sheet,
     labels,
 )
@@ -38,25 +35,6 @@ def test_a_caption_without_room_is_left_out() -> None:
     """It would lie over the other side, and over the face."""
     made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], None, STYLE)
     assert [x > 300 for x, _, _ in made] == [True]
-
-
-def test_labels_lie_on_transparent_pictures() -> None:
-    """Where nothing is, a plate is as opaque as it is; colours stay multiplied by alpha."""
-    whole = [(0, 0, 400, 200)]
-    empty = np.zeros((200, 400, 4), np.uint8)
-    page = captioned(empty, labels(["static\n2030 triangles"], whole, None, STYLE), [0])
-    assert page[0, 0, 3] == 0 and page[-15, 12, 3] == PLATE and page[..., 3].max() > PLATE
-    assert (page[..., :3] <= page[..., 3:]).all()
-
-
-def test_a_colour_bar_has_all_colours_of_the_skin() -> None:
-    """From the least below to the most above, as the renderer has them; there is a plate round."""
-    bar = colour_bar(SPLITS_BAR, render.SKIN, 14.0)
-    rows = [tuple(map(int, np.rint(255.0 * np.array(each)))) for each in render.SPLIT_PALETTE]
-    column = np.argmax((bar[..., :3] == rows[0]).all(axis=2).any(axis=0))
-    assert column > 0
-    found = list(dict.fromkeys(tuple(map(int, pixel[:3])) for pixel in bar[:, column]))
-    assert [each for each in found if each in rows] == rows[::-1]
 
 
 def test_a_sheet_has_a_cell_for_each_pose() -> None:

@@ -68,21 +68,6 @@ def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_picture_beside_a_sheet(smile: Path, tmp_path: Path) -> None:
-    """Both of one run are what each would be alone, to the byte."""
-    size = ("--size", "160x120", "--samples", "0", "--quiet")
-    image, sheet = ("-o", tmp_path / "a.png", "--time", "0.3"), ("--sheet", tmp_path / "b.png")
-    counts, written = [], []
-    for outputs in ((*image, *sheet), image, sheet):
-        result = risorius("capture", smile, *outputs, *size)
-        assert result.exit_code == 0, result.output
-        counts.append(int(result.output.split(": ")[1].split()[0]))
-        written.append([(tmp_path / name).read_bytes() for name in ("a.png", "b.png")])
-    assert written[0] == written[1] == written[2]
-    assert counts[0] == max(counts[1:])
-
-
-@pytest.mark.slow
 def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
     """Each part of a comparison is the picture that its look or refiner would make alone."""
 
@@ -326,16 +311,6 @@ def test_bench_refine(tmp_path: Path) -> None:
         assert word in result.output
     figures = json.loads(target.read_text())
     assert {row["mesh"] for row in figures["rows"]} == {"2k"}
-
-
-def test_bench_quality_needs_a_subject(tmp_path: Path) -> None:
-    """Without anything to measure, and with a folder that is no reference, one line tells."""
-    result = risorius("bench", "quality", "--finer", "none")
-    assert result.exit_code == 2
-    assert "nothing to measure" in result.stderr
-    result = risorius("bench", "quality", "--reference", tmp_path)
-    assert result.exit_code == 2
-    assert "face.npz: is not there" in result.stderr
 
 
 def test_reproduce_table1() -> None:

@@ -9,8 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.cli import compiling
-
 COMMANDS = (
     "capture --set joy",
     "capture --set joy --option scheme=detail --option criterion=displacement",
@@ -21,19 +19,6 @@ COMMANDS = (
     "capture --set amplitude=1 --scene plane --compare",
     "capture --set drop=1 --scene cloth --compare",
 )
-
-
-def test_each_kind_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
-    """Thirty kernels are compiled in a row, and none of them can be kept."""
-    compiling.announce()
-    for kernel in ("one", "two"):
-        compiling.LOG.info("compiling %s", kernel)
-        compiling.LOG.warning("compiled code is not kept (no folder)")
-    lines = capsys.readouterr().err.splitlines()
-    assert lines == [
-        "Compiling, this once; it takes half a minute (risorius warm: all at once).",
-        "risorius: compiled code is not kept (no folder)",
-    ]
 
 
 @pytest.mark.slow
@@ -58,14 +43,3 @@ def test_nothing_is_left_to_compile_after_warm(tmp_path: Path) -> None:
     for k, command in enumerate(COMMANDS):
         run(f"{command} --quiet --size 64x64 -o {tmp_path}/{k}.png")
     assert sorted((tmp_path / "cache").rglob("*.nbc")) == compiled
-
-
-@pytest.mark.slow
-def test_processes_that_start_together(tmp_path: Path) -> None:
-    """Three of them with nothing compiled all end well, with the same picture."""
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    pictures = [tmp_path / f"{number}.png" for number in range(3)]
-    capture = (sys.executable, *"-m risorius capture --set joy --quiet --size 64x64 -o".split())
-    processes = [subprocess.Popen([*capture, picture], env=environment) for picture in pictures]
-    assert [process.wait(900) for process in processes] == [0, 0, 0]
-    assert len({picture.read_bytes() for picture in pictures}) == 1

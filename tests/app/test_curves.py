@@ -52,19 +52,6 @@ def mixtures(names: Sequence[str], count: int, seed: int) -> list[dict[str, floa
 
 
 @LAYERS
-def test_each_control_alone_is_found(scene: FaceScene, layer: str) -> None:
-    """One control at 0.7 comes back, and nothing that the simulation would take for more."""
-    same = {"AU45_left", "AU45_right", "AU27", "mouthClose"}  # told by another, or a share of one
-    names = [name for name in sided(scene, layer) if name not in same]
-    poses = [{name: 0.7} for name in names]
-    asked = activations_of(scene, poses)
-    found = solved(scene, layer, asked)
-    for frame, name in enumerate(names):
-        assert found[name][frame] == pytest.approx(0.7, abs=1e-3), name
-    assert furthest(asked, activations_of(scene, poses_of(found))) < 1e-4
-
-
-@LAYERS
 def test_what_a_layer_can_do_is_found(scene: FaceScene, layer: str) -> None:
     """Mixtures of controls: the simulation sums what was found to the same activations."""
     asked = activations_of(scene, mixtures(sided(scene, layer), 40, seed=1))

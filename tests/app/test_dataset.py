@@ -143,16 +143,6 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
     assert [path.name for path in other.iterdir()] == ["mine.txt"]
 
 
-def test_what_is_no_set_at_all_is_left_alone(tmp_path: Path) -> None:
-    """A file, and a folder whose dataset.json is somebody else's."""
-    mine = tmp_path / "mine"
-    mine.mkdir()
-    (mine / "dataset.json").write_text("{}", "utf-8")
-    for place in (mine, mine / "dataset.json"):
-        assert run(place, "--resume", count=1).exit_code == 2
-    assert (mine / "dataset.json").read_text("utf-8") == "{}"
-
-
 def test_two_cannot_make_one_set(made: Path) -> None:
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     with SetFolder(made).held(request.options(), resume=True):
@@ -320,17 +310,6 @@ def test_landmarks_move_further_the_more_of_a_unit(face: FaceScene, unit: str) -
         moved.append(float(away.max()))
     assert moved[0] > 0.05
     assert (np.diff(moved) > 0.1 * moved[-1]).all()
-
-
-def test_speech_is_told_in_units(face: FaceScene) -> None:
-    """A viseme of units alone gives them back; a unit that was set counts as it was set."""
-    face.reset()
-    face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})
-    units = {name: value for name, value in action_units(face).items() if value > 0.01}
-    assert units.pop("AU1") == units.pop("AU1_left") == pytest.approx(0.3, abs=1e-4)
-    shares = {"AU20": 0.35, "AU12": 0.15, "AU25": 1.0, "AU26": 0.06}
-    for name, share in shares.items():
-        assert units[name] == pytest.approx(0.5 * share, abs=1e-3)
 
 
 def apertures_of(face: FaceScene, pose: dict[str, float]) -> dict[str, float]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import functools
 import io
 import json
 import re
 import struct
-import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,17 +16,11 @@ import pytest
 import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
-from threadpoolctl import threadpool_limits
 
 from risorius import assets, sim
-from risorius.app.export import pieces
-from risorius.app.export.clip import Clip, Surface, record
+from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
-from risorius.app.export.pieces import moving_pieces
-from risorius.app.export.rig import fit
-from risorius.app.performances import script_for
-from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
 from risorius.geometry.normals import vertex_normals
 
@@ -128,28 +120,6 @@ def test_every_vertex_is_where_the_clip_has_it(clip: Clip, glb: Path) -> None:
         assert np.array_equal(
             player.values(player.primitive(surface.name).indices).reshape(-1, 3), surface.faces
         )
-
-
-@pytest.mark.slow
-def test_bytes_are_the_same_on_any_number_of_cores(tmp_path: Path) -> None:
-    """However many threads sum up, as two do where a file is written alone."""
-    clip = record(script_for(None, "face"), build_scene("face", None), 10.0)
-    paths = [tmp_path / f"{threads}.glb" for threads in (1, 2)]
-    for threads, path in enumerate(paths, 1):
-        with threadpool_limits(threads):
-            written(clip, path)
-    assert paths[0].read_bytes() == paths[1].read_bytes()
-
-
-def test_weights_are_such_as_every_reader_takes(glb: Path) -> None:
-    """None is negative, none above 1, and the targets are not too many."""
-    player = Player(glb)
-    for name in ("skin", "tongue"):
-        weights = player.weights(name)
-        count = weights.shape[1]
-        assert count == len(player.target_names(name)) == len(player.primitive(name).targets)
-        assert 1 <= count <= 250
-        assert weights.min() >= 0.0 and weights.max() <= 1.0
 
 
 def test_normals_follow_the_motion(clip: Clip, glb: Path) -> None:
@@ -276,27 +246,6 @@ def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
         assert farthest(player, clip, surface.name) < NEAR
 
 
-def test_a_scene_that_rests_has_no_animation(tmp_path: Path) -> None:
-    """Nothing moves: a file of meshes alone, at their places."""
-    text = "duration = 0.1\n[[pose]]\ntime = 0.0\n"
-    clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
-    assert written(clip, tmp_path / "rest.glb") is None
-    player = Player(tmp_path / "rest.glb")
-    assert player.animation is None and not player.primitive("skin").targets
-    assert farthest(player, clip, "teeth_lower") < 1e-6
-
-
-def test_what_targets_cannot_follow_is_told(
-    clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A clip that needs more targets than may be is written, and the error that remains is said."""
-    monkeypatch.setattr(pieces, "decompose", functools.partial(decompose, most=4))
-    remark = written(clip, tmp_path / "rough.glb")
-    player = Player(tmp_path / "rough.glb")
-    error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))
-    assert remark is not None and f"{error:.2f} mm" in remark and error > 1.0
-
-
 @given(
     st.integers(1, 12), st.integers(1, 9), st.integers(0, 4), st.integers(0, 2**32 - 1),
     st.sampled_from([1e-3, 0.1, 2.0]), st.integers(2, 40),
@@ -319,36 +268,6 @@ def test_targets_come_as_near_as_they_say(
     assert abs(off.max() - morphs.error) < 1e-6
     if most > rank:
         assert morphs.error <= tolerance + 1e-6
-
-
-@pytest.mark.slow
-def test_long_clips_take_little_memory_beside_their_own() -> None:
-    """Positions are never all there in double precision, nor normals of all frames."""
-    scene, generator = build_scene("plane"), np.random.default_rng(3)
-    shapes = scene.rest_positions.astype(np.float32) + np.tensordot(
-        generator.normal(size=(10_000, 5)), generator.normal(size=(5, *scene.positions.shape)), 1
-    ).astype(np.float32)
-    plane = Surface("plane", scene.rest_positions, scene.faces, shapes)
-    script = parse_script(SHAPES, source="test")
-    tracemalloc.start()
-    try:
-        moving_pieces(Clip(scene, script, 24.0, (plane,), {}, {}, {}))
-        assert tracemalloc.get_traced_memory()[1] < 3.0 * shapes.nbytes
-    finally:
-        tracemalloc.stop()
-
-
-@given(st.integers(1, 5), st.integers(3, 9), st.integers(0, 2**32 - 1))
-def test_fitted_weights_are_those_that_made_the_motion(k: int, v: int, seed: int) -> None:
-    """Where the targets of two surfaces can make the motion, it is found how, nearly."""
-    generator = np.random.default_rng(seed)
-    flat = np.linalg.qr(generator.normal(size=(6 * v, k)))[0].T * generator.uniform(1, 3, (k, 1))
-    targets = flat.reshape(k, 2, v, 3)
-    weights = generator.uniform(0.0, 1.0, (4, k))
-    moved = np.tensordot(weights, targets, axes=1)
-    surfaces = [(targets[:, side], moved[:, side], True) for side in (0, 1)]
-    assert np.abs(fit(surfaces) - weights).max() < 2e-3
-    assert np.abs(fit([(each, -there, is_skin) for each, there, is_skin in surfaces])).max() < 1e-9
 
 
 def settled(name: str) -> tuple[Any, Any]:
@@ -426,20 +345,6 @@ def test_other_controls_are_followed_by_action_units(clip: Clip, tmp_path: Path)
     assert weights.min() >= 0.0 and weights.max() <= 1.0
     assert weights[7, names.index("AU12_left")] > 0.3 and remark is not None
     assert 1000.0 * farthest(player, clip, "skin") < 8.0
-
-
-@pytest.mark.slow
-def test_a_rig_keeps_the_tongue_in_the_mouth(tmp_path: Path) -> None:
-    """tongueOut opens the jaw as well; a yawn must not be made of it."""
-    yawn = parse_script(
-        "[[pose]]\ntime = 0.0\nyawn = 1.0\n[[pose]]\ntime = 0.1\nyawn = 1.0\n", source="test"
-    )
-    clip = record(yawn, None, 20.0, progress=False)
-    written(clip, tmp_path / "yawn.glb", "arkit")
-    player = Player(tmp_path / "yawn.glb")
-    weights = player.weights("skin")[0]
-    assert weights[player.target_names("skin").index("tongueOut")] < 0.05
-    assert 1000.0 * farthest(player, clip, "tongue") < 4.0
 
 
 @pytest.mark.slow

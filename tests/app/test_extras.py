@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from risorius.app.cli.doctor import EXTRAS
-from risorius.app.errors import UserError, needed
 
 ROOT = Path(__file__).parents[2]
 WITHOUT = f"""
@@ -75,16 +74,6 @@ def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
     assert lines["extras"] == f"none; for the others: pip install 'risorius[{','.join(EXTRAS)}]'"
     assert lines["window"].startswith("no. the window needs imgui-bundle; install it")
     assert lines["Missing"].startswith("window, films;")
-
-
-def test_a_library_that_does_not_load_is_not_called_missing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """To install it again would not help: what it says is told."""
-    (tmp_path / "broken_library.py").write_text("raise ImportError('libGL.so.1: no such file')")
-    monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(UserError, match=r"but does not load: libGL\.so\.1: no such file"):
-        needed("broken_library", "the window", "window")
 
 
 @pytest.mark.parametrize(

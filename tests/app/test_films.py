@@ -10,7 +10,6 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +19,10 @@ import numpy.typing as npt
 import PIL.Image
 import pytest
 from click.testing import CliRunner
-from hypothesis import given
-from hypothesis import strategies as st
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
-from risorius.app.capture.drawing import straight
 from risorius.app.capture.encoder import FORMATS, TRANSPARENT, size_of_film
-from risorius.app.capture.outputs import with_colours_around
 from risorius.app.cli import main
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
@@ -113,15 +108,6 @@ def test_odd_sizes_become_even_by_a_row_and_a_column_more(tmp_path: Path, suffix
     assert np.abs(picture[:HEIGHT, -1] - ramp[:, -1]).max() < 8
 
 
-def test_an_odd_size_is_told_in_one_line(tmp_path: Path) -> None:
-    """A film that has other sides than asked for says so; nobody else says anything of it."""
-    common = ["capture", "--scene", "plane", "--fps", "1", "--samples", "0", "--size", "97x63"]
-    for name, is_told in (("a.mp4", True), ("a.webm", False), ("a.gif", False), ("a", False)):
-        result = CliRunner().invoke(main, [*common, "-o", str(tmp_path / name)])
-        assert result.exit_code == 0, result.output
-        assert ("98x64 pixels, the last row or column twice" in result.output) == is_told
-
-
 @pytest.mark.parametrize("suffix", TRANSPARENT)
 def test_transparent_films(tmp_path: Path, suffix: str) -> None:
     """Alpha comes back, and the colour at edges is that of the picture, not of what is around."""
@@ -156,28 +142,6 @@ def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path: Path) ->
         outputs.film(tmp_path / "film.gif", (96, 64), 60.0),
     ):
         pass
-
-
-@given(st.integers(0, 255), st.lists(st.integers(0, 255), min_size=3, max_size=3))
-def test_straight_colours_are_those_that_were_multiplied(alpha: int, colour: list[int]) -> None:
-    """To the precision that is left: put over black, the picture is the premultiplied one."""
-    multiplied = [round(each * alpha / 255) for each in colour]
-    image = np.array([[[*multiplied, alpha]]], np.uint8)
-    red_green_blue = straight(image)[0, 0].astype(float)
-    assert np.abs(red_green_blue[:3] * alpha / 255.0 - multiplied).max() <= 0.51
-    assert red_green_blue[3] == alpha and (alpha > 0 or not red_green_blue.any())
-
-
-def test_colours_around_are_those_of_the_nearest_edge() -> None:
-    """What is seen stays as it is; what is not has colours, black nowhere near."""
-    image = np.zeros((60, 80, 4), np.uint8)
-    image[20:40, 10:30] = 250, 10, 10, 255
-    image[20:40, 50:70] = 10, 10, 250, 255
-    filled = with_colours_around(image)
-    seen = image[..., 3] > 0
-    assert np.array_equal(filled[seen], image[seen]) and not filled[~seen, 3].any()
-    assert filled[30, 8, 0] > 200 and filled[30, 72, 2] > 200
-    assert (filled[..., :3].max(axis=2) > 100).all()
 
 
 @pytest.mark.slow
@@ -239,29 +203,6 @@ def test_processes_draw_the_same_frames(tmp_path: Path, monkeypatch: pytest.Monk
     assert len(names) == 16 and most[0] == most[1]
     for name in names:
         assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "3" / name).read_bytes()
-
-
-@pytest.mark.slow
-def test_a_still_face_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its picture is shown again until it moves, by one process and by several; passes are not."""
-    text = "duration = 2.0\n[[pose]]\ntime = 1.6\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
-    script = parse_script(text, source="rest.toml")
-    options = CaptureOptions((96, 72), 10.0)
-    drawn, draw = [], Capture.draw_image
-    monkeypatch.setattr(Capture, "draw_image", lambda studio: drawn.append(1) or draw(studio))
-    for count in (1, 2):
-        several(count, monkeypatch)
-        capture(script, options, output=tmp_path / str(count), progress=False)
-    films = [sorted((tmp_path / name).iterdir()) for name in ("1", "2")]
-    alone, shared = ([np.asarray(PIL.Image.open(file)) for file in film] for film in films)
-    assert len(drawn) <= 8 and len(alone) == 21 and np.array_equal(alone, shared)
-    assert np.array_equal(alone[0], alone[15])
-    assert all(not np.array_equal(*pair) for pair in pairwise(alone[17:]))
-    drawn.clear()
-    several(1, monkeypatch)
-    exact = replace(options, passes=("depth",), span=(0.0, 0.3))
-    capture(script, exact, output=tmp_path / "exact", progress=False)
-    assert len(drawn) == 4
 
 
 @pytest.mark.slow

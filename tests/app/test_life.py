@@ -12,19 +12,15 @@ from hypothesis import strategies as st
 from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
 from risorius.app.motion.idle import EYES_MOST, Idle, looking_at
-from risorius.app.motion.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
-from risorius.app.performances import limits_of, script_for
+from risorius.app.motion.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life
+from risorius.app.performances import limits_of
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
-from risorius.app.viewer.frame_times import FrameTimes
-from risorius.app.viewer.session.physics import SEEN, STEP, Physics
-from risorius.app.viewer.session.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
 HOUR = 3600.0
 NOBODY = frozenset[str]()
-VIEWER = np.array([0.0, 0.0, 900.0])
 
 
 @pytest.fixture(scope="module")
@@ -104,14 +100,6 @@ def test_the_head_goes_along_softly() -> None:
     assert 5.0 < speeds.max() < 15.0
 
 
-def test_breath_goes_in_and_out() -> None:
-    """In a breath the lungs are full once; air streams in only while they fill."""
-    full, flow = np.transpose([breath(share) for share in np.linspace(3.0, 4.0, 101)])
-    filling = np.diff(full) > 0.0
-    assert full.min() == 0.0 and full.max() > 0.99
-    assert 0.3 < filling.mean() < 0.5 and not (flow[:-1] * ~filling).max() > 0.1
-
-
 def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene: FaceScene) -> None:
     """The simulation follows late, and yet lids meet; down they are faster than up."""
     life, gaps = Life(0), []
@@ -140,23 +128,6 @@ def life_blinks(life: Life) -> list[float]:
     """When the lids of a life begin to shut in its first half minute [s]."""
     drawn = [life.parts(frame / 60.0)["lids"][f"{LID}_left"] for frame in range(1800)]
     return [frame / 60.0 for frame in range(1, 1800) if drawn[frame] == 1.0 > drawn[frame - 1]]
-
-
-def test_degrees_are_those_of_the_rig(scene: FaceScene) -> None:
-    """Controls at 1 turn eyes and head by what the life of the face counts with."""
-    scene.reset()
-    scene.pose({"gaze_horizontal_left": 1.0, "head_yaw": 0.0})
-    scene.step(1.0)
-    way = pupils(scene)["left"][1]
-    assert np.degrees(np.arctan2(way[0], way[2])) == pytest.approx(EYE_RANGE, abs=0.1)
-    for name, degrees in HEAD_RANGES.items():
-        scene.reset()
-        scene.pose({name: 1.0})
-        scene.step(2.0)
-        turn = scene.bone_transforms()["cranium"][:3, :3]
-        angle = np.degrees(np.arccos((np.trace(turn) - 1.0) / 2.0))
-        assert angle == pytest.approx(degrees, abs=0.1), name
-    scene.reset()
 
 
 @pytest.mark.parametrize("view", ["front", "three-quarter", "-20,15", "40,-10"])
@@ -231,47 +202,6 @@ def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
 def test_what_is_no_face_has_no_life() -> None:
     """A scene without eyes stays as it is."""
     assert Idle(PlaneScene()).beneath(NOBODY, np.array([0.0, 0.0, 900.0]), 3.0) == {}
-
-
-def test_asking_what_a_control_moves_moves_nothing(scene: FaceScene) -> None:
-    """Between two steps: what was set, the life beneath included, is as before."""
-    fresh = FaceScene()
-    fresh.pose({"AU12": 0.3, "head_yaw": 0.01})
-    before = fresh.values
-    smile = fresh.moved_by("AU12")
-    assert {"zygomaticus_major_left", "zygomaticus_major_right"} <= {*smile} <= {*fresh.limits}
-    assert set(fresh.moved_by("jaw_open")) == {"jaw_open"}
-    assert fresh.values == before
-
-
-@pytest.mark.slow
-def test_only_what_can_be_seen_is_drawn() -> None:
-    """Between blinks most steps move the face by less than a part of a pixel."""
-    scene = FaceScene()
-    session = Session(scene, script_for(None, "face"))
-    physics, idle, time = Physics(session, FrameTimes()), Idle(scene), 0.0
-
-    def life(seconds: float) -> dict[str, float]:
-        nonlocal time
-        time += seconds
-        return idle.beneath(frozenset(), VIEWER, time)
-
-    drawn, last = [], scene.positions.copy()
-    for _ in range(1200):
-        physics.advance(STEP, is_skin_dragged=False, life=life)
-        drawn.append(physics.has_moved)
-        if physics.has_moved:
-            last = scene.positions.copy()
-        assert not physics.is_left_alone or np.abs(scene.positions - last).max() <= SEEN
-    assert all(drawn[:20])  # until it is left alone
-    assert 0.02 < np.mean(drawn[60:]) < 0.6
-    assert not physics.is_at_rest
-    for _ in range(200):  # switched off
-        physics.advance(STEP, is_skin_dragged=False)
-    assert physics.is_at_rest and not physics.has_stepped
-    session.set("jaw_open", 0.5)
-    physics.advance(0.1 * STEP, is_skin_dragged=False)
-    assert not physics.is_at_rest  # or the window sleeps before the face has moved
 
 
 @pytest.mark.slow

@@ -13,11 +13,8 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver, State
-from risorius.app.live.frame import MOST_BYTES
+from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver, State
 from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST_AFTER
-from risorius.app.live.receiver import STILL_THERE
-from risorius.app.viewer.panels.live import advice_in_words, packets_in_words, state_in_words
 
 from .live_packets import live_link, osc, vmc
 
@@ -106,31 +103,6 @@ def test_the_newest_frame_counts(wire: Wire) -> None:
     assert wire.face.rate == 8.0 and not wire.face.has_frame
 
 
-def test_who_waits_is_seldom_woken_for_the_same_again(wire: Wire) -> None:
-    """A picture that is sent for ever costs next to nothing; a change is taken at once."""
-    still, other = live_link({"JawOpen": 0.5}), live_link({"JawOpen": 0.6})
-    for _ in range(10):
-        wire.take(still)
-    assert wire.woken == 1 and wire.face.received == 10 and wire.face.rate == 10.0
-    wire.take(other)
-    assert wire.woken == 2 and wire.face.channels["jawOpen"] == pytest.approx(0.6)
-    wire.pass_time(STILL_THERE)
-    wire.take(other, other)
-    assert wire.woken == 3 and wire.face.state is State.RECEIVING
-    wire.take(live_link(None))
-    assert wire.woken == 3 and wire.face.state is State.NO_FACE
-    wire.take(other)
-    assert wire.woken == 4 and wire.face.state is State.RECEIVING
-
-
-def test_who_waits_is_not_woken_for_rubbish(wire: Wire) -> None:
-    """Packets of no use are counted, change nothing, and are not worth a frame of the window."""
-    wire.take(live_link({"JawOpen": 0.5}))
-    wire.take(b"", b"hello", live_link({}, version=9), bytes(MOST_BYTES + 1), bytes(60_000))
-    assert wire.face.unusable == 5 and wire.face.received == 6
-    assert wire.woken == 1 and wire.face.channels["jawOpen"] == 0.5
-
-
 @pytest.mark.parametrize("wire", list(PROTOCOLS), indirect=True)
 def test_ten_thousand_random_packets_leave_it_as_it_was(
     wire: Wire, generator: np.random.Generator
@@ -145,25 +117,6 @@ def test_ten_thousand_random_packets_leave_it_as_it_was(
     assert wire.face.received == 10_000 + len(good) and wire.face.unusable == 10_000
     wire.take(*packets({"jawOpen": 0.25}, subject="Ada", frame=2))
     assert wire.face.channels["jawOpen"] == pytest.approx(0.25)
-
-
-def test_words_tell_who_sends_and_what_to_do(wire: Wire) -> None:
-    """In every state; a phone's owner reads what to type into the app."""
-    assert state_in_words(None) == "not listening"
-    assert f"waiting on port {wire.face.port}" in state_in_words(wire.face)
-    assert "risorius send" in advice_in_words(wire.face, "192.168.1.7")
-    wire.face.listening = replace(wire.face.listening, address=ANYWHERE)
-    assert f"192.168.1.7, port {wire.face.port}" in advice_in_words(wire.face, "192.168.1.7")
-    wire.take(b"rubbish")
-    assert "is the protocol right?" in state_in_words(wire.face)
-    assert not advice_in_words(wire.face, "")
-    assert packets_in_words(wire.face) == "packets: 1, of no use: 1"
-    wire.take(live_link({}, subject="Ada"))
-    assert state_in_words(wire.face) == "receiving Ada, 1 frames a second"
-    wire.take(live_link(None, subject="Ada"))
-    assert state_in_words(wire.face) == "Ada sees no face"
-    wire.pass_time(2.0)
-    assert state_in_words(wire.face) == "lost Ada: nothing comes any more"
 
 
 def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire: Wire) -> None:

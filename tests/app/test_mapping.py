@@ -11,11 +11,10 @@ from risorius.app.errors import UserError
 from risorius.app.recordings.mapping import (
     chosen,
     load_mapping,
-    mapping_text,
     parse_mapping,
     usual_mapping,
 )
-from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
+from risorius.app.recordings.names import ARKIT, EYE_ANGLES, VISEMES
 from risorius.app.scenes import FaceScene
 
 
@@ -72,12 +71,6 @@ def test_a_table_of_ones_own_goes_over_the_usual_one(tmp_path: Path) -> None:
     assert controls == pytest.approx({"head_yaw": 0.5, "head_roll": 0.1}, abs=1e-4)
 
 
-def test_the_table_that_comes_along_can_be_copied(tmp_path: Path) -> None:
-    path = tmp_path / "copy.toml"
-    path.write_text(mapping_text(), encoding="utf-8")
-    assert load_mapping(path).rows == usual_mapping().rows
-
-
 def test_a_table_names_controls_that_the_face_has() -> None:
     limits = FaceScene().limits
     usual_mapping().check(limits)
@@ -104,12 +97,3 @@ def test_a_wrong_table_is_told_in_one_line(tmp_path: Path, table: str, told: str
     with pytest.raises(UserError, match=told) as error:
         load_mapping(path)
     assert str(error.value).startswith(str(path))
-
-
-def test_a_table_that_is_not_there_is_told_with_what_writes_one(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="no such mapping; `risorius convert --mapping-table"):
-        load_mapping(tmp_path / "my.toml")
-
-
-def test_head_angles_have_rows_of_their_own() -> None:
-    assert all(channel in usual_mapping().rows for channel in (*HEAD_ANGLES, *EYE_ANGLES))

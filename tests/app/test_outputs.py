@@ -10,11 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from risorius.app import files
 from risorius.app.capture import encoder, outputs
-from risorius.app.cli import main
 from risorius.app.errors import UserError
 
 GREY = np.full((64, 96, 3), 128, np.uint8)
@@ -172,16 +170,3 @@ def test_an_ffmpeg_that_is_slow_is_waited_for(
     with outputs.film(old_film, (96, 64), 25.0) as add:
         add(GREY)
     assert old_film.read_bytes() == b"12345678"
-
-
-def test_an_ffmpeg_that_hangs_ends_the_command(
-    fake_ffmpeg: Callable[[str], Path], old_film: Path
-) -> None:
-    """`capture` says so in one line, with exit code 2."""
-    fake_ffmpeg("ALIVE")
-    film = ("--scene", "plane", "-o", str(old_film), "--size", "96x64", "--samples", "0", "--quiet")
-    result = CliRunner().invoke(main, ["capture", *film])
-    assert result.exit_code == 2 and "Traceback" not in result.output
-    [line] = [each for each in result.output.splitlines() if not each.startswith("Compiling")]
-    assert "film.mp4: cannot be written: ffmpeg hangs" in line
-    assert list(old_film.parent.iterdir()) == [old_film]

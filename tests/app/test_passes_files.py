@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -117,16 +116,6 @@ def test_a_head_of_ones_own_and_no_refinement(tmp_path: Path) -> None:
     assert not channels["splits"].any()
 
 
-def test_a_cloth_has_no_landmarks_to_write(tmp_path: Path) -> None:
-    """Its other passes are there, and its camera."""
-    target = tmp_path / "cloth.png"
-    passes = ("--passes", "depth,triangle,tension")
-    result = risorius(*CAPTURE, "--scene", "cloth", "--time", "0.3", *passes, "-o", target)
-    assert result.exit_code == 0, result.output
-    assert set(json.loads((tmp_path / "cloth.json").read_text())) == {"camera", "controls"}
-    assert channels_of(tmp_path / "cloth.exr")["depth.Z"].max() > 0.0
-
-
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -154,19 +143,6 @@ def test_what_cannot_be_is_told_in_one_line(
     assert result.exit_code == 2 and result.output.count("\n") == 1
     assert told in result.output
     assert [path for path in tmp_path.iterdir() if path.suffix != ".toml"] == []
-
-
-def test_a_missing_library_is_told_with_its_cure(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Float passes need OpenEXR; classes and landmarks do not."""
-    monkeypatch.setitem(sys.modules, "OpenEXR", None)
-    picture = ("-o", tmp_path / "joy.png")
-    result = risorius(*CAPTURE, "--set", "joy", "--passes", "depth", *picture)
-    assert result.exit_code == 2
-    assert "--passes needs OpenEXR; install it: pip install 'risorius[passes]'" in result.output
-    result = risorius(*CAPTURE, "--set", "joy", "--passes", "landmarks", *picture)
-    assert result.exit_code == 0, result.output
 
 
 def test_no_input_is_written_over(tmp_path: Path) -> None:

@@ -51,16 +51,6 @@ def test_points_are_projected_where_opengl_draws_them(
     assert math.isclose(np.linalg.det(labels.rotation), 1.0)
 
 
-def test_the_axes_of_the_camera_are_opencvs() -> None:
-    """From the front: what is to the subject's left is right, what is higher has less y."""
-    labels = CameraLabels.of(camera_at(0.0, 0.0), (640, 480))
-    middle, left, above = labels.project(np.array([[0.0, 0, 0], [10.0, 0, 0], [0, 10.0, 0]]))
-    assert left[0] > middle[0] and above[1] < middle[1]
-    assert np.allclose(labels.project(camera_at(0.0, 0.0).target[None]), [[320.0, 240.0]])
-    depths = labels.to_camera(np.array([[0.0, 0, 0], [0, 0, 10.0]]))[:, 2]
-    assert depths[0] - depths[1] == pytest.approx(10.0)
-
-
 @settings(max_examples=25, deadline=None)
 @given(yaw=st.floats(-80.0, 80.0), pitch=st.floats(-60.0, 60.0))
 def test_a_head_at_rest_is_turned_as_the_camera_is_not(

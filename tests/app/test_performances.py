@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from risorius.app.errors import UserError
-from risorius.app.performances import limits_of, read_performance, script_for
+from risorius.app.performances import limits_of, read_performance
 from risorius.app.recordings import Take
 from risorius.app.recordings.conversion import LEAD, Playback, lead_of, script_of, smoothed
 from risorius.app.recordings.names import ARKIT
@@ -106,17 +106,6 @@ def test_recorded_nods_come_through(face: FaceScene, a_second: float, share: flo
     fits = [np.corrcoef(np.roll(nods, shift)[RATE:-RATE], shown)[0, 1] for shift in shifts]
     assert abs(shifts[int(np.argmax(fits))]) <= 1
     assert share < np.ptp(shown) / np.ptp(nods) < 1.0
-
-
-def test_a_neutral_longer_than_the_recording_is_told() -> None:
-    take = take_of(jawOpen=wave())
-    _, report = script_of(take, Playback(neutral="first:99"), limits_of("face"))
-    assert report.notes == (
-        "--neutral first:99 is longer than the recording, 3.00 s: the neutral face is the median "
-        "of all of it.",
-    )
-    _, report = script_of(take, Playback(neutral="first:3"), limits_of("face"))
-    assert not report.notes
 
 
 @given(
@@ -277,15 +266,6 @@ def test_a_script_cannot_be_converted(tmp_path: Path) -> None:
     result = risorius("convert", script, "-o", tmp_path / "out.toml")
     assert result.exit_code == 2
     assert "is a script already" in result.stderr
-
-
-@pytest.mark.parametrize("name", ["take.csv", "take.json", "take.toml", "take"])
-def test_what_is_neither_script_nor_recording_is_told(tmp_path: Path, name: str) -> None:
-    path = tmp_path / name
-    path.write_text("a,b,c\n1,2,3\n")
-    with pytest.raises(UserError) as error:
-        script_for(path, None)
-    assert str(error.value).startswith(str(path))
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,8 @@ import pytest
 from risorius import refine, render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.motion import SETTLING
-from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport, side_by_side, splits_of_source
+from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport, side_by_side
 from risorius.app.refining.presets import Refinement
-from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import parse_script
 from risorius.refine.border.registry import refiners
@@ -108,21 +107,6 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
     pipeline = Pipeline(FaceScene(), render.Renderer(surface))
     asked = Refinement(refiner="none"), Refinement("paper")
     assert np.array_equal(*(image(pipeline, pipeline.bind(each)) for each in asked))
-
-
-def test_splits_of_source() -> None:
-    """A triangle's colour value is the sum of its edges' splits."""
-    scene = PlaneScene()
-    refiner = refiner_for(scene, Refinement("paper"))
-    scene.pose({"amplitude": 1.0})
-    scene.step(0.1)
-    mesh = refiner.refine(scene.positions)
-    values = splits_of_source(refiner, mesh)
-    triangle = int(mesh.source[len(values) // 2])
-    expected = sum(int(refiner.splits[edge]) for edge in refiner.triangle_edges[triangle])
-    assert values[len(values) // 2] == expected
-    assert len(values) == len(mesh.triangles)
-    assert values.max() == 6
 
 
 def test_side_by_side_covers_the_frame() -> None:

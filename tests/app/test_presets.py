@@ -12,7 +12,7 @@ from risorius import refine, render
 from risorius.app.capture.cameras import whole_scene
 from risorius.app.errors import UserError
 from risorius.app.pipeline import Pipeline, Viewport
-from risorius.app.refining.presets import PRESETS, Preset, Refinement, named
+from risorius.app.refining.presets import PRESETS, Preset, Refinement
 from risorius.app.refining.refiners import parse_comparison, refiner_for
 from risorius.app.scenes import SCENES, Scene
 from risorius.refine.border.registry import refiners
@@ -89,34 +89,6 @@ def test_what_is_asked_for_is_over_the_look(monkeypatch: pytest.MonkeyPatch) -> 
     assert changed == ("kahler", {"scheme": "cubic", "blend": None})
     assert Refinement("x", "strange").on("face") == ("strange", {})
     assert told["kahler"] == {"scheme": "cubic", "blend": True}  # nobody wrote into the look
-
-
-def test_a_refusal_tells_what_the_look_has(
-    scenes: dict[str, Scene], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """An option may not go with what the look says; who asked for nothing is told no more."""
-    told = {"kahler": {"scheme": "cubic", "blend": True}}
-    monkeypatch.setattr(
-        "risorius.app.refining.presets.PRESETS", {"x": {"face": Preset(options=told)}}
-    )
-    with pytest.raises(UserError, match=r"one of the two; the look x has scheme=cubic, blend=on$"):
-        refiner_for(scenes["face"], Refinement("x", options={"coherent": True}))
-    options = {"scheme": "loop", "blend": True, "coherent": True}
-    with pytest.raises(UserError, match=r"ask for one of the two$"):
-        refiner_for(scenes["face"], Refinement("x", options=options))
-
-
-def test_what_it_is_called() -> None:
-    """By its look or its refiner; the mesh as it is is static; options are not kept secret."""
-    for refinement, label in (
-        (Refinement(), "smooth"),
-        (Refinement("paper"), "paper"),
-        (Refinement("paper", "loop"), "loop"),
-        (named("none", "paper"), "static"),
-        (named("paper", "smooth"), "paper"),
-        (Refinement(options={"scheme": "cubic"}), "smooth, changed"),
-    ):
-        assert refinement.label == label
 
 
 def test_a_comparison_is_of_looks_and_refiners(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -30,40 +28,6 @@ COMMANDS = {
     "a_plane": "capture --set amplitude=1 --scene plane -o {0} --size 64x48 --fps 10",
     "a_clip": "export word.toml -o {0}/clip.npz --fps 20 --quiet",
 }
-
-
-@pytest.fixture
-def enabled() -> Iterator[None]:
-    """This process keeps what it makes, until the test ends."""
-    process_cache.enable()
-    yield
-    process_cache._cached = None
-
-
-def test_things_are_made_once_and_the_oldest_goes(enabled: None) -> None:
-    """As many as memory is meant for; one that is used again is young again."""
-    made: list[int] = []
-    closed: list[str] = []
-
-    def make(key: int) -> str:
-        """A new thing of this number."""
-        made.append(key)
-        return f"thing {key}"
-
-    for key in (*range(process_cache.MOST), 0, process_cache.MOST, 0, 1):
-        assert (
-            process_cache.cached("thing", key, partial(make, key), closed.append) == f"thing {key}"
-        )
-    assert made == [*range(process_cache.MOST), process_cache.MOST, 1]
-    assert len(closed) == 2 and closed[0] == "thing 1"
-    process_cache.clear()
-    assert sorted(closed) == sorted(f"thing {key}" for key in made)
-    assert process_cache.cached("thing", 0, lambda: "new") == "new"
-
-
-def test_nothing_is_kept_unless_asked_for() -> None:
-    """A program that draws one thing pays no memory for the next."""
-    assert process_cache.cached("thing", 1, list) is not process_cache.cached("thing", 1, list)
 
 
 def test_the_content_of_a_file_is_known_by_its_state(tmp_path: Path) -> None:

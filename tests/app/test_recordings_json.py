@@ -133,13 +133,6 @@ def test_the_nod_and_tilt_of_a_matrix(tmp_path: Path) -> None:
         assert take.channels[name] == pytest.approx([angle])
 
 
-def test_names_that_nobody_knows(tmp_path: Path) -> None:
-    """They are listed once."""
-    more = [{"category_name": "earWiggle", "score": 0.5}]
-    take = read_take(written(tmp_path / "take", [categories(0.1) + more] * 3))
-    assert take.unknown == ("earWiggle",)
-
-
 @pytest.mark.parametrize(
     "text",
     ["{", "[[[", '{"category_name"', '{"a": 1}', "[]", "{}", "[1, 2]", '{"frames": 3}',
@@ -186,14 +179,6 @@ def test_tracks_of_visemes(tmp_path: Path) -> None:
     assert take.channels["viseme_aa"][0] == pytest.approx(0.0, abs=1e-9)
     assert take.channels["viseme_oh"][-1] == pytest.approx(0.0, abs=1e-9)
     assert take.channels["viseme_aa"][list(take.times).index(0.2)] == pytest.approx(0.8)
-
-
-def test_clear_tracks_stay_as_they_are(tmp_path: Path) -> None:
-    """Weights that reach far are not raised."""
-    take = read_take(written(tmp_path / "take", tracks(height=0.95)))
-    assert take.channels["viseme_PP"].max() == pytest.approx(0.95)
-    assert take.channels["viseme_sil"][0] == pytest.approx(0.44)
-    assert not take.notes
 
 
 @pytest.mark.parametrize(

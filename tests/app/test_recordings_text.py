@@ -79,12 +79,6 @@ def test_odd_tables(change: object, tmp_path: Path) -> None:
     check(path)
 
 
-def test_a_cell_with_a_delimiter(tmp_path: Path) -> None:
-    """Quoted cells may hold delimiters."""
-    path = written(tmp_path / "take.csv", {"input": ['"films, old/one.mp4"'] * 6} | COLUMNS)
-    check(path)
-
-
 def test_a_quote_that_nothing_closes(tmp_path: Path) -> None:
     """It costs its own row at most."""
     path = written(tmp_path / "take.csv", {"input": ['"film.mp4"'] * 6} | COLUMNS)

@@ -106,18 +106,6 @@ def test_frames_without_a_face_are_held(tmp_path: Path) -> None:
     assert told(take.notes, "No face in 30 of 60 frames")
 
 
-def test_a_short_gap_is_bridged(tmp_path: Path) -> None:
-    """A few frames without a face are a straight line, at both ends the nearest pose."""
-    success = np.ones(60)
-    success[[0, 20, 21, 22, 59]] = 0.0
-    smile = np.arange(60) / 12.0
-    take = read_take(
-        written(tmp_path / "take.csv", openface() | {"success": success, "AU12_r": smile})
-    )
-    straight = np.clip(np.arange(60), 1, 58) / 60.0
-    assert take.channels["AU12"] == pytest.approx(straight, abs=1e-6)
-
-
 def test_no_face_at_all(tmp_path: Path) -> None:
     """There is nothing to play."""
     path = written(tmp_path / "take.csv", openface() | {"success": [0] * 60})
@@ -207,17 +195,6 @@ def test_pyfeat_of_the_time_between(tmp_path: Path) -> None:
     assert take.channels["AU12"][-1] == pytest.approx(0.9)
     assert np.median(take.channels["eye_yaw_left"]) == pytest.approx(0.0, abs=1e-9)
     assert np.ptp(take.channels["eye_yaw_left"] + take.channels["head_yaw"]) < 1e-3
-
-
-def test_pyfeat_without_a_face(tmp_path: Path) -> None:
-    """A score of 0 and empty cells mean that no face was there."""
-    columns = pyfeat()
-    for name in ("AU01", "AU12", "Pitch", "Roll", "Yaw"):
-        columns[name] = ["" if row == 5 else cell for row, cell in enumerate(columns[name])]
-    columns["FaceScore"] = [0.0 if row == 5 else 0.9 for row in range(20)]
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 0.9, 20), abs=1e-6)
-    assert told(take.notes, "No face in 1 of 20")
 
 
 def test_pyfeat_names_persons(tmp_path: Path) -> None:

@@ -60,14 +60,6 @@ def test_only_switches_numbers_and_words_are_options(
     assert options_of("told") == offered
 
 
-def test_options_of_the_papers_refiner() -> None:
-    """Its thresholds, words and switches, and no arrays."""
-    assert set(options_of("kahler")) == {
-        "threshold_once", "threshold_twice", "criterion", "scheme", "blend", "normals",
-        "coherent",
-    }  # fmt: skip
-
-
 def test_what_may_be_left_open_is_a_choice() -> None:
     """Words stand for values; another value, or a number in place of a switch, is refused."""
     assert open_choices("kahler") == {

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -34,22 +32,6 @@ def scripts(draw: st.DrawFn) -> Script:
     return Script("t", 5.0, "t", poses=poses, tracks=tracks)
 
 
-@given(one=PLACES, other=PLACES, track=TRACKS, time=TIMES)
-def test_they_are_sets(
-    one: frozenset[KeyPlace], other: frozenset[KeyPlace], track: str, time: float
-) -> None:
-    """Each operation gives what a frozenset gives."""
-    mine, theirs = Places.of(*one), Places.of(*other)
-    assert mine == one and len(mine) == len(one) and bool(mine) == bool(one)
-    assert sorted(mine) == sorted(one)
-    assert mine | theirs == one | other
-    assert mine & theirs == one & other
-    assert mine - theirs == one - other
-    assert (mine <= theirs) == (one <= other)
-    assert (mine == theirs) == (one == other)
-    assert (KeyPlace(track, time) in mine) == (KeyPlace(track, time) in one)
-
-
 @given(places=PLACES, ends=st.tuples(TIMES, TIMES).map(sorted), reach=st.floats(0.0, 2.0))
 def test_places_in_a_stretch_and_near(
     places: frozenset[KeyPlace], ends: list[float], reach: float
@@ -65,21 +47,6 @@ def test_places_in_a_stretch_and_near(
     assert len({each.time for each in near}) <= 1
     if near:
         assert near == {each for each in places if each.time == near.first}
-
-
-@given(places=PLACES, start=TIMES, span=st.floats(0.1, 5.0), count=st.integers(1, 9))
-def test_the_latest_of_each_column(
-    places: frozenset[KeyPlace], start: float, span: float, count: int
-) -> None:
-    """What the timeline draws: one key of each column that has any, of the tracks of a row."""
-    edges = np.linspace(start, start + span, count + 1)
-    chosen = Places.of(*places)
-    for names in (["joy"], [POSES, "joy", "blink"], ["joy"]):
-        wanted = []
-        for low, high in itertools.pairwise(edges):
-            inside = [p.time for p in places if p.track in names and low <= p.time < high]
-            wanted += [max(inside)] if inside else []
-        assert chosen.latest_in(edges, names).tolist() == wanted
 
 
 @given(script=scripts(), places=PLACES, steps=st.integers(-9, 9), are_copies=st.booleans())

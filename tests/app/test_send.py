@@ -14,9 +14,8 @@ from click.testing import CliRunner
 from risorius.__main__ import command
 from risorius.app.errors import UserError
 from risorius.app.live import LOOPBACK, PROTOCOLS
-from risorius.app.live.sender import SHAPES_OF_UNITS, Sender, carried, frames
+from risorius.app.live.sender import Sender, carried, frames
 from risorius.app.recordings import Take
-from risorius.app.recordings.names import ARKIT
 from risorius.app.recordings.reading import read_take
 
 STEP = 1.0 / 60.0
@@ -132,12 +131,6 @@ def test_action_units_go_as_the_shapes_that_look_like_them() -> None:
     assert sources.keys() == channels.keys()
     both = take_of(AU12=[0.5], mouthSmileLeft=[0.1])
     assert next(frames(both))[1] == {"mouthSmileLeft": 0.1, "mouthSmileRight": 0.5}
-
-
-def test_the_shapes_of_units_exist() -> None:
-    """As one shape, or as two with sides."""
-    for stem in SHAPES_OF_UNITS.values():
-        assert stem in ARKIT or {f"{stem}Left", f"{stem}Right"} <= set(ARKIT), stem
 
 
 def test_a_take_without_anything_to_send_is_refused() -> None:

@@ -148,16 +148,6 @@ def test_a_film_is_heard_in_step(tmp_path: Path, suffix: str, seconds: float, ra
     assert imageio_ffmpeg.count_frames_and_secs(str(film))[0] == 31
 
 
-def test_a_film_gives_its_sound_back(tmp_path: Path) -> None:
-    """The sound of a film is as good as a sound file, and begins where the film does."""
-    source = write_wav(tmp_path / "noise.wav", noise(1.0))
-    for name, given_by in (("first", source), ("second", tmp_path / "first.mov")):
-        with outputs.film(tmp_path / f"{name}.mov", (64, 48), 30.0, Heard(given_by, 1.0)) as add:
-            for _ in range(31):
-                add(GREY)
-    assert abs(lag(load_sound(tmp_path / "second.mov"), load_sound(source))) < 5e-3
-
-
 def test_capture_takes_the_sound_of_script_and_option(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -351,32 +341,6 @@ def test_the_picture_keeps_to_the_sound(
         off.append(now * pace - session.time)
     assert np.abs(off).max() < FRAME
     assert abs(np.median(off)) < 0.5 * FRAME
-
-
-def test_a_stalled_window_skips_what_was_heard(
-    device: HandDevice, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """After a standstill the picture is where the sound is, and one of a dead device goes on."""
-    session, soundtrack = ramp_with(device, monkeypatch)
-    session.toggle_playing()
-    soundtrack.elapsed(0.02)
-    for asked in range(player.PERIODS + 50):
-        device.now = max(asked - player.PERIODS + 1, 0) * player.PERIOD
-        device.ask(COUNT)
-    assert soundtrack.elapsed(0.1) == 0.1
-    assert session.time == pytest.approx(50 * player.PERIOD - 0.1, abs=0.01)
-    session.time += 0.1
-    device.now += 0.02
-    assert soundtrack.elapsed(0.02) == pytest.approx(0.02)  # which was no jump of the user's
-    assert player_of(soundtrack).position > 50 * player.PERIOD
-    device.now += player.STUCK + player.PERIOD  # it does not ask any more
-    assert soundtrack.elapsed(0.02) == 0.02 and not soundtrack.is_heard
-
-
-def player_of(soundtrack: Soundtrack) -> Player:
-    """What plays it."""
-    assert soundtrack._player is not None
-    return soundtrack._player
 
 
 def ramp_with(device: HandDevice, monkeypatch: pytest.MonkeyPatch) -> tuple[Session, Soundtrack]:

@@ -32,14 +32,6 @@ def test_no_sample_is_further_off_than_the_tolerance(
     assert {key.easing for key in channel.keys} == {"linear"}
 
 
-def test_what_lies_on_lines_needs_corners_only() -> None:
-    """Straight pieces have two keys each, however many samples and whatever their slope."""
-    corners = [(0.0, 0.0), (1.0, 1.0), (1.5, 0.2), (4.0, 0.2), (4.1, 0.9), (9.0, 0.1)]
-    times = np.round(np.arange(0, 901) / 100.0, 6)
-    values = np.interp(times, *zip(*corners, strict=True))
-    assert [(key.time, key.value) for key in thinned(times, values).keys] == corners
-
-
 @pytest.mark.parametrize("seed", range(5))
 def test_keys_are_few(seed: int) -> None:
     """No more than the fewest keys that are samples themselves, which a search finds, and a few."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -66,11 +65,6 @@ def test_results_are_those_of_a_loop(jobs: int) -> None:
     assert all(each.error is None and each.attempts == 1 for each in found)
     processes = {each.result[1] for each in found}
     assert 1 <= len(processes) <= jobs and os.getpid() not in processes
-
-
-def test_nothing_to_do() -> None:
-    """No items, no processes, no error."""
-    assert outcomes(working.double, []) == []
 
 
 def test_what_dies_costs_its_item_an_attempt(tmp_path: Path) -> None:
@@ -181,15 +175,6 @@ def test_a_scheduler_that_is_not_there(address: str) -> None:
     """One line, at once."""
     with pytest.raises(UserError, match="no Dask scheduler answers there"):
         outcomes(working.double, [1], scheduler=address)
-
-
-def test_a_port_where_somebody_else_listens(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One line in the end: who is connected and says nothing is no scheduler."""
-    monkeypatch.setattr("risorius.app.workers.cluster.PATIENCE", 0.5)
-    with socket.create_server(("127.0.0.1", 0)) as silent:
-        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        with pytest.raises(UserError, match="does not speak Dask's protocol"):
-            outcomes(working.double, [1], scheduler=address)
 
 
 def test_a_cluster_gives_what_a_loop_gives(cluster: Any, tmp_path: Path) -> None:

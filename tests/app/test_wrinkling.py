@@ -77,18 +77,6 @@ def test_amounts_grow_with_the_muscle_and_never_jump(
     assert sums[-1] > 1.0 and (np.diff(sums) > -0.01 * sums[-1]).all()
 
 
-def test_amounts_follow_time_without_a_jump(scene: FaceScene, wrinkling: Compression) -> None:
-    """At thirty frames a second, from rest into a full expression in half a second."""
-    scene.reset()
-    last = wrinkling.amounts(scene.positions).copy()
-    for frame in range(20):
-        scene.pose({"surprise": min(frame / 15.0, 1.0)})
-        scene.step(1.0 / 30.0)
-        now = wrinkling.amounts(scene.positions).copy()
-        assert np.abs(now - last).max() < 0.25
-        last = now
-
-
 @pytest.mark.parametrize("name", ["AU1", "AU4", "AU6", "AU12"])
 def test_mirrored_input_gives_mirrored_amounts(
     scene: FaceScene, wrinkling: Compression, name: str
@@ -143,18 +131,6 @@ def test_lines_lie_across_the_muscles(scene: FaceScene) -> None:
         assert len(found) > 3 and np.median(found) > 0.8, muscle
 
 
-def test_lines_of_the_forehead_are_level(scene: FaceScene) -> None:
-    """In the map itself: where it is steep, it is steep upward."""
-    assert scene.wrinkles is not None and scene.uv is not None
-    slopes = scene.wrinkles.map[..., :2].astype(float) - 128.0
-    size = len(slopes)
-    places = scene.uv[forehead(scene).astype(bool)] * [size, -size] + [0.0, size]
-    left, top = places.min(axis=0).astype(int)
-    right, bottom = places.max(axis=0).astype(int)
-    around = np.abs(slopes[top:bottom, left:right])
-    assert around[..., 1].sum() > 4.0 * around[..., 0].sum()
-
-
 def draw_images(
     scene: FaceScene, pose: dict[str, float], camera: str
 ) -> tuple[Array, Array, Capture]:
@@ -169,12 +145,6 @@ def draw_images(
             capture.options = replace(options, style=render.Style(bumps=strength))
             frames.append(capture.draw_image().astype(np.float64))
     return frames[0], frames[1], capture
-
-
-def test_the_picture_at_rest_is_the_one_without(scene: FaceScene) -> None:
-    """To the byte, and so is that of a pose that compresses nothing."""
-    smooth, wrinkled, _ = draw_images(scene, {}, "front")
-    assert (smooth == wrinkled).all()
 
 
 def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:

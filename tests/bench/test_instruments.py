@@ -11,7 +11,7 @@ import pytest
 from risorius import assets, sim
 from risorius.app.controls import mirror
 from risorius.bench import soak, tearing
-from risorius.bench.timing import WARMING, interleaved, paired
+from risorius.bench.timing import interleaved
 
 
 def test_a_folded_triangle_is_counted() -> None:
@@ -93,11 +93,3 @@ def test_calls_are_timed_in_turn_and_alone() -> None:
     assert gc.isenabled()
     assert seconds.shape == (2, 2)
     assert 0.002 <= seconds.min() < 0.02
-
-
-def test_each_of_a_pair_follows_itself_as_often_as_the_other() -> None:
-    """So neither finds the caches as the other leaves them more often; warming is not timed."""
-    order: list[str] = []
-    seconds = paired(lambda: order.append("a"), lambda: order.append("b"), 5)
-    assert "".join(order[2 * WARMING :]) == "abbaabbaab"
-    assert seconds.shape == (5, 2)

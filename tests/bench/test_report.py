@@ -14,7 +14,6 @@ from click.testing import CliRunner
 from risorius.bench import commands, gaps, motion, quality, soak, tearing
 from risorius.bench.gaps import PoseGaps
 from risorius.bench.quality import BEST, CALM, STATIC, Score
-from risorius.bench.report import at_least, at_most, table
 from risorius.bench.soak import Soak
 from risorius.bench.tearing import PoseDefects
 
@@ -96,12 +95,6 @@ def test_a_missed_target_is_told_and_ends_with_one(
     assert code == 1 and "  MISSED  " in told
 
 
-def test_what_is_no_number_meets_nothing() -> None:
-    """Neither an upper nor a lower bound."""
-    assert not at_most("x", float("nan"), 1.0).is_met
-    assert not at_least("x", float("nan"), 1.0).is_met
-
-
 def test_figures_are_written_though_a_target_is_missed(tmp_path: Path) -> None:
     """A program that reads them wants these most."""
     file = tmp_path / "gaps.json"
@@ -124,10 +117,3 @@ def test_tearing_table() -> None:
     text = tearing.report(tearing.measure(3), 3)
     assert "3 random mixtures" in text
     assert text.splitlines()[-1].startswith("teeth")
-
-
-def test_table() -> None:
-    """Titles stand over their columns; text goes left, and for None stands what is asked."""
-    lines = table("name:<6|ms:6.2f|n:3d", [("a", 1.0, 2), ("b", None, 30)], empty="-")
-    assert lines == ["name       ms   n", "a        1.00   2", "b           -  30"]
-    assert table("x:>4", [(None,)], indent="  ") == ["     x", ""]

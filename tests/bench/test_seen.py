@@ -52,29 +52,6 @@ def test_a_pair_counts_by_its_mean() -> None:
     assert (own, highest, score) == (pytest.approx(0.4), "eyeSquint", pytest.approx(0.35))
 
 
-def test_one_side_counts_by_itself() -> None:
-    """Of other pairs the greater side counts; what is posed besides is no mistake."""
-    scores = over(eyeLookInLeft=0.5, eyeLookOutRight=0.9, eyeLookInRight=0.8, jawOpen=0.2)
-    scores["eyeSquintRight"] += 0.3
-    posed = ("eyeLookInLeft", "eyeLookOutRight")
-    own, highest, score = seen.compared(scores, CALM, posed[:1], posed)
-    assert (own, highest, score) == (pytest.approx(0.5), "eyeSquint", pytest.approx(0.3))
-
-
-@pytest.mark.parametrize(
-    ("own", "score", "told"),
-    [
-        (0.5, 0.4, "seen"),
-        (0.4, 0.5, "as jawOpen"),
-        (0.02, 0.09, "not seen"),
-        (-0.1, 0.0, "not seen"),
-    ],
-)
-def test_verdicts(own: float, score: float, told: str) -> None:
-    """Seen under its own name, under another, or not at all."""
-    assert seen.verdict(own, "jawOpen", score) == told
-
-
 def test_mirrors_swap_sides() -> None:
     """Left and right of a mirrored picture change places, twice is once more the same."""
     scores = {"jawLeft": 0.1, "jawRight": 0.2, "jawOpen": 0.3, "_neutral": 0.4}

@@ -115,22 +115,6 @@ def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
         refine.create("quarters", [[0, 1, 2]], [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], level=3)
 
 
-def test_own_refiner_carries_texture() -> None:
-    """Along a seam both sides keep their own coordinates, and no crack opens."""
-    quarters = example("own_refiner").Quarters
-    rest = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.5]])
-    faces, uv = [[0, 1, 2], [0, 2, 3]], np.arange(12.0).reshape(6, 2)
-    refiner = quarters(faces, rest, uv=uv, face_uv=[[0, 1, 2], [3, 4, 5]])
-    for stretch, count, rows in ((1.0, 2, 6), (3.0, 8, 12)):
-        mesh = refiner.refine(stretch * rest)
-        refine.check(refiner, mesh, stretch * rest)
-        assert (len(mesh.triangles), len(mesh.positions)) == (count, rows)
-        for corners, source in zip(mesh.triangles, mesh.source, strict=True):
-            own = uv[:3] if source == 0 else uv[3:]
-            assert (mesh.uv[corners] >= own.min(axis=0)).all()
-            assert (mesh.uv[corners] <= own.max(axis=0)).all()
-
-
 def test_own_recording(tmp_path: Path) -> None:
     """The mouth of the mesh opens when that of the recording does, and shuts again."""
     times = np.linspace(0.0, 3.0, 91)
@@ -164,11 +148,3 @@ def test_read_dataset(tmp_path: Path) -> None:
     assert sorted(training + testing) == [0, 1, 2, 3]
     persons = [{faces.rows[k]["person_number"] for k in part} for part in (training, testing)]
     assert persons[0].isdisjoint(persons[1])
-
-
-def test_of_two_persons_one_is_tested(tmp_path: Path) -> None:
-    """Whatever the share is, somebody is in both parts; one alone is trained with."""
-    index = "person_number\n0\n0\n1\n1\n"
-    for rows, split in ((index, ([2, 3], [0, 1])), (index[:-4], ([0, 1], []))):
-        (tmp_path / "index.csv").write_text(rows, encoding="utf-8")
-        assert example("read_dataset").Faces(tmp_path).split() == split

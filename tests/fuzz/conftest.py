@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,8 +11,6 @@ import pytest
 from risorius.app.scenes import SCENES, FaceScene
 
 from .sandbox import furnish
-
-DOORS = pytest.StashKey[dict[str, Counter[str]]]()
 
 LONG_WORK = (
     "risorius.bench.reproduce.figure_8.outcome",
@@ -32,32 +29,6 @@ LONG_WORK = (
     "risorius.bench.tearing.measure",
     "risorius.bench.window.measure",
 )
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(item: pytest.Item):  # type: ignore[no-untyped-def]
-    """Count by door: each test knocks at one."""
-    report = yield
-    if report.when == "call":
-        door = item.originalname.removeprefix("test_").replace("_", " ")
-        counts = item.config.stash.setdefault(DOORS, {}).setdefault(door, Counter())
-        counts[report.outcome] += 1
-    return report
-
-
-def pytest_terminal_summary(
-    terminalreporter: pytest.TerminalReporter, config: pytest.Config
-) -> None:
-    """Say how many inputs each door was given, and how many of them ended badly."""
-    counts = config.stash.get(DOORS, None)
-    if counts is None:  # none was asked for
-        return
-    terminalreporter.section("inputs by door")
-    for door, outcome in counts.items():
-        total, good = sum(outcome.values()), outcome["passed"]
-        terminalreporter.line(f"{door:28} {total:5d} inputs, {total - good} ended badly")
-    total = sum(sum(outcome.values()) for outcome in counts.values())
-    terminalreporter.line(f"{'all doors':28} {total:5d} inputs")
 
 
 @pytest.fixture(scope="session")

@@ -53,10 +53,3 @@ def test_odd_heads(odd: OddHead, tmp_path: Path, capfd: pytest.CaptureFixture[st
         assert np.isfinite(found.vertices).all()
         assert 0 <= found.faces.min() and found.faces.max() < len(found.vertices)
     assert capfd.readouterr() == ("", "")
-
-
-def test_the_table_is_large_and_its_names_differ() -> None:
-    """Names are what a report of another program shows."""
-    names = [odd.name for odd in head_inputs()]
-    assert len(names) > 200
-    assert len(set(names)) == len(names)

@@ -34,12 +34,6 @@ def test_framing_fits_everything(view: str, aspect: float, is_orthographic: bool
     assert np.abs(places[:, :2]).max() == pytest.approx(0.88, abs=0.03)
 
 
-def test_framing_a_single_point() -> None:
-    """A mesh without extent can be framed too."""
-    camera = render.OrbitCamera.framing(np.array([[1.0, 2.0, 3.0]]))
-    assert np.isfinite(seen(camera, (1.0, 2.0, 3.0))).all()
-
-
 def test_views_look_from_where_they_say() -> None:
     """Front is +z, the profile is from the subject's left (+x), below is from below."""
     eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
@@ -50,30 +44,12 @@ def test_views_look_from_where_they_say() -> None:
     assert eyes["top"] == pytest.approx((0, 1, 0))
 
 
-def test_axes_are_the_frame() -> None:
-    """Right, up and back are orthonormal, and are what the view matrix turns to x, y and z."""
-    camera = render.OrbitCamera.framing(HEAD)
-    camera.orbit(33.0, -21.0)
-    axes = np.stack(camera.axes())
-    assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
-    assert np.asarray(camera.view_matrix())[:3, :3].T == pytest.approx(axes, abs=1e-12)
-
-
 def test_orbit_stops_at_the_poles() -> None:
     """However far one rises, up stays up."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.orbit(0.0, 500.0)
     assert camera.pitch < 90.0 and camera.axes()[1][1] > 0.0
     assert np.isfinite(np.asarray(camera.view_matrix())).all()
-
-
-def test_zoom_scales_what_is_seen() -> None:
-    """Zooming by 2 makes the target's surroundings twice as large."""
-    camera = render.OrbitCamera.framing(HEAD)
-    beside = camera.target + 10.0 * camera.axes()[0]
-    before = seen(camera, beside)[0, 0]
-    camera.zoom(2.0)
-    assert seen(camera, beside)[0, 0] == pytest.approx(2.0 * before)
 
 
 def test_zoom_has_an_end_on_both_sides() -> None:
@@ -83,14 +59,6 @@ def test_zoom_has_an_end_on_both_sides() -> None:
     assert camera.distance == pytest.approx(0.02 * camera.scene_radius)
     camera.zoom(1e-30)
     assert camera.distance == pytest.approx(100.0 * camera.scene_radius)
-
-
-def test_pan_moves_by_the_height_of_the_frame() -> None:
-    """Panning half a frame up puts the old target on the lower border."""
-    camera = render.OrbitCamera.framing(HEAD, view="profile")
-    old = camera.target
-    camera.pan(0.0, 0.5)
-    assert seen(camera, old)[0, :2] == pytest.approx((0.0, -1.0))
 
 
 def test_clipping_planes_hold_the_scene_from_anywhere() -> None:
@@ -156,12 +124,3 @@ def test_orthographic_is_as_large_as_perspective_at_the_target() -> None:
     assert seen(camera, beside)[0, :2] == pytest.approx(2.0 * before)
     camera.pan(0.0, 0.5)
     assert seen(camera, beside)[0, 1] == pytest.approx(2.0 * before[1] - 1.0)
-
-
-def test_bad_zoom_and_aspect() -> None:
-    """Factors and aspects must be positive."""
-    camera = render.OrbitCamera.framing(HEAD)
-    with pytest.raises(ValueError, match=r"zoom factor is 0\.0; it must be positive"):
-        camera.zoom(0.0)
-    with pytest.raises(ValueError, match=r"aspect is -1\.0; it must be positive"):
-        camera.projection_matrix(-1.0)

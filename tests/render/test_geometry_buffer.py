@@ -75,14 +75,6 @@ def test_a_sphere_is_as_far_away_as_it_should_be(
     assert (found.normal[inner][:, 2] < 0.0).all()  # toward the camera
 
 
-def test_a_plane_is_as_far_away_everywhere(surface: render.Surface) -> None:
-    """Depth is that along the camera's axis, not along the ray, to single precision."""
-    camera = facing()
-    found = drawn(surface, square(200.0, z=10.0), camera)
-    assert np.abs(found.depth - (camera.distance - 10.0)).max() < 1e-3
-    assert np.abs(found.normal - [0.0, 0.0, -1.0]).max() < 1e-6
-
-
 def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface: render.Surface) -> None:
     """A square above and to the right of the middle is drawn there."""
     shape = square(20.0)

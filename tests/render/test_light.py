@@ -73,14 +73,6 @@ def test_other_light_leaves_nothing_behind(surface: render.Surface) -> None:
     assert (picture(SHADED) == studio).all()
 
 
-def test_key_from_above_is_steady(surface: render.Surface) -> None:
-    """Where the light has no side any more, its shadow map turns, and the picture stays."""
-    lower, upper = (
-        scene(surface, replace(NO_RIM, to_key=render.toward(20.0, angle))) for angle in (87.3, 87.6)
-    )
-    assert np.abs(upper - lower).mean() < 2.0
-
-
 @pytest.mark.parametrize("name", render.LIGHTS)
 def test_no_light_burns_or_blackens(surface: render.Surface, name: str) -> None:
     """A ball of light skin and one of dark skin: all of what faces the viewer has a colour."""

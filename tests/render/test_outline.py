@@ -9,7 +9,7 @@ import pytest
 
 from risorius import render
 from risorius.render.camera_view import CameraView
-from risorius.render.outline import contours, fringes
+from risorius.render.outline import fringes
 
 from .scenes import PLAIN, facing, joined, lent, sphere, square
 
@@ -67,15 +67,6 @@ def test_what_cannot_be_smoothed_stays(changes: dict[str, object]) -> None:
     style = replace(PLAIN, **changes)
     rough, smooth = (ball(0, is_smoothed=on, style=style) for on in (False, True))
     assert (rough == smooth).all()
-
-
-def test_contours_are_the_edges_of_one_triangle() -> None:
-    """The rim of a square, running as its triangles do; of a closed ball there is none."""
-    begins, ends = contours(square().triangles)
-    edges = set(zip(begins.tolist(), ends.tolist(), strict=True))
-    assert edges == {(0, 1), (1, 2), (2, 3), (3, 0)}
-    assert contours(sphere().triangles).shape == (2, 0)
-    assert contours(np.zeros((0, 3), np.uint32)).shape == (2, 0)
 
 
 def test_what_lies_behind_the_eye_has_no_fringes() -> None:

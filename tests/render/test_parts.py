@@ -83,19 +83,6 @@ def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
     assert ((wet - dull) > 150).mean() < 0.03
 
 
-def test_what_is_dark_in_the_mouth_has_no_highlight(surface: render.Surface) -> None:
-    """Where no light gets, none is mirrored: teeth that are painted dark hardly shine."""
-    renderer, frames = render.Renderer(surface), []
-    for shine in (0.0, 0.35):
-        surface.begin()
-        renderer.draw_background(render.Style(background=render.DARK))
-        renderer.draw_parts([Ball(shine=shine, colour=(0.1, 0.1, 0.1))], STILL, facing(25.0), PLAIN)
-        surface.end()
-        frames.append(surface.read().astype(int).sum(axis=2))
-    dull, bright = frames
-    assert 5 < (bright - dull).max() < 90
-
-
 def test_parts_and_mesh_hide_each_other(surface: render.Surface) -> None:
     """Depth decides, whichever is drawn first."""
     renderer = render.Renderer(surface)

@@ -14,7 +14,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, facing, lent, sphere
+from .scenes import PLAIN, STILL, Ball, facing, sphere
 
 KINDS = ("program", "buffer", "texture", "depth_texture", "renderbuffer", "framebuffer")
 KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
@@ -85,21 +85,3 @@ def test_a_lost_renderer_leaves_nothing(samples: int, monkeypatch: pytest.Monkey
         assert count() == {} and not surface.gl.objects
         assert surface.gl.error == "GL_NO_ERROR"
     assert all((image == images[0]).all() for image in images)
-
-
-def test_another_renderer_goes_on(surface: render.Surface) -> None:
-    """What one renderer gives back is not what another draws with."""
-    shape, camera = sphere(), facing()
-    stays = render.Renderer(surface)
-    stream = lent(stays, shape)
-
-    def frame() -> np.ndarray:
-        surface.begin()
-        stays.draw_background(PLAIN)
-        stays.draw_mesh(stream, camera, PLAIN)
-        surface.end()
-        return surface.read()
-
-    before = frame()
-    draw_all(surface)
-    assert (frame() == before).all()

@@ -27,12 +27,6 @@ def test_flat_facets_have_one_colour(surface: render.Surface) -> None:
     assert spread["flat"] <= 1 < spread["gouraud"]
 
 
-def test_flat_shading_ignores_vertex_normals(surface: render.Surface) -> None:
-    """The geometric normal of the drawn triangle decides."""
-    frames = [draw_image(surface, square(bulge=bulge), FLAT) for bulge in (0.0, 2.0)]
-    assert (frames[0] == frames[1]).all()
-
-
 def test_only_pixel_shading_lights_the_middle_of_a_facet(surface: render.Surface) -> None:
     """Between four corners that turn away, Gouraud stays as dark as they are."""
     shape = square(bulge=3.0)

@@ -174,13 +174,3 @@ def test_less_light_where_it_is_less_open(surface: render.Surface, shading: rend
     assert folded[lower].min() > 20  # the key light still shines there
     off = textured(surface, image, replace(style, occlusion=False), occlusion=occlusion)
     assert np.array_equal(off, plain)
-
-
-@pytest.mark.parametrize(
-    "occlusion",
-    [np.zeros((8, 4), np.uint8), np.zeros((8, 8), np.float32), np.zeros((8, 8, 1))],
-)
-def test_bad_occlusion(surface: render.Surface, occlusion: npt.NDArray[np.uint8]) -> None:
-    """Occlusion is of the image's size, a byte for each texel."""
-    with pytest.raises(ValueError, match=r"occlusion has shape .* must be \(8, 8\) uint8"):
-        render.Renderer(surface).load_texture(plain_image((9, 9, 9)), occlusion)

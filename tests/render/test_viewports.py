@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from risorius import render
@@ -60,18 +59,6 @@ def test_background_covers_what_was_drawn(surface: render.Surface) -> None:
     surface.end()
     inset = surface.read()[-70:-20, 20:70]
     assert (inset[:3] >= 254).all() and (inset[20:30, 20:30] < 250).any(axis=2).all()
-
-
-def test_background_presets(surface: render.Surface) -> None:
-    """Backgrounds are soft: bright or dark, never a step of more than two grey levels."""
-    renderer = render.Renderer(surface)
-    for background, low, high in ((render.LIGHT, 150, 240), (render.DARK, 10, 90)):
-        surface.begin()
-        renderer.draw_background(render.Style(background=background))
-        surface.end()
-        frame = surface.read().astype(int)
-        assert low < frame.min() and frame.max() < high
-        assert np.abs(np.diff(frame, axis=0)).max() <= 4
 
 
 def test_viewport_must_have_pixels(surface: render.Surface) -> None:

@@ -86,12 +86,6 @@ def test_probe_finds_the_window(window: render.WindowSurface) -> None:
     assert finding.name == "window" and finding.is_ok and finding.renderer
 
 
-def test_bad_size() -> None:
-    """A window without extent is refused before GLFW is asked."""
-    with pytest.raises(ValueError, match=r"size is \(10, 0\)"):
-        render.open_window((10, 0), "flat")
-
-
 def test_a_coarser_scene_fills_the_window(window: render.WindowSurface) -> None:
     """With fewer pixels and samples the same image is seen, enlarged; panels keep their own."""
     renderer = render.Renderer(window)

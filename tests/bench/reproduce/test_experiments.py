@@ -22,7 +22,6 @@ from risorius.bench.reproduce.experiments import (
     INFERRED,
     Claim,
     Experiment,
-    Finding,
     Measured,
     Outcome,
     Verdict,
@@ -96,15 +95,6 @@ def test_every_claim_can_fail() -> None:
             assert each.low > -math.inf or each.high < math.inf, each.value
 
 
-def test_numbers_are_told_with_their_spread() -> None:
-    """The median, and the quartiles where there are any."""
-    measured = Measured.median(np.arange(5.0))
-    assert Finding(Claim("x", "", "", high=3.0, style=".1f"), measured).ours == "2.0 (1.0 to 3.0)"
-    assert Finding(Claim("x", "", "", low=27, high=27), Measured(27)).ours == "27"
-    assert Finding(Claim("x", "", "", low=27, high=27), measured).allowed == "exactly 27"
-    assert Finding(Claim("x", "", "", low=1, high=2), measured).allowed == "at least 1, at most 2"
-
-
 def test_what_was_inferred_is_what_runs() -> None:
     """Weights, thresholds and the plane, as the page tells them, are those of the program."""
 
@@ -170,12 +160,6 @@ def test_a_missed_tolerance_is_told_after_all_is_written(planted: None, tmp_path
     ]
     names = {path.name for path in (tmp_path / "new").iterdir()}
     assert names == {"index.html", "results.json", "good.png"}
-
-
-def test_all_met_ends_well(planted: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Exit code 0."""
-    monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED[:1])
-    assert risorius("reproduce", "all", "-o", tmp_path).exit_code == 0
 
 
 def test_figures_for_programs(planted: None, tmp_path: Path) -> None:
