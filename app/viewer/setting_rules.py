@@ -11,7 +11,6 @@ from risorius import render
 from risorius.schema import MadeFrom, OneOf, Record, Within, parsed_json, quoted
 
 from ..files import read_text
-from .interface.commands import chord
 from .interface.gui import THEMES
 
 LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
@@ -34,16 +33,6 @@ TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 TABS = ("Face", "Mechanism", "Live")
 
 
-def _shortcut(key: str) -> str:
-    try:
-        chord(key)
-    except KeyError:
-        raise ValueError(
-            f"was {key!r}, must be a key of the keyboard, with its modifiers"
-        ) from None
-    return key
-
-
 def _folder(name: str) -> str:
     if "\0" in name:
         raise ValueError(f"was {name!r}, must be the name of a folder")
@@ -63,7 +52,6 @@ _Pair = Annotated[tuple[int, int], Within(*SIDES)]
 _Place = Annotated[tuple[float, float, float, float, float, float], Within(-FURTHEST, FURTHEST)]
 Size = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
 Camera = Annotated[list[float], MadeFrom(_Place, list)]  # yaw, pitch, distance, target
-Shortcut = Annotated[str, MadeFrom(str, _shortcut)]
 Folder = Annotated[str, MadeFrom(str, _folder)]
 Share = Annotated[float, Within(0.0, 1.0)]
 # Of a refiner, which knows more about it.

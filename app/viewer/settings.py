@@ -206,7 +206,6 @@ class Settings(rules.WindowSettings):
     timeline_height: Annotated[float, Within(0.0, 1000.0)] = 0.0  # [letters']; 0: as needed
     folds: dict[str, Flag] = field(default_factory=dict)  # which headings are open, by title
     cameras: dict[str, rules.Camera] = field(default_factory=dict)  # by scene
-    keys: dict[str, rules.Shortcut] = field(default_factory=dict)  # that were changed, by command
     recent: list[str] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
     knows_first_steps: Flag = False

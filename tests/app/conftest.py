@@ -50,7 +50,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.session.scene.reset()
     viewer.settings.display, viewer.face_panel.search = Display(), ""
     viewer.settings.folds.clear()
-    replace_state(viewer.files, FileDialogs(is_native=False))
+    replace_state(viewer.files, FileDialogs())
     viewer.messages.text = ""
     viewer.panel_state.wanted_tab = "Face"
     viewer.view.fit_scene()

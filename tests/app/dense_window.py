@@ -15,7 +15,6 @@ from Xlib import Xatom, display
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.documents.file_dialogs import FileDialogs
 
 from .driving import (
     click,
@@ -23,7 +22,6 @@ from .driving import (
     middle,
     moved,
     nose,
-    replace_state,
     settle,
     show_controls,
     until,
@@ -44,7 +42,6 @@ def main() -> None:
         return
     with _screen_of(DOTS_PER_INCH), Viewer(script_for(None, "face"), SIZE) as viewer:
         first = viewer.view.viewport[0]
-        replace_state(viewer.files, FileDialogs(is_native=False))
         settle(viewer)
         is_settled = viewer.view.viewport[0] == first
         print(json.dumps({**_findings(viewer), "is_settled": is_settled}))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from importlib import resources
 from pathlib import Path
@@ -12,7 +11,6 @@ import pytest
 from risorius.app.scenes import build_scene
 from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.documents.file_dialogs import UNSEEN, FileDialogs
 from risorius.app.viewer.settings import Display
 from tests.heads import stranger
 from tests.render.test_release import counting
@@ -24,7 +22,6 @@ from .driving import (
     drop,
     moved,
     nose,
-    replace_state,
     settle,
     until,
     write,
@@ -69,7 +66,7 @@ def test_a_bad_file_dropped_is_told_and_survived(viewer: Viewer, tmp_path: Path)
 
 
 def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> None:
-    """Without native dialogs: into a folder, up again, and a script opened by a double click."""
+    """Into a folder, up again, and a script opened by a double click."""
     (tmp_path / "takes").mkdir()
     (tmp_path / "takes" / "smile.toml").write_text(SCRIPT)
     (tmp_path / "picture.png").write_bytes(b"")
@@ -105,27 +102,6 @@ def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) ->
     xdotool(viewer, "key", "Return")
     assert viewer.messages.is_error and "/proc/none/pose.toml" in viewer.messages.text
     assert "the pose" in viewer.session.unsaved
-
-
-@pytest.mark.parametrize("comes_up", [True, False])
-def test_native_dialogs_are_used_where_they_work(
-    viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, comes_up: bool
-) -> None:
-    """The system's dialog gives the file; one that ends at once makes way for the chooser."""
-    script, dialog = tmp_path / "smile.toml", tmp_path / "zenity"
-    script.write_text(SCRIPT)
-    answer = f"sleep {2.0 * UNSEEN}; echo {script}" if comes_up else "exit 1"
-    dialog.write_text(f"#!/bin/sh\n{answer}\n")
-    dialog.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
-    monkeypatch.delenv("XDG_SESSION_DESKTOP", raising=False)  # by which kdialog may be preferred
-    replace_state(viewer.files, FileDialogs())
-    xdotool(viewer, "key", "ctrl+o")
-    assert viewer.files.is_waiting
-    if not comes_up:
-        click(viewer, "file smile.toml", times=2)
-    assert until(viewer, lambda: viewer.session.script.duration == 2.0)
-    assert not viewer.files.is_waiting
 
 
 def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) -> None:

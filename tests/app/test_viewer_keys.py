@@ -148,60 +148,21 @@ def test_the_keyboard_reaches_everything(viewer: Viewer, monkeypatch: pytest.Mon
     assert not viewer.gui.owns_keys
 
 
-@pytest.mark.slow
-def test_keys_are_changed_in_their_overview(viewer: Viewer) -> None:
-    """Click a key, press another: what is taken is told; a button undoes it."""
-    xdotool(viewer, "key", "F1")
-    click(viewer, "key Neutral")
-    xdotool(viewer, "key", "m")
-    assert "M is taken: Mirror" in viewer.help._line
-    xdotool(viewer, "key", "shift+j")
-    assert viewer.settings.keys == {"Neutral": "Shift+J"}
-    xdotool(viewer, "key", "Escape")
-    assert not viewer.panel_state.is_help_open
-    viewer.session.toggle_alone("joy")
-    xdotool(viewer, "key", "n")
-    assert viewer.session.is_alone("joy")
-    xdotool(viewer, "key", "shift+j")
-    assert not viewer.session.is_alone("joy")
-    xdotool(viewer, "key", "F1")
-    click(viewer, "Usual keys")
-    xdotool(viewer, "key", "Escape")
-    viewer.session.toggle_alone("joy")
-    xdotool(viewer, "key", "n")
-    assert not viewer.session.is_alone("joy") and viewer.settings.keys == {}
+def test_the_overview_names_each_command_and_key_once(viewer: Viewer) -> None:
+    """No two commands share a label or a key."""
+    doing = [each for each in viewer.commands if each.submenu is None]
+    for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
+        assert len(each) == len({*each})
 
 
-def test_a_command_without_a_key_is_given_one(viewer: Viewer) -> None:
-    """In the overview, too, which names each command once; nothing else has that key then."""
-    labels = [each.label for each in viewer.commands]
-    assert len(labels) == len({*labels})
-    xdotool(viewer, "key", "F1")
-    click(viewer, "key Auto-key")
-    xdotool(viewer, "key", "j", "Escape", "j")
-    assert viewer.session.is_keying and viewer.settings.keys == {"Auto-key": "J"}
-    xdotool(viewer, "key", "F1")
-    click(viewer, "Usual keys")
-    xdotool(viewer, "key", "Escape", "j")
-    assert viewer.session.is_keying and viewer.settings.keys == {}
-
-
-def test_messages_name_keys_as_they_are_now(
-    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The line at the foot of the picture, whatever key a command was given."""
+def test_messages_name_keys(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The line at the foot of the picture."""
     shown: list[str] = []
     monkeypatch.setattr(imgui, "text_unformatted", shown.append)
     viewer.session.set("jaw_open", 0.5)
     viewer.messages.say(viewer.session.seek(0.0) or "")
     settle(viewer)
     assert "Jaw open not keyed, so let go; Ctrl+Z brings the pose back" in shown
-    xdotool(viewer, "key", "F1")
-    click(viewer, "key Undo")
-    xdotool(viewer, "key", "shift+j")
-    assert "Jaw open not keyed, so let go; Shift+J brings the pose back" in shown
-    viewer.settings.keys.clear()
-    xdotool(viewer, "key", "Escape")
 
 
 def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:

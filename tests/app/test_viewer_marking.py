@@ -42,7 +42,7 @@ def mesh(tmp_path: Path) -> Path:
 @pytest.fixture
 def marking(mesh: Path) -> Marking:
     """It, with nothing marked."""
-    return Marking(mesh, FileDialogs(is_native=False))
+    return Marking(mesh, FileDialogs())
 
 
 def true_places() -> Array:
@@ -119,14 +119,14 @@ def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path
     assert not marking.unsaved and json.loads(target.read_text())["landmarks"].count(None) == 65
     with pytest.raises(AssetError, match="65 of 68"):
         read_landmarks(target, marking.mesh)
-    again = Marking(marking.path, FileDialogs(is_native=False))
+    again = Marking(marking.path, FileDialogs())
     again.open(target)
     assert again.marks == marking.marks and again.current == FIRST[3] and not again.unsaved
     for number in FIRST[3:]:
         again.put(number, again.placing.points(true_places()[number]))
         again.note()
     again.save()
-    third = Marking(marking.path, FileDialogs(is_native=False))
+    third = Marking(marking.path, FileDialogs())
     third.open(target)
     assert third.marks == again.marks and third.is_upright  # what is guessed still is
 
@@ -136,7 +136,7 @@ def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> No
     _, numbers = stranger().write(tmp_path)
     marking.open(numbers)
     assert off(marking).max() < 1e-8 and not marking.marks.guessed
-    wrong = Marking(marking.path, FileDialogs(is_native=False))
+    wrong = Marking(marking.path, FileDialogs())
     numbers.write_text(json.dumps({"landmarks": np.roll(stranger().landmarks, 20).tolist()}))
     with pytest.raises(UserError, match=r"\.json: these points are no face's"):
         wrong.open(numbers)
@@ -169,7 +169,7 @@ def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path: Path) -> None:
     mesh = tmp_path / "fan.obj"
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n")
     with pytest.raises(UserError, match=r"fan\.obj: the mesh is not manifold"):
-        Marking(mesh, FileDialogs(is_native=False))
+        Marking(mesh, FileDialogs())
 
 
 def test_points_are_picked_from_either_side() -> None:

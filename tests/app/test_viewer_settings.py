@@ -59,7 +59,6 @@ def test_settings_come_back(tmp_path: Path) -> None:
         ("size", [900]),
         ("size", "900x700"),
         ("panel_width", float("nan")),
-        ("keys.Random", "Hyper+X"),
         ("is_linked", "yes"),
         ("tab", "Nose"),
         ("folds.Eyes", 3),

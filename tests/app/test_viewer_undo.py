@@ -11,7 +11,6 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 from risorius.app.script import load_script, parse_script
-from risorius.app.viewer.interface.commands import Command, set_keys
 from risorius.app.viewer.picture.skin_drag import SkinDrag
 from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.session import Session
@@ -154,15 +153,6 @@ def test_a_pull_is_called_so(session: Session) -> None:
     jaw = ", jaw" if muscles < len(moved) else ""
     assert muscles > 1 and told
     assert session.history.labels[-1] == f"Pull ({muscles} muscles{jaw})"
-
-
-def test_a_changed_command_has_the_chosen_key_alone() -> None:
-    """A second key goes with the first; both come back."""
-    redo = Command("Edit", "Redo", "Ctrl+Y", lambda: None, other_key="Ctrl+Shift+Z")
-    set_keys([redo], {"Redo": "F7"})
-    assert redo.keys == ("F7",) and redo.displayed_keys == "F7"
-    set_keys([redo], {})
-    assert redo.keys == ("Ctrl+Y", "Ctrl+Shift+Z")
 
 
 @pytest.fixture

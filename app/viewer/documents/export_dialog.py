@@ -134,7 +134,7 @@ class ExportDialog:
         imgui.same_line()
         if button(self._gui, "Browse ...", name="export: Browse", width=-1.0):
             ask, kind = partial(self._files.ask, TITLE, self._take, saving=True), exporter.kind
-            ask(proposed=exporter.target.name, kind=kind.title, suffixes=(kind.suffix,))
+            ask(proposed=exporter.target.name, suffixes=(kind.suffix,))
 
     def _draw_end(self, choices: ExportChoices) -> None:
         """What will be written, or why not; and the buttons."""

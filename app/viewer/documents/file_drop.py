@@ -156,7 +156,7 @@ class FileDrop:
             landmarks = next((path for path in own if path.is_file()), None)
             return self.open([str(path) for path in (mesh, landmarks) if path is not None])
 
-        self._files.ask("Open head", go_on, saving=False, kind="Meshes", suffixes=MESHES)
+        self._files.ask("Open head", go_on, saving=False, suffixes=MESHES)
 
     def ask_mesh(self) -> None:
         """Ask for a mesh without landmarks, and have them marked."""
@@ -164,6 +164,5 @@ class FileDrop:
             "Mark a head",
             lambda mesh: self.open([str(mesh)]),
             saving=False,
-            kind="Meshes",
             suffixes=MESHES,
         )

@@ -94,7 +94,6 @@ class ScriptCommands:
             "Open script, pose or recording",
             self.open,
             saving=False,
-            kind="Scripts, poses and recordings",
             suffixes=(SUFFIX, *RECORDINGS),
         )
 
@@ -169,7 +168,7 @@ class ScriptCommands:
 
     def ask_sound(self) -> None:
         """Ask for a sound file, and put it beside the script."""
-        self._files.ask("Open sound", self.set_sound, saving=False, kind="Sounds", suffixes=SOUNDS)
+        self._files.ask("Open sound", self.set_sound, saving=False, suffixes=SOUNDS)
 
     def set_sound(self, path: Path) -> Message:
         """Put a sound file beside the script; UserError where nothing is heard in it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from imgui_bundle import imgui
@@ -12,11 +12,8 @@ from .gui import Gui
 from .widgets import muted
 
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
-# All others by their names, but those that change others or have a use everywhere.
-_RESERVED = ("Escape", "Tab", "Lock", "Ctrl", "Shift", "Alt", "Super")
 _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
-         if imgui.Key.tab <= key < imgui.Key.gamepad_start
-         and not imgui.get_key_name(key).endswith(_RESERVED)}  # fmt: skip
+         if imgui.Key.tab <= key < imgui.Key.gamepad_start}  # fmt: skip
 # Ctrl keys that a line of text takes for itself while one writes.
 _WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
 _CHANGING = ("Edit", "Keys", "Expression")  # menus of what ends a drag of the mouse first
@@ -35,7 +32,6 @@ class Command:
     can_run: Callable[[], bool] = lambda: True
     other_key: str = ""
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
-    chosen_key: str = ""  # in place of both
     reads: Callable[[], str] | None = None  # its label now, where that changes
     by_key: Task | None = None  # what its key does, where that is not the same
 
@@ -51,16 +47,7 @@ class Command:
     @property
     def keys(self) -> tuple[str, ...]:
         """All keys that do it."""
-        keys = (self.chosen_key,) if self.chosen_key else (self.key, self.other_key)
-        return tuple(filter(None, keys))
-
-
-def set_keys(commands: Iterable[Command], changed: Mapping[str, str]) -> dict[str, str]:
-    """Give commands another key alone, by their labels; by these, all keys as told."""
-    doing = [command for command in commands if command.submenu is None]
-    for command in doing:
-        command.chosen_key = changed.get(command.label, "")
-    return {command.label: command.displayed_keys for command in doing}
+        return tuple(filter(None, (self.key, self.other_key)))
 
 
 def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:
@@ -81,18 +68,9 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
 
 
 def chord(key: str) -> int:
-    """A key as imgui counts it; KeyError for none."""
+    """A key as imgui counts it."""
     *modifiers, last = key.split("+")
     return sum((int(_MODIFIERS[each]) for each in modifiers), start=int(_KEYS[last]))
-
-
-def pressed_key() -> str:
-    """The key that was pressed in this frame and may be a command's, "" for none."""
-    held = [name for name, key in _MODIFIERS.items() if imgui.get_io().key_mods & key]
-    for name, key in _KEYS.items():
-        if imgui.is_key_pressed(key, repeat=False):
-            return "+".join((*held, name))
-    return ""
 
 
 class MenuBar:

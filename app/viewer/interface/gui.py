@@ -230,7 +230,7 @@ class Gui:
             io.add_key_event(key, is_down)
 
     def with_keys(self, text: str) -> str:
-        """A text with the keys that commands have now, in place of their labels in brackets."""
+        """A text with the keys of commands, in place of their labels in brackets."""
         return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1]) or found[0], text)
 
     def remember(self, name: str) -> None:

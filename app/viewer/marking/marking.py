@@ -175,9 +175,7 @@ class Marking:
 
     def ask_open(self) -> None:
         """Ask for a landmark file, and go on with it."""
-        self._files.ask(
-            "Open landmarks", self.open, saving=False, kind="Landmarks", suffixes=(SUFFIX,)
-        )
+        self._files.ask("Open landmarks", self.open, saving=False, suffixes=(SUFFIX,))
 
     def save(self, then: Task = lambda: None) -> Message:
         """Write the marks to their file, all or as many as there are, or ask for one first."""
@@ -189,7 +187,6 @@ class Marking:
             partial(self._write, then),
             saving=True,
             proposed=proposed,
-            kind="Landmarks",
             suffixes=(SUFFIX,),
         )
         return None

@@ -10,7 +10,7 @@ import numpy as np
 from risorius.assets.fitting.guess import axes_turned
 
 from ..context import ApplicationContext
-from ..interface.commands import Command, MenuBar, set_keys
+from ..interface.commands import Command, MenuBar
 from ..messages import Message, Task
 from ..picture.painter import Painter
 from .marking import Marking
@@ -43,7 +43,6 @@ class Room:
         self.mouse = MarkingMouse(self.view, surface, marking, messages)
         shared = [command for command in others if command.label in SHARED]
         self.commands = (*self._commands(), *shared)
-        set_keys(self.commands, app.settings.keys)
         by_label = {command.label: command for command in self.commands}
         menus = MenuBar(gui, messages, self.commands, lambda: app.session.unsaved)
         self.panel = MarkingPanel(gui, messages, self.picture, menus, by_label)

@@ -8,9 +8,9 @@ from imgui_bundle import imgui
 
 from ...controls.vocabulary import readable
 from ..context import ApplicationContext
-from ..interface.commands import Command, pressed_key, set_keys
+from ..interface.commands import Command
 from ..interface.gui import NOTE_FLAGS, TICK, colour, em, ink_of
-from ..interface.widgets import button, muted
+from ..interface.widgets import muted
 
 STEPS = (
     ("Pull the cheek", "with the left mouse button"),
@@ -129,17 +129,14 @@ NARROW_COLUMNS = (
     ("Mouse", "Timeline", "Expression"),
 )
 NO_KEY = "\u2013"
-ASK = "Click a key to change it."
 WIDE = 63.0  # [em] that the wide ones take
 
 
 class Help:
-    """Draws the list, in which each key can be changed."""
+    """Draws the list of all keys, and of what the mouse does."""
 
     def __init__(self, app: ApplicationContext) -> None:
-        self._gui, self._state, self._changed = app.gui, app.panel_state, app.settings.keys
-        self._asked: Command | None = None  # for which a key is to be pressed
-        self._line = ASK
+        self._gui, self._state = app.gui, app.panel_state
 
     def draw(self, commands: Sequence[Command]) -> None:
         """Draw the list while it is open, scrolled where the window is small."""
@@ -151,9 +148,8 @@ class Help:
         flags = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_collapse
         flags |= imgui.WindowFlags_.horizontal_scrollbar
         _, stays = imgui.begin("Keys and mouse", True, flags)
-        is_left = imgui.is_key_pressed(imgui.Key.escape) and not (gui.has_popup or self._asked)
+        is_left = imgui.is_key_pressed(imgui.Key.escape) and not gui.has_popup
         self._state.is_help_open = bool(stays) and not is_left
-        self._take_key(commands)
         is_marking = any(command.menu == "Landmarks" for command in commands)
         others = {"Mouse": MARKING} if is_marking else {"Mouse": MOUSE, "Timeline": TIMELINE}
         for index, titles in enumerate(COLUMNS if display.x > em(WIDE) else NARROW_COLUMNS):
@@ -168,25 +164,6 @@ class Help:
         gui.places["help"] = (place.x, place.y, place.x + size.x, place.y + size.y)
         imgui.end()
 
-    def _take_key(self, commands: Sequence[Command]) -> None:
-        """Give the command that asks for one the key that is pressed, unless another has it."""
-        asked, key = self._asked, pressed_key()
-        taken = [each.label for each in commands if each is not asked and key in each.keys]
-        imgui.text(self._line)
-        if asked is not None:
-            self._gui.has_popup = True  # no key is for commands now
-            if taken:
-                self._line = f"{key} is taken: {taken[0]}. Press another, or Escape."
-            elif key:
-                self._changed[asked.label] = key
-            if imgui.is_key_pressed(imgui.Key.escape) or (key and not taken):
-                self._asked, self._line = None, ASK
-        elif self._changed:
-            imgui.same_line()
-            if button(self._gui, "Usual keys"):
-                self._changed.clear()
-        self._gui.keys |= set_keys(commands, self._changed)
-
     def _draw_lines(self, name: str, lines: Sequence[Command | tuple[str, str]]) -> None:
         """What to press in one column, what it does in another."""
         flags = imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x
@@ -198,11 +175,7 @@ class Help:
             imgui.table_next_column()
             keys, meaning = line if isinstance(line, tuple) else (line.displayed_keys, line.label)
             imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
-            if isinstance(line, tuple):
-                imgui.text(readable(keys))
-            elif imgui.selectable(f"{keys or NO_KEY}##{meaning}", self._asked is line)[0]:
-                self._asked, self._line = line, f"{meaning}: press a key for it, or Escape."
-            self._gui.remember(f"key {meaning}")
+            imgui.text(readable(keys) or NO_KEY)
             imgui.pop_style_color()
             imgui.table_next_column()
             imgui.text(readable(meaning))

@@ -19,7 +19,7 @@ from ..context import ApplicationContext
 from ..documents.export_dialog import ExportDialog
 from ..documents.file_dialogs import FileChooser
 from ..documents.file_drop import FileDrop
-from ..interface.commands import Command, MenuBar, set_keys
+from ..interface.commands import Command, MenuBar
 from ..marking import Marking, Room
 from ..messages import Message
 from ..panels.face import FacePanel, MuscleNote
@@ -125,7 +125,7 @@ class Application(ApplicationContext):
             *menus.live_menu(self.live),
             *menus.help_menu(self.panel_state, lambda: self.first_steps.begin()),
         )
-        self.gui.keys = set_keys(self.commands, settings.keys)
+        self.gui.keys = {each.label: each.displayed_keys for each in self.commands}
         self.life = IdleLife(session, lambda: settings.is_alive, lambda: self.view.camera.eye)
         self.physics = Physics(session, self.times)
         self.painter = Painter(self.stage, self.view, self.messages)

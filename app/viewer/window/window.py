@@ -235,7 +235,6 @@ class Viewer(Application):
             dialogs = self.chooser.draw, self.export_dialog.draw
             for draw in (
                 partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
-                self.files.poll,
                 *(() if self.question.is_open else dialogs),  # which wait for the answer
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
