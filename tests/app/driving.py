@@ -106,6 +106,14 @@ def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button:
     xdotool(viewer, "mousemove_relative", "--", *by)
 
 
+def drag_and_release(
+    viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1
+) -> None:
+    """Press, move and let go there."""
+    drag(viewer, place, by, button=button)
+    xdotool(viewer, "mouseup", button)
+
+
 def write(viewer: Viewer, text: str) -> None:
     """Type into the line that has the focus."""
     xdotool(viewer, "type", text)

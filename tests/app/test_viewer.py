@@ -15,8 +15,8 @@ import pytest
 from PIL import Image
 
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.overlays import pointed_lines
 from risorius.app.viewer.panels.help import COLUMNS, NARROW_COLUMNS
-from risorius.app.viewer.session.physics import MOST_STEPS
 from risorius.app.viewer.settings import Display, Settings, load_settings
 
 from .driving import (
@@ -25,6 +25,7 @@ from .driving import (
     clear_search,
     click,
     drag,
+    drag_and_release,
     middle,
     moved,
     nose,
@@ -42,8 +43,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer: Viewer) -> None:
     """Search the jaw, drag its slider: the vertices move; Ctrl+Z closes the mouth again."""
     show_controls(viewer, "jaw open")
-    drag(viewer, middle(viewer, "jaw_open"), (60, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, "jaw_open"), (60, 0))
     clear_search(viewer)
     assert viewer.session.values["jaw_open"] > 0.4
     assert until(viewer, lambda: moved(viewer) > 8.0)
@@ -72,12 +72,10 @@ def test_linked_sides_move_together(viewer: Viewer) -> None:
     """One slider for both sides; unlinked, each has its own."""
     show_controls(viewer, "zygom maj")
     left, right = "zygomaticus_major_left", "zygomaticus_major_right"
-    drag(viewer, middle(viewer, left), (30, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, left), (30, 0))
     assert viewer.session.values[left] == viewer.session.values[right] > 0.1
     click(viewer, "Link sides")
-    drag(viewer, middle(viewer, right), (-60, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, right), (-60, 0))
     click(viewer, "Link sides")
     clear_search(viewer)
     assert viewer.session.values[right] == 0.0 < viewer.session.values[left]
@@ -120,8 +118,7 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer: Viewer) -> None:
     """The right button turns the camera anywhere, the left beside the face; F frames again."""
     view = viewer.view.camera.view_matrix().copy()
     for button, place in ((3, nose(viewer)), (1, on_screen(viewer, SIZE[0] - 20, 100))):
-        drag(viewer, place, (-80, 20), button=button)
-        xdotool(viewer, "mouseup", button)
+        drag_and_release(viewer, place, (-80, 20), button=button)
         turned = viewer.view.camera.view_matrix().copy()
         assert np.abs(turned - view).max() > 0.1
         xdotool(viewer, "key", "f")
@@ -165,6 +162,25 @@ def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
     changed = np.abs(viewer.surface.read_scene()[:, left:].astype(int) - before).max(axis=2)
     assert (changed > 40).sum() > 30
     clear_search(viewer)
+
+
+def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
+    """A kiss lights the lips and no forehead; a clicked muscle is seen while it is named."""
+    xdotool(viewer, "mousemove", *middle(viewer, "show kiss"))
+    assert until(viewer, lambda: "orbicularis_oris_sphincter" in viewer.view.pointed)
+    scene, shares = viewer.session.scene, viewer.view.pointed
+    drawn = pointed_lines(scene, shares)
+    brows = scene.rest_positions[scene.head.landmarks[27], 1]
+    points = np.concatenate([line for lines in drawn for line in lines.polylines])
+    assert len(drawn) >= 6 and points[:, 1].max() < brows
+    assert max(lines.opacity for lines in drawn) > 0.8 > min(lines.opacity for lines in drawn)
+    xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
+    assert until(viewer, lambda: not viewer.view.pointed)
+    x, y = nose(viewer)
+    xdotool(viewer, "mousemove", x + 40, y, "click", 1)
+    assert until(viewer, lambda: bool(viewer.muscle_note.name))
+    assert until(viewer, lambda: viewer.muscle_note.name in viewer.view.pointed)
+    xdotool(viewer, "key", "Escape")
 
 
 @pytest.mark.slow
@@ -222,25 +238,13 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     assert not viewer.messages.is_error
 
 
-def test_thresholds_are_offered_where_they_count(viewer: Viewer) -> None:
-    """With the paper's criterion, also beside another; not where they would do nothing."""
-    click(viewer, "tab Mechanism")
-    offered = {}
-    for criterion in ("displacement", "normal+rest", "normal"):
-        viewer.settings.display.options["kahler"] = {"criterion": criterion}
-        settle(viewer)
-        offered[criterion] = "threshold_once" in viewer.gui.places
-    assert offered == {"displacement": False, "normal+rest": True, "normal": True}
-
-
 def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
     """Dragged to the left they are gone from the picture; a right click brings them back."""
     viewer.session.toggle_alone("surprise")
     click(viewer, "tab Mechanism")
     assert until(viewer, lambda: viewer.is_idle)
     assert viewer.settings.display.wrinkles == 1.0 and viewer.stage.refined.stream.has_bumps
-    drag(viewer, middle(viewer, "wrinkles"), (-400, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, "wrinkles"), (-400, 0))
     assert viewer.settings.display.wrinkles == 0.0 and not viewer.stage.refined.stream.has_bumps
     xdotool(viewer, "click", 3)
     xdotool(viewer, "mousemove", *middle(viewer, "wrinkles"))
@@ -285,16 +289,6 @@ def test_help_and_themes(viewer: Viewer) -> None:
         assert np.abs(viewer.surface.read().astype(int) - before).mean() > 3.0, key
         xdotool(viewer, "key", key)
     assert not viewer.panel_state.is_help_open and viewer.settings.theme == "light"
-
-
-def test_a_stalled_window_goes_on_calmly(viewer: Viewer) -> None:
-    """Ten seconds of standstill are not caught up at once: nothing explodes."""
-    xdotool(viewer, "key", "2")
-    before = viewer.session.time
-    viewer._last -= 10.0
-    viewer.frame()
-    assert np.isfinite(viewer.session.scene.positions).all() and moved(viewer) < 60.0
-    assert viewer.session.time - before <= MOST_STEPS / 60.0
 
 
 def test_an_idle_window_rests(viewer: Viewer) -> None:

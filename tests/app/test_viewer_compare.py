@@ -10,6 +10,7 @@ from PIL import Image
 
 from risorius.app.capture.captions import plate
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.setting_rules import SKINS
 from risorius.app.viewer.settings import Display
 
 from .driving import (
@@ -17,6 +18,7 @@ from .driving import (
     clear_search,
     click,
     drag,
+    drag_and_release,
     middle,
     nose,
     on_screen,
@@ -25,6 +27,10 @@ from .driving import (
     until,
     xdotool,
 )
+
+from risorius import render  # isort: skip
+from risorius.app.anatomy import AnatomyView
+from risorius.app.capture import Capture, CaptureOptions
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -54,8 +60,7 @@ def test_side_by_side_is_two_equal_halves(viewer: Viewer) -> None:
     """Wherever the line of the wipe was left; between halves there is nothing to drag."""
     xdotool(viewer, "key", "d")
     left, top, width, height = viewer.view.area
-    drag(viewer, on_screen(viewer, left + 0.5 * width, top + 0.1 * height), (90, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, on_screen(viewer, left + 0.5 * width, top + 0.1 * height), (90, 0))
     first, second = widths(viewer)
     assert first > second + 100
     xdotool(viewer, "key", "shift+d")
@@ -64,24 +69,11 @@ def test_side_by_side_is_two_equal_halves(viewer: Viewer) -> None:
     (line, _), *grips = viewer.surface.rules
     assert not grips and abs(line[0] + 0.5 * line[2] - left - 0.5 * width) <= 2
     divider = viewer.settings.display.divider
-    drag(viewer, on_screen(viewer, left + 0.5 * width, top + 0.1 * height), (30, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, on_screen(viewer, left + 0.5 * width, top + 0.1 * height), (30, 0))
     assert viewer.settings.display.divider == divider
     xdotool(viewer, "key", "d")
     first, second = widths(viewer)
     assert first > second + 100  # the wipe is where it was
-
-
-def test_a_line_of_text_leaves_captions_free(viewer: Viewer) -> None:
-    """What the left side of a comparison is stays in sight below it."""
-    xdotool(viewer, "key", "d")
-    viewer.messages.say("Something was done")
-    assert until(viewer, lambda: bool(viewer.surface.labels) and "message" in viewer.gui.places)
-    settle(viewer)
-    x, y, image = viewer.surface.labels[0]
-    left, _, _, bottom = viewer.gui.places["message"]
-    assert left < x + image.shape[1], "else this shows nothing"
-    assert bottom <= viewer.surface.size[1] - y - len(image)
 
 
 def seen_labels(viewer: Viewer, page: np.ndarray, origin: tuple[int, int]) -> list[bool]:
@@ -185,17 +177,6 @@ def test_what_is_seen_can_be_undone_like_a_pose(viewer: Viewer) -> None:
     assert viewer.settings.display == Display(wireframe=True)
 
 
-def test_undoing_a_look_leaves_a_script_playing(viewer: Viewer) -> None:
-    """Nothing but the picture changes."""
-    viewer.session.is_looping = True
-    xdotool(viewer, "key", "w")
-    xdotool(viewer, "key", "space")
-    xdotool(viewer, "key", "c")
-    xdotool(viewer, "key", "ctrl+z")
-    assert viewer.settings.display == Display(wireframe=True) and viewer.session.is_playing
-    xdotool(viewer, "key", "space")
-
-
 def test_the_number_pad_looks_from_all_sides(viewer: Viewer) -> None:
     """Exactly, and about the same point from as far; Alt does where there is no number pad."""
     camera = viewer.view.camera
@@ -254,8 +235,7 @@ def test_light_background_and_tone_are_chosen(viewer: Viewer) -> None:
 def test_a_person_takes_the_place_and_goes_again(viewer: Viewer) -> None:
     """Script, pose and what can be undone stay; the menu brings the built-in head back."""
     show_controls(viewer, "jaw open")
-    drag(viewer, middle(viewer, "jaw_open"), (60, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, "jaw_open"), (60, 0))
     clear_search(viewer)
     pose, script = dict(viewer.session.values), viewer.session.script
     built_in = viewer.session.scene.rest_positions
@@ -271,3 +251,25 @@ def test_a_person_takes_the_place_and_goes_again(viewer: Viewer) -> None:
     assert np.array_equal(viewer.session.scene.rest_positions, built_in)
     xdotool(viewer, "key", "ctrl+z")
     assert viewer.session.values["jaw_open"] == 0.0
+
+
+def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
+    """U switches them on and off; nothing stays behind."""
+    settle(viewer)
+    usual = viewer.stage.draw_image(viewer.view).astype(int)
+    xdotool(viewer, "key", "u")
+    settle(viewer)
+    assert viewer.settings.display.overlays == ["muscles"]
+    shown = viewer.stage.draw_image(viewer.view).astype(int)
+    assert (np.abs(shown - usual).max(axis=2) > 16).mean() > 0.05
+    size = shown.shape[1], shown.shape[0]
+    style = render.Style(albedo=SKINS["textured"][1], background=viewer.view.background)
+    options = CaptureOptions(size=size, style=style, anatomy=AnatomyView(("muscles",)))
+    with Capture(viewer.session.scene, options) as capture:
+        capture.camera = viewer.view.camera
+        off = np.abs(capture.draw_image().astype(int) - shown)
+    assert np.percentile(off, 99) <= 2.0
+    viewer.surface.make_current()
+    xdotool(viewer, "key", "u")
+    settle(viewer)
+    assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)

@@ -23,7 +23,14 @@ from risorius.app.viewer.settings import ExportChoices
 from risorius.app.workers import child
 from risorius.render import LIGHT, LIGHTS, Style
 
-from .driving import NEEDS_A_SCREEN, click, settle, until, write, xdotool
+from .driving import (
+    NEEDS_A_SCREEN,
+    click,
+    settle,
+    until,
+    write,
+    xdotool,
+)
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -200,30 +207,6 @@ def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     assert not viewer.exporter.is_asking
 
 
-@pytest.mark.parametrize(("folder", "name"), [("~nobody", "j"), (".", "x" * 300)])
-def test_a_path_that_cannot_be_is_no_trap(viewer: Viewer, folder: str, name: str) -> None:
-    """While it is typed the dialog goes on, Escape closes it, and it comes up again."""
-    for _ in range(2):
-        viewer.settings.export.folder = folder
-        xdotool(viewer, "key", "F10")
-        viewer.exporter.name = name
-        settle(viewer)
-        assert "export: Cancel" in viewer.gui.places and not viewer.messages.text
-        xdotool(viewer, "key", "Escape")
-        assert not viewer.exporter.is_asking
-
-
-def test_enter_opens_the_list_that_tab_came_to(viewer: Viewer) -> None:
-    """It begins the export only where no other widget is meant."""
-    xdotool(viewer, "key", "F10")
-    xdotool(viewer, "key", "Tab")
-    xdotool(viewer, "key", "Return")
-    assert until(viewer, lambda: "Write: Film (.mov)" in viewer.gui.places)
-    assert viewer.exporter.job is None
-    xdotool(viewer, "key", "Escape")
-    assert viewer.exporter.is_asking
-
-
 def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> None:
     """What fails in the other process is told here, and nothing is left."""
     viewer.settings.export.kind = "sheet"
@@ -231,3 +214,18 @@ def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> No
     finish(viewer)
     assert viewer.messages.is_error and "no pose has a name" in viewer.messages.text
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_name_is_free_for_its_kind(viewer: Viewer, tmp_path: Path) -> None:
+    """A film of that name is no reason to call a mesh otherwise."""
+    viewer.settings.export = ExportChoices(kind="mp4", folder=str(tmp_path))
+    xdotool(viewer, "key", "F10")
+    name = viewer.exporter.name
+    xdotool(viewer, "key", "Escape")
+    (tmp_path / f"{name}.mp4").touch()
+    xdotool(viewer, "key", "F10")
+    assert viewer.exporter.name == f"{name}-2"
+    viewer.settings.export.kind = "gltf"
+    viewer.exporter.propose()
+    assert viewer.exporter.name == name
+    xdotool(viewer, "key", "Escape")

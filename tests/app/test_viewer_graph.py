@@ -155,19 +155,6 @@ def test_handles_set_slopes(viewer: Viewer) -> None:
     assert viewer.session.script == before
 
 
-def test_a_name_selects_its_curve(viewer: Viewer) -> None:
-    """A click on a name selects all keys of that curve, which comes to the front."""
-    graph = viewer.timeline.dope_sheet.graph
-    click(viewer, "row track blink")
-    assert {place.track for place in viewer.selection.places} == {"blink"}
-    assert len(viewer.selection.places) == 4 and graph.curves[-1].name == "track blink"
-    click(viewer, "row pose joy")
-    assert {place.track for place in viewer.selection.places} == {POSES}
-    assert graph.curves[0].name == "track blink"
-    click(viewer, "row Tracks")  # which folds them away
-    assert {curve.name for curve in graph.curves} == {"pose joy", "pose jaw_open"}
-
-
 def test_the_timeline_is_dragged_taller(viewer: Viewer, tmp_path: Path) -> None:
     """Its upper edge goes where it is dragged, and is remembered."""
     height = viewer.timeline.height()

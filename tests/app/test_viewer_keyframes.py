@@ -148,36 +148,6 @@ def test_edited_scripts_survive_a_file(session: Session, tmp_path: Path) -> None
     assert load_script(HELLO) == parse_script(script_text(load_script(HELLO)), source="x")
 
 
-def test_undo_takes_back_an_edit_wherever_one_looks(session: Session) -> None:
-    """Scrubbing is no step of its own: one undo after it takes back the edit."""
-    before = session.script
-    session.seek(1.0)
-    session.note()
-    session.edit(keyframes.moved(session.script, Places.of(JOY), 0.5)[0])
-    for time in (0.5, 2.0, 3.0):
-        session.seek(time)
-        session.note()
-    assert session.script_is_unsaved
-    session.undo()
-    assert session.script == before and not session.script_is_unsaved
-    session.redo()
-    assert pose_times(session.script) == [0.0, 1.5, 3.0, 4.0]
-
-
-def test_a_key_set_is_one_step(session: Session) -> None:
-    """Undo after setting a key brings back the script, and the pose as one made by hand."""
-    before = session.script
-    session.seek(2.0)
-    session.set("jaw_open", 0.5)
-    session.note()
-    session.set_key()
-    assert not session.has_unsaved_pose and session.script_is_unsaved
-    assert session.script.at(2.0)["jaw_open"] == pytest.approx(0.5)
-    session.undo()
-    assert session.script == before and session.has_unsaved_pose
-    assert session.values["jaw_open"] == 0.5
-
-
 def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) -> None:
     """A key that moves away from under the playhead is seen to; a pose by hand stays."""
     session.seek(1.0)
@@ -233,24 +203,6 @@ def test_rows_of_the_timeline(hello: Script) -> None:
     assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out\nJoy 1.00\nJaw open 0.10"
     assert described(hello, Places.of(KeyPlace("blink", 2.12))) == "2.12 s, ease-in\nBlink 1.00"
     assert described(hello, Places.of(KeyPlace(POSES, 0.0))) == "0.00 s\nneutral"
-
-
-def test_rows_stand_in_groups(hello: Script) -> None:
-    """Each group that has tracks is a row that they are folded into."""
-    blink = hello.tracks["blink"]
-    tracks = {"AU12_left": blink, "joy": blink, "AU4": blink}
-    groups = {"Expressions": ["joy", "anger"], "Visemes": ["aa"], "Units": ["AU4", "AU12_left"]}
-    rows = all_tracks(replace(hello, poses=(), tracks=tracks), groups)
-    assert [row.label for row in rows] == [
-        "Tracks",
-        "Expressions",
-        "Joy",
-        "Units",
-        "AU4",
-        "AU12 left",
-    ]
-    assert [len(row.parents) for row in rows] == [0, 1, 2, 1, 2, 2]
-    assert len({row.name for row in rows}) == len(rows) and len(rows[3].places) == 8
 
 
 @given(amount=st.floats(-3.0, 3.0), choice=st.lists(st.booleans(), min_size=8, max_size=8))

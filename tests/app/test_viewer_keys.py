@@ -10,9 +10,6 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
-from risorius.app.script import load_script
-from risorius.app.script.keyframes import POSES
-from risorius.app.script.places import KeyPlace
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import load_settings, save_settings
 
@@ -20,9 +17,7 @@ from .driving import (
     NEEDS_A_SCREEN,
     clear_search,
     click,
-    key_at,
     middle,
-    settle,
     show_controls,
     until,
     xdotool,
@@ -63,19 +58,6 @@ def test_a_number_is_typed_into_a_slow_window(viewer: Viewer) -> None:
     slowly(viewer, "click", 1, "sleep", 2, "click", 1)
     assert not imgui.get_io().want_text_input  # two clicks, no double click
     clear_search(viewer)
-
-
-def test_a_pose_is_named_in_a_slow_window(viewer: Viewer) -> None:
-    """Words typed right after the double click are the name; none of them is a shortcut."""
-    viewer.session.open(load_script(Path(__file__).parents[2] / "docs" / "hello.toml"))
-    settle(viewer)
-    place = key_at(viewer, KeyPlace(POSES, 1.0))
-    xdotool(viewer, "mousemove", *place)
-    double = ("click", "--repeat", 2, "--delay", 100, 1)
-    slowly(viewer, *double, *typed("big smile"))
-    names = [pose.name for pose in viewer.session.script.poses]
-    assert "big smile" in names
-    assert not viewer.session.is_playing and not viewer.session.has_unsaved_pose
 
 
 @pytest.mark.slow
@@ -153,16 +135,6 @@ def test_the_overview_names_each_command_and_key_once(viewer: Viewer) -> None:
     doing = [each for each in viewer.commands if each.submenu is None]
     for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
         assert len(each) == len({*each})
-
-
-def test_messages_name_keys(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The line at the foot of the picture."""
-    shown: list[str] = []
-    monkeypatch.setattr(imgui, "text_unformatted", shown.append)
-    viewer.session.set("jaw_open", 0.5)
-    viewer.messages.say(viewer.session.seek(0.0) or "")
-    settle(viewer)
-    assert "Jaw open not keyed, so let go; Ctrl+Z brings the pose back" in shown
 
 
 def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from .driving import (
     clear_search,
     click,
     drag,
+    drag_and_release,
     middle,
     moved,
     on_screen,
@@ -49,12 +50,10 @@ def test_headings_stay_folded(viewer: Viewer) -> None:
 def test_the_panel_can_be_made_wider(viewer: Viewer) -> None:
     """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
     left, top, _, height = viewer.view.area
-    drag(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
     assert viewer.view.area[0] == pytest.approx(left - 90, abs=3)
     viewer.settings.panel_width = 22.5
-    drag(viewer, on_screen(viewer, viewer.view.area[0] - 1, top + 0.5 * height), (5, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, on_screen(viewer, viewer.view.area[0] - 1, top + 0.5 * height), (5, 0))
 
 
 @pytest.mark.parametrize("zoom", [1.0, 3.0])
@@ -176,3 +175,19 @@ def test_a_slider_answers_at_once_while_the_face_moves(viewer: Viewer) -> None:
         viewer.refresh = REFRESH
         xdotool(viewer, "mouseup", 1)
         clear_search(viewer)
+
+
+def test_the_cloth_falls_in_the_window(tmp_path: Path) -> None:
+    """Let go, it hangs after some seconds; the ball turns where nothing else moves, too."""
+    with Viewer(script_for(None, "cloth"), (480, 360), settings_path=tmp_path / "s.json") as viewer:
+        settle(viewer)
+        assert {"drop", "turn"} <= viewer.gui.places.keys()  # sliders are there at once
+        assert next(iter(viewer.layout._tabs)) == "Cloth###Face"  # it has none
+        scene = viewer.session.scene
+        viewer.session.set("turn", 0.25)
+        assert until(viewer, lambda: bool(np.isclose(scene.bone_transforms()["ball"][0, 2], 1.0)))
+        viewer.session.set("drop", 1.0)
+        assert until(viewer, lambda: float(scene.positions[:, 1].min()) < -100.0)
+        assert viewer.session.controls.limits["turn"] == (-2.0, 2.0)
+        frame = viewer.surface.read()
+        assert frame.std() > 10.0

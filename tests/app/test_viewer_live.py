@@ -18,7 +18,6 @@ from risorius.app.live.sender import Sender
 from risorius.app.recordings.calibration import Calibration
 from risorius.app.scenes import build_scene
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.panels.live import shown_of
 from risorius.app.viewer.session import live_commands
 from risorius.app.viewer.session.live_commands import LiveCommands
 
@@ -276,14 +275,3 @@ def test_another_head_follows_at_once(viewer: Viewer) -> None:
         assert viewer.session.current["jawOpen"] == pytest.approx(0.8) and moved(viewer) > 5.0
     finally:
         viewer.show_scene(before)
-
-
-def test_a_face_that_is_lost_leaves_no_bars(viewer: Viewer) -> None:
-    """What came last is not shown as if it still came."""
-    face = listen(viewer)
-    hold(viewer, face, 0.5, jawOpen=0.8)
-    shown = shown_of(face)
-    assert shown["jawOpen"] == pytest.approx(0.8)
-    assert until(viewer, lambda: face.state is State.LOST)
-    shown = shown_of(face)
-    assert "jawOpen" in shown and not any(shown.values())

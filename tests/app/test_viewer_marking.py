@@ -75,19 +75,6 @@ def test_every_landmark_has_a_name_of_its_own() -> None:
         assert GROUP_OF[number] is GROUP_OF[int(MIRRORED[number])]
 
 
-def test_five_points_stand_the_head_up_and_give_the_rest(marking: Marking) -> None:
-    """The head is upright in millimetres then, and each step can be undone."""
-    mark_first(marking)
-    assert marking.marks.is_complete and len(marking.marks.guessed) == 63
-    assert np.median(off(marking)) < 2.0 * METRES
-    eyes = marking.seen((36, 45))[0]
-    assert eyes[1, 0] - eyes[0, 0] > 60.0 and abs(eyes[1, 1] - eyes[0, 1]) < 8.0
-    marking.undo()
-    assert marking.current == FIRST[-1] and len(marking.marks.places) == 4
-    marking.redo()
-    assert marking.marks.is_complete and not marking.history.can_redo
-
-
 @pytest.mark.slow
 def test_the_other_side_is_mirrored(marking: Marking) -> None:
     """The other side of a group; all other points stay, and one in the middle has no side."""
@@ -342,28 +329,6 @@ class TestInTheWindow:
         assert mesh.with_name("kept.json").exists() and viewer.session.values["jaw_open"] == 0.5
 
     @pytest.mark.slow
-    def test_five_points_that_are_no_face_are_told_and_mended(
-        self, viewer: Viewer, mesh: Path
-    ) -> None:
-        """Whatever key is pressed then; a drag brings the guess, and a click beside it a line."""
-        viewer.mark(mesh)
-        self.face_it(viewer)
-        marking = self.room(viewer).marking
-        for number in (*FIRST[:-1], 8):
-            xdotool(viewer, "mousemove", *self.place(viewer, true_places()[number]))
-            xdotool(viewer, "click", 1)
-        assert viewer.messages.is_error and len(marking.marks.places) == len(FIRST)
-        xdotool(viewer, "key", "m", "Right", "g", "ctrl+Return")
-        assert viewer.room is not None and marking.current == FIRST[-1]
-        left, top, _, _ = self.room(viewer).view.area
-        xdotool(viewer, "mousemove", *on_screen(viewer, left + 5, top + 5))
-        xdotool(viewer, "click", 1)
-        assert "no skin" in viewer.messages.text
-        xdotool(viewer, "mousemove", *self.place(viewer, true_places()[FIRST[-1]]))
-        xdotool(viewer, "click", 1)
-        assert until(viewer, lambda: marking.marks.is_complete)
-
-    @pytest.mark.slow
     def test_marks_that_make_no_head_are_told_and_kept(self, viewer: Viewer, mesh: Path) -> None:
         """Use this head: one line, and the marks are there to be mended."""
         viewer.mark(mesh)
@@ -378,18 +343,3 @@ class TestInTheWindow:
         assert until(viewer, lambda: viewer.messages.is_error)
         assert "\n" not in viewer.messages.text and viewer.room is not None
         assert not marking.unsaved and marking.file.exists()
-
-    @pytest.mark.slow
-    def test_everything_is_in_a_small_window(self, viewer: Viewer, mesh: Path) -> None:
-        """The last button is inside, the guide beside the panel."""
-        viewer.mark(mesh)
-        self.mark_first(viewer)
-        room = self.room(viewer)
-        assert until(viewer, lambda: viewer.is_idle)
-        _, _, right, bottom = viewer.gui.places["Leave"]
-        left, top, _, height = room.view.area
-        _, _, guide_width, guide_height = room.view.guide_area
-        assert right < left and bottom < top + height
-        assert guide_width <= left and guide_height > 0.2 * height
-        click(viewer, "Next point")
-        assert room.marking.current == ORDER[1]

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from risorius.app.controls.vocabulary import filters, pads, title_of
+from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.panels.pose_grid import PoseGrid, PoseLibrary
 from risorius.assets.loading import read_words
 
 from .driving import (
@@ -15,7 +19,9 @@ from .driving import (
     clear_search,
     click,
     drag,
+    drag_and_release,
     middle,
+    replace_state,
     settle,
     show_controls,
     until,
@@ -112,8 +118,7 @@ def test_joy_of_one_side(viewer: Viewer) -> None:
     click(viewer, "sides joy")
     assert session.values["joy"] == 0.0
     assert session.values["joy_left"] == session.values["joy_right"] == 0.6
-    drag(viewer, middle(viewer, "joy_right"), (-200, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, "joy_right"), (-200, 0))
     assert session.values["joy_right"] == 0.0 and session.values["joy_left"] == 0.6
     xdotool(viewer, "key", "m")
     assert session.values["joy_left"] == 0.0 and session.values["joy_right"] == 0.6
@@ -123,38 +128,17 @@ def test_joy_of_one_side(viewer: Viewer) -> None:
     assert session.values["joy_left"] == 0.6
 
 
-def test_a_wink_has_two_eyes(viewer: Viewer) -> None:
-    """Each has a bar, and a mirror exchanges them."""
-    drag(viewer, middle(viewer, "wink_right"), (10, 0))
-    xdotool(viewer, "mouseup", 1)
-    assert viewer.session.values["wink_right"] > 0.4 and not viewer.session.values["wink"]
-    xdotool(viewer, "key", "m")
-    assert viewer.session.values["wink"] > 0.4 and not viewer.session.values["wink_right"]
-
-
-def test_an_expression_is_one_row(viewer: Viewer) -> None:
-    """Its name is the button that shows it alone, its bar says how far."""
-    click(viewer, "show disgust")
-    assert viewer.session.is_alone("disgust")
-    name, bar = viewer.gui.places["show disgust"], viewer.gui.places["disgust"]
-    assert abs(name[1] - bar[1]) < 3.0 and name[2] <= bar[0]
-    click(viewer, "show disgust")
-    assert not any(viewer.session.values.values())
-
-
 @pytest.mark.slow
 def test_pads_move_two_controls_at_once(viewer: Viewer) -> None:
     """Eyes, jaw and head follow the mouse; a double click and Ctrl+Z take it back."""
     session = viewer.session
     for pad in pads():
-        drag(viewer, middle(viewer, f"pad {pad.title}"), (15, 10))
-        xdotool(viewer, "mouseup", 1)
+        drag_and_release(viewer, middle(viewer, f"pad {pad.title}"), (15, 10))
         across, along = session.values[pad.across], session.values[pad.along]
         assert across > 0.1 and (along > 0.5 if pad.title == "Jaw" else along < -0.1), pad.title
         click(viewer, f"pad {pad.title}", times=2)
         assert session.values[pad.across] == session.values[pad.along] == 0.0, pad.title
-    drag(viewer, middle(viewer, "pad Head"), (20, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, "pad Head"), (20, 0))
     xdotool(viewer, "key", "ctrl+z")
     assert session.values["head_yaw"] == 0.0
 
@@ -192,3 +176,67 @@ def test_words_are_of_controls_that_there_are(viewer: Viewer) -> None:
     assert all(map(is_known, [*words["names"], *found]))
     groups = {title for titles in words["filters"].values() for title in titles}
     assert groups == set(controls.groups)
+
+
+def values_of(viewer: Viewer) -> dict[str, float]:
+    """What is not 0."""
+    return {name: value for name, value in viewer.session.values.items() if value}
+
+
+@pytest.mark.slow
+def test_a_picture_is_taken_blended_and_mirrored(viewer: Viewer) -> None:
+    """By a click, a drag to the right, and with Shift; Ctrl+Z takes each back in one step."""
+    viewer.settings.folds["Pose pictures"] = True
+    assert until(viewer, lambda: "pose Joy" in viewer.gui.places)
+    click(viewer, "pose Joy")
+    assert values_of(viewer) == {"joy": 1.0}
+    drag(viewer, middle(viewer, "pose Anger"), (10, 0))
+    left, _, right, _ = viewer.gui.places["pose Anger"]
+    xdotool(viewer, "mousemove_relative", "--", round(0.4 * (right - left)), 0)
+    xdotool(viewer, "mouseup", 1)
+    blended = values_of(viewer)
+    assert 0.3 < blended["anger"] < 0.7 and blended["joy"] == pytest.approx(1.0 - blended["anger"])
+    xdotool(viewer, "key", "ctrl+z")
+    assert values_of(viewer) == {"joy": 1.0}
+    xdotool(viewer, "keydown", "shift")
+    click(viewer, "pose Wink")
+    xdotool(viewer, "keyup", "shift")
+    assert values_of(viewer) == {"wink_right": 1.0}
+    xdotool(viewer, "key", "ctrl+z", "ctrl+z")
+    assert not values_of(viewer)
+
+
+def test_a_pose_is_kept_with_a_picture(viewer: Viewer, tmp_path: Path) -> None:
+    """In a folder, as a plain script; and it is there the next time."""
+    grid = viewer.face_panel.poses
+    folder, unusable = tmp_path / "poses", tmp_path / "poses" / "broken.toml"
+    folder.mkdir()
+    unusable.write_text("[[pose")
+    grid.close()
+    replace_state(grid, PoseGrid(viewer, folder))
+    viewer.settings.folds["Pose pictures"], viewer.settings.folds["Expressions"] = True, False
+    viewer.session.set("jaw_open", 0.6)
+    viewer.settings.zoom = 0.6
+    settle(viewer)  # until all is in its place
+    try:
+        click(viewer, "Keep this pose")
+        assert until(viewer, lambda: "pose Pose 1" in viewer.gui.places)
+        viewer.session.neutral()
+        click(viewer, "pose Pose 1")
+    finally:
+        viewer.settings.zoom = 1.0
+    assert values_of(viewer) == {"jaw_open": 0.6}
+    assert load_script(folder / "Pose 1.toml").at(0.0)["jaw_open"] == 0.6
+    assert set(PoseLibrary(viewer.session.scene, folder).own) == {"Pose 1"}
+
+
+def test_pictures_show_their_poses(viewer: Viewer) -> None:
+    """Each another; and the window's own picture is not disturbed."""
+    poses = PoseLibrary(viewer.session.scene, None)
+    try:
+        joy, anger = (poses.picture({name: 1.0}).astype(int) for name in ("joy", "anger"))
+        assert np.abs(joy - anger).max() > 60
+        assert np.abs(joy - poses.picture({"joy": 1.0})).max() <= 1
+    finally:
+        poses.close()
+        viewer.surface.make_current()

@@ -14,23 +14,12 @@ from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import (
-    TOLERANCE,
-    Channel,
-    Script,
-    is_pose,
-    keyframes,
     load_script,
-    pose_script,
-    save_script,
 )
-from risorius.app.script.places import Places
-from risorius.app.script.recorder import Recorder
-from risorius.app.viewer.messages import Messages
 from risorius.app.viewer.overlays import LINES, overlays_of
 from risorius.app.viewer.panels.rows import rows_of, search_rows
 from risorius.app.viewer.picture import picking
 from risorius.app.viewer.picture.painter import FULL, LEVELS, PATIENCE, LevelOfDetail
-from risorius.app.viewer.session.document import Document
 from risorius.app.viewer.session.history import MOST_GROWTH, History
 from risorius.app.viewer.session.physics import EARLIEST, MOST_STEPS, STEP, Clock
 from risorius.app.viewer.session.session import Session
@@ -54,16 +43,6 @@ def run(session: Session, steps: int = STEPS) -> None:
     """Let so many steps of time pass."""
     for _ in range(steps):
         session.advance(STEP)
-
-
-def test_a_pose_is_a_script_that_stands_still(tmp_path: Path) -> None:
-    """A pose file holds what is not zero, and is told from a script."""
-    pose = pose_script({"jaw_open": 0.5, "joy": 0.0}, title='A "pose"', scene="face")
-    save_script(tmp_path / "pose.toml", pose)
-    read = load_script(tmp_path / "pose.toml")
-    assert is_pose(read) and read.at(0.0) == {"jaw_open": 0.5}
-    assert read.title == 'A "pose"'
-    assert not is_pose(script_for(None, "face"))
 
 
 def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path: Path) -> None:
@@ -132,31 +111,6 @@ def test_an_empty_recording_is_refused(session: Session) -> None:
     assert session.script is script and not session.is_recording
 
 
-def test_recordings_keep_corners_only() -> None:
-    """Straight movements need two keys, and no key is further off than the tolerance."""
-    limits = dict.fromkeys(("wave", "ramp", "rest"), (0.0, 1.0))
-    recorder = Recorder(Script("t", 0.0, "t"), 0.0, limits)
-    times = np.arange(1, 241) * STEP
-    wave = 0.5 - 0.5 * np.cos(3.0 * times)
-    for time, value in zip(times, wave, strict=True):
-        recorder.add(time, {"wave": value, "ramp": time / 4.0, "rest": 0.0})
-    script = recorder.script()
-    assert script is not None and set(script.tracks) == {"wave", "ramp"}
-    assert len(script.tracks["ramp"].keys) <= 3
-    assert len(script.tracks["wave"].keys) < 100
-    played = [script.at(time)["wave"] for time in times]
-    assert np.abs(np.array(played) - wave).max() <= TOLERANCE + 1e-9
-
-
-def test_history_ends_somewhere() -> None:
-    """Undoing before the first state stays there; equal states count once."""
-    history = History(0, lambda before, after: 0)
-    for state in (1, 1, 2):
-        history.note(state)
-    assert [history.go(history.place - 1) for _ in range(3)] == [1, 0, 0]
-    assert [history.go(history.place + 1) for _ in range(3)] == [1, 2, 2]
-
-
 def test_history_does_not_fill_the_memory() -> None:
     """The oldest states go where many share nothing with the one before; one undo stays."""
     history = History(0, lambda before, after: MOST_GROWTH // 3)
@@ -167,17 +121,6 @@ def test_history_does_not_fill_the_memory() -> None:
     history.note(1)
     history.note(2)
     assert [history.go(place) for place in (0, -1, 1)] == [1, 1, 2]
-
-
-def test_history_counts_what_is_not_shared(session: Session) -> None:
-    """An edit of one track of a long take costs that track only."""
-    times = np.arange(1, 1001) / 60.0
-    tracks = {name: Channel(times, 0.0 * times) for name in ("joy", "anger", "blink")}
-    before = replace(session.script, tracks=tracks)
-    after = keyframes.without(before, Places({"joy": times[:400]}))
-    assert all(after.tracks[name] is tracks[name] for name in ("anger", "blink"))
-    one, other = (Document(None, script, session.file) for script in (before, after))
-    assert other.new_keys(one) == 600 and one.new_keys(one) == 0
 
 
 def test_mirror_and_links(session: Session) -> None:
@@ -199,17 +142,6 @@ def test_random_faces_are_symmetric_and_within_limits(session: Session) -> None:
     assert moved == mirrored(moved) and 4 < len(moved) < 60
     session.undo()
     assert not any(session.values.values())
-
-
-def test_rows_of_arkit_shapes() -> None:
-    """Sides share a row, found by any of its names; directions do not: both at once do nothing."""
-    names = ["mouthSmileLeft", "mouthSmileRight", "jawLeft", "jawRight", "jawOpen"]
-    rows = rows_of(names, dict.fromkeys(names, 0.0), linked=True)
-    assert [row.sides or row.names for row in rows] == [
-        ("mouthSmileRight", "mouthSmileLeft"), ("jawLeft",), ("jawRight",), ("jawOpen",),
-    ]  # fmt: skip
-    (found,) = search_rows(rows, "mouthsmileleft", group="", actions={})
-    assert found.label == "mouthSmile"
 
 
 def test_rows_join_sides() -> None:
@@ -292,16 +224,6 @@ def test_no_ray_slips_between_triangles(scene: FaceScene) -> None:
             assert np.linalg.norm(point - ray.origin) < 400.0 + 1e-6
 
 
-def test_the_muscle_under_a_point(scene: FaceScene) -> None:
-    """The nearest fibre's muscle within reach, or none."""
-    fibres = scene.simulation.fibres()
-    for name in (f"{SMILE}_left", "frontalis_medial_right", "mentalis_left"):
-        line = fibres[name][0]
-        assert picking.muscle_at(line[len(line) // 2], {name: fibres[name]}) == name
-    assert picking.muscle_at(np.array([0.0, 0.0, 1e4]), fibres) is None
-    assert picking.muscle_at(np.zeros(3), {}) is None
-
-
 def test_the_page_shows_every_picture_of_the_tour() -> None:
     """docs/viewer.md and the program that draws its pictures agree, and the files are there."""
     page = Path("docs/viewer.md").read_text(encoding="utf-8")
@@ -369,19 +291,3 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
         session.advance(STEP)
     session.toggle_recording()
     assert session.script.at(0.25)["jaw_open"] == pytest.approx(0.5, abs=0.05)
-
-
-@pytest.mark.parametrize(
-    ("line", "shown"),
-    [
-        ("nothing was recorded: no control moved", "Nothing was recorded: no control moved"),
-        ("my smile.toml: opened", "my smile.toml: opened"),
-        ("give it 2.5 s", "Give it 2.5 s"),
-        ("", ""),
-    ],
-)
-def test_lines_are_sentences(line: str, shown: str) -> None:
-    """They begin with a capital, but names of files stay as they are."""
-    messages = Messages()
-    messages.say(line)
-    assert messages.text == shown

@@ -9,7 +9,9 @@ import pytest
 from PIL import Image
 
 from risorius.app.viewer import Viewer
-from tests.app.driving import (
+from tests.heads import stranger
+
+from .driving import (
     NEEDS_A_SCREEN,
     clear_search,
     drag,
@@ -21,7 +23,6 @@ from tests.app.driving import (
     until,
     xdotool,
 )
-from tests.heads import stranger
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 MAJOR = "zygomaticus_major"

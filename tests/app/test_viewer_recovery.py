@@ -11,25 +11,22 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import Channel, keyframes, load_script
-from risorius.app.script.places import Places
+from risorius.app.script import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.recovery import LONGEST, QUIET, Recovery
 from risorius.app.viewer.session.session import Session
-from risorius.app.viewer.session.unsaved import Work, WorkFiles
+from risorius.app.viewer.session.unsaved import Work
 from risorius.assets.staging import PREFIX
 
 from .driving import DEADLINE, NEEDS_A_SCREEN, SIZE, click, settle, wait_for, xdotool
 
 ROOT = Path(__file__).parents[2]
-POSED = {"jaw_open": 0.4}
 SCRIPT = "# mine\nduration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
 
 
@@ -114,30 +111,6 @@ def test_work_without_a_pause_is_written_too(
     assert 0.2 <= written < 0.3
 
 
-def test_a_long_script_is_written_in_steps(
-    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
-) -> None:
-    """One track is made into text at a time, then all is written; later only what has changed."""
-    names, times = list(session.controls.limits)[:20], np.arange(1, 101) / 60.0
-    tracks = {name: Channel(times, 0.0 * times) for name in names}
-    session.edit(replace(session.script, tracks=tracks))
-    recovery.watch(session)
-    clock.now += 1.1 * QUIET
-    for number in range(20):
-        made = [track.has_lines for track in session.script.tracks.values()]
-        assert sum(made) == number and "script" not in stored_work(tmp_path)
-        recovery.watch(session)
-    recovery.watch(session)
-    path = next((tmp_path / "unsaved").glob("*.script.toml"))
-    assert load_script(path).tracks == tracks
-    session.edit(keyframes.without(session.script, Places({names[0]: times[:50]})))
-    recovery.watch(session)
-    clock.now += 1.1 * QUIET
-    recovery.watch(session)
-    recovery.watch(session)
-    assert load_script(path) == session.script
-
-
 @pytest.mark.slow
 def test_a_recording_is_kept_while_it_goes_on(
     session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
@@ -157,26 +130,6 @@ def test_a_recording_is_kept_while_it_goes_on(
         assert draft.at(moment)["jaw_open"] == pytest.approx(wanted, abs=5e-3)
     whole = len(session.script.tracks["jaw_open"].keys)
     assert len(draft.tracks["jaw_open"].keys) < whole + 10
-
-
-def test_what_is_moved_while_a_recording_is_paused_is_kept(
-    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
-) -> None:
-    """It is a pose then, as after stopping; when the recording goes on, it has that."""
-    session.toggle_recording()
-    session.set("jaw_open", 0.5)
-    session.advance(STEP)
-    session.toggle_playing()
-    session.set("AU12", 0.7)
-    recovery.watch(session)
-    clock.now += QUIET
-    recovery.watch(session)
-    [pose] = (tmp_path / "unsaved").glob("*.pose.toml")
-    assert load_script(pose).at(0.0).items() >= {"AU12": 0.7, "jaw_open": 0.5}.items()
-    session.toggle_playing()
-    session.advance(STEP)
-    recovery.save(session)
-    assert set(stored_work(tmp_path)) == {"recording"}
 
 
 def test_saved_work_is_kept_no_more(
@@ -298,26 +251,6 @@ def test_damaged_work_hides_no_other(session: Session, recovery: Recovery, tmp_p
     assert other.found is None
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="pipes of POSIX systems")
-@pytest.mark.parametrize("name", ['"PIPE"', '"a\\u0000b"', ""])
-def test_a_damaged_name_of_its_file_loses_no_script(
-    session: Session, recovery: Recovery, tmp_path: Path, name: str
-) -> None:
-    """Where the file of a script cannot be that, the script is offered without one."""
-    session.set("jaw_open", 0.25)
-    session.set_key()
-    recovery.save(session)
-    recovery.close()
-    os.mkfifo(tmp_path / "pipe")
-    [stored_script] = (tmp_path / "unsaved").glob("*.script.toml")
-    lines = stored_script.read_text().splitlines()
-    lines[-1] = "# Its file: " + name.replace("PIPE", str(tmp_path / "pipe"))
-    stored_script.write_text("\n".join(lines) + "\n")
-    found = found_by_next(tmp_path, session)
-    assert found is not None and found.script is not None
-    assert found.path is None
-
-
 def test_only_what_fits_the_scene_is_offered(
     session: Session, recovery: Recovery, tmp_path: Path
 ) -> None:
@@ -343,29 +276,6 @@ def test_a_folder_that_takes_nothing_is_told_once(session: Session, clock: Clock
         else:
             recovery.watch(session)
     recovery.close()
-
-
-def test_work_that_fails_to_be_written_leaves_what_was_kept(
-    session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A disk that fills up in the middle of writing: the file of before is still whole."""
-    place = WorkFiles.new(tmp_path)
-    place.write(Work(script=session.script))
-    place.read()
-    before = place.work
-
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "replace", full)
-    longer = replace(session.script, duration=9.0)
-    with pytest.raises(UserError, match="No space left"):
-        place.write(Work(script=longer))
-    assert not place.work
-    place.read()
-    assert place.work == before
-    place.remove()
-    assert [file.name for file in tmp_path.iterdir()] == ["smile.toml"]
 
 
 # Real windows, real signals

@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -146,29 +145,6 @@ def test_what_is_no_file_is_set_aside(path: Path) -> None:
             file.rmdir() if file.is_dir() else file.unlink()
 
 
-def test_a_file_that_may_not_be_read(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is told, and not replaced without a word where it cannot be set aside either."""
-    path.write_text("{}")
-
-    def refuse(*_: object, **__: object) -> None:
-        raise PermissionError(errno.EACCES, "Permission denied")
-
-    monkeypatch.setattr(Path, "open", refuse)
-    monkeypatch.setattr(Path, "rename", refuse)
-    settings, complaint = load_settings(path)
-    assert settings == Settings()
-    assert re.search(r"Permission denied.*cannot be set aside \(.*written anew", complaint)
-
-
-def test_of_many_values_the_first_are_told(path: Path) -> None:
-    """One line has no room for more; it holds no line ends of the file's."""
-    folds = {f"a\nb{number}": number for number in range(100)}
-    path.write_text(json.dumps({"folds": folds}))
-    _, complaint = load_settings(path)
-    assert r"'a\nb0': was 0, must be true or false" in complaint and "\n" not in complaint
-    assert "96 more" in complaint
-
-
 def test_options_that_a_refiner_refuses_give_way_alone() -> None:
     """Unknown ones, other kinds, too much: named; what remains is taken by the refiner."""
     display = Display(
@@ -236,21 +212,3 @@ def test_a_full_disk_is_told_and_closes_the_window(
     viewer.recovery.find(viewer.session)
     assert viewer.recovery.found and viewer.recovery.found.pose
     viewer.recovery.close()
-
-
-@NEEDS_A_SCREEN[0]
-@NEEDS_A_SCREEN[1]
-def test_a_refiner_that_cannot_be_loaded_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The package of somebody else is broken: a line says so, and the window goes on."""
-
-    def broken(*_: Any, **__: Any) -> Any:
-        raise ValueError("refiner 'far' of 'nowhere:X' cannot be loaded")
-
-    with Viewer(script_for(None, "face"), SIZE, display=Display()) as viewer:
-        settle(viewer)
-        monkeypatch.setattr(refiners, "find", broken)
-        viewer.settings.display.refiner = "far"
-        viewer.panel_state.wanted_tab = "Mechanism"
-        settle(viewer)
-        assert viewer.messages.is_error and "cannot be loaded" in viewer.messages.text
-        assert viewer.stage.refined.triangle_count > 0

@@ -12,7 +12,16 @@ from risorius.app.script import load_script
 from risorius.app.sound import player
 from risorius.app.viewer import Viewer
 
-from .driving import NEEDS_A_SCREEN, drag, drop, middle, on_screen, settle, until, xdotool
+from .driving import (
+    NEEDS_A_SCREEN,
+    drag_and_release,
+    drop,
+    middle,
+    on_screen,
+    settle,
+    until,
+    xdotool,
+)
 from .sounds import noise, write_wav
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
@@ -76,8 +85,7 @@ def test_the_waveform_is_seen_and_scrubs(viewer: Viewer, sound: Path, has_device
 
     assert contrast(0.6, 1.9) > 2.0 * contrast(0.1, 0.4)
     place = on_screen(viewer, axis.x(1.5), bottom - 6)
-    drag(viewer, place, (0, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, place, (0, 0))
     assert viewer.session.time == pytest.approx(1.5, abs=0.1)
     assert left < axis.x(0.0) and middle(viewer, "time")
 

@@ -29,6 +29,7 @@ from .driving import (
     SIZE,
     click,
     drag,
+    drag_and_release,
     nose,
     on_screen,
     settle,
@@ -143,8 +144,7 @@ def test_the_steps_tick_themselves_off(viewer: Viewer) -> None:
     xdotool(viewer, "mouseup", 1)
     assert until(viewer, lambda: viewer.messages.text.startswith("No muscle draws"))
     assert not steps.done[0], "it swings back"
-    drag(viewer, (x + 40, y), (65, -65))  # a cheek
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, (x + 40, y), (65, -65))  # a cheek
     assert until(viewer, lambda: steps.done == [True, False, False])
     assert "short of the mouse" in viewer.messages.text
     xdotool(viewer, "key", "d")

@@ -82,24 +82,6 @@ def test_what_is_keyed_or_was_never_moved_is_let_go_in_silence(session: Session)
     assert session.seek(2.5) and session.seek(3.0) is None
 
 
-def test_auto_key_keys_what_is_changed(session: Session) -> None:
-    """Each change is a key at the time shown and one step, and nothing is left to be let go."""
-    session.is_keying = True
-    session.seek(2.0)
-    before = session.script
-    set_by_hand(session, jaw_open=0.6)
-    assert session.script.at(2.0)["jaw_open"] == pytest.approx(0.6) and not session.differing
-    assert session.seek(1.0) is None
-    session.neutral()
-    assert not any(session.script.at(1.0).values())
-    assert session.history.labels[1:] == [
-        "Set jaw open to 0.60, key at 2.00 s", "Neutral, key at 1.00 s"
-    ]  # fmt: skip
-    session.undo()
-    session.undo()
-    assert session.script == before
-
-
 def test_a_key_in_tracks_is_of_what_changed_or_of_all(scene: FaceScene) -> None:
     """K keys the tracks that differ, Shift+K all of them."""
     session = Session(scene, parse_script(TAKE, source="take.toml"))
@@ -370,13 +352,3 @@ def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -
     assert session.script.poses[1].name == "joy"
     session.undo()
     assert places_of(session.script) == {KeyPlace(POSES, 0.0)}
-
-
-def test_delete_needs_the_timeline(session: Session) -> None:
-    """The key takes nothing away where something else was touched last; the menu does."""
-    selection = KeySelection(session, PanelState())
-    selection.places = Places.of(KeyPlace(POSES, 1.0))
-    before = session.script
-    assert "timeline" in str(selection.delete_if_meant()) and session.script is before
-    selection.is_touched = True
-    assert "1 key deleted" in str(selection.delete_if_meant()) and len(session.script.poses) == 3

@@ -9,8 +9,8 @@ import pytest
 from imgui_bundle import imgui
 
 from risorius.app.script import Channel, Script, load_script, save_script
-from risorius.app.script.keyframes import POSES, on_frame, places_of
-from risorius.app.script.places import KeyPlace, Places
+from risorius.app.script.keyframes import POSES, on_frame
+from risorius.app.script.places import KeyPlace
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.timeline.dope_sheet import ROW
 
@@ -20,8 +20,10 @@ from .driving import (
     clear_search,
     click,
     drag,
+    drag_and_release,
     key_at,
     middle,
+    nose,
     on_screen,
     pose_times,
     press,
@@ -60,23 +62,6 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> N
     assert pose_times(viewer)[1] == time and not viewer.session.script_is_unsaved
 
 
-def test_ctrl_leaves_frames_and_escape_leaves_all(viewer: Viewer) -> None:
-    """With Ctrl a key goes anywhere; Escape during a drag puts it back."""
-    drag(viewer, key_at(viewer, JOY), (40, 0))
-    for _ in range(3):  # at least one of three places next to each other is between frames
-        xdotool(viewer, "keydown", "ctrl")
-        xdotool(viewer, "mousemove_relative", "--", 1, 0)
-        time = pose_times(viewer)[1]
-        if time != on_frame(time):
-            break
-    xdotool(viewer, "keyup", "ctrl")
-    assert time != on_frame(time)
-    xdotool(viewer, "key", "Escape")
-    xdotool(viewer, "mouseup", 1)
-    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
-    assert not viewer.session.script_is_unsaved
-
-
 def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
     """The pose under the mouse is selected and shown; Shift adds another and stays."""
     press(viewer, key_at(viewer, JOY))
@@ -95,12 +80,10 @@ def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
     """A drag over nothing takes the keys inside, of poses and tracks; they keep their distance."""
     x, y = key_at(viewer, JOY)
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
-    drag(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
     chosen = viewer.selection.places
     assert {place.track for place in chosen} == {POSES, "blink"} and len(chosen) == 5
-    drag(viewer, key_at(viewer, JOY), (-30, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, key_at(viewer, JOY), (-30, 0))
     by = viewer.session.script.poses[1].time - 1.0
     assert by < -0.1
     times = [key.time + 0.0 for key in viewer.session.script.tracks["blink"].keys]
@@ -133,8 +116,7 @@ def test_the_face_becomes_a_key(viewer: Viewer) -> None:
     """Go to a time, move a slider, press K: a pose is there that shows just this face."""
     viewer.session.seek(2.0)
     show_controls(viewer, "jaw open")
-    drag(viewer, middle(viewer, "jaw_open"), (40, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
     clear_search(viewer)
     wanted = dict(viewer.session.values)
     xdotool(viewer, "key", "k")
@@ -166,24 +148,6 @@ def test_a_pose_is_named(viewer: Viewer) -> None:
     assert not viewer.session.script_is_unsaved
 
 
-def test_the_menus_do_the_same(viewer: Viewer) -> None:
-    """A right click on a key brings up its menu, in which there is more than keys have."""
-    press(viewer, key_at(viewer, REST), button=3)
-    assert viewer.selection.places == {REST}
-    click(viewer, "menu Keys: Easing: hold")
-    assert viewer.session.script.poses[2].easing == "hold"
-    press(viewer, key_at(viewer, REST), button=3)
-    click(viewer, "menu Keys: Delete")
-    assert pose_times(viewer) == [0.0, 1.0, 4.0]
-    click(viewer, "menu Edit")
-    click(viewer, "menu Edit: Undo")
-    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
-    press(viewer, key_at(viewer, REST), button=3)
-    click(viewer, "menu Keys: Name of the pose ...")
-    assert until(viewer, lambda: "pose name" in viewer.gui.places)
-    xdotool(viewer, "key", "Escape")
-
-
 def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
     """A drag in the ruler goes through frames; its end can be dragged; wheels zoom and scroll."""
     axis, session = viewer.time_axis, viewer.session
@@ -203,25 +167,10 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
     xdotool(viewer, "key", "shift+f")
     assert axis.is_whole and axis.start == 0.0
     end = on_screen(viewer, axis.x(4.0) + 3, 0)[0]
-    drag(viewer, (end, y), (-60, 0))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, (end, y), (-60, 0))
     assert 2.0 < session.script.duration < 3.9
     xdotool(viewer, "key", "ctrl+z")
     assert session.script.duration == 4.0
-
-
-def test_a_key_under_the_mouse_tells_what_it_is(viewer: Viewer) -> None:
-    """Pointing at a key brings up a tooltip, pointing beside it none."""
-
-    def is_told() -> bool:
-        windows = imgui.get_current_context().windows
-        return any(each.active and each.name.startswith("##Tooltip") for each in windows)
-
-    x, y = key_at(viewer, JOY)
-    xdotool(viewer, "mousemove", x, y)
-    assert until(viewer, is_told)
-    xdotool(viewer, "mousemove", x + 40, y)
-    assert until(viewer, lambda: not is_told())
 
 
 def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
@@ -236,17 +185,6 @@ def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     x, y = where_key(viewer, KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
     assert viewer.selection.places == {KeyPlace("blink", 2.4)}
-
-
-def test_while_recording_keys_stay(viewer: Viewer) -> None:
-    """A drag then says why not, and the script stays as it was."""
-    before = viewer.session.script
-    xdotool(viewer, "key", "ctrl+r")
-    drag(viewer, key_at(viewer, JOY), (40, 0))
-    xdotool(viewer, "mouseup", 1)
-    assert viewer.messages.is_error and "Stop the recording" in viewer.messages.text
-    assert viewer.session.script is before and viewer.session.is_recording
-    assert places_of(before) >= viewer.selection.places
 
 
 @pytest.fixture(scope="module")
@@ -284,8 +222,7 @@ def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> 
     # The first row that has it is that of all tracks, then come its group and the first track.
     row += 3.0 * ROW * imgui.get_font_size()
     low = on_screen(viewer, axis.x(100.0), row)
-    drag(viewer, low, (round(axis.x(200.0) - axis.x(100.0)), 2))
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, low, (round(axis.x(200.0) - axis.x(100.0)), 2))
     chosen = viewer.selection.places
     assert set(chosen.times) == {second}
     assert 0.9 * 1500 < len(chosen) < 1.1 * 1500
@@ -295,25 +232,9 @@ def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> 
     assert edited.tracks[first] is take.tracks[first]
     xdotool(viewer, "key", "ctrl+z")
     assert viewer.session.script is take
-    drag(viewer, low, (1, 1))  # a click on the curve: the key there, and its moment
-    xdotool(viewer, "mouseup", 1)
+    drag_and_release(viewer, low, (1, 1))  # a click on the curve: the key there, and its moment
     assert len(viewer.selection.places) == 1
     assert viewer.session.time == viewer.selection.places.first == pytest.approx(100.0, abs=5.0)
-
-
-def test_what_is_selected_of_a_dense_track_is_dragged(viewer: Viewer, take: Script) -> None:
-    """A drag on the bar moves all of it."""
-    axis, name = viewer.time_axis, next(iter(take.tracks))
-    settle(viewer)
-    chosen = places_of(take).between(100.0, 200.0) & Places({name: take.tracks[name].times})
-    viewer.selection.places = chosen
-    row = where_key(viewer, KeyPlace(name, 0.0))[1] + 2.0 * ROW * imgui.get_font_size()
-    drag(viewer, on_screen(viewer, axis.x(150.0), row), (40, 0))
-    xdotool(viewer, "mouseup", 1)
-    moved = viewer.selection.places
-    assert len(moved) == len(chosen)
-    assert moved.first - chosen.first == pytest.approx(axis.seconds(40.0), abs=0.1)
-    assert moved <= places_of(viewer.session.script)
 
 
 def test_a_dense_script_is_drawn_with_little(viewer: Viewer, take: Script) -> None:
@@ -323,3 +244,145 @@ def test_a_dense_script_is_drawn_with_little(viewer: Viewer, take: Script) -> No
     viewer._draw_gui(is_visible=True)
     assert len(viewer.selection.places) == 60 * 9000
     assert imgui.get_draw_data().total_vtx_count < 40 * SIZE[0]
+
+
+def test_undo_takes_back_a_key_that_is_held(viewer: Viewer) -> None:
+    """The key is where it was, whatever the mouse does then; redo brings it where it was let go."""
+    drag(viewer, key_at(viewer, JOY), (40, 0))
+    moved = pose_times(viewer)
+    assert moved[1] > 1.0
+    xdotool(viewer, "key", "ctrl+z")
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    xdotool(viewer, "mousemove_relative", "--", 40, 0)
+    xdotool(viewer, "mouseup", 1)
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    xdotool(viewer, "key", "ctrl+y")
+    assert pose_times(viewer)[1] == pytest.approx(moved[1], abs=0.02)  # Ctrl leaves frames
+
+
+def test_undo_takes_back_a_pull_that_is_held(viewer: Viewer) -> None:
+    """The skin is let go first, then its muscles go; redo brings them."""
+    x, y = nose(viewer)
+    drag(viewer, (x + 40, y + 30), (15, -10))  # beside the mouth
+    xdotool(viewer, "mousemove_relative", "--", 10, -10)
+    assert until(viewer, lambda: any(viewer.session.values.values()))
+    xdotool(viewer, "key", "ctrl+z")
+    assert not viewer.mouse.is_dragging and not any(viewer.session.values.values())
+    xdotool(viewer, "mouseup", 1)
+    assert viewer.session.history.labels[-1].startswith("Pull (")
+    xdotool(viewer, "key", "ctrl+y")
+    assert any(viewer.session.values.values())
+
+
+def number_in_ruler(viewer: Viewer, when: float, beside: float) -> tuple[int, int]:
+    """A place on a number of the ruler, so many letters' heights beside its middle."""
+    _, top, _, bottom = viewer.gui.places["time"]
+    em = imgui.get_font_size()
+    return on_screen(viewer, viewer.time_axis.x(when) + beside * em, 0.7 * top + 0.3 * bottom)
+
+
+def test_a_click_on_a_number_goes_there(viewer: Viewer) -> None:
+    """Wherever in the number; a drag from there goes to other frames."""
+    labelled = [tick.time for tick in viewer.time_axis.ticks(4.2 * imgui.get_font_size())]
+    assert 2.0 in labelled
+    press(viewer, number_in_ruler(viewer, 2.0, 0.2))
+    assert viewer.session.time == 2.0
+    drag_and_release(viewer, number_in_ruler(viewer, 2.0, 0.0), (12, 0))
+    assert 2.0 < viewer.session.time < 2.5
+
+
+def test_values_are_zoomed_and_panned(viewer: Viewer) -> None:
+    """Ctrl and the wheel about the mouse, the middle button both ways; Shift+F shows all."""
+    viewer.settings.shows_curves = True
+    settle(viewer)
+    axis, graph = viewer.time_axis, viewer.timeline.dope_sheet.graph
+    whole, span = graph.slope, axis.span
+
+    def place() -> tuple[float, float]:
+        return axis.x(2.0), float(graph.y(0.8))
+
+    before = place()
+    xdotool(viewer, "mousemove", *on_screen(viewer, *before))
+    xdotool(viewer, "keydown", "ctrl", "click", "--repeat", 4, 4, "keyup", "ctrl")
+    assert graph.slope < 2.0 * whole < 0.0 and axis.span == span
+    assert place() == pytest.approx(before, abs=1.5)
+    xdotool(viewer, "click", 4)
+    assert axis.span < span
+    before = place()
+    drag_and_release(viewer, on_screen(viewer, *before), (-30, 20), button=2)
+    assert place() == pytest.approx((before[0] - 30, before[1] + 20), abs=1.5)
+    joy = viewer.session.script.poses[1].values["joy"]
+    assert joy == 1.0  # keys stay
+    xdotool(viewer, "key", "shift+f")
+    settle(viewer)
+    assert graph.slope == pytest.approx(whole) and axis.is_whole
+
+
+def open_jaw(viewer: Viewer) -> float:
+    """Drag the jaw's slider with the mouse, and let it go; what it is then."""
+    show_controls(viewer, "jaw open")
+    drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
+    clear_search(viewer)
+    value = viewer.session.values["jaw_open"]
+    assert value > 0.2
+    return value
+
+
+def scrub(viewer: Viewer, time: float) -> None:
+    """Click in the ruler."""
+    x = on_screen(viewer, viewer.time_axis.x(time), 0.0)[0]
+    press(viewer, (x, middle(viewer, "time")[1]))
+
+
+def test_auto_key(viewer: Viewer) -> None:
+    """Switched on by its button, a slider that is let go is a key; switched off, it is none."""
+    scrub(viewer, 2.0)
+    click(viewer, "auto-key")
+    value = open_jaw(viewer)
+    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(value)
+    scrub(viewer, 3.5)
+    assert not viewer.messages.text
+    xdotool(viewer, "key", "ctrl+z")
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    click(viewer, "auto-key")
+    open_jaw(viewer)
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+
+
+def test_keys_are_deleted_only_when_somebody_means_it(viewer: Viewer) -> None:
+    """Never by Backspace; by Delete when the timeline was touched last, not after other work."""
+    settle(viewer)
+    press(viewer, key_at(viewer, JOY))
+    assert viewer.selection.places == {JOY}
+    xdotool(viewer, "key", "BackSpace")
+    assert viewer.selection.places == {JOY}
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    click(viewer, "search")
+    write(viewer, "jaw")
+    assert viewer.selection.places == {JOY}
+    xdotool(viewer, "key", "Delete", "Return")
+    assert until(viewer, lambda: not imgui.get_io().want_text_input)
+    xdotool(viewer, "key", "Delete")
+    assert until(viewer, lambda: "timeline" in viewer.messages.text)
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    clear_search(viewer)
+    press(viewer, key_at(viewer, JOY))
+    xdotool(viewer, "key", "Delete")
+    assert pose_times(viewer) == [0.0, 3.0, 4.0]
+
+
+@pytest.mark.slow
+def test_the_history_is_a_menu(viewer: Viewer) -> None:
+    """Edit names what it undoes, and lists all that was done; a click goes there."""
+    for key in ("1", "2", "n"):
+        xdotool(viewer, "key", key)
+    undo = next(each for each in viewer.commands if each.label == "Undo")
+    assert undo.reads is not None and undo.reads() == "Undo neutral"
+    click(viewer, "menu Edit")
+    click(viewer, "menu Edit: History")
+    (first,) = [name for name in viewer.gui.places if name.startswith("menu Edit: Show joy##")]
+    click(viewer, first)
+    assert viewer.session.is_alone(viewer.session.scene.expressions[0])
+    assert undo.reads().startswith("Undo show")
+    xdotool(viewer, "key", "Escape")

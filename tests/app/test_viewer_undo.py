@@ -17,7 +17,6 @@ from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display, Settings
 
 HELLO = Path("docs/hello.toml")
-CORNER = 48  # a landmark: of the mouth
 AHEAD = np.array([0.0, 0.0, -1.0])
 BROW = 24  # another landmark
 MAJOR = "zygomaticus_major_left"
@@ -130,29 +129,6 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
     assert "[Undo]" in (session.seek(0.0) or "")
     session.undo()
     assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
-
-
-def test_a_recording_that_was_only_paused_leaves_nothing_behind(session: Session) -> None:
-    """What was held as it was recorded goes back to the script, in silence."""
-    paused(session)
-    line = session.toggle_recording()
-    assert line is not None and "not keyed" not in line
-    assert session.is_following and not session.differing
-
-
-def test_a_pull_is_called_so(session: Session) -> None:
-    """Undo names what it takes back: how many muscles held the skin, or which one."""
-    point = session.scene.positions[session.scene.head.landmarks[CORNER]].copy()  # type: ignore[attr-defined]
-    finger = SkinDrag(session, Settings(), point, AHEAD, poses=True)
-    for share in (0.5, 1.0):
-        finger.to(point + share * np.array([-9.0, 8.0, 0.0]))
-        run(session, 1)
-    told = str(finger.let_go())
-    moved = [name for name, value in session.values.items() if value]
-    muscles = sum(not name.startswith("jaw_") for name in moved)
-    jaw = ", jaw" if muscles < len(moved) else ""
-    assert muscles > 1 and told
-    assert session.history.labels[-1] == f"Pull ({muscles} muscles{jaw})"
 
 
 @pytest.fixture

@@ -14,8 +14,7 @@ import trimesh
 from risorius import assets, sim
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
-from risorius.assets.fitting.painting import is_behind_others
-from risorius.assets.fitting.warp import Similarity, ThinPlateSpline, nearest_on
+from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops, edge_faces
 from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps
@@ -130,21 +129,6 @@ def test_texture_runs_evenly_beside_the_mouth(fitted: FittedHead) -> None:
     step = np.linalg.norm(slopes[pairs[:, 0]] - slopes[pairs[:, 1]], axis=(1, 2))
     size = np.linalg.norm(slopes[pairs], axis=(2, 3)).mean(axis=1)
     assert np.percentile(step / size, 80) < 0.24
-
-
-def test_the_inside_of_a_coarse_nostril_is_no_nose() -> None:
-    """Skin behind other skin finds no place in the picture, however wide the triangles are."""
-    rows, columns = np.divmod(np.arange(64), 8)
-    near = np.stack([3.4 * rows, 3.4 * columns, np.full(64, 1.0)], axis=1)
-    far = near + np.array([1.7, 1.7, 7.0])
-    across, along = np.arange(64)[columns < 7], np.arange(56)
-    sides = np.concatenate([np.stack([across, across + 1], 1), np.stack([along, along + 8], 1)])
-    skin = np.vstack([near, far])
-    is_behind = is_behind_others(
-        skin * [1.0, 1.0, 0.0], skin, np.vstack([sides, sides + 64]).astype(np.int64)
-    )
-    assert not is_behind[:64].any()
-    assert is_behind[64:].reshape(8, 8)[:-1, :-1].all()
 
 
 def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulation) -> None:
@@ -270,12 +254,6 @@ def test_swapped_sides_are_noticed(other: Stranger) -> None:
         fit(mirrored, other.landmarks)
 
 
-def test_shuffled_landmarks_are_no_face(other: Stranger) -> None:
-    """Points in another order than iBug's."""
-    with pytest.raises(AssetError, match=r"the landmarks are no face: landmark \d+ lies \d+ mm"):
-        fit(other.mesh, np.roll(other.landmarks, 20))
-
-
 @pytest.mark.parametrize(
     ("landmarks", "message"),
     [
@@ -340,22 +318,6 @@ def test_warp_meets_its_points_and_keeps_similarities(generator: np.random.Gener
     again = Similarity.between(source, moved.points(source))
     assert np.abs(again.points(far) - moved.points(far)).max() < 1e-9
     assert again.is_mirrored == (np.linalg.det(turn) < 0.0)
-
-
-def test_nearest_point_agrees_with_a_plain_search(generator: np.random.Generator) -> None:
-    """Feet on a mesh are as near as those on a dense sampling of it."""
-    plane = assets.load("plane")
-    points = plane.vertices[:40] + generator.normal(scale=4.0, size=(40, 3))
-    nearest = nearest_on(points, np.tile([0.0, 0.0, 1.0], (40, 1)), plane.vertices, plane.faces)
-    found = np.linalg.norm(nearest.interpolate(plane.vertices) - points, axis=1)
-    a, b = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(0.0, 1.0, 21))
-    inside = a + b <= 1.0 + 1e-9
-    weights = np.stack([1.0 - a - b, a, b], axis=-1)[inside]
-    dense = np.einsum("sc,fcd->fsd", weights, plane.vertices[plane.faces]).reshape(-1, 3)
-    sampled = np.linalg.norm(points[:, None] - dense[None], axis=2).min(axis=1)
-    assert (found <= sampled + 1e-9).all()
-    assert (sampled - found < 0.5).all()
-    assert np.allclose(nearest.weights.sum(axis=1), 1.0)
 
 
 @pytest.mark.slow

@@ -108,27 +108,6 @@ def test_equals_kahler_at_one_level() -> None:
     }
 
 
-def test_each_level_is_smoother() -> None:
-    """The sharpest fold between neighbouring triangles gets flatter with every level."""
-    mesh = meshes.octahedron()
-    sharpest = [_sharpest_fold(mesh.vertices, mesh.faces)]
-    for levels in (1, 2):
-        refiner = refine.create("loop", mesh.faces, mesh.vertices, levels=levels)
-        refined = refiner.refine(mesh.vertices)
-        sharpest.append(_sharpest_fold(refined.positions, refined.triangles))
-    assert sharpest[0] > 1.2 * sharpest[1] > 1.2 * 1.2 * sharpest[2]
-
-
-def _sharpest_fold(positions: np.ndarray, triangles: np.ndarray) -> float:
-    """Largest angle [rad] between triangles that share an edge of a closed mesh."""
-    a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
-    normals = np.cross(b - a, c - a)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    edges = refine.connect(triangles, len(positions)).triangle_edges
-    pairs = normals[np.argsort(edges.ravel(), kind="stable").reshape(-1, 2) // 3]
-    return float(np.arccos((pairs[:, 0] * pairs[:, 1]).sum(axis=1).min()))
-
-
 @pytest.mark.parametrize("levels", [0, 5, 1.5, 2.0, "2"])
 def test_bad_levels(levels: object) -> None:
     """Only one to four levels are allowed."""

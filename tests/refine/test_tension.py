@@ -101,32 +101,6 @@ def test_flipped_triangles() -> None:
     np.testing.assert_allclose(measured.compression[used], 0.2, atol=1e-5)
 
 
-def test_shear() -> None:
-    """Pure shear stretches along one diagonal and compresses along the other."""
-    mesh = meshes.open_grid(4, 4)
-    shear = 0.3
-    now = mesh.vertices.copy()
-    now[:, 0] += shear * mesh.vertices[:, 1]
-    measured = Tension(mesh.faces, mesh.vertices).measure(now)
-    largest = 0.5 * (shear + np.sqrt(shear**2 + 4.0))  # singular values of [[1, s], [0, 1]]
-    np.testing.assert_allclose(measured.stretch, largest - 1.0, atol=1e-5)
-    np.testing.assert_allclose(measured.compression, 1.0 - 1.0 / largest, atol=1e-5)
-
-
-def test_inputs_stay_and_any_floats_do() -> None:
-    """Positions of any float type and stride are read only."""
-    mesh = meshes.irregular(1)
-    now = meshes.wrinkled(mesh, 2)
-    before = now.tobytes()
-    tension = Tension(mesh.faces, mesh.vertices)
-    expected = [values.copy() for values in tension.measure(now)]
-    assert now.tobytes() == before
-    fortran = np.asfortranarray(now.astype(np.float32))
-    for values, wanted in zip(tension.measure(fortran), expected, strict=True):
-        close = np.abs(np.abs(values) - np.abs(wanted)) < 1e-3
-        assert close.mean() > 0.99
-
-
 @pytest.mark.parametrize(
     ("faces", "rest", "text"),
     [

@@ -141,11 +141,3 @@ def test_primitives_and_scenes() -> None:
     assert frame.is_watertight
     with pytest.raises(ValueError, match=r"must be a trimesh\.Trimesh, got Scene; of a scene take"):
         refine.from_trimesh(trimesh.Scene(ball))
-
-
-def test_options_are_those_of_the_refiner() -> None:
-    """By the paper's rule a mesh that did not bend comes back as it was."""
-    mesh = trimesh.creation.capsule(count=[8, 8])
-    frame = refine.from_trimesh(mesh, scheme="loop", criterion="normal").as_trimesh(mesh.vertices)
-    assert len(frame.faces) == len(mesh.faces)
-    assert len(refine.from_trimesh(mesh).as_trimesh(mesh.vertices).faces) > len(mesh.faces)

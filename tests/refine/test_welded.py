@@ -89,13 +89,6 @@ def test_no_crack_opens_between_doubled_vertices(seams: bool) -> None:
     assert refine.WeldedRefiner(points, faces, weld=False).refine(moved).triangle_count == 8
 
 
-def test_vertices_at_one_place_may_stay_apart() -> None:
-    """Without welding lips that touch at rest can open: they never were one."""
-    points, faces = box()
-    apart = refine.WeldedRefiner(points, faces, weld=False, scheme="loop", criterion="normal")
-    assert apart.refine(points).vertex_count == 16
-
-
 @pytest.mark.parametrize(
     ("values", "expected"),
     [

@@ -125,9 +125,3 @@ def test_broken_heads_are_refused(change: dict[str, Any], message: str) -> None:
     head = SimpleNamespace(**{**vars(_grid()), **change})
     with pytest.raises(ValueError, match=message):
         sim.create(head)
-
-
-def test_missing_mesh_is_refused() -> None:
-    """An object without faces is no mesh."""
-    with pytest.raises(ValueError, match="has no attribute 'faces'"):
-        sim.create(SimpleNamespace(vertices=np.zeros((3, 3))))

@@ -10,7 +10,6 @@ import pytest
 
 from risorius import assets, sim
 from risorius.assets.model import Cloth
-from risorius.sim.cloth import corners_across
 
 FRAME = 1.0 / 60.0
 FALL = 240  # frames until it hangs still
@@ -135,12 +134,6 @@ def test_frames_of_any_length_fall_alike(mesh: Cloth) -> None:
     for _ in range(10):
         slow.step(0.1)
     assert np.abs(quick.positions - slow.positions).max() < 1e-2
-
-
-def test_corners_across_edges() -> None:
-    """Two triangles face each other across the one edge that they share."""
-    assert corners_across(np.array([[0, 1, 2], [2, 1, 3]], np.int32)).tolist() == [[0, 3]]
-    assert corners_across(np.array([[0, 1, 2]], np.int32)).tolist() == []
 
 
 def test_what_is_no_mesh_is_refused() -> None:

@@ -20,18 +20,6 @@ def test_every_control_has_limits_a_value_and_one_group(simulation: sim.Simulati
     assert sorted(n for group in simulation.groups.values() for n in group) == sorted(names)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "zygomaticus_major_left", "frontalis_medial_right", "procerus", "jaw_open",
-        "orbicularis_oculi_palpebral_upper_left", "gaze_vertical_left", "mentalis_right",
-    ],
-)  # fmt: skip
-def test_expected_controls_exist(simulation: sim.Simulation, name: str) -> None:
-    """Muscles are there under their anatomical names, paired ones by side."""
-    assert name in simulation.controls
-
-
 def test_both_sides_have_the_limits_of_their_sides(simulation: sim.Simulation) -> None:
     """Both eyes look down as well as up; rows of tables run from 0 to 1."""
     assert simulation.limits["gaze_vertical"] == simulation.limits["gaze_vertical_left"] == (-1, 1)
@@ -76,14 +64,6 @@ def test_activation_follows_without_overshoot() -> None:
         assert coarse.now("one") == pytest.approx(fine.now("one"), abs=1e-12)
     assert np.all(np.diff([0.0, *path]) > 0.0)
     assert 0.9 < path[-1] <= 1.0
-
-
-def test_activation_reaches_its_value_exactly() -> None:
-    """After a second the activation is the value, not something near it."""
-    controls = Controls((Control("one", "Group"),))
-    controls.set_all({"one": 0.3})
-    controls.advance(1.0)
-    assert controls.now("one") == 0.3
 
 
 def test_a_half_and_both_halves_are_no_more_than_all(simulation: sim.Simulation) -> None:

@@ -27,7 +27,6 @@ EXPRESSIONS = (
     "mouth_open", "blink",
 )  # fmt: skip
 HEAD_UNITS = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
-AXIS_OF_NECK = 15.0  # [mm] z, from which the neck is seen outward
 ARKIT = {  # as many shapes as ARKit has of each part of the face
     "eye": 14, "jaw": 4, "mouth": 23, "brow": 5, "cheek": 3, "nose": 2, "tongue": 1,
 }  # fmt: skip
@@ -156,22 +155,6 @@ def test_sums_are_cut_off_once_and_in_any_order() -> None:
     assert subject.value("puller_left") == 0.5, "a layer does not change what was set below it"
 
 
-def test_setting_back_to_zero_leaves_nothing() -> None:
-    """A control of a layer gives back all that it added."""
-    subject = controls(UNITS, FACES)
-    subject.set_all({"both": 0.7, "A_left": 0.3})
-    subject.set_all({"both": 0.0, "A_left": 0.0})
-    assert not subject.wanted.any()
-
-
-def test_groups_end_with_the_layers() -> None:
-    """A panel finds every name under one title, the layers from the bottom up."""
-    subject = controls(UNITS, FACES)
-    assert list(subject.groups) == ["Lowest", "Both sides", "Units", "Faces"]
-    assert subject.groups["Units"] == ("A", "A_left", "A_right", "B_left", "B_right")
-    assert subject.actions["A_right"] == "pulls"
-
-
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
@@ -236,14 +219,6 @@ def test_each_row_of_the_shipped_tables_does_something(simulation: sim.Simulatio
         for name in simulation.layers[title]:
             simulation.pose({name: 1.0, **({"jawOpen": 0.5} if name == "mouthClose" else {})})
             assert any(simulation.sums.values()) == (name != "viseme_sil"), name
-
-
-def test_sides_of_shipped_units_mirror_each_other(simulation: sim.Simulation, head: Head) -> None:
-    """A left unit is the mirror image of the right one."""
-    for unit in ("AU4", "AU12"):
-        left = settled_displacement(simulation, {f"{unit}_left": 1.0}, frames=20)
-        right = settled_displacement(simulation, {f"{unit}_right": 1.0}, frames=20)
-        assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
 
 
 def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> None:
@@ -315,42 +290,6 @@ def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title:
         moved = settled_displacement(simulation, {name: 1.0}, frames=45)
         assert np.abs(moved).max() < 60.0, name
         assert inverted_triangles(head.faces, head.vertices, simulation.positions) <= 6, name
-
-
-def test_a_funnelled_mouth_is_round(simulation: sim.Simulation, head: Head) -> None:
-    """AU22 brings both lips forward; the lower one's outline is nearer to an ellipse than a V."""
-    moved = settled_displacement(simulation, {"AU22": 1.0})[head.landmarks]
-    assert min(moved[51, 2], moved[57, 2]) > 7.0
-    lips = simulation.positions[head.landmarks]
-    assert lips[54, 0] < head.vertices[head.landmarks[54], 0] - 4.0
-    across = lips[56, 0] / lips[54, 0]
-    straight, curved = 1.0 - across, np.sqrt(1.0 - across**2)
-    low = (lips[54, 1] - lips[56, 1]) / (lips[54, 1] - lips[57, 1])
-    assert low > (straight + curved) / 2.0
-
-
-def test_neck_tightener_shows_bands(simulation: sim.Simulation, head: Head) -> None:
-    """AU21 brings two bands on each side of the neck out of it and sinks the skin between."""
-    moved = settled_displacement(simulation, {"AU21": 1.0})
-    outward = head.vertices * [1.0, 0.0, 1.0] - [0.0, 0.0, AXIS_OF_NECK]
-    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
-    out = (moved * outward).sum(axis=1)
-    for side in ("left", "right"):
-        inner, hollow, outer = (head.rings[f"neck_{n}_{side}"] for n in range(3))
-        assert min(out[inner].min(), out[outer].min()) > 3.0
-        assert out[hollow].max() < -3.0
-
-
-def test_funnel_hides_lower_teeth(simulation: sim.Simulation, head: Head) -> None:
-    """AU22 parts the lips and keeps the lower one above the edges of its incisors."""
-    settled_displacement(simulation, {"AU22": 1.0})
-    lips = simulation.positions[head.landmarks]
-    (teeth,) = (part.vertices for part in head.parts if part.name == "teeth_lower")
-    moved = teeth @ simulation.bone_transforms()["mandible"][:3, :3].T
-    moved = moved + simulation.bone_transforms()["mandible"][:3, 3]
-    incisors = np.abs(teeth[:, 0]) < 5.0
-    assert lips[62, 1] - lips[66, 1] > 4.0
-    assert moved[incisors, 1].max() < lips[66, 1]
 
 
 def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) -> None:

@@ -6,13 +6,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import sim
 from risorius.assets.model import Head
-from risorius.sim import lid_lift
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off
 from risorius.sim.skull import Eyeball
-from tests.sim.poses import settled_displacement
 
 Array = npt.NDArray[np.float64]
 CLEARANCE = 0.3  # mm
@@ -73,15 +70,6 @@ def test_what_belongs_there_stays(faces: npt.NDArray[np.int32], moves: Array, su
     assert not lift_off(closed, rest, faces, moves, BALL).any()
 
 
-def test_a_corner_is_lifted_for_what_hangs_on_it_alone() -> None:
-    """One of three corners is of the upper lid: it comes out, but not for the far edge's sake."""
-    closed = at(AHEAD, 14.0)
-    alone = np.array([0.0, 0.0, 1.0])
-    lift = lift_off(closed, closed + ABOVE, FACE, alone, BALL)
-    assert not lift[:2].any()
-    assert 0.0 < lift[2] < 5.0
-
-
 def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head: Head) -> None:
     """No point of it is farther out than the sphere with the cornea of lid_lift.py, or hardly."""
     for eye in head.eyes:
@@ -94,19 +82,3 @@ def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head: Head) -> None:
         points = tiny.reshape(-1, 3)
         lift = lift_off(points, points + 2.0 * ABOVE, faces, np.ones(len(points)), ball)
         assert lift.reshape(-1, 3)[:, 0] == pytest.approx(2.0 * CLEARANCE, abs=0.12)
-
-
-@pytest.mark.parametrize("name", ["AU43", "wink"])
-def test_a_face_is_built_with_it(head: Head, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    """A cornea that stands out by 4 mm pushes a closed lid forward, and nothing at rest."""
-    reached, resting = [], []
-    for rise in (lid_lift.CORNEA_RISE, 0.3):
-        monkeypatch.setattr(lid_lift, "CORNEA_RISE", rise)
-        simulation = sim.create(head)
-        simulation.step(1 / 60)
-        resting.append(simulation.positions.copy())
-        away = head.vertices + settled_displacement(simulation, {name: 1.0}) - head.eyes[1].centre
-        before = (np.abs(away[:, :2]) < 4.0).all(axis=1) & (away[:, 2] > 0.0)
-        reached.append(np.linalg.norm(away[before], axis=1).mean())
-    assert reached[1] > reached[0] + 0.3
-    assert np.array_equal(resting[0], resting[1])

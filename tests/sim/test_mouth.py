@@ -58,17 +58,6 @@ def test_closed_mouth_shows_no_teeth(
         assert slit < SHUT, mesh
 
 
-def test_pursed_lips_meet_in_a_smooth_line(simulation: sim.Simulation, head: Head) -> None:
-    """The ring that purses both lips hangs on the half along each: neighbours move alike."""
-    moved = settled_displacement(simulation, head.expressions["kiss"])
-    seam = head.rings["mouth_2_left"]
-    for sign in (1.0, -1.0):
-        lip = seam[sign * simulation._anatomy.lip_side[seam] > 0.1]
-        lip = lip[np.argsort(head.vertices[lip, 0])]
-        assert len(lip) > 5
-        assert np.abs(np.diff(moved[lip, 1:], 2, axis=0)).max() < 0.6  # mm; it was 1.6
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("sides", "strength"),
@@ -106,24 +95,3 @@ def test_slit_measure_sees_an_open_mouth(
     settled_displacement(simulation, {"jaw_open": 0.5})
     inner = simulation.positions[head.landmarks[[62, 66]], 1]
     assert slits()["static"] == pytest.approx(inner[0] - inner[1], abs=2.0)
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "joy", "fear", "surprise", "mouth_open", "yawn", "levator_labii_superioris",
-        "depressor_labii_inferioris",
-    ],
-)  # fmt: skip
-def test_open_mouth_is_widest_in_the_middle(
-    simulation: sim.Simulation, head: Head, name: str
-) -> None:
-    """An open mouth narrows toward its corners like a lens, not like a letter box."""
-    settled_displacement(
-        simulation, head.expressions.get(name) or both_sides(simulation, {name: 1.0})
-    )
-    y = simulation.positions[head.landmarks, 1]
-    middle = y[62] - y[66]
-    beside = (y[63] - y[65] + y[61] - y[67]) / 2.0
-    assert middle > 4.0
-    assert beside < 0.98 * middle

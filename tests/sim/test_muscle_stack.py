@@ -83,37 +83,6 @@ def test_at_rest_what_lies_beneath_changes_nothing(simulation: sim.Simulation, h
     assert moved[0] != moved[1]
 
 
-@pytest.mark.slow
-def test_skin_rides_on_what_it_hangs_on(head: Head) -> None:
-    """The relaxed zygomaticus no longer holds back the skin that the buccinator moves."""
-    moved = [
-        settled_displacement(sim.create(stacked(head, stack)), {f"{BENEATH}_left": 1.0})
-        for stack in ({}, {ABOVE: [BENEATH]})
-    ]
-    held, free = (float(np.linalg.norm(field)) for field in moved)
-    assert 1.05 * held < free < 1.3 * held
-
-
-@pytest.mark.slow
-def test_muscles_ride_through_one_another(head: Head) -> None:
-    """On a relaxed muscle that is itself carried, a third one is carried too, but no further."""
-    simulation = sim.create(stacked(head, {"risorius": [ABOVE], ABOVE: [BENEATH]}))
-    settled_displacement(simulation, {f"{BENEATH}_left": 1.0})
-    second = displaced(simulation, f"{ABOVE}_left")
-    settled_displacement(simulation, {f"{BENEATH}_left": 1.0})
-    third = displaced(simulation, "risorius_left")
-    assert 1.0 < np.linalg.norm(third, axis=2).max() <= np.linalg.norm(second, axis=2).max()
-
-
-def test_sides_are_mirrored(head: Head) -> None:
-    """What lies on muscles of the left moves as what lies on those of the right, mirrored."""
-    simulation = sim.create(head)
-    carriers = {name for row in head.rig["muscle"].values() for name in row.get("lies_on", ())}
-    left = settled_displacement(simulation, {f"{name}_left": 0.9 for name in carriers})
-    right = settled_displacement(simulation, {f"{name}_right": 0.9 for name in carriers})
-    assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
-
-
 def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
     """Each point moves by shares of what is beneath, in plain numpy; they are at most 1 in all."""
     muscles, mandible = simulation._anatomy.muscles, simulation._anatomy.skull.mandible_motion

@@ -135,15 +135,6 @@ def test_a_generous_pull_goes_as_far_as_a_short_one(
     assert went[2] > 0.95 * went[1]
 
 
-def test_an_effort_is_shared(simulation: sim.Simulation, head: Head) -> None:
-    """The corner of the mouth, 8 mm up: no more than three muscles, one at its limit at most."""
-    pull, before = pull_at(simulation, head.landmarks[LEFT_CORNER], (0.0, 8.0, 0.0))
-    found = values_of(pull)
-    assert len(found) <= 3
-    assert sum(value > 0.95 for value in found.values()) <= 1
-    assert pull.short < 0.35 * before
-
-
 def test_mirrored_pulls_are_mirrored(simulation: sim.Simulation, head: Head) -> None:
     """The other corner, drawn the other way, is held by the muscles of the other side."""
     left, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))

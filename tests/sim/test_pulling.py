@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import pytest
 
 from risorius import sim
 from tests.sim.poses import FRAME
@@ -61,27 +60,3 @@ def test_a_mad_finger_breaks_nothing(
         simulation.drag(grabbed, target, np.ones(len(grabbed)))
         simulation.step(1.0 / 20.0)
         assert np.abs(simulation.positions - simulation.rest_positions).max() < 200.0
-
-
-@pytest.mark.parametrize(
-    ("vertices", "targets", "firmness", "message"),
-    [
-        ([1, 2], np.zeros((1, 3)), [1.0, 1.0], r"targets: shape was \(1, 3\), must be \(2, 3\)"),
-        ([1], np.full((1, 3), np.nan), [1.0], "must all be finite"),
-        ([1], np.zeros((1, 3)), [2.0], "from 0 to 1"),
-        ([1, 1], np.zeros((2, 3)), [1.0, 1.0], "twice, must be different"),
-        ([-1], np.zeros((1, 3)), [1.0], "vertex numbers run from -1 to -1, allowed are 0 to"),
-    ],
-)
-def test_pulls_that_do_not_fit(
-    simulation: sim.Simulation,
-    vertices: list[int],
-    targets: npt.NDArray[np.float64],
-    firmness: list[float],
-    message: str,
-) -> None:
-    """What cannot be pulled is refused, and nothing is pulled then."""
-    with pytest.raises(ValueError, match=message):
-        simulation.drag(vertices, targets, firmness)
-    simulation.step(FRAME)
-    assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-6

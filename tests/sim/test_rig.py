@@ -148,18 +148,6 @@ def test_each_mistake_is_named(change: Callable[[dict[str, Any]], None], message
         read_rig(document)
 
 
-def test_circles_of_muscles_are_named() -> None:
-    """Muscles that lie on each other in a circle are refused, all of them named."""
-    document = copy.deepcopy(_document())
-    text = {"action": "moves", "group": "Group", "kind": "ring"}
-    document["muscle"]["other"] = {**text, "lies_on": ["puller"]}
-    document["muscle"]["closer"]["lies_on"] = ["other"]
-    assert read_rig(document).muscles[1].lies_on == ("other",)
-    document["muscle"]["puller"]["lies_on"] = ["closer"]
-    with pytest.raises(ValueError, match="puller on closer on other on puller is a circle"):
-        read_rig(document)
-
-
 def test_built_in_rig_is_complete(head: Head) -> None:
     """The face has the muscles of the textbooks; every real one says by which unit it is known."""
     rig = read_rig(head.rig)

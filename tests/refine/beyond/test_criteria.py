@@ -9,7 +9,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, GivenMetric
+from tests.refine.cases import Forced
 
 
 def splits_of(
@@ -28,39 +28,6 @@ def ball(levels: int = 2) -> meshes.Mesh:
     refined = finer.refine(octahedron.vertices)
     positions = refined.positions / np.linalg.norm(refined.positions, axis=1, keepdims=True)
     return meshes.Mesh(positions.astype(np.float64), refined.triangles.astype(np.int32))
-
-
-def test_curvature_by_hand() -> None:
-    """On a circle of radius r the height over a chord is r (1 - cos(angle / 2))."""
-    tube = meshes.tube(24, 4)
-    around = 2 * np.sin(np.pi / 24)
-    height = around**2 / 8  # k L^2 / 8 with k = 1
-    lengths = np.linalg.norm(
-        np.diff(tube.vertices[refine.connect(tube.faces, len(tube.vertices)).edges], axis=1)[:, 0],
-        axis=1,
-    )
-    for factor, expected in ((0.9, 1), (1.1, 0)):
-        criterion = refine.Curvature(factor * height / lengths.mean(), 1.0, relative=False)
-        splits, edges = splits_of(tube, tube.vertices, criterion)
-        inner = (edges // 8 > 0).all(axis=1) & (edges < 24 * 4).all(axis=1) & (edges >= 24).all(1)
-        is_around = inner & (edges[:, 0] // 24 == edges[:, 1] // 24)
-        assert (splits[is_around] == expected).all()
-        along = inner & (edges[:, 0] % 24 == edges[:, 1] % 24)
-        assert not splits[along].any()
-
-
-def test_relative_curvature() -> None:
-    """What is curved at rest is not split, unless it bends more; absolute curvature counts all."""
-    sphere = ball()
-    assert not splits_of(sphere, sphere.vertices, refine.Curvature(0.001, 0.1))[0].any()
-    absolute = refine.Curvature(0.001, 0.1, relative=False)
-    assert splits_of(sphere, sphere.vertices, absolute)[0].all()
-    drawn_out = sphere.vertices * [1.0, 1.0, 4.0]
-    splits, edges = splits_of(sphere, drawn_out, "curvature")
-    at_rim = (abs(sphere.vertices[edges][..., 2]) < 0.4).all(axis=1)
-    at_pole = (abs(sphere.vertices[edges][..., 2]) > 0.8).all(axis=1)
-    assert splits[at_pole].min() > 0
-    assert not splits[at_rim].any()
 
 
 def test_rest_by_hand() -> None:
@@ -100,31 +67,6 @@ def test_rest_is_grown_at_once() -> None:
     assert points[0] < points[1]  # and the points in the middle of triangles
 
 
-def test_silhouette() -> None:
-    """Edges where a ball turns away from the eye are split, those in front and behind are not."""
-    sphere = ball()
-    eye = np.array([0.0, 0.0, 20.0])
-    splits, edges = splits_of(sphere, sphere.vertices, "silhouette", view=refine.View(eye))
-    towards = abs(sphere.vertices[edges][..., 2])
-    assert splits[(towards < 0.1).all(axis=1)].min() >= 1
-    assert not splits[(towards > 0.5).all(axis=1)].any()
-    moved, _ = splits_of(sphere, sphere.vertices, "silhouette", view=refine.View(eye[[2, 0, 1]]))
-    assert (moved != splits).any()
-
-
-def test_screen_edge() -> None:
-    """Length in pixels: focal x length / distance."""
-    mesh = meshes.triangle()
-    criterion = refine.ScreenEdge(once=99.0, twice=141.0)
-    view = refine.View(np.array([0.4, 0.4, 10.0]), focal=1000.0)
-    splits, edges = splits_of(mesh, mesh.vertices, criterion, view=view)
-    hypotenuse = (edges != 0).all(axis=1)
-    assert splits[hypotenuse] == 2
-    assert (splits[~hypotenuse] == 1).all()
-    far, _ = splits_of(mesh, mesh.vertices, criterion, view=view._replace(eye=[0, 0, 100]))
-    assert not far.any()
-
-
 @pytest.mark.parametrize("name", ["silhouette", "screen"])
 def test_view_is_needed(name: str) -> None:
     """Criteria that depend on the eye say so."""
@@ -154,28 +96,6 @@ def test_maximum() -> None:
     assert len(set(together.tolist())) == 3
     joined, _ = splits_of(mesh, deformed, "normal+curvature+silhouette", view=view)
     assert (joined == np.max(single[:3], axis=0)).all()
-
-
-def test_maximum_of_needs() -> None:
-    """Blending takes the largest metric; one part that only counts splits cannot be blended."""
-    mesh = meshes.octahedron()
-    one, other = np.full(12, 0.2), np.linspace(-1.0, 0.4, 12)
-    pair = [GivenMetric(one), GivenMetric(other)]
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, blend=True, criterion=pair)
-    expected = refine.create(
-        "kahler",
-        mesh.faces,
-        mesh.vertices,
-        blend=True,
-        criterion=GivenMetric(np.maximum(one, other)),
-    )
-    frames = [r.refine(mesh.vertices).positions.tobytes() for r in (refiner, expected)]
-    assert frames[0] == frames[1]
-    with pytest.raises(ValueError, match="blend=True needs a criterion that measures"):
-        refine.create(
-            "kahler", mesh.faces, mesh.vertices, blend=True,
-            criterion=[GivenMetric(one), Forced(np.zeros(12))],
-        )  # fmt: skip
 
 
 @pytest.mark.parametrize("criterion", ["normal", "curvature"])
@@ -291,22 +211,6 @@ def test_bad_criteria(criterion: object, text: str) -> None:
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match=text):
         refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
-
-
-@pytest.mark.parametrize(
-    "kind",
-    [
-        refine.Curvature,
-        refine.RestCurvature,
-        refine.Silhouette,
-        refine.ScreenEdge,
-        refine.BorderTurn,
-    ],
-)
-def test_bad_thresholds(kind: type) -> None:
-    """Thresholds out of order are refused by every criterion."""
-    with pytest.raises(ValueError, match="0 <= threshold_once <= threshold_twice"):
-        kind(0.3, 0.2)
 
 
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -109,37 +107,6 @@ def test_no_stars_in_folds() -> None:
     assert off["detail"].max() < off["cubic"].max() + 4.0
 
 
-def test_no_teeth_along_folds() -> None:
-    """Along a strip of triangles that is folded at one side normals hardly alternate.
-
-    With the middle of every triangle in its centroid, as `cubic` has it, every second one lies in
-    the fold and every other one beside it.
-    """
-    grid = meshes.open_grid(10, 6)
-    flat = grid.vertices * [0.5, 1.0, 1.0]
-    up, down = np.minimum(flat[:, 1] - 3.0, 0.0), np.minimum(3.0 - flat[:, 1], 0.0)
-    folded = np.stack([flat[:, 0], up, down], axis=1)
-    edge_count = len(refine.connect(grid.faces, len(flat)).edges)
-    shares = np.random.default_rng(1).dirichlet([1, 1, 1], 200)
-    ripples = {}
-    for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat, grid.faces)})):
-        refiner = refine.create(
-            "kahler", grid.faces, flat, scheme=scheme,
-            criterion=GivenMetric(np.full(edge_count, 9.0)), **detail,
-        )  # fmt: skip
-        mesh = refiner.refine(folded)
-        places, normals = (
-            np.einsum("fik,si->fsk", values[mesh.triangles], shares).reshape(-1, 3)
-            for values in (mesh.positions, mesh.normals)
-        )
-        is_inner = abs(places[:, 0] - 2.5) < 1.5
-        across = (places[:, 1] - places[:, 2])[is_inner]
-        tilts = np.degrees(np.arctan2(normals[:, 1], normals[:, 2]))[is_inner]
-        lines = [abs(across - line) < 0.02 for line in np.linspace(-0.9, 0.9, 19)]
-        ripples[scheme] = np.mean([tilts[line].std() for line in lines])
-    assert ripples["detail"] < 0.7 * ripples["cubic"]
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_turns_with_the_mesh(seed: int) -> None:
     """A rigid motion of the mesh moves everything along: points, middles and normals."""
@@ -207,43 +174,6 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bo
     )
     # Short edges make long levers: directions are single precision, twice over.
     assert_equals_twin(refiner, refined, twin, tolerance=(2e-5, 2e-4))
-
-
-@pytest.mark.slow
-def test_binding_takes_no_square_of_time_where_vertices_cluster() -> None:
-    """One vertex far away must not throw all others into one cell of a search."""
-    coarse, fine = meshes.tube(24, 20), meshes.tube(96, 80)
-
-    def clustered(mesh: meshes.Mesh) -> np.ndarray:
-        positions = 1e-4 * mesh.vertices
-        positions[0] = 1.0
-        return positions
-
-    refiner = refine.create(
-        "kahler",
-        coarse.faces,
-        clustered(coarse),
-        scheme="detail",
-        detail=(clustered(fine), fine.faces),
-    )
-    begun = time.process_time()
-    for _ in range(3):
-        refine.create(
-            "kahler",
-            coarse.faces,
-            clustered(coarse),
-            scheme="detail",
-            detail=(clustered(fine), fine.faces),
-        )
-    clustered_time = time.process_time() - begun
-    begun = time.process_time()
-    for _ in range(3):
-        refine.create(
-            "kahler", coarse.faces, coarse.vertices, scheme="detail",
-            detail=(fine.vertices, fine.faces),
-        )  # fmt: skip
-    assert clustered_time < 5.0 * (time.process_time() - begun)
-    assert refiner.triangle_capacity == 12 * len(coarse.faces)
 
 
 @pytest.mark.slow

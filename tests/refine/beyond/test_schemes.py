@@ -177,22 +177,6 @@ def test_flat_stays_flat(scheme: str) -> None:
     np.testing.assert_allclose(refined.positions[:, 2], heights, rtol=0, atol=1e-5)
 
 
-def test_sphere_is_approached() -> None:
-    """On a sphere the points of split edges are much nearer to it than the edges' middles."""
-    octahedron = meshes.octahedron()
-    finer = refine.create("loop", octahedron.faces, octahedron.vertices, levels=2)
-    ball = finer.refine(octahedron.vertices)
-    positions = ball.positions / np.linalg.norm(ball.positions, axis=1, keepdims=True)
-    mesh = meshes.Mesh(positions.astype(np.float64), ball.triangles.astype(np.int32))
-    edge_count = len(refine.connect(mesh.faces, len(positions)).edges)
-    refiner = bound(mesh, "cubic", False, np.full(edge_count, 2.0))
-    refined = refiner.refine(mesh.vertices)
-    straight = 0.5 * mesh.vertices[refiner.edges].sum(axis=1)
-    before = abs(np.linalg.norm(straight, axis=1) - 1.0).mean()
-    after = abs(np.linalg.norm(refined.positions[len(positions) :], axis=1) - 1.0).mean()
-    assert after * 4.0 < before
-
-
 @pytest.mark.parametrize(
     ("options", "text"),
     [

@@ -160,25 +160,6 @@ class Growing:
             self.make(vertex_count, triangle_count)
 
 
-@pytest.mark.parametrize(("name", "options"), REFINERS)
-def test_lent_stream_that_grows(name: str, options: dict[str, object]) -> None:
-    """A stream with `reserve` is asked in every frame, and needs no worst case."""
-    mesh = meshes.irregular(9)
-    refiner = refine.create(name, mesh.faces, mesh.vertices, **options)
-    stream = Growing(refiner.vertex_columns)
-    for seed in range(3):
-        deformed = meshes.wrinkled(mesh, seed)
-        expected = [a.copy() for a in refiner.refine(deformed)[:4]]
-        lent = refiner.refine(deformed, out=stream)
-        assert all((a == b).all() for a, b in zip(lent[:4], expected, strict=True))
-        assert np.shares_memory(lent.positions, stream.vertices)
-    assert stream.asked == 3
-    stubborn = Growing(refiner.vertex_columns)
-    stubborn.make = lambda *_: None  # type: ignore[method-assign]
-    with pytest.raises(ValueError, match=r"stream.vertices must be a writable"):
-        refiner.refine(deformed, out=stubborn)
-
-
 def test_lent_stream_that_stops_growing() -> None:
     """Arrays that took the frame before are refused when they are too small for this one."""
     mesh = meshes.irregular(9)

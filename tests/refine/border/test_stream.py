@@ -56,19 +56,6 @@ def test_lent_stream(name: str, options: dict[str, int], textured: bool, spare: 
     assert np.isnan(stream.vertices[len(lent.positions) :]).all()
 
 
-def test_streams_can_alternate() -> None:
-    """Two streams in turn (double buffering) each keep their own frame."""
-    mesh = meshes.irregular(1)
-    frames = [meshes.wrinkled(mesh, seed) for seed in (2, 3)]
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
-    streams = [stream_for(refiner), stream_for(refiner)]
-    first = refiner.refine(frames[0], out=streams[0])
-    kept = first.positions.copy()
-    second = refiner.refine(frames[1], out=streams[1])
-    assert (first.positions == kept).all()
-    assert not np.shares_memory(first.positions, second.positions)
-
-
 @pytest.mark.parametrize(
     ("change", "text"),
     [
@@ -96,16 +83,6 @@ def test_bad_stream(change: dict[str, object], text: str) -> None:
         setattr(stream, name, array)
     with pytest.raises(ValueError, match=text):
         refiner.refine(grid.vertices, out=stream)
-
-
-def test_read_only_stream() -> None:
-    """A stream that may not be written is refused."""
-    mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
-    stream = stream_for(refiner)
-    stream.source.flags.writeable = False
-    with pytest.raises(ValueError, match=r"stream.source .* read-only"):
-        refiner.refine(mesh.vertices, out=stream)
 
 
 @pytest.mark.parametrize("name", ["vertices", "triangles", "source"])
@@ -204,30 +181,6 @@ def test_nothing_is_allocated(name: str, options: dict[str, int], textured: bool
     assert max(taken) < 16384  # positions alone are 30 kB
 
 
-@pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64, np.longdouble, ">f8", ">f4"])
-def test_any_float_type(dtype: str) -> None:
-    """Positions of any float type are taken, and come out as their float32."""
-    mesh = meshes.irregular(4)
-    deformed = meshes.wrinkled(mesh, 5).astype(dtype)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
-    refined = refiner.refine(deformed)
-    refine.check(refiner, refined, deformed)
-
-
-def test_any_strides() -> None:
-    """Transposed, sliced, reversed and read-only positions give the same frame."""
-    mesh = meshes.irregular(4)
-    deformed = meshes.wrinkled(mesh, 5)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
-    expected = refiner.refine(deformed).positions.copy()
-    wide = np.zeros((len(deformed), 7))
-    wide[:, 5:2:-1] = deformed
-    read_only = deformed.copy()
-    read_only.flags.writeable = False
-    for other in (np.asfortranarray(deformed), wide[:, 5:2:-1], read_only):
-        assert (refiner.refine(other).positions == expected).all()
-
-
 @pytest.mark.parametrize(
     "positions", [np.zeros((5, 3)), np.zeros((6, 2)), np.zeros(18), np.zeros((6, 3), dtype=int)]
 )
@@ -251,22 +204,6 @@ def test_masked_positions() -> None:
         refiner.refine(nothing_hidden)
     with pytest.raises(ValueError, match=r"positions must be .* is no array"):
         refiner.refine([[0.0, 0.0], [1.0]])
-
-
-def test_not_a_stream() -> None:
-    """What lends no arrays is refused with what is missing."""
-    mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
-    with pytest.raises(ValueError, match="ndarray has no vertices"):
-        refiner.refine(mesh.vertices, out=np.zeros(3))
-
-
-def test_not_a_view() -> None:
-    """A bare eye point is no view."""
-    mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion="screen")
-    with pytest.raises(ValueError, match=r"view must be a refine.View\(eye, focal\), got tuple"):
-        refiner.refine(mesh.vertices, view=(0.0, 0.0, 5.0))
 
 
 @pytest.mark.parametrize("copied", [pickle.dumps, copy.deepcopy])

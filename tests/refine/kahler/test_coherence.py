@@ -143,19 +143,6 @@ def test_any_history(history: list[tuple[int, int, int]]) -> None:
     assert TABLES.transitions[state, 0] == 0
 
 
-def test_tables_are_read_only() -> None:
-    """Nobody can change the tables by accident."""
-    for array in (*TABLES.patterns, TABLES.transitions, TABLES.removals):
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = 1
-
-
-def test_third_split() -> None:
-    """An edge is split twice at most, and the error says which."""
-    with pytest.raises(ValueError, match=r"\(1, 1, 1\) splits edge 1 more than 2 times"):
-        coherence.split_in_order((1, 1, 1))
-
-
 def test_states_follow_the_tables() -> None:
     """The kernel moves all triangles as the tables say, counts, keeps its array, and forgets."""
     generator = np.random.default_rng(1)

@@ -76,20 +76,6 @@ def test_geomorph_turns_no_line(seed: int) -> None:
     assert counts[False] > 50
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_growing_deformation(seed: int) -> None:
-    """A deformation that grows turns fewer lines than without memory, none where none is freed."""
-    mesh = meshes.irregular(seed)
-    turned = {}
-    for is_coherent in (False, True):
-        refiner = refine.create("kahler", mesh.faces, mesh.vertices, coherent=is_coherent)
-        turned[is_coherent] = sum(turned_per_frame(refiner, growing(mesh, seed + 5)))
-        if is_coherent:
-            # A drop may fall while all grows; only then may a line turn, and it is counted.
-            assert turned[True] == 0 or history_of(refiner).removals_out_of_order > 0
-    assert turned[True] < 0.2 * turned[False]
-
-
 @settings(max_examples=25)
 @given(seed=st.integers(0, 1000), history=st.lists(st.integers(0, 2**16), min_size=1, max_size=6))
 def test_any_history_is_crack_free(seed: int, history: list[int]) -> None:
@@ -120,10 +106,3 @@ def test_states_are_all_the_memory() -> None:
     for positions in frames[30:]:
         for ours, theirs in zip(old.refine(positions)[:4], new.refine(positions)[:4], strict=True):
             assert ours.tobytes() == theirs.tobytes()
-
-
-def test_not_with_blending() -> None:
-    """Blended triangles have no lines to turn: the two options exclude each other."""
-    mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match="coherent"):
-        refine.create("kahler", mesh.faces, mesh.vertices, coherent=True, blend=True)

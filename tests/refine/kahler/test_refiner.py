@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.refine.kahler.table import CONFIGURATIONS
 from tests import meshes
 from tests.refine.cases import Forced, as_lists, assert_equals_twin, soups
 from tests.refine.plain_twin import edge_name
@@ -88,17 +85,6 @@ def test_generated_sheets(
     refine_and_check(mesh, deformed, threshold_once=thresholds[0], threshold_twice=thresholds[1])
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_counts_follow_splits(seed: int) -> None:
-    """Triangles and vertices are as many as the table and the splits say."""
-    mesh = meshes.irregular(seed)
-    refiner, refined = refine_and_check(mesh, meshes.wrinkled(mesh, seed))
-    s = refiner.splits[refiner.triangle_edges].astype(int)
-    assert len(refined.triangles) == CONFIGURATIONS.counts[s @ np.array([1, 3, 9])].sum()
-    times = Counter(refiner.splits.tolist())
-    assert len(refined.positions) == len(mesh.vertices) + times[1] + 3 * times[2]
-
-
 def test_capacity_is_reached() -> None:
     """With every edge split twice the output fills its capacities: ten for each triangle."""
     mesh = meshes.octahedron()
@@ -151,28 +137,3 @@ def test_frames_are_independent() -> None:
             reused.refine(deformed)[:4], fresh.refine(deformed)[:4], strict=True
         ):
             assert ours.tobytes() == theirs.tobytes()
-
-
-def test_origins_carry_attributes() -> None:
-    """The origins interpolate any attribute of the input: here the undeformed positions."""
-    mesh = meshes.irregular(6)
-    refiner, refined = refine_and_check(mesh, meshes.wrinkled(mesh, 7))
-    origins = refiner.origins()
-    at_rest = (mesh.vertices[origins.vertices] * origins.weights[..., None]).sum(axis=1)
-    coarse = mesh.vertices[mesh.faces]
-    fine = at_rest[refined.triangles]
-    areas = [
-        np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1)
-        for t in (coarse, fine)
-    ]
-    totals = np.bincount(refined.source, weights=areas[1])
-    np.testing.assert_allclose(totals, areas[0], rtol=1e-6)
-
-
-@pytest.mark.parametrize("splits", [1, 2])
-def test_normals_look_outward(splits: int) -> None:
-    """Normals of new points have length one and point where the surface looks."""
-    mesh = meshes.octahedron()
-    _, refined = refine_and_check(mesh, mesh.vertices, criterion=Forced(np.full(12, splits)))
-    directions = refined.positions / np.linalg.norm(refined.positions, axis=1, keepdims=True)
-    assert (np.sum(directions * refined.normals, axis=1) > 0.95).all()

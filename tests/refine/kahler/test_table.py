@@ -14,14 +14,6 @@ from tests.refine.cases import Forced, as_lists, assert_equals_twin, configurati
 from tests.refine.plain_twin import refine as refine_plainly
 
 ALL_SPLITS = list(itertools.product(range(3), repeat=3))
-COUNTS = {0: 1, 1: 2, 2: 4}
-
-
-def test_configuration_number() -> None:
-    """The entry number has the splits as its ternary digits, and back."""
-    assert configuration_of((2, 0, 1)) == 11
-    for splits in ALL_SPLITS:
-        assert table.splits_of(configuration_of(splits)) == splits
 
 
 @pytest.mark.parametrize("splits", ALL_SPLITS)
@@ -31,12 +23,6 @@ def test_counts(splits: tuple[int, int, int]) -> None:
     expected = 1 + sum({0: 0, 1: 1, 2: 3}[s] for s in splits)
     assert table.CONFIGURATIONS.counts[number] == expected
     assert len(table.subdivide(splits)) == expected
-
-
-def test_most_subtriangles() -> None:
-    """Ten is the most, and only all edges twice gives it (section 4.3)."""
-    assert table.CONFIGURATIONS.counts.max() == 10
-    assert np.flatnonzero(table.CONFIGURATIONS.counts == 10).tolist() == [26]
 
 
 @pytest.mark.parametrize("splits", ALL_SPLITS)
@@ -74,12 +60,6 @@ def test_one_triangle(splits: tuple[int, int, int]) -> None:
     named_splits = dict(zip([(0, 1), (1, 2), (0, 2)], splits, strict=True))
     twin = refine_plainly(*as_lists(mesh.vertices, mesh.faces), named_splits)
     assert_equals_twin(refiner, refined, twin)
-
-
-def test_table_is_read_only() -> None:
-    """Nobody can change the table by accident."""
-    with pytest.raises(ValueError, match="read-only"):
-        table.CONFIGURATIONS.subtriangles[0, 0, 0] = 1
 
 
 def test_verification_can_fail() -> None:

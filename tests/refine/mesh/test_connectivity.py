@@ -35,17 +35,6 @@ def test_edge_counts(name: str, edge_count: int, interior_count: int) -> None:
     assert connectivity.around.is_interior.sum() == interior_count
 
 
-def test_neighbourhood_of_inner_edge() -> None:
-    """The inner edge of two triangles knows both opposite corners and its four wings."""
-    mesh = meshes.two_triangles()
-    connectivity = refine.connect(mesh.faces, 4)
-    (inner,) = np.flatnonzero(connectivity.around.is_interior)
-    a, b, c, d = connectivity.around.points[inner].tolist()
-    assert (a, b, c, d) == (1, 2, 0, 3)
-    wings = [sorted(connectivity.edges[w].tolist()) for w in connectivity.around.wings[inner]]
-    assert wings == [[0, 1], [0, 2], [1, 3], [2, 3]]
-
-
 @settings(max_examples=150, deadline=None)
 @given(soups())
 def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
@@ -84,13 +73,6 @@ def test_wedges_of_tube() -> None:
     assert (connectivity.wedge_uv[connectivity.corners] == tube.face_uv).all()
 
 
-def test_edges_on_seam_are_interior() -> None:
-    """A texture seam is no border: geometry does not see it."""
-    tube = meshes.tube(segments=8, rings=4)
-    connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
-    assert (~connectivity.around.is_interior).sum() == 2 * 8
-
-
 def test_weld() -> None:
     """A mesh doubled along its seam becomes closed, and its texture coordinates stay apart."""
     tube = meshes.tube(segments=6, rings=2)
@@ -104,13 +86,6 @@ def test_weld() -> None:
     assert (doubled[kept][faces] == tube.vertices[tube.faces]).all()
     connectivity = refine.connect(faces, len(kept), tube.face_uv)
     assert (~connectivity.around.is_interior).sum() == 2 * 6
-
-
-def test_empty_mesh() -> None:
-    """Vertices without any triangle give no edges and no error."""
-    connectivity = refine.connect(np.zeros((0, 3), dtype=np.int32), 2)
-    assert len(connectivity.edges) == 0
-    assert connectivity.wedge_vertices.tolist() == [0, 1]
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -58,9 +57,3 @@ def test_neighbours_come_to_lie_together() -> None:
     order = refine.reorder(faces, vertices)
     before, after = (np.ptp(each, axis=1).mean() for each in (faces, order.faces))
     assert after * 20 < before
-
-
-def test_wrong_arrays() -> None:
-    """Faces that name no vertex are refused, as everywhere."""
-    with pytest.raises(ValueError, match="faces must hold indices from 0 to 2"):
-        refine.reorder([[0, 1, 3]], np.eye(3))

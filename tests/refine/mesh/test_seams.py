@@ -84,22 +84,6 @@ def test_every_corner_its_own_coordinate() -> None:
     assert (owners[refined.triangles] == refined.source[:, None]).all()
 
 
-def test_seam_through_debris() -> None:
-    """Degenerate triangles, borders and non-manifold edges may carry coordinates too."""
-    for make in meshes.NAMED.values():
-        mesh = make()
-        generator = np.random.default_rng(16)
-        uv = generator.random((4, 2))
-        face_uv = generator.integers(4, size=mesh.faces.shape)
-        deformed = meshes.wrinkled(mesh, 17, 0.5)
-        for name, options in REFINERS:
-            refiner = refine.create(
-                name, mesh.faces, mesh.vertices, uv=uv, face_uv=face_uv, **options
-            )
-            refined = refiner.refine(deformed)
-            refine.check(refiner, refined, deformed)
-
-
 def test_unused_vertices_have_zero_coordinates() -> None:
     """Vertices without triangles come out with defined, zero coordinates."""
     mesh = meshes.with_debris()
