@@ -107,6 +107,22 @@ def bench_motion(reference: Path) -> None:
     conclude(motion.report(*found), motion.targets(*found))
 
 
+@bench.command("human")
+@click.option(
+    "--reference", type=FOLDER, required=True, help="A folder with face.npz, identity_modes.npz."
+)
+@click.option(
+    "--head", "head_file", type=FILE, help="The head.npz of another head than the built-in one."
+)
+def bench_human(reference: Path, head_file: Path | None) -> None:
+    """Measure how human the head's form is: what no person of a reference explains of it."""
+    from . import human
+
+    with told():
+        found = human.measure(reference, head_file)
+    conclude(human.report(found), human.targets(found))
+
+
 @bench.command("reference")
 @click.argument("checkout", type=FOLDER)
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")

@@ -1,0 +1,104 @@
+"""The measure of human form recovers people of its space, and says where a head is none of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius import assets
+from risorius.bench.human import MOST, Rest, Surface, report, targets, unexplained
+from risorius.bench.identity_space import IdentitySpace, Points, hidden
+from risorius.geometry.normals import vertex_normals
+
+WEIGHTS = np.array([1.5, -0.8])
+TURN = 0.03  # radian
+
+
+@pytest.fixture(scope="module")
+def space() -> IdentitySpace:
+    """The built-in head as the mean, with two smooth modes, one of them lopsided."""
+    head = assets.load("head")
+    x, y, z = head.vertices.T
+    wide = np.stack([4.0 * np.sin(x / 40.0), 0.0 * y, 2.0 * np.cos(y / 35.0)], axis=1)
+    long = np.stack([0.0 * x, 4.0 * np.sin(y / 50.0), 2.0 * np.sin(x / 30.0 + z / 60.0)], axis=1)
+    modes = np.array([wide, long])
+    return IdentitySpace(head.vertices, head.faces, head.landmarks, modes)
+
+
+def rest_of(space: IdentitySpace, vertices: Points) -> Rest:
+    """What the space leaves of a head that is turned and moved."""
+    c, s = np.cos(TURN), np.sin(TURN)
+    moved = vertices @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]).T + [3.0, -2.0, 4.0]
+    normals = vertex_normals(moved, space.triangles)
+    surface = Surface(moved, space.triangles, normals, moved[space.landmarks])
+    return unexplained(space, space.regions(), surface)
+
+
+def test_a_person_of_the_space_is_explained(space: IdentitySpace) -> None:
+    """Weights come back, wherever the head stands, and nothing is left."""
+    rest = rest_of(space, space.person(WEIGHTS))
+    assert rest.weights == pytest.approx(WEIGHTS, abs=0.06)
+    assert rest.distances["all"] < 0.05
+    assert rest.angles["all"] < 0.5
+    assert all(target.is_met for target in targets({"coarse": rest, "finer": rest}))
+
+
+def test_a_bump_that_nobody_has_is_told_where_it_is(space: IdentitySpace) -> None:
+    """4 mm on the chin are left there, hardly elsewhere, and printed."""
+    vertices = space.person(WEIGHTS)
+    chin = vertices[space.landmarks[8]]
+    away = np.linalg.norm(vertices - chin, axis=1)
+    height = 4.0 * np.exp(-((away / 15.0) ** 2))
+    vertices = vertices + height[:, None] * vertex_normals(vertices, space.triangles)
+    rest = rest_of(space, vertices)
+    others = [value for name, value in rest.distances.items() if name not in ("chin", "all")]
+    assert rest.distances["chin"] > 1.0
+    assert rest.distances["chin"] > 3.0 * max(others)
+    text = report({"coarse": rest, "finer": rest})
+    assert f"{rest.distances['chin']:.2f}" in text.split("chin")[1].splitlines()[0]
+
+
+def test_what_is_left_is_held_to_targets() -> None:
+    """More than a target, and no number at all, miss it."""
+    names = ("all", "nose", "mouth")
+    good = Rest(np.ones(2), dict.fromkeys(names, 0.3), {"all": 3.0})
+    bad = Rest(np.ones(2), {**good.distances, "nose": float("nan")}, {"all": 6.0})
+    missed = [each.text for each in targets({"coarse": good, "finer": bad}) if not each.is_met]
+    assert len(missed) == 2
+    assert "nose" in missed[0]
+    assert "angle" in missed[1]
+    assert len(targets({"coarse": good, "finer": good})) == len(MOST) + 2
+
+
+def test_what_looks_at_skin_is_hidden() -> None:
+    """Two sheets that face each other hide one another, and nothing beyond their edge."""
+    grid = np.stack(np.meshgrid(np.arange(6.0), np.arange(6.0)), axis=-1).reshape(-1, 2)
+    lower = np.column_stack([4.0 * grid, np.zeros(36)])
+    upper = np.column_stack([4.0 * grid + [10.0, 0.0], np.full(36, 5.0)])
+    first = (np.arange(5)[:, None] * 6 + np.arange(5)).ravel()
+    faces = np.vstack([[first, first + 1, first + 7], [first, first + 7, first + 6]])
+    up = faces.reshape(2, 3, 25).transpose(0, 2, 1).reshape(-1, 3)
+    sheets = np.vstack([up, 36 + up[:, ::-1]]).astype(np.int32)
+    found = hidden(np.vstack([lower, upper]), sheets, np.arange(72, dtype=np.int32))
+    below, above = found[:36], found[36:]
+    assert not below[lower[:, 0] < 4.0].any()
+    assert below[(lower[:, 0] > 10.0) & (lower[:, 1] > 0.0) & (lower[:, 1] < 20.0)].all()
+    assert not above[upper[:, 0] > 26.0].any()
+
+
+def test_a_folder_without_modes_is_told(tmp_path: Path) -> None:
+    """The file that is missing, or holds other vertices, is named."""
+    head = assets.load("head")
+    np.savez(
+        tmp_path / "face.npz",
+        vertices=head.vertices,
+        triangles=head.faces,
+        landmarks68=head.landmarks,
+    )
+    with pytest.raises(ValueError, match=r"identity_modes\.npz: is not there"):
+        IdentitySpace.read(tmp_path)
+    np.savez(tmp_path / "identity_modes.npz", modes=np.zeros((2, 5, 3)))
+    with pytest.raises(ValueError, match=r"'modes' must move each vertex of face\.npz"):
+        IdentitySpace.read(tmp_path)
