@@ -8,7 +8,6 @@ import re
 import shlex
 import subprocess
 import sys
-import tomllib
 import unicodedata
 from pathlib import Path
 
@@ -88,14 +87,6 @@ def test_every_picture_is_shown() -> None:
     texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
     shown = {Path(target).name for target in re.findall(r"\]\(([^)\s#]+)", texts)}
     assert {path.name for path in (ROOT / "docs/pictures").iterdir()} <= shown
-
-
-def test_the_citation_is_of_this_version() -> None:
-    """CITATION.cff and the README cite what pyproject.toml builds."""
-    with (ROOT / "pyproject.toml").open("rb") as file:
-        version = tomllib.load(file)["project"]["version"]
-    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    assert f"version = {{{version}}}" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_pages_have_short_lines() -> None:

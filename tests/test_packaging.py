@@ -74,7 +74,7 @@ def test_python_versions_agree() -> None:
 
 
 def test_the_release_is_the_same_everywhere() -> None:
-    """Version and date in pyproject.toml, the package, CHANGELOG.md and CITATION.cff."""
+    """Version and date in pyproject.toml, the package, CHANGELOG.md, CITATION.cff, README."""
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.search(r"^## \[Unreleased\]$.*?^## \[(\S+)\] - (\S+)$", changes, re.M | re.S)
     assert newest is not None
@@ -82,6 +82,7 @@ def test_the_release_is_the_same_everywhere() -> None:
     assert version == PROJECT["project"]["version"] == risorius.__version__
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f"\nversion: {version}\ndate-released: {date}\n" in citation
+    assert f"version = {{{version}}}" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_nothing_is_imported_by_its_folder() -> None:

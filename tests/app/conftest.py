@@ -30,6 +30,13 @@ def scene() -> FaceScene:
     return FaceScene()
 
 
+@pytest.fixture
+def face(scene: FaceScene) -> FaceScene:
+    """The same face, at rest."""
+    scene.reset()
+    return scene
+
+
 @pytest.fixture(scope="module")
 def viewer() -> Iterator[Viewer]:
     """One window for all tests of a file."""

@@ -16,12 +16,6 @@ from risorius.assets.loading import HEAD_FILE, load_head
 from tests import meshes
 
 
-@pytest.fixture(scope="module")
-def face() -> FaceScene:
-    """The built-in head."""
-    return FaceScene()
-
-
 @pytest.fixture
 def unbaked(tmp_path: Path) -> FaceScene:
     """The same head from another place, where no light was baked for it."""

@@ -9,12 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from PIL import Image
 from scipy.spatial import cKDTree
 
 from risorius import render
-from risorius.__main__ import command
 from risorius.app.anatomy import STRUCTURES, Anatomy, AnatomyView
 from risorius.app.anatomy.muscle_bands import AROUND, ROWS, Muscles
 from risorius.app.capture import Capture, CaptureOptions
@@ -22,6 +20,8 @@ from risorius.app.capture.cameras import camera_for
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
+
+from .command_line import risorius
 
 SIZE = (150, 170)
 BOTH = AnatomyView(STRUCTURES)
@@ -164,7 +164,7 @@ def test_the_command_draws_anatomy(tmp_path: Path) -> None:
 
     def run(*more: str) -> Any:
         """The command in this process."""
-        return CliRunner().invoke(command(), [*always, *more])
+        return risorius(*always, *more)
 
     assert run("-o", str(plain)).exit_code == 0
     told = ("--anatomy", "--dissect", "left", "--skin-opacity", "0.1")

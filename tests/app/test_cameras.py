@@ -10,12 +10,6 @@ from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """The built-in face."""
-    return FaceScene()
-
-
 def test_numbers_stand_around_the_middle_of_the_face(scene: FaceScene) -> None:
     """Yaw and pitch in degrees about the landmarks, not about the skull; zoom 2 is half as far."""
     camera = camera_for(scene, "-15,2,2.3")

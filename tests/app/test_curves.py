@@ -16,12 +16,6 @@ Floats = npt.NDArray[np.float64]
 LAYERS = pytest.mark.parametrize("layer", [ACTION_UNITS, ARKIT_SHAPES])
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """The built-in head."""
-    return FaceScene()
-
-
 def activations_of(scene: FaceScene, poses: Sequence[Mapping[str, float]]) -> dict[str, Floats]:
     """What the muscles are asked in each pose, by the simulation's own sums."""
     rows = []

@@ -231,12 +231,6 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
 
 
-@pytest.fixture(scope="module")
-def face() -> FaceScene:
-    """The built-in head."""
-    return FaceScene()
-
-
 @pytest.fixture
 def heads(face: FaceScene, tmp_path: Path) -> Path:
     """A folder of a user's heads: a, b, and c, each with its landmarks."""

@@ -58,12 +58,6 @@ AU61 = 0.5
 AS_IT_IS = Playback(neutral="none", gains=("eyeBlink*=1",))  # a face that needs no calibration
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """The built-in head."""
-    return FaceScene()
-
-
 def script_of(text: str) -> Script:
     """A script."""
     return parse_script(text, source="test")

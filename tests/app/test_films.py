@@ -18,16 +18,16 @@ import numpy as np
 import numpy.typing as npt
 import PIL.Image
 import pytest
-from click.testing import CliRunner
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
 from risorius.app.capture.encoder import FORMATS, TRANSPARENT, size_of_film
-from risorius.app.cli import main
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import parse_script
+
+from .command_line import risorius
 
 Image = npt.NDArray[np.uint8]
 WIDTH, HEIGHT, COUNT, RATE = 97, 63, 12, 25.0
@@ -129,7 +129,7 @@ def test_films_that_cannot_be_transparent_are_refused(tmp_path: Path, suffix: st
     """One line, which names those that can."""
     path = tmp_path / f"film{suffix}"
     arguments = ["capture", "--scene", "plane", "-o", str(path), "--background", "transparent"]
-    result = CliRunner().invoke(main, arguments)
+    result = risorius(*arguments)
     assert result.exit_code == 2 and len(result.output.splitlines()) == 1
     assert "take one of .mov, .webm, .gif, .webp, a folder of pictures" in result.output
     assert not path.exists()
@@ -175,7 +175,7 @@ def test_backgrounds_by_name(tmp_path: Path, word: str, corner: tuple[int, int, 
     """The corner of a picture has exactly the colour that was asked for."""
     path = tmp_path / "picture.png"
     arguments = ["capture", "--scene", "plane", "--size", "64x48", "--time", "0", "-o", str(path)]
-    result = CliRunner().invoke(main, [*arguments, "--background", word])
+    result = risorius(*arguments, "--background", word)
     assert result.exit_code == 0, result.output
     with PIL.Image.open(path) as picture:
         assert picture.mode == "RGB" and picture.getpixel((0, 0)) == corner

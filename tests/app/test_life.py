@@ -23,12 +23,6 @@ HOUR = 3600.0
 NOBODY = frozenset[str]()
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """One face for all tests of this file."""
-    return FaceScene()
-
-
 def lids_gap(scene: FaceScene) -> float:
     """How wide the right eye is open [mm], in the middle of its lids."""
     points = scene.positions[scene.landmarks]

@@ -38,12 +38,6 @@ def passes_of(studio: Capture, wanted: Sequence[str]) -> dict[str, Any]:
     return Passes(studio.pipeline, studio.viewports[-1].drawn).draw(studio.camera, wanted)
 
 
-@pytest.fixture(scope="module")
-def face() -> FaceScene:
-    """The built-in face."""
-    return FaceScene()
-
-
 def posed(studio: Capture, controls: dict[str, float]) -> FaceScene:
     """The face of a studio, resting in a pose."""
     face = studio.scene
@@ -55,17 +49,17 @@ def posed(studio: Capture, controls: dict[str, float]) -> FaceScene:
 
 
 @pytest.fixture(scope="module")
-def studio(face: FaceScene) -> Iterator[Capture]:
+def studio(scene: FaceScene) -> Iterator[Capture]:
     """A square picture of the face as it is usually refined."""
-    with Capture(face, CaptureOptions(size=SIZE, camera="front")) as opened:
+    with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as opened:
         yield opened
 
 
 @pytest.fixture(scope="module")
-def plain(face: FaceScene) -> Iterator[Capture]:
+def plain(scene: FaceScene) -> Iterator[Capture]:
     """A square picture of the face without refinement."""
     options = CaptureOptions(size=SIZE, camera="front", refinement=Refinement(refiner="none"))
-    with Capture(face, options) as opened:
+    with Capture(scene, options) as opened:
         yield opened
 
 

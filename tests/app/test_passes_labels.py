@@ -18,12 +18,6 @@ SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))
 ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
 
 
-@pytest.fixture(scope="module")
-def face() -> FaceScene:
-    """The built-in face."""
-    return FaceScene()
-
-
 def camera_at(yaw: float, pitch: float) -> render.OrbitCamera:
     """A camera on the head's level, off its middle."""
     camera = render.OrbitCamera.framing(np.array([[-80.0, -160.0, -90.0], [80.0, 130.0, 120.0]]))
@@ -54,13 +48,13 @@ def test_points_are_projected_where_opengl_draws_them(
 @settings(max_examples=25, deadline=None)
 @given(yaw=st.floats(-80.0, 80.0), pitch=st.floats(-60.0, 60.0))
 def test_a_head_at_rest_is_turned_as_the_camera_is_not(
-    face: FaceScene, yaw: float, pitch: float
+    scene: FaceScene, yaw: float, pitch: float
 ) -> None:
     """A camera on the subject's left sees it turned to its right, one above sees it bowed."""
-    face.reset()
+    scene.reset()
     labels = CameraLabels.of(camera_at(yaw, pitch), (640, 480))
-    pose = head_pose(face, labels)
-    points = face.rest_positions
+    pose = head_pose(scene, labels)
+    points = scene.rest_positions
     assert np.allclose(points @ pose.rotation.T + pose.translation, labels.to_camera(points))
     towards_camera = camera_at(yaw, pitch).axes()[2]  # in the head's axes
     assert math.copysign(1.0, pose.yaw) == -math.copysign(1.0, yaw) or abs(yaw) < 1e-6

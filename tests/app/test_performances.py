@@ -50,12 +50,6 @@ def written(folder: Path, seconds: float = 1.0) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def face() -> FaceScene:
-    """The built-in face."""
-    return FaceScene()
-
-
 @given(st.floats(0.0, 0.3), st.floats(0.0, 2.5))
 def test_the_lead_shifts_what_is_played(lead: float, moment: float) -> None:
     take = take_of(jawOpen=wave(), head_yaw=20.0 * wave())

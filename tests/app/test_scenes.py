@@ -63,19 +63,6 @@ def test_the_cloth_falls_and_is_taken_up() -> None:
     assert np.array_equal(cloth.bone_transforms()["ball"], np.eye(4))
 
 
-@pytest.fixture(scope="module")
-def shared_face() -> FaceScene:
-    """The built-in face; use `face`, which is at rest."""
-    return FaceScene()
-
-
-@pytest.fixture
-def face(shared_face: FaceScene) -> FaceScene:
-    """The built-in face, at rest."""
-    shared_face.reset()
-    return shared_face
-
-
 def test_the_face_takes_controls_of_every_layer(face: FaceScene) -> None:
     """A pose may mix layers; the next pose forgets it."""
     assert len(face.expressions) >= 9

@@ -9,14 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
-from risorius.__main__ import command
 from risorius.app.errors import UserError
 from risorius.app.live import LOOPBACK, PROTOCOLS
 from risorius.app.live.sender import Sender, carried, frames
 from risorius.app.recordings import Take
 from risorius.app.recordings.reading import read_take
+
+from .command_line import risorius
 
 STEP = 1.0 / 60.0
 
@@ -63,7 +63,7 @@ def test_a_recording_comes_along(
     monkeypatch.chdir(tmp_path)
     sent: list[Take] = []
     monkeypatch.setattr(Sender, "play", lambda _, take, **__: sent.append(take))
-    result = CliRunner().invoke(command(), ["send", "--port", str(heard.getsockname()[1])])
+    result = risorius("send", "--port", heard.getsockname()[1])
     assert result.exit_code == 0, result.output
     assert "speech.csv: Live Link Face, 6.10 s, " in result.output
     assert sent[0].channels["jawOpen"].max() > 0.2
@@ -76,7 +76,7 @@ def test_the_recording_that_comes_along_is_our_script(tmp_path: Path) -> None:
     """`risorius export` makes it anew; processors round apart."""
     folder = Path(str(files("risorius.assets")))
     arguments = ["export", str(folder / "scripts" / "speech.toml"), "-o"]
-    result = CliRunner().invoke(command(), [*arguments, str(tmp_path / "speech.csv"), "--quiet"])
+    result = risorius(*arguments, tmp_path / "speech.csv", "--quiet")
     assert result.exit_code == 0, result.output
     made, shipped = (read_take(each / "speech.csv") for each in (tmp_path, folder / "data"))
     assert made.times == pytest.approx(shipped.times)
@@ -144,7 +144,7 @@ def test_the_command_sends_a_file(tmp_path: Path, heard: socket.socket) -> None:
     file = tmp_path / "take.csv"
     file.write_text("time,jawOpen,AU38\n0.0,0.5,0.1\n0.05,0.25,0.2\n")
     port = heard.getsockname()[1]
-    result = CliRunner().invoke(command(), ["send", str(file), "--port", str(port)])
+    result = risorius("send", file, "--port", port)
     assert result.exit_code == 0, result.output
     assert f"to 127.0.0.1, port {port}, as Live Link Face" in result.output
     assert "not sent: AU38" in result.output
@@ -167,6 +167,6 @@ def test_what_cannot_be_sent_is_told_in_one_line(
     """Exit code 2, and what is allowed."""
     file = tmp_path / "take.csv"
     file.write_text("time,jawOpen\n0.0,0.5\n0.05,0.25\n")
-    result = CliRunner().invoke(command(), ["send", str(file), *words])
+    result = risorius("send", file, *words)
     assert result.exit_code == 2
     assert told in result.output and result.output.count("\n") == 1

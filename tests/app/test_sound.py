@@ -14,14 +14,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import scipy.signal
-from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius.app.capture import outputs
 from risorius.app.capture.encoder import HEARD
 from risorius.app.capture.encoder import Soundtrack as Heard
-from risorius.app.cli import main
 from risorius.app.errors import UserError
 from risorius.app.scenes import PlaneScene
 from risorius.app.script import Script, load_script, parse_script, save_script, script_text
@@ -31,6 +29,7 @@ from risorius.app.viewer.session.physics import STEP, Clock
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.session.soundtrack import Soundtrack
 
+from .command_line import risorius
 from .sounds import noise, write_wav
 
 POSE = "[[pose]]\ntime = 1.0\n"
@@ -158,9 +157,7 @@ def test_capture_takes_the_sound_of_script_and_option(
     (tmp_path / "s.toml").write_text("scene = 'plane'\nsound = 'own.wav'\n[[pose]]\ntime = 0.2\n")
 
     def capture(*words: str) -> tuple[int, str]:
-        result = CliRunner().invoke(
-            main, ["capture", "s.toml", "--size", "64x48", "--quiet", *words]
-        )
+        result = risorius("capture", "s.toml", "--size", "64x48", "--quiet", *words)
         return result.exit_code, result.output
 
     assert capture("-o", "own.mp4")[0] == 0
@@ -415,5 +412,5 @@ def test_without_a_device_all_is_silent_and_goes_on(monkeypatch: pytest.MonkeyPa
             assert not soundtrack.is_heard
             soundtrack.rest()
             soundtrack.close()
-            told = CliRunner().invoke(main, ["doctor"]).output
+            told = risorius("doctor").output
             assert "sound: no." in told

@@ -23,12 +23,6 @@ POSES = (
 )
 
 
-@pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """The built-in head."""
-    return FaceScene()
-
-
 def attached(scene: FaceScene) -> list[SurfaceAttachment]:
     """What is attached to its skin."""
     return [part for part in scene.parts if isinstance(part, SurfaceAttachment)]

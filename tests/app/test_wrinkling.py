@@ -25,12 +25,6 @@ SETTLED = 1.2  # [s]
 
 
 @pytest.fixture(scope="module")
-def scene() -> FaceScene:
-    """One face for all tests; each begins by posing it."""
-    return FaceScene()
-
-
-@pytest.fixture(scope="module")
 def wrinkling(scene: FaceScene) -> Compression:
     """What measures it."""
     return Compression(scene)

@@ -9,21 +9,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from click.testing import CliRunner, Result
 
-from risorius.__main__ import command
 from risorius.bench import reference
+from tests.app.command_line import risorius
 
 pytest.importorskip("pyvista", reason="decimation needs PyVista, the extra 'peers'")
 
 SIZE = 40  # cells along a side of the face
 COUNT = (SIZE + 1) ** 2  # vertices of the face
 LIFT = np.array([0.0, 0.5, 0.25])
-
-
-def risorius(*arguments: str | Path) -> Result:
-    """Run the command in this process."""
-    return CliRunner().invoke(command(), list(map(str, arguments)))
 
 
 def face() -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:

@@ -12,23 +12,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
-from risorius.__main__ import command
 from risorius.app.recordings.names import ARKIT
 from risorius.bench import seen
 from risorius.bench.face_tracker import FaceTracker, Scores, in_mirror, mean_of
+from tests.app.command_line import risorius
 
 MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
 needs_model = pytest.mark.skipif(
     not MODEL.is_file(), reason="FACE_LANDMARKER names no model of the face tracker"
 )
 CALM = dict.fromkeys(ARKIT, 0.05)
-
-
-def risorius(*arguments: str | Path) -> Result:
-    """Run the command in this process."""
-    return CliRunner().invoke(command(), list(map(str, arguments)))
 
 
 def over(**scores: float) -> Scores:

@@ -10,9 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
-from risorius.__main__ import command
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL, COLUMNS, ROWS
@@ -29,6 +27,7 @@ from risorius.bench.reproduce.experiments import (
 from risorius.bench.reproduce.table1 import WAYS, Row
 from risorius.refine.kahler import criterion, smoothing
 from risorius.refine.mesh import rings
+from tests.app.command_line import risorius
 
 
 def claim(name: str) -> Claim:
@@ -142,11 +141,6 @@ def planted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Experiment, "callable", property(lambda each: lambda: MADE[each.name]))
     for module in (commands, page):
         monkeypatch.setattr(module, "EXPERIMENTS", PLANTED)
-
-
-def risorius(*arguments: str | Path) -> Result:
-    """Run the command in this process."""
-    return CliRunner().invoke(command(), list(map(str, arguments)))
 
 
 def test_a_missed_tolerance_is_told_after_all_is_written(planted: None, tmp_path: Path) -> None:
