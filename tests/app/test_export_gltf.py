@@ -14,13 +14,10 @@ import numpy as np
 import PIL.Image
 import pytest
 import trimesh
-from hypothesis import given
-from hypothesis import strategies as st
 
 from risorius import assets, sim
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
-from risorius.app.export.morphs import decompose
 from risorius.app.script import parse_script
 from risorius.geometry.normals import vertex_normals
 
@@ -246,30 +243,6 @@ def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
         assert farthest(player, clip, surface.name) < NEAR
 
 
-@given(
-    st.integers(1, 12), st.integers(1, 9), st.integers(0, 4), st.integers(0, 2**32 - 1),
-    st.sampled_from([1e-3, 0.1, 2.0]), st.integers(2, 40),
-)  # fmt: skip
-def test_targets_come_as_near_as_they_say(
-    frames: int, vertices: int, rank: int, seed: int, tolerance: float, most: int
-) -> None:
-    """Weights of 0 to 1, no more targets than may be, and the error that is said; within tolerance
-    where there may be as many as frames."""
-    generator = np.random.default_rng(seed)
-    moved = np.zeros((frames, vertices, 3))
-    for _ in range(rank):
-        curve, shape = generator.normal(size=frames), generator.normal(0.0, 9.0, (vertices, 3))
-        moved += curve[:, None, None] * shape
-    morphs = decompose(moved, tolerance, most)
-    assert morphs.weights.shape == (frames, len(morphs.targets))
-    assert len(morphs.targets) <= min(most, rank + 1)
-    assert (morphs.weights >= 0.0).all() and (morphs.weights <= 1.0).all()
-    off = np.linalg.norm(moved - np.tensordot(morphs.weights, morphs.targets, axes=1), axis=2)
-    assert abs(off.max() - morphs.error) < 1e-6
-    if most > rank:
-        assert morphs.error <= tolerance + 1e-6
-
-
 def settled(name: str) -> tuple[Any, Any]:
     """The skin and the jaw's matrix with one control at 1, by a simulation of its own."""
     simulation = sim.create(assets.load("head"))
@@ -300,18 +273,6 @@ def test_a_rig_has_each_shape_by_its_name(
     assert np.abs(player.target("teeth_lower", index) - moved / 1000.0).max() < 1e-5
     assert "tongueOut" in player.target_names("tongue")
     assert not player.target_names("teeth_upper")
-
-
-@pytest.mark.slow
-def test_lips_of_a_rig_close_over_an_open_jaw(rigged: tuple[Player, str | None]) -> None:
-    """mouthClose says how much of jawOpen the lips make good, so both together shut the mouth."""
-    player, _ = rigged
-    names, marks = player.target_names("skin"), assets.load("head").landmarks
-    rest = player.attribute("skin", "POSITION").astype(np.float64)
-    opened = rest + player.target("skin", names.index("jawOpen"))
-    closed = opened + player.target("skin", names.index("mouthClose"))
-    gaps = [np.linalg.norm(shape[marks[62]] - shape[marks[66]]) for shape in (rest, opened, closed)]
-    assert gaps[1] > gaps[0] + 0.015 and gaps[2] < gaps[0] + 0.003
 
 
 @pytest.mark.slow

@@ -14,7 +14,6 @@ from PIL import Image
 
 from risorius.app.errors import UserError
 from risorius.app.passes.labelled import NOTHING, Labelled, save_labelled, write_exr
-from tests.heads import stranger
 
 from .command_line import risorius
 
@@ -99,21 +98,6 @@ def test_the_colours_are_those_without_passes(tmp_path: Path) -> None:
     for end in (".png", ".exr", "_seg.png", ".json"):
         assert (tmp_path / f"a{end}").read_bytes() == (tmp_path / f"b{end}").read_bytes()
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "c.png").read_bytes()
-
-
-@pytest.mark.slow
-def test_a_head_of_ones_own_and_no_refinement(tmp_path: Path) -> None:
-    """Triangles are those of the head that was brought; none is split."""
-    other = stranger()
-    mesh, landmarks = other.write(tmp_path)
-    target = tmp_path / "own.png"
-    head = ("--head", mesh, "--landmarks", landmarks, "--refiner", "none")
-    result = risorius(*CAPTURE, "--set", "joy", *head, "--passes", ALL, "-o", target)
-    assert result.exit_code == 0, result.output
-    channels = channels_of(tmp_path / "own.exr")
-    numbers = channels["triangle.ID"].astype(np.int32)
-    assert 4000 < numbers.max() < len(other.mesh.faces)
-    assert not channels["splits"].any()
 
 
 @pytest.mark.parametrize(

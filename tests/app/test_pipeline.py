@@ -37,32 +37,6 @@ def image(pipeline: Pipeline, drawn: DrawnMesh) -> Any:
     return surface.read()
 
 
-class DoubleRefiner:
-    """Emits every triangle twice: useless, but a refiner."""
-
-    def __init__(self, faces: Any, rest_positions: Any, **_: Any) -> None:
-        self._plain = refine.create("none", faces, rest_positions)
-        self.vertex_capacity = self._plain.vertex_capacity
-        self.triangle_capacity = 2 * len(faces)
-        self.vertex_columns = self._plain.vertex_columns
-        self.edges = self._plain.edges
-        self.triangle_edges = self._plain.triangle_edges
-        self.splits = self._plain.splits
-
-    def refine(self, positions: Any, out: Any = None, view: Any = None) -> Any:
-        mesh = self._plain.refine(positions, out=out)
-        count = len(mesh.triangles)
-        out.triangles[count : 2 * count] = mesh.triangles
-        out.source[count : 2 * count] = mesh.source
-        return refine.RefinedMesh(
-            positions=mesh.positions,
-            normals=mesh.normals,
-            triangles=out.triangles[: 2 * count],
-            source=out.source[: 2 * count],
-            uv=None,
-        )
-
-
 def test_rows_without_texture_coordinates_are_drawn(
     surface: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -72,17 +46,6 @@ def test_rows_without_texture_coordinates_are_drawn(
     scene = FaceScene()
     pipeline = Pipeline(scene, render.Renderer(surface))
     assert image(pipeline, pipeline.bind(Refinement(refiner="bare"))).std() > 10.0
-
-
-def test_a_registered_refiner_is_drawn(surface: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A refiner from outside goes through the real pipeline to a image."""
-    refine.register("double", DoubleRefiner)
-    scene = PlaneScene()
-    pipeline = Pipeline(scene, render.Renderer(surface))
-    drawn = pipeline.bind(Refinement(refiner="double"))
-    pipeline.step(0.1)
-    assert np.ptp(image(pipeline, drawn)) > 30
-    assert drawn.triangle_count == 308
 
 
 def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:

@@ -12,7 +12,7 @@ from risorius import refine, render
 from risorius.app.capture.cameras import whole_scene
 from risorius.app.errors import UserError
 from risorius.app.pipeline import Pipeline, Viewport
-from risorius.app.refining.presets import PRESETS, Preset, Refinement
+from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import parse_comparison, refiner_for
 from risorius.app.scenes import SCENES, Scene
 from risorius.refine.border.registry import refiners
@@ -75,20 +75,6 @@ def test_the_papers_look_is_the_papers_rule(scenes: dict[str, Scene]) -> None:
         assert np.array_equal(getattr(seen, array), getattr(wanted, array)), array
     smooth = refiner_for(face, Refinement("smooth")).refine(face.positions)
     assert len(smooth.triangles) > 1.2 * len(seen.triangles)
-
-
-def test_what_is_asked_for_is_over_the_look(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A look says which refiner and what it is told; both can be replaced; others get nothing."""
-    told = {"kahler": {"scheme": "cubic", "blend": True}, "loop": {"levels": 2}}
-    monkeypatch.setattr(
-        "risorius.app.refining.presets.PRESETS", {"x": {"face": Preset("loop", told)}}
-    )
-    assert Refinement("x").on("face") == ("loop", {"levels": 2})
-    assert Refinement("x", "kahler").on("face") == ("kahler", told["kahler"])
-    changed = Refinement("x", "kahler", {"blend": None}).on("face")
-    assert changed == ("kahler", {"scheme": "cubic", "blend": None})
-    assert Refinement("x", "strange").on("face") == ("strange", {})
-    assert told["kahler"] == {"scheme": "cubic", "blend": True}  # nobody wrote into the look
 
 
 def test_a_comparison_is_of_looks_and_refiners(monkeypatch: pytest.MonkeyPatch) -> None:

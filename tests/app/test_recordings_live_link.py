@@ -208,13 +208,6 @@ def test_a_rate_that_the_user_knows(tmp_path: Path) -> None:
     assert times[-1] == pytest.approx(9 / 30.0)
 
 
-def test_frames_that_are_missing(tmp_path: Path) -> None:
-    """A second that held 59 rows is a second all the same."""
-    frames = np.delete(np.arange(180), 77)
-    times, _ = take_of(tmp_path, timecodes(frames))
-    assert times == pytest.approx(frames / 60.0, abs=1e-9)
-
-
 def test_midnight(tmp_path: Path) -> None:
     """Time goes on after 23:59:59."""
     codes = [code[:-4] for code in timecodes(np.arange(60), 60, start=86_399)]

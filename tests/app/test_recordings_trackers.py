@@ -91,21 +91,6 @@ def test_stamps_in_other_units(unit: float, name: str, tmp_path: Path) -> None:
     assert told(take.notes, name)
 
 
-def test_frames_without_a_face_are_held(tmp_path: Path) -> None:
-    """The last pose stays, and goes over to the next one in the last 0.3 s."""
-    columns = openface()
-    success = np.ones(60)
-    success[20:50] = 0.0
-    smile = np.r_[np.full(20, 1.0), np.zeros(30), np.full(10, 4.0)]
-    take = read_take(
-        written(tmp_path / "take.csv", columns | {"success": success, "AU12_r": smile})
-    )
-    assert take.channels["AU12"][20:40] == pytest.approx(0.2)
-    assert take.channels["AU12"][50] == pytest.approx(0.8)
-    assert 0.2 < take.channels["AU12"][45] < 0.8
-    assert told(take.notes, "No face in 30 of 60 frames")
-
-
 def test_no_face_at_all(tmp_path: Path) -> None:
     """There is nothing to play."""
     path = written(tmp_path / "take.csv", openface() | {"success": [0] * 60})

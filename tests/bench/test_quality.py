@@ -10,7 +10,7 @@ import pytest
 
 from risorius import assets, refine
 from risorius.bench import quality, subjects
-from risorius.bench.flicker import PLACES, at_places, largest_jump
+from risorius.bench.flicker import largest_jump
 from risorius.bench.quality import BEST, CALM, STATIC
 from risorius.bench.subjects import PosePair, Subject
 from tests import meshes
@@ -192,26 +192,6 @@ class Switching(refine.Criterion):
         """Write 2 or 0 for every edge."""
         splits[:] = 2 * self.is_on
         self.is_on = not self.is_on
-
-
-@pytest.mark.parametrize("name", ["none", "loop", "kahler"])
-def test_places_of_a_flat_mesh(name: str) -> None:
-    """Wherever rows lie, the same places are found: on a flat mesh where they are at rest."""
-    mesh = meshes.open_grid(3, 2)
-    options = {"criterion": Switching()} if name == "kahler" else {}
-    refiner = refine.create(name, mesh.faces, mesh.vertices, **options)
-    for _ in range(2):
-        points = at_places(refiner, mesh.faces, refiner.refine(mesh.vertices))
-        inside = slice(None) if name == "none" else ~_at_border(mesh.vertices[mesh.faces])
-        wanted = np.einsum("pk,fki->fpi", PLACES, mesh.vertices[mesh.faces])
-        np.testing.assert_allclose(points[inside], wanted[inside], atol=1e-5)
-
-
-def _at_border(corners: Points) -> npt.NDArray[np.bool_]:
-    """Triangles at the border of a grid, where rounding corners moves points within the plane."""
-    low, high = corners.min(axis=(0, 1))[:2], corners.max(axis=(0, 1))[:2]
-    at_border = (corners[..., :2] == low) | (corners[..., :2] == high)
-    return np.asarray(at_border.any(axis=(1, 2)))
 
 
 def test_a_rigid_motion_does_not_jump() -> None:

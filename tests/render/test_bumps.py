@@ -87,17 +87,6 @@ def test_per_pixel_shading_alone_has_them(surface: render.Surface, shading: rend
     assert (furrows == furrowed(surface, texel, None, style)).all()
 
 
-@pytest.mark.parametrize("colour_by", render.ColourBy)
-@pytest.mark.parametrize("wireframe", [False, True])
-def test_goes_with_every_style(
-    surface: render.Surface, colour_by: render.ColourBy, wireframe: bool
-) -> None:
-    """Colours by values keep the order of triangles; lines lie over all."""
-    style = replace(PLAIN, colour_by=colour_by, wireframe=wireframe)
-    frame = furrowed(surface, (190, 90, 200, 0), (1.0, 1.0), style)
-    assert (frame != furrowed(surface, LEVEL, (1.0, 1.0), style)).any()
-
-
 def test_part_of_a_mesh_has_bumps_without_a_crack(surface: render.Surface) -> None:
     """With a level map, a sphere half of whose vertices bump looks as it does without."""
     shape = sphere()
