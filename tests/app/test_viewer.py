@@ -138,18 +138,6 @@ def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
     assert not viewer.session.unsaved
 
 
-def test_a_click_selects_the_muscle(viewer: Viewer) -> None:
-    """A click beside the mouth opens the group of a muscle there and scrolls to its slider."""
-    x, y = nose(viewer)
-    xdotool(viewer, "mousemove", x - 25, y + 30)
-    xdotool(viewer, "mousedown", 1)
-    xdotool(viewer, "mouseup", 1)
-    name = viewer.muscle_note.name
-    assert name in viewer.session.controls.limits
-    whole = name.removesuffix("_left").removesuffix("_right")
-    assert {name, name.replace("right", "left"), whole} & set(viewer.gui.places)
-
-
 def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
     """The mouse on a muscle's slider draws its fibres over the face."""
     show_controls(viewer, "zygom maj")

@@ -50,32 +50,6 @@ def only_open(viewer: Viewer, title: str) -> None:
     settle(viewer)
 
 
-def widths(viewer: Viewer) -> list[int]:
-    """Of what is seen of each mesh [pixels]."""
-    shots = viewer.stage.viewports(viewer.settings.display, viewer.view.viewport)
-    return [shot.seen[2] for shot in shots]
-
-
-def test_side_by_side_is_two_equal_halves(viewer: Viewer) -> None:
-    """Wherever the line of the wipe was left; between halves there is nothing to drag."""
-    xdotool(viewer, "key", "d")
-    left, top, width, height = viewer.view.area
-    drag_and_release(viewer, on_screen(viewer, left + 0.5 * width, top + 0.1 * height), (90, 0))
-    first, second = widths(viewer)
-    assert first > second + 100
-    xdotool(viewer, "key", "shift+d")
-    first, second = widths(viewer)
-    assert abs(first - second) <= 1
-    (line, _), *grips = viewer.surface.rules
-    assert not grips and abs(line[0] + 0.5 * line[2] - left - 0.5 * width) <= 2
-    divider = viewer.settings.display.divider
-    drag_and_release(viewer, on_screen(viewer, left + 0.5 * width, top + 0.1 * height), (30, 0))
-    assert viewer.settings.display.divider == divider
-    xdotool(viewer, "key", "d")
-    first, second = widths(viewer)
-    assert first > second + 100  # the wipe is where it was
-
-
 def seen_labels(viewer: Viewer, page: np.ndarray, origin: tuple[int, int]) -> list[bool]:
     """Whether each label of the window is in a picture whose lower left corner is there."""
     seen = []

@@ -214,18 +214,3 @@ def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> No
     finish(viewer)
     assert viewer.messages.is_error and "no pose has a name" in viewer.messages.text
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_name_is_free_for_its_kind(viewer: Viewer, tmp_path: Path) -> None:
-    """A film of that name is no reason to call a mesh otherwise."""
-    viewer.settings.export = ExportChoices(kind="mp4", folder=str(tmp_path))
-    xdotool(viewer, "key", "F10")
-    name = viewer.exporter.name
-    xdotool(viewer, "key", "Escape")
-    (tmp_path / f"{name}.mp4").touch()
-    xdotool(viewer, "key", "F10")
-    assert viewer.exporter.name == f"{name}-2"
-    viewer.settings.export.kind = "gltf"
-    viewer.exporter.propose()
-    assert viewer.exporter.name == name
-    xdotool(viewer, "key", "Escape")

@@ -7,7 +7,6 @@ import subprocess
 from importlib import resources
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from risorius.app.scenes import build_scene
@@ -266,17 +265,6 @@ def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
     viewer.show_scene(before)
 
 
-def test_a_head_that_is_none_is_told(viewer: Viewer, tmp_path: Path) -> None:
-    """Landmarks that do not fit are one line in the window, and the face stays."""
-    before = viewer.session.scene
-    mesh, landmarks = stranger().write(tmp_path)
-    landmarks.write_text('{"landmarks": [1, 2, 3]}')
-    drop(viewer, mesh, landmarks)
-    assert until(viewer, lambda: viewer.messages.is_error)
-    assert "it must be the 68 iBug points" in viewer.messages.text
-    assert viewer.session.scene is before
-
-
 @pytest.mark.slow
 def test_heads_come_and_go_without_leaving_anything(
     viewer: Viewer, monkeypatch: pytest.MonkeyPatch
@@ -347,17 +335,3 @@ def test_json_is_a_recording_or_landmarks_by_what_it_holds(viewer: Viewer, tmp_p
         assert viewer.session.values["jawOpen"] == 0.5
     finally:
         viewer.show_scene(before)
-
-
-def test_a_recording_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
-    """The chooser lists tables beside scripts; a broken one is told, and the script stays."""
-    written(tmp_path / "take.csv")
-    (tmp_path / "broken.csv").write_text("jawOpen\nwide\n")
-    before = viewer.session.script
-    xdotool(viewer, "key", "ctrl+o")
-    click(viewer, "file broken.csv", times=2)
-    assert viewer.messages.is_error and "broken.csv" in viewer.messages.text
-    assert viewer.session.script is before
-    xdotool(viewer, "key", "ctrl+o")
-    click(viewer, "file take.csv", times=2)
-    np.testing.assert_allclose(viewer.session.script.duration, 1.0, atol=1e-6)

@@ -6,15 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from imgui_bundle import imgui
 
-from risorius.app.script import Channel, Script, parse_script, script_text
+from risorius.app.script import parse_script, script_text
 from risorius.app.script.keyframes import FRAME, POSES, on_frame
-from risorius.app.script.places import NOWHERE, KeyPlace, Places
+from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, drag, middle, on_screen, settle, xdotool
+from .driving import NEEDS_A_SCREEN, click, drag, middle, on_screen, settle, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "curves")]
 
@@ -180,37 +179,3 @@ def test_frames_are_counted(viewer: Viewer) -> None:
     assert len(labelled) > 3 and labelled == pytest.approx(np.round(labelled))
     click(viewer, "time shown")
     assert axis.told(2.0) == "2.00 s"
-
-
-def test_keys_and_curves_are_switched(viewer: Viewer) -> None:
-    """The button goes to rows of keys and back, with the same keys selected."""
-    xdotool(viewer, "mousemove", *at(viewer, 1.0, 1.0))
-    xdotool(viewer, "click", 1)
-    assert viewer.selection.places == {KeyPlace(POSES, 1.0)} and viewer.session.time == 1.0
-    click(viewer, "curves")
-    assert not viewer.settings.shows_curves
-    assert viewer.selection.places == {KeyPlace(POSES, 1.0)}
-    xdotool(viewer, "key", "g")
-    assert viewer.settings.shows_curves
-
-
-def test_a_dense_take_is_drawn_with_little(viewer: Viewer) -> None:
-    """Half a million keys: a few points for each column, one group at first, boxes still select."""
-    names = [name for name, (low, _) in viewer.session.controls.limits.items() if low == 0.0][:60]
-    times, chance = np.arange(9000) / 15.0, np.random.default_rng(5)
-    tracks = {name: Channel(times, chance.uniform(0.0, 0.4, 9000)) for name in names}
-    viewer.session.open(Script("take", 600.0, "take", tracks=tracks))
-    settle(viewer)
-    graph = viewer.timeline.dope_sheet.graph
-    assert 0 < len(graph.curves) < 24
-    viewer.selection.select_all()
-    viewer.wait_for_frame()
-    viewer._draw_gui(is_visible=True)
-    assert imgui.get_draw_data().total_vtx_count < 110 * SIZE[0]
-    viewer.selection.places = NOWHERE
-    first, last = at(viewer, 100.0, 0.45), at(viewer, 200.0, -0.02)
-    drag(viewer, first, (10, 10))
-    move(viewer, last[0] - first[0] - 10, last[1] - first[1] - 10)
-    assert set(viewer.selection.places.times) == {curve.control for curve in graph.curves}
-    found = len(viewer.selection.places) / len(graph.curves)
-    assert found == pytest.approx(1500, abs=60)

@@ -123,37 +123,6 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
     assert found["dragged"] > 4.0
 
 
-def test_cached_panels_look_like_new_ones(viewer: Viewer) -> None:
-    """While the camera moves, panels are kept; the window looks as if they had been drawn."""
-    viewer.session.toggle_alone("disgust")
-    settle(viewer)
-    assert until(viewer, lambda: viewer.is_idle)
-    drawn = []
-    draw = viewer._draw_gui
-
-    def noted(*, is_visible: bool) -> None:
-        drawn.append(is_visible)
-        draw(is_visible=is_visible)
-
-    viewer._draw_gui = noted  # type: ignore[method-assign]
-    viewer.refresh = 60.0
-    try:
-        for _ in range(5):
-            viewer.view.camera.orbit(3.0, 0.0)
-            viewer.frame()
-        assert not any(drawn)
-        kept = viewer.surface.read()
-        viewer.refresh = 0.0
-        viewer.painter.forget()  # the same picture, drawn again with new panels
-        viewer.frame()
-        assert any(drawn)
-    finally:
-        viewer.refresh = REFRESH
-        del viewer._draw_gui
-    changed = np.abs(viewer.surface.read().astype(int) - kept)
-    assert changed.max() == 0
-
-
 def test_a_slider_answers_at_once_while_the_face_moves(viewer: Viewer) -> None:
     """A slider that is dragged shows it in the same frame, however long panels may be kept."""
     show_controls(viewer, "jaw open")

@@ -15,8 +15,6 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, State
 from risorius.app.live.sender import Sender
-from risorius.app.recordings.calibration import Calibration
-from risorius.app.scenes import build_scene
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session import live_commands
 from risorius.app.viewer.session.live_commands import LiveCommands
@@ -187,22 +185,6 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     assert viewer.live.face is None and viewer.session.current == viewer.session.values
 
 
-def test_stopping_keeps_the_neutral_face_and_gains(viewer: Viewer) -> None:
-    """For the same protocol; another one begins anew."""
-    click(viewer, "tab Live")
-    click(viewer, "listen")
-    face = viewer.live.face
-    assert face is not None
-    face.calibration = kept = Calibration({"browDownLeft": 0.3}, {}, 0.5, mirror=True)
-    click(viewer, "listen")
-    click(viewer, "listen")
-    assert viewer.live.face is not None and viewer.live.face.calibration == kept
-    click(viewer, "listen")
-    viewer.live.wanted = Listening("vmc", port=0)
-    click(viewer, "listen")
-    assert viewer.live.face is not None and viewer.live.face.calibration.default_gain == 1.0
-
-
 @pytest.mark.slow
 def test_gains_are_sliders(viewer: Viewer) -> None:
     """Half the gain is half the smile; blinks and the head have one of their own."""
@@ -262,16 +244,3 @@ def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
             viewer.live.start(viewer.live.wanted)
     finally:
         other.stop()
-
-
-def test_another_head_follows_at_once(viewer: Viewer) -> None:
-    """Who is listened to stays, and moves the head that was put in its place."""
-    face, before = listen(viewer), viewer.session.scene
-    hold(viewer, face, 0.5, jawOpen=0.8)
-    try:
-        viewer.show_scene(build_scene("face"))
-        assert not moved(viewer)
-        hold(viewer, face, 0.5, jawOpen=0.8)
-        assert viewer.session.current["jawOpen"] == pytest.approx(0.8) and moved(viewer) > 5.0
-    finally:
-        viewer.show_scene(before)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from risorius.app.controls.vocabulary import filters, pads, title_of
@@ -228,15 +227,3 @@ def test_a_pose_is_kept_with_a_picture(viewer: Viewer, tmp_path: Path) -> None:
     assert values_of(viewer) == {"jaw_open": 0.6}
     assert load_script(folder / "Pose 1.toml").at(0.0)["jaw_open"] == 0.6
     assert set(PoseLibrary(viewer.session.scene, folder).own) == {"Pose 1"}
-
-
-def test_pictures_show_their_poses(viewer: Viewer) -> None:
-    """Each another; and the window's own picture is not disturbed."""
-    poses = PoseLibrary(viewer.session.scene, None)
-    try:
-        joy, anger = (poses.picture({name: 1.0}).astype(int) for name in ("joy", "anger"))
-        assert np.abs(joy - anger).max() > 60
-        assert np.abs(joy - poses.picture({"joy": 1.0})).max() <= 1
-    finally:
-        poses.close()
-        viewer.surface.make_current()

@@ -254,26 +254,6 @@ def test_what_a_live_face_sends_is_stepped_at_once_and_time_keeps_its_pace() -> 
     assert sum(clock.steps(STEP / 4, EARLIEST) for _ in range(100)) <= 26
 
 
-def test_a_lead_wins_by_its_share_over_what_it_names(session: Session) -> None:
-    """Within limits; a control that we have not is left out, and nothing of it can be undone."""
-    session.set("jaw_open", 0.2)
-    session.set("zygomaticus_major_left", 0.4)
-    session.note()
-    session.live_override.take({"jaw_open": 7.0, "head_yaw": -0.5, "no_control": 1.0}, 1.0)
-    assert session.current["jaw_open"] == 1.0 and session.current["head_yaw"] == -0.5
-    assert session.current["zygomaticus_major_left"] == 0.4
-    assert session.current.keys() == session.controls.limits.keys()
-    run(session, 30)
-    assert session.scene.values["jaw_open"] == 1.0
-    session.live_override.take({"jaw_open": 1.0}, 0.25)
-    assert session.current["jaw_open"] == pytest.approx(0.4)
-    assert session.current["head_yaw"] == 0.0
-    session.live_override.take({"jaw_open": 1.0}, 0.0)
-    assert session.current == session.values and session.values["jaw_open"] == 0.2
-    session.undo()
-    assert session.values["jaw_open"] == 0.0
-
-
 def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
     session: Session, tmp_path: Path
 ) -> None:

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -182,24 +181,6 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     assert found_by_next(tmp_path, session) == Work(edited, tmp_path / "smile.toml")
 
 
-def test_a_file_that_was_changed_since_is_not_replaced_unasked(
-    session: Session, recovery: Recovery, tmp_path: Path
-) -> None:
-    """Between the crash and the recovery somebody wrote the script's file: saving says so."""
-    session.set("jaw_open", 0.25)
-    session.set_key()
-    recovery.save(session)
-    recovery.close()
-    later = time.time() + 10.0
-    os.utime(tmp_path / "smile.toml", (later, later))
-    after = Session(session.scene, script_for(None, "face"))
-    next_one = Recovery(tmp_path / "unsaved")
-    next_one.find(after)
-    next_one.accept_found(after)
-    assert "another program" in after.file.objection
-    next_one.close()
-
-
 def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
     """The latest is offered first, then the one before; damaged files are passed by."""
     folder = tmp_path / "unsaved"
@@ -223,32 +204,6 @@ def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
     next_one.discard_found(session)
     assert next_one.found is None
     assert {file.name[:8] for file in folder.glob("*.toml")} == {"20270101"}
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="pipes and links of POSIX systems")
-def test_damaged_work_hides_no_other(session: Session, recovery: Recovery, tmp_path: Path) -> None:
-    """Pipes, folders, circles of links, monsters among the files: passed by, none is waited for."""
-    session.set("jaw_open", 0.4)
-    recovery.save(session)
-    recovery.close()
-    folder = tmp_path / "unsaved"
-    os.mkfifo(folder / "20270101-000000-aaa.pose.toml")
-    (folder / "20270101-000000-bbb.pose.toml").mkdir()
-    (folder / "20270101-000000-ccc.pose.toml").symlink_to("20270101-000000-ccc.pose.toml")
-    (folder / "20270101-000000-ddd.pose.toml").write_text("a" + 30_000 * ".a" + "=1")
-    (folder / "20270101-000000-eee.pose.toml").write_text("a=" + 30_000 * "[")
-    with (folder / "20270101-000000-fff.pose.toml").open("wb") as file:
-        file.truncate(2**34)
-    (folder / "20270101-000000-ggg.pose.toml").write_text(SCRIPT)
-    os.mkfifo(folder / "20270101-000000-ggg.lock")
-    found = found_by_next(tmp_path, session)
-    assert found is not None and found.pose is not None
-    assert found.pose.at(0.0)["jaw_open"] == 0.4
-    file = tmp_path / "not_a_folder"
-    file.touch()
-    other = Recovery(file)
-    other.find(session)
-    assert other.found is None
 
 
 def test_only_what_fits_the_scene_is_offered(

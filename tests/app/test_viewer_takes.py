@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from risorius.app.controls.vocabulary import readable
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
-from risorius.app.script import Channel, Key, Pose, Script, load_script, parse_script
+from risorius.app.script import Channel, Key, Pose, Script, load_script
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.recorder import Recorder
@@ -24,7 +24,6 @@ from risorius.app.viewer.settings import PanelState
 from risorius.app.viewer.timeline.key_selection import KeySelection
 
 HELLO = Path("docs/hello.toml")
-TAKE = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1}]\njaw_open=[{time=0,value=0.5}]"
 
 
 @pytest.fixture
@@ -80,19 +79,6 @@ def test_what_is_keyed_or_was_never_moved_is_let_go_in_silence(session: Session)
     assert session.seek(2.0) is None and session.history.labels[-1] == "Key at 1.00 s"
     set_by_hand(session, jaw_open=0.7)
     assert session.seek(2.5) and session.seek(3.0) is None
-
-
-def test_a_key_in_tracks_is_of_what_changed_or_of_all(scene: FaceScene) -> None:
-    """K keys the tracks that differ, Shift+K all of them."""
-    session = Session(scene, parse_script(TAKE, source="take.toml"))
-    session.seek(1.0)
-    set_by_hand(session, jaw_open=0.2)
-    session.set_key()
-    assert [len(track) for track in session.script.tracks.values()] == [2, 2]
-    session.seek(1.5)
-    set_by_hand(session, jaw_open=0.3)
-    session.set_key(is_whole=True)
-    assert [len(track) for track in session.script.tracks.values()] == [3, 3]
 
 
 # Punching in

@@ -115,9 +115,7 @@ def test_delete_and_duplicate(viewer: Viewer) -> None:
 def test_the_face_becomes_a_key(viewer: Viewer) -> None:
     """Go to a time, move a slider, press K: a pose is there that shows just this face."""
     viewer.session.seek(2.0)
-    show_controls(viewer, "jaw open")
-    drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
-    clear_search(viewer)
+    open_jaw(viewer)
     wanted = dict(viewer.session.values)
     xdotool(viewer, "key", "k")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -272,23 +270,6 @@ def test_undo_takes_back_a_pull_that_is_held(viewer: Viewer) -> None:
     assert viewer.session.history.labels[-1].startswith("Pull (")
     xdotool(viewer, "key", "ctrl+y")
     assert any(viewer.session.values.values())
-
-
-def number_in_ruler(viewer: Viewer, when: float, beside: float) -> tuple[int, int]:
-    """A place on a number of the ruler, so many letters' heights beside its middle."""
-    _, top, _, bottom = viewer.gui.places["time"]
-    em = imgui.get_font_size()
-    return on_screen(viewer, viewer.time_axis.x(when) + beside * em, 0.7 * top + 0.3 * bottom)
-
-
-def test_a_click_on_a_number_goes_there(viewer: Viewer) -> None:
-    """Wherever in the number; a drag from there goes to other frames."""
-    labelled = [tick.time for tick in viewer.time_axis.ticks(4.2 * imgui.get_font_size())]
-    assert 2.0 in labelled
-    press(viewer, number_in_ruler(viewer, 2.0, 0.2))
-    assert viewer.session.time == 2.0
-    drag_and_release(viewer, number_in_ruler(viewer, 2.0, 0.0), (12, 0))
-    assert 2.0 < viewer.session.time < 2.5
 
 
 def test_values_are_zoomed_and_panned(viewer: Viewer) -> None:

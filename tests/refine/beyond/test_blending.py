@@ -9,7 +9,6 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from risorius import refine
-from risorius.geometry.normals import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced, GivenMetric, surface_at
 
@@ -24,24 +23,7 @@ BOUND = 12.0
 Largest seen: 3.9 for curved edges, 5.0 for detail, 4.7 for the paper's rules; a quarter of the
 thresholds' distance, over which a point grows, is a small turn. Without blending 26 to 65, more the
 smaller the steps are."""
-ROUGH_BOUND = 6.0
-"""The same, of the motion of the input and the turn of its vertex normals [rad] around together.
-
-Where opposite triangles meet, or a tip of many triangles is crumpled, their normals cancel and what
-remains turns about at once, whatever is done with it. Largest seen: 5; without blending 7 and more,
-up to 74 in smaller steps."""
 STEPS = 400
-
-
-def turns_around(
-    normals: npt.NDArray[np.float64], before: npt.NDArray[np.float64], faces: npt.NDArray[np.int32]
-) -> npt.NDArray[np.float64]:
-    """Largest turn of a vertex normal in each proper triangle and those beside it."""
-    largest = np.linalg.norm(normals - before, axis=1)
-    for _ in range(2):
-        of_triangles = largest[faces].max(axis=1)
-        np.maximum.at(largest, faces.ravel(), np.repeat(of_triangles, 3))
-    return of_triangles[np.array([len(set(face)) == 3 for face in faces.tolist()])]
 
 
 def jumps(
@@ -108,54 +90,6 @@ def test_nothing_pops_at_seams_and_tips(name: str, scheme: str) -> None:
 def test_nothing_pops_by_other_criteria(criterion: object, scheme: str) -> None:
     """The same for the other criteria and their maximum."""
     assert jumps(scheme, True, criterion)[0] < BOUND
-
-
-def rough(name: str) -> meshes.Mesh:
-    """A grid with every third triangle flipped, one with debris beside it, or tips of 60."""
-    grid = meshes.irregular(4, 4, 3, 0)
-    if name == "flipped":
-        faces = grid.faces.copy()
-        faces[::3] = faces[::3, ::-1]
-        return meshes.Mesh(grid.vertices, faces)
-    if name == "debris":
-        debris = meshes.with_debris()
-        faces = np.concatenate([grid.faces, debris.faces + len(grid.vertices)])
-        vertices = np.concatenate([grid.vertices, debris.vertices])
-        return meshes.Mesh(vertices, faces.astype(np.int32))
-    return meshes.double_cone(60)
-
-
-@pytest.mark.parametrize("scheme", QUICK_SCHEMES)
-@pytest.mark.parametrize(
-    "name", ["flipped", "debris", pytest.param("valence 60", marks=pytest.mark.slow)]
-)
-def test_nothing_pops_on_rough_meshes(name: str, scheme: str) -> None:
-    """Nor there: no point moves more than in proportion to motion and turn of the input."""
-    mesh = rough(name)
-    wave = meshes.wrinkled(mesh, 5, 0.5) - mesh.vertices
-    detail = {"detail": (mesh.vertices + 0.02, mesh.faces)} if scheme == "detail" else {}
-    places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
-
-    def most(blend: bool) -> float:
-        refiner = refine.create(
-            "kahler", mesh.faces, mesh.vertices, scheme=scheme, blend=blend, **detail
-        )
-        largest, before = 0.0, None
-        for step in range(1, STEPS):
-            positions = mesh.vertices + np.sin(1.6 * step / STEPS * np.pi) * wave
-            refined = refiner.refine(positions)
-            points = surface_at(refiner, refined, mesh.faces, places)[..., :3]
-            normals = vertex_normals(positions, mesh.faces)
-            if before is not None:
-                moved = np.linalg.norm(positions - before[0], axis=1).max()
-                turned = turns_around(normals, before[1], mesh.faces)
-                by_triangle = np.linalg.norm(points - before[2], axis=2).max(axis=1)
-                if moved > 1e-6:  # the motion turns back once
-                    largest = max(largest, float((by_triangle / (moved + turned)).max()))
-            before = positions, normals, points
-        return largest
-
-    assert most(True) < ROUGH_BOUND < most(False)
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
@@ -282,21 +216,6 @@ def test_begins_at_the_unrefined_surface(scheme: str) -> None:
     np.testing.assert_allclose(surface(1e-6), surface(-1.0), rtol=0, atol=1e-5)
     np.testing.assert_allclose(surface(1.0 + 1e-6), surface(1.0 - 1e-6), rtol=0, atol=1e-5)
     assert abs(surface(0.5) - surface(-1.0)).max() > 0.01
-
-
-def test_defaults() -> None:
-    """Blending is on where it costs no faithfulness: not for the paper's scheme."""
-    mesh = meshes.octahedron()
-    for options, expected in (
-        ({}, 10),
-        ({"scheme": "cubic"}, 12),
-        ({"scheme": "cubic", "blend": False}, 10),
-        ({"scheme": "cubic", "criterion": Forced(np.zeros(12))}, 10),
-        ({"scheme": "cubic", "coherent": True}, 10),
-        ({"blend": True}, 12),
-    ):
-        refiner = refine.create("kahler", mesh.faces, mesh.vertices, **options)
-        assert refiner.triangle_capacity == expected * 8
 
 
 def test_needs_a_measure() -> None:
