@@ -18,7 +18,7 @@ from risorius.app.recordings.calibration import (
     neutral_now,
     neutral_of,
 )
-from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
+from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 
 Frame = dict[str, float]
 SHAPES = (*ARKIT, "AU12", "AU12_left", "AU4_right")
@@ -122,3 +122,16 @@ def test_a_wrong_gain_is_told(setting: str) -> None:
 def test_a_wrong_neutral_is_told(method: str) -> None:
     with pytest.raises(UserError, match=rf"--neutral {method}: "):
         neutral_of(take_of(jawOpen=0.1), method)
+
+
+def test_visemes_are_as_they_were_written() -> None:
+    take = take_of(viseme_sil=0.4)
+    for method in (None, "first:1", "percentile"):
+        assert set(neutral_of(take, method)) & set(VISEMES) == set()
+
+
+def test_short_and_calibrated_takes_keep_their_faces() -> None:
+    assert neutral_of(take_of(seconds=1.0, browDownLeft=0.3)) == {}
+    calibrated = take_of(browDownLeft=0.3)
+    object.__setattr__(calibrated, "is_calibrated", True)
+    assert neutral_of(calibrated) == {}

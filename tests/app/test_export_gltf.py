@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import json
 import re
 import struct
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,10 +16,16 @@ import numpy as np
 import PIL.Image
 import pytest
 import trimesh
+from threadpoolctl import threadpool_limits
 
 from risorius import assets, sim
-from risorius.app.export.clip import Clip, record
+from risorius.app.export import pieces
+from risorius.app.export.clip import Clip, Surface, record
 from risorius.app.export.formats import Request, format_for, write
+from risorius.app.export.morphs import decompose
+from risorius.app.export.pieces import moving_pieces
+from risorius.app.performances import script_for
+from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
 from risorius.geometry.normals import vertex_normals
 
@@ -336,3 +344,65 @@ def test_blender_sees_the_same(clip: Clip, glb: Path, tmp_path: Path) -> None:
             expected = np.stack([surface.at(k) for k in range(clip.frame_count)]) / 1000.0
             off = np.linalg.norm(positions[surface.name] - expected, axis=2)
             assert off.max() < NEAR, surface.name
+
+
+@pytest.mark.slow
+def test_bytes_are_the_same_on_any_number_of_cores(tmp_path: Path) -> None:
+    """However many threads sum up, as two do where a file is written alone."""
+    clip = record(script_for(None, "face"), build_scene("face", None), 10.0)
+    paths = [tmp_path / f"{threads}.glb" for threads in (1, 2)]
+    for threads, path in enumerate(paths, 1):
+        with threadpool_limits(threads):
+            written(clip, path)
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+
+
+def test_weights_are_such_as_every_reader_takes(glb: Path) -> None:
+    """None is negative, none above 1, and the targets are not too many."""
+    player = Player(glb)
+    for name in ("skin", "tongue"):
+        weights = player.weights(name)
+        count = weights.shape[1]
+        assert count == len(player.target_names(name)) == len(player.primitive(name).targets)
+        assert 1 <= count <= 250
+        assert weights.min() >= 0.0 and weights.max() <= 1.0
+
+
+def test_what_targets_cannot_follow_is_told(
+    clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A clip that needs more targets than may be is written, and the error that remains is said."""
+    monkeypatch.setattr(pieces, "decompose", functools.partial(decompose, most=4))
+    remark = written(clip, tmp_path / "rough.glb")
+    player = Player(tmp_path / "rough.glb")
+    error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))
+    assert remark is not None and f"{error:.2f} mm" in remark and error > 1.0
+
+
+@pytest.mark.slow
+def test_long_clips_take_little_memory_beside_their_own() -> None:
+    """Positions are never all there in double precision, nor normals of all frames."""
+    scene, generator = build_scene("plane"), np.random.default_rng(3)
+    shapes = scene.rest_positions.astype(np.float32) + np.tensordot(
+        generator.normal(size=(10_000, 5)), generator.normal(size=(5, *scene.positions.shape)), 1
+    ).astype(np.float32)
+    plane = Surface("plane", scene.rest_positions, scene.faces, shapes)
+    script = parse_script(SHAPES, source="test")
+    tracemalloc.start()
+    try:
+        moving_pieces(Clip(scene, script, 24.0, (plane,), {}, {}, {}))
+        assert tracemalloc.get_traced_memory()[1] < 3.0 * shapes.nbytes
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.slow
+def test_lips_of_a_rig_close_over_an_open_jaw(rigged: tuple[Player, str | None]) -> None:
+    """mouthClose says how much of jawOpen the lips make good, so both together shut the mouth."""
+    player, _ = rigged
+    names, marks = player.target_names("skin"), assets.load("head").landmarks
+    rest = player.attribute("skin", "POSITION").astype(np.float64)
+    opened = rest + player.target("skin", names.index("jawOpen"))
+    closed = opened + player.target("skin", names.index("mouthClose"))
+    gaps = [np.linalg.norm(shape[marks[62]] - shape[marks[66]]) for shape in (rest, opened, closed)]
+    assert gaps[1] > gaps[0] + 0.015 and gaps[2] < gaps[0] + 0.003

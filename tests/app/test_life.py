@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
 from risorius.app.motion.idle import EYES_MOST, Idle, looking_at
-from risorius.app.motion.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life
+from risorius.app.motion.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
 from risorius.app.performances import limits_of
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
@@ -219,3 +219,11 @@ def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> Non
     assert not any(each["zygomaticus_major_left"] for each in values)
     assert not any(each["frontalis_medial_right"] for each in values)
     assert [each["AU12"] for each in values] == [script.at(n / 30.0)["AU12"] for n in range(91)]
+
+
+def test_breath_goes_in_and_out() -> None:
+    """In a breath the lungs are full once; air streams in only while they fill."""
+    full, flow = np.transpose([breath(share) for share in np.linspace(3.0, 4.0, 101)])
+    filling = np.diff(full) > 0.0
+    assert full.min() == 0.0 and full.max() > 0.99
+    assert 0.3 < filling.mean() < 0.5 and not (flow[:-1] * ~filling).max() > 0.1

@@ -284,3 +284,14 @@ def test_angles_turn_head_and_eyes_as_they_were_recorded(
     matrix = face.bone_transforms()[bones.get(channel, "cranium")]
     turned = np.degrees(np.arctan2(matrix[towards, axis], matrix[axis, axis]))
     assert turned == pytest.approx(degrees, abs=1.0)
+
+
+def test_a_neutral_longer_than_the_recording_is_told() -> None:
+    take = take_of(jawOpen=wave())
+    _, report = script_of(take, Playback(neutral="first:99"), limits_of("face"))
+    assert report.notes == (
+        "--neutral first:99 is longer than the recording, 3.00 s: the neutral face is the median "
+        "of all of it.",
+    )
+    _, report = script_of(take, Playback(neutral="first:3"), limits_of("face"))
+    assert not report.notes
