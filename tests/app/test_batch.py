@@ -220,8 +220,14 @@ def started(*arguments: str) -> subprocess.Popen[bytes]:
         [*COMMAND, "batch", "clips.txt", *arguments],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        preexec_fn=_hear_signals,
     )
+
+
+def _hear_signals() -> None:
+    """Undo what a shell in the background and `nohup` have their processes ignore."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def workers_of(process: subprocess.Popen[bytes]) -> list[int]:
