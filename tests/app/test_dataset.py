@@ -374,3 +374,14 @@ def wait_for_workers(folder: Path) -> None:
     while (now := sorted(path.name for path in folder.rglob("*"))) != before:
         before = now
         time.sleep(3.0)
+
+
+def test_speech_is_told_in_units(face: FaceScene) -> None:
+    """A viseme of units alone gives them back; a unit that was set counts as it was set."""
+    face.reset()
+    face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})
+    units = {name: value for name, value in action_units(face).items() if value > 0.01}
+    assert units.pop("AU1") == units.pop("AU1_left") == pytest.approx(0.3, abs=1e-4)
+    shares = {"AU20": 0.35, "AU12": 0.15, "AU25": 1.0, "AU26": 0.06}
+    for name, share in shares.items():
+        assert units[name] == pytest.approx(0.5 * share, abs=1e-3)

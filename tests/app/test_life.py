@@ -13,14 +13,18 @@ from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
 from risorius.app.motion.idle import EYES_MOST, Idle, looking_at
 from risorius.app.motion.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
-from risorius.app.performances import limits_of
+from risorius.app.performances import limits_of, script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
+from risorius.app.viewer.frame_times import FrameTimes
+from risorius.app.viewer.session.physics import SEEN, STEP, Physics
+from risorius.app.viewer.session.session import Session
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger
 
 HOUR = 3600.0
 NOBODY = frozenset[str]()
+VIEWER = np.array([0.0, 0.0, 900.0])
 
 
 def lids_gap(scene: FaceScene) -> float:
@@ -227,3 +231,33 @@ def test_breath_goes_in_and_out() -> None:
     filling = np.diff(full) > 0.0
     assert full.min() == 0.0 and full.max() > 0.99
     assert 0.3 < filling.mean() < 0.5 and not (flow[:-1] * ~filling).max() > 0.1
+
+
+@pytest.mark.slow
+def test_only_what_can_be_seen_is_drawn() -> None:
+    """Between blinks most steps move the face by less than a part of a pixel."""
+    scene = FaceScene()
+    session = Session(scene, script_for(None, "face"))
+    physics, idle, time = Physics(session, FrameTimes()), Idle(scene), 0.0
+
+    def life(seconds: float) -> dict[str, float]:
+        nonlocal time
+        time += seconds
+        return idle.beneath(frozenset(), VIEWER, time)
+
+    drawn, last = [], scene.positions.copy()
+    for _ in range(1200):
+        physics.advance(STEP, is_skin_dragged=False, life=life)
+        drawn.append(physics.has_moved)
+        if physics.has_moved:
+            last = scene.positions.copy()
+        assert not physics.is_left_alone or np.abs(scene.positions - last).max() <= SEEN
+    assert all(drawn[:20])  # until it is left alone
+    assert 0.02 < np.mean(drawn[60:]) < 0.6
+    assert not physics.is_at_rest
+    for _ in range(200):  # switched off
+        physics.advance(STEP, is_skin_dragged=False)
+    assert physics.is_at_rest and not physics.has_stepped
+    session.set("jaw_open", 0.5)
+    physics.advance(0.1 * STEP, is_skin_dragged=False)
+    assert not physics.is_at_rest  # or the window sleeps before the face has moved
