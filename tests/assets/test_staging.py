@@ -62,22 +62,6 @@ def test_what_a_killed_process_leaves_is_swept_away(tmp_path: Path) -> None:
             assert set(tmp_path.iterdir()) == {busy, own}
 
 
-def test_a_folder_that_is_swept_while_it_is_made_is_made_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Before it is locked nobody can know that it is in use."""
-    lock = staging._locked_folder
-
-    def swept_first(folder: Path) -> int:
-        monkeypatch.setattr(staging, "_locked_folder", lock)
-        sweep(tmp_path)
-        return lock(folder)
-
-    monkeypatch.setattr(staging, "_locked_folder", swept_first)
-    with StagingFolder(tmp_path) as folder:
-        assert list(tmp_path.iterdir()) == [folder]
-
-
 def test_a_film_that_still_grows_stays(killed: Path) -> None:
     """Where another machine that shares the disk writes it, for locks may not be shared."""
     made_old(killed)

@@ -58,18 +58,6 @@ def test_attributes_are_linear(name: str, options: dict[str, object]) -> None:
         np.testing.assert_allclose(found[refined.triangles], expected, rtol=0, atol=1e-6)
 
 
-def test_attributes_without_uv() -> None:
-    """Attributes alone: no texture coordinates come out, and nothing is doubled."""
-    mesh = meshes.irregular(3)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, attributes={"rest": mesh.vertices})
-    refined = refiner.refine(meshes.wrinkled(mesh, 4))
-    assert refined.uv is None
-    origins = refiner.origins()
-    expected = (mesh.vertices[origins.vertices] * origins.weights[..., None]).sum(axis=1)
-    np.testing.assert_allclose(refined.attributes["rest"], expected, rtol=0, atol=1e-5)
-    assert refined.attributes["rest"].shape == (len(refined.positions), 3)
-
-
 @pytest.mark.parametrize(
     ("attribute", "text"),
     [

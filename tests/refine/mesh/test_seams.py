@@ -7,7 +7,6 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced
 
 REFINERS = [("none", {}), ("kahler", {}), ("loop", {"levels": 1}), ("loop", {"levels": 2})]
 
@@ -51,22 +50,6 @@ def test_same_geometry_as_without(name: str, options: dict[str, int]) -> None:
         assert (a[with_uv.triangles] == b[without.triangles]).all()
     assert (with_uv.source == without.source).all()
     assert len(with_uv.positions) > len(without.positions)
-
-
-def test_uv_per_vertex() -> None:
-    """Without face_uv each vertex has one coordinate, and nothing is doubled."""
-    mesh = meshes.open_grid(3, 3)
-    uv = mesh.vertices[:, :2] / 3.0
-    edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, uv=uv, criterion=Forced(np.full(edge_count, 2))
-    )
-    refined = refiner.refine(mesh.vertices)
-    assert refined.uv is not None
-    origins = refiner.origins()
-    expected = (uv[origins.vertices] * origins.weights[..., None]).sum(axis=1)
-    np.testing.assert_allclose(refined.uv, expected, rtol=0, atol=1e-6)
-    assert len(refined.positions) == len(mesh.vertices) + 3 * edge_count
 
 
 def test_every_corner_its_own_coordinate() -> None:
