@@ -72,12 +72,3 @@ def test_outputs_are_apart(outputs: tuple[str, ...], message: str, tmp_path: Pat
     named = [word.format(folder=tmp_path.name) for word in outputs]
     assert message in refusal(risorius("capture", "smile.png", *named))
     assert script.read_text().startswith("[[pose]]")
-
-
-@pytest.mark.parametrize("arguments", [("capture", "circle", "-o", "x.png"), ("replay", "circle")])
-def test_a_script_that_is_a_circle_of_links(arguments: tuple[str, ...]) -> None:
-    """A link to itself is one line, as is a name that would break the line."""
-    Path("circle").symlink_to("circle")
-    assert "circle: cannot be read: Too many levels" in refusal(risorius(*arguments))
-    line = refusal(risorius(*(word.replace("circle", "no\nscript\x1b[31m") for word in arguments)))
-    assert line == r"risorius: no\nscript\x1b[31m: no such script"

@@ -119,13 +119,9 @@ def test_all_rows_of_other_length(tmp_path: Path) -> None:
     ("content", "words"),
     [
         (b"", "is empty"),
-        (b" \n\n", "is empty"),
         (b"time,jawOpen\n", "no rows"),
-        (b"time,jawOpen\n,\n", "no rows"),
         (bytes(range(256)) * 40, "not a text file"),
-        (b"\x89PNG\r\n\x1a\n\x00\x00", "not a text file"),
         (b"Dear diary,\ntoday I smiled.\n", "known are"),
-        (b"Hello\n", "no table and no JSON"),
     ],
 )
 def test_what_is_no_recording(content: bytes, words: str, tmp_path: Path) -> None:

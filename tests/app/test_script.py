@@ -218,14 +218,6 @@ def test_values_out_of_limits_are_named(text: str, message: str) -> None:
         script.check({"joy": (0.0, 1.0), "jaw": (-1.0, 1.0)})
 
 
-def test_tracks_may_take_away() -> None:
-    """What a track adds to the poses may be negative, and the sum may be too much."""
-    text = "[[pose]]\ntime=0\njoy=0.8\n[tracks]\njoy=[{time=0,value=-0.5},{time=1,value=1}]"
-    script = parse_script(text, source="more.toml")
-    script.check({"joy": (0.0, 1.0)})
-    assert script.at(1.0)["joy"] == pytest.approx(1.8)
-
-
 def test_missing_and_unreadable_files(tmp_path: Path) -> None:
     """A script that is not there, or is no text, is one clear line."""
     with pytest.raises(UserError, match="no such script"):
@@ -285,13 +277,6 @@ def test_names_are_told_on_one_line() -> None:
     ) as told:
         parse_script(f"[[pose]]\ntime=1\n{10**6 * 'a'}=1", source="x.toml").check({})
     assert len(str(told.value)) < 2100
-
-
-def test_scripts_of_other_editors(tmp_path: Path) -> None:
-    """A byte order mark and line ends of Windows are no mistake."""
-    path = tmp_path / "windows.toml"
-    path.write_bytes(b"\xef\xbb\xbf[[pose]]\r\ntime = 2.0\r\njoy = 1.0\r\n")
-    assert load_script(path).at(2.0) == {"joy": 1.0}
 
 
 def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
