@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver, State
+from risorius.app.live import ANYWHERE, LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver, State
 from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST_AFTER
+from risorius.app.viewer.panels.live import advice_in_words, packets_in_words, state_in_words
 
 from .live_packets import live_link, osc, vmc
 
@@ -117,6 +118,25 @@ def test_ten_thousand_random_packets_leave_it_as_it_was(
     assert wire.face.received == 10_000 + len(good) and wire.face.unusable == 10_000
     wire.take(*packets({"jawOpen": 0.25}, subject="Ada", frame=2))
     assert wire.face.channels["jawOpen"] == pytest.approx(0.25)
+
+
+def test_words_tell_who_sends_and_what_to_do(wire: Wire) -> None:
+    """In every state; a phone's owner reads what to type into the app."""
+    assert state_in_words(None) == "not listening"
+    assert f"waiting on port {wire.face.port}" in state_in_words(wire.face)
+    assert "risorius send" in advice_in_words(wire.face, "192.168.1.7")
+    wire.face.listening = replace(wire.face.listening, address=ANYWHERE)
+    assert f"192.168.1.7, port {wire.face.port}" in advice_in_words(wire.face, "192.168.1.7")
+    wire.take(b"rubbish")
+    assert "is the protocol right?" in state_in_words(wire.face)
+    assert not advice_in_words(wire.face, "")
+    assert packets_in_words(wire.face) == "packets: 1, of no use: 1"
+    wire.take(live_link({}, subject="Ada"))
+    assert state_in_words(wire.face) == "receiving Ada, 1 frames a second"
+    wire.take(live_link(None, subject="Ada"))
+    assert state_in_words(wire.face) == "Ada sees no face"
+    wire.pass_time(2.0)
+    assert state_in_words(wire.face) == "lost Ada: nothing comes any more"
 
 
 def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire: Wire) -> None:
