@@ -70,15 +70,15 @@ def written_atomically(target: Path) -> Iterator[Path]:
     """Yield a path beside `target`, renamed to it if the block ends without an error.
 
     Files that the block puts beside that one go along, and lie beside the target then. A link stays
-    one: what it points to is written. UserError where that cannot be.
+    one: what it points to is written. UserError where that cannot be, in the block or after it.
     """
     whole = real_path(target)
     with cannot_be_written(target):
         whole.parent.mkdir(parents=True, exist_ok=True)
-    with temporary_folder(target, whole.parent) as folder:
+    with temporary_folder(target, whole.parent) as folder, cannot_be_written(target):
         part = folder / whole.name
         yield part
-        with done_whole(), cannot_be_written(target):
+        with done_whole():
             for each in (*(item for item in folder.iterdir() if item != part), part):
                 os.replace(each, whole.parent / each.name)
 
@@ -175,7 +175,7 @@ def check_png(target: Path) -> None:
 def save_text(target: Path, text: str) -> None:
     """Write a text file, UTF-8; UserError where it cannot be written."""
     check_file(target)
-    with written_atomically(target) as part, cannot_be_written(target):
+    with written_atomically(target) as part:
         part.write_text(text, encoding="utf-8")
 
 
@@ -185,7 +185,7 @@ def save_png(target: Path, image: Image, *, is_small: bool = False) -> None:
     is_small: take time, so that the file gets as small as it can.
     """
     check_png(target)
-    with written_atomically(target) as part, cannot_be_written(target):
+    with written_atomically(target) as part:
         page = PIL.Image.fromarray(image)
         page.save(part, format="PNG", optimize=is_small, compress_level=QUICK)
 

@@ -21,8 +21,8 @@ import numpy.typing as npt
 
 from risorius.geometry.normals import vertex_normals
 
+from .data_files import write_image
 from .errors import AssetError
-from .files import write_image
 from .generator.bones import bone_depth, jaw_axis, mandible_weight
 from .generator.dentition import LOWER_ARCH, UPPER_ARCH, gums, teeth
 from .generator.eyeballs import IRIS_RADIUS, corner_flesh, eyeball

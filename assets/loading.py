@@ -14,8 +14,8 @@ from typing import Any, Literal, overload
 import numpy as np
 import numpy.typing as npt
 
+from .data_files import read_arrays, read_toml
 from .errors import AssetError
-from .files import read_arrays, read_toml
 from .model import Cloth, Eye, Head, Layer, Part, Plane
 from .sheets import make_cloth, make_plane
 

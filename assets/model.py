@@ -21,7 +21,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from .files import Image, read_arrays_of, read_image
+from .data_files import Image, read_arrays_of, read_image
 from .topology import quarter
 
 FloatArray = npt.NDArray[np.float64]

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .data_files import Image
 from .errors import AssetError
-from .files import Image
 from .user_files import named, read_file
 from .wavefront import ObjSurface, pictures_of
 

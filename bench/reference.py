@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from risorius import assets
 from risorius.app.errors import UserError, needed
-from risorius.app.files import cannot_be_written, check_file, written_atomically
+from risorius.app.files import check_file, written_atomically
 from risorius.assets.fitting.landmark_file import read_landmarks
 from risorius.assets.wavefront import read_obj
 from risorius.geometry.closest import closest_points
@@ -99,7 +99,7 @@ def make(checkout: Path, folder: Path, landmarks: Path | None = None) -> list[st
         lines.append(f"not in the checkout: {', '.join(missing)}")
     licence = checkout / LICENCE
     if licence.is_file():
-        with written_atomically(folder / LICENCE) as part, cannot_be_written(folder / LICENCE):
+        with written_atomically(folder / LICENCE) as part:
             part.write_bytes(licence.read_bytes())
     return lines
 
@@ -189,5 +189,5 @@ def _persons(checkout: Path, head: Points, count: int) -> dict[str, npt.NDArray[
 
 
 def _save(target: Path, arrays: Arrays) -> None:
-    with written_atomically(target) as part, cannot_be_written(target):
+    with written_atomically(target) as part:
         np.savez_compressed(part, allow_pickle=False, **arrays)

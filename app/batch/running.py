@@ -14,7 +14,7 @@ from pathlib import Path
 import click
 
 from ..errors import UserError, counted
-from ..files import cannot_be_written, written_atomically
+from ..files import written_atomically
 from ..motion import tally
 from ..workers import run_all
 from .journal import Journal, made_from
@@ -136,7 +136,6 @@ def save_summary(target: Path, results: Sequence[Result]) -> None:
     ]
     with (
         written_atomically(target) as part,
-        cannot_be_written(target),
         part.open("w", encoding="utf-8", newline="") as file,
     ):
         writer = csv.DictWriter(file, rows[0])

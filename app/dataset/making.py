@@ -9,7 +9,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from ..errors import UserError
-from ..files import cannot_be_written, save_text, written_atomically
+from ..files import save_text, written_atomically
 from ..process_cache import cached
 from ..stopping import cleaned_up_if_stopped
 from ..workers import run_all
@@ -126,6 +126,6 @@ def _batches(request: Request, missing: Sequence[int]) -> list[Batch]:
 def _finish(folder: SetFolder, request: Request, count: int) -> None:
     """Write index and card from the samples' files."""
     index = folder.path / "index.csv"
-    with written_atomically(index) as part, cannot_be_written(index):
+    with written_atomically(index) as part:
         counts = write_index(part, map(folder.sample, range(count)))
     save_text(folder.path / "README.md", card_of(request, counts))

@@ -21,7 +21,7 @@ import PIL.Image
 from risorius import render
 
 from ..errors import UserError, needed
-from ..files import Image, cannot_be_written, written_atomically
+from ..files import Image, written_atomically
 from .labels import labels_of
 from .passes import NAMES, OF_FACES, Passes
 
@@ -68,7 +68,7 @@ class Labelled:
 
 def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
     """Write a picture and what is known of it, all or nothing; UserError where that cannot be."""
-    with written_atomically(picture) as part, cannot_be_written(picture):
+    with written_atomically(picture) as part:
         PIL.Image.fromarray(image).save(part, format="PNG")
         if known is not None:
             known.save(part)

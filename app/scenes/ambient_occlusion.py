@@ -34,7 +34,7 @@ from risorius.geometry.texels import Texels
 from risorius.jit import njit
 
 from ..errors import report_user_errors
-from ..files import cannot_be_written, check_file, written_atomically
+from ..files import check_file, written_atomically
 from ..stopping import handle_signals
 
 REACH = 45.0  # [mm] beyond which nothing shades
@@ -244,7 +244,7 @@ def main(arguments: Sequence[str]) -> None:
     target = head.ambient_occlusion_file
     check_file(target)
     arrays = bake(head)
-    with written_atomically(target) as part, cannot_be_written(target):
+    with written_atomically(target) as part:
         np.savez_compressed(part, allow_pickle=False, **arrays)
 
 

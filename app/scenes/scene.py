@@ -346,7 +346,7 @@ def clamped(
 ) -> dict[str, float]:
     """The channels, each cut off at its limits. Raises UserError on one that has none."""
     for name in channels.keys() - limits.keys():
-        raise UserError(f"unknown control '{name}'")
+        raise UserError(f"there is no control called '{name}'")
     return {
         name: min(max(value, limits[name][0]), limits[name][1]) for name, value in channels.items()
     }

@@ -24,8 +24,8 @@ import scipy
 
 from risorius.geometry.normals import vertex_normals
 
+from ..data_files import Image
 from ..errors import AssetError
-from ..files import Image
 from ..loading import load
 from ..meshes import Mesh, read_mesh
 from ..model import (

@@ -14,8 +14,8 @@ import scipy
 
 from risorius.geometry.texels import Texels
 
+from ..data_files import Image
 from ..errors import AssetError
-from ..files import Image
 from ..model import FloatArray, Head, IndexArray, Segment, SingleArray, Wrinkles
 from ..pictures import LARGEST, Texture
 

@@ -19,7 +19,7 @@ from scipy.sparse.linalg import cg
 from risorius.geometry.closest import SurfacePoints
 from risorius.geometry.normals import cross_products
 
-from ..files import Image
+from ..data_files import Image
 from ..model import FloatArray, Head, IndexArray, Segment, SingleArray
 
 BoolArray = npt.NDArray[np.bool_]

@@ -10,7 +10,7 @@ import scipy
 
 from risorius.geometry.colour import to_linear, to_screen
 
-from ..files import Image
+from ..data_files import Image
 from ..model import Head
 from . import lips
 from .brows import brow_cover

@@ -9,7 +9,7 @@ lower edge of the jaw, as outlines in photographs have it, and behind the ears a
 import numpy as np
 import scipy
 
-from ..files import Image
+from ..data_files import Image
 from ..model import Head, Segment
 from . import nose
 from .brows import tint

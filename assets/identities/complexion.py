@@ -26,8 +26,8 @@ import scipy
 from risorius.geometry.colour import to_linear, to_screen
 from risorius.geometry.normals import vertex_normals
 
+from ..data_files import Image, read_arrays_of
 from ..errors import AssetError
-from ..files import Image, read_arrays_of
 from ..fitting.head import FittedHead
 from ..generator.eyeballs import IRISES, eyeball
 from ..generator.painting import BEARD_SHADOW

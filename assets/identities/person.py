@@ -18,8 +18,8 @@ import scipy
 
 from risorius.geometry.normals import cross_products, vertex_normals
 
+from ..data_files import Image
 from ..errors import AssetError
-from ..files import Image
 from ..fitting.head import FittedHead
 from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
 from ..fitting.warp import Similarity

@@ -18,7 +18,7 @@ import PIL.Image
 
 from risorius.app.cli.parameters import LEAST, MOST
 from risorius.app.errors import UserError, report_user_errors
-from risorius.app.files import Image, cannot_be_written, check_file, written_atomically
+from risorius.app.files import Image, check_file, written_atomically
 from risorius.app.stopping import handle_signals
 
 Figure = Callable[[], Image]
@@ -58,7 +58,7 @@ def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
     for name, figure in figures.items():
         target = folder / f"{name}.webp"
         packed = webp(figure())
-        with written_atomically(target) as part, cannot_be_written(target):
+        with written_atomically(target) as part:
             part.write_bytes(packed)
 
 

@@ -19,7 +19,7 @@ def test_values_are_cut_off_at_their_limits() -> None:
     """What a script adds up to may be too much; a name without limits is an error."""
     assert clamped(LIMITS, {"a": 1.4, "b": -3.0}) == {"a": 1.0, "b": -1.0}
     assert clamped(LIMITS, {"a": 0.4}) == {"a": 0.4}
-    with pytest.raises(UserError, match="unknown control 'c'"):
+    with pytest.raises(UserError, match="there is no control called 'c'"):
         clamped(LIMITS, {"c": 1.0})
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from ...files import Image
+from ...data_files import Image
 from ...generator.fields import Points, Values, unit
 from ...model import IndexArray, Part
 from ...topology import places_in_triangle
