@@ -24,7 +24,7 @@ from scipy.sparse.linalg import splu
 
 from risorius import assets
 from risorius.app.files import folder_atomically
-from risorius.assets.files import read_arrays
+from risorius.assets.data_files import read_arrays
 from risorius.assets.fitting.organs import FittedSkin, place_parts
 from risorius.assets.fitting.warp import ThinPlateSpline, nearest_on
 from risorius.assets.generator.intersections import self_intersections
