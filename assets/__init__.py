@@ -6,7 +6,7 @@
     mesh = assets.read_mesh("cloth.ply")  # or OBJ, STL, OFF, GLB
     head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
 
-The programs that generate them are in this package, too: `python -m risorius.assets.build`.
+The built-in head ships as data; docs/head.md says what it was fitted to.
 """
 
 from .errors import AssetError

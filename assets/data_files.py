@@ -15,11 +15,11 @@ from .errors import AssetError
 Image = npt.NDArray[np.uint8]
 Arrays = dict[str, npt.NDArray[Any]]
 
-PROGRAM = "assets.build"  # makes the files
+AGAIN = "install risorius again"  # what mends a file that is part of the package
 
 
-def read_arrays(path: Path, *, program: str = PROGRAM) -> Arrays:
-    """Read an npz file, array name -> array, read-only; `program` is what makes it anew.
+def read_arrays(path: Path, *, mend: str = AGAIN) -> Arrays:
+    """Read an npz file, array name -> array, read-only; `mend` is what helps if it cannot.
 
     Raises AssetError if the file is missing or broken.
     """
@@ -27,13 +27,10 @@ def read_arrays(path: Path, *, program: str = PROGRAM) -> Arrays:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
     except FileNotFoundError as error:
-        raise AssetError(
-            f"the data file {path} is missing; build it with 'python -m risorius.{program}'"
-        ) from error
+        raise AssetError(f"the data file {path} is missing; {mend}") from error
     except Exception as error:  # zip, its compression and numpy have their own kinds each
         raise AssetError(
-            f"the data file {path} is not a readable npz file ({error}); "
-            f"rebuild it with 'python -m risorius.{program}'"
+            f"the data file {path} is not a readable npz file ({error}); {mend}"
         ) from error
     for array in arrays.values():
         array.flags.writeable = False
@@ -41,22 +38,18 @@ def read_arrays(path: Path, *, program: str = PROGRAM) -> Arrays:
 
 
 def read_arrays_of(
-    fingerprint: int, path: Path, names: tuple[str, ...], *, program: str = PROGRAM
+    fingerprint: int, path: Path, names: tuple[str, ...], *, mend: str = AGAIN
 ) -> Arrays:
     """Read a file that was made from the mesh with this fingerprint and has arrays of these names.
 
     Raises AssetError if it is missing or broken, or belongs to another mesh.
     """
-    arrays = read_arrays(path, program=program)
+    arrays = read_arrays(path, mend=mend)
     if int(arrays.get("made_from", -1)) != fingerprint:
-        raise AssetError(
-            f"{path} was made for another head; rebuild it with 'python -m risorius.{program}'"
-        )
+        raise AssetError(f"{path} was made for another head; {mend}")
     for name in names:
         if name not in arrays:
-            raise AssetError(
-                f"{path} has no array '{name}'; rebuild it with 'python -m risorius.{program}'"
-            )
+            raise AssetError(f"{path} has no array '{name}'; {mend}")
     return arrays
 
 
@@ -85,14 +78,9 @@ def read_image(path: Path, *, mode: str = "RGB") -> Image:
         with PIL.Image.open(path) as file:
             image: Image = np.array(file.convert(mode), dtype=np.uint8)
     except FileNotFoundError as error:
-        raise AssetError(
-            f"the picture {path} is missing; paint it with 'python -m risorius.{PROGRAM}'"
-        ) from error
+        raise AssetError(f"the picture {path} is missing; {AGAIN}") from error
     except (OSError, ValueError, SyntaxError) as error:
-        raise AssetError(
-            f"{path} is not a readable picture ({error}); "
-            f"paint it with 'python -m risorius.{PROGRAM}'"
-        ) from error
+        raise AssetError(f"{path} is not a readable picture ({error}); {AGAIN}") from error
     image.flags.writeable = False
     return image
 

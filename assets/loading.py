@@ -1,6 +1,6 @@
 """Load an asset by name: the built-in head, the paper's plane, or a cloth.
 
-The head's numbers lie in `data/head.npz`, written by `python -m risorius.assets.build`; its rig and
+The head's numbers lie in `data/head.npz` (docs/head.md says where they are from); its rig and
 the layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
 `action_units.toml`, `expressions.toml`, `visemes.toml`, `arkit.toml`), and so are the plain words
 for controls (`words.toml`).
@@ -74,9 +74,7 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
     try:
         return _assemble(arrays, head_file, read_toml(RIG_FILE), _read_layers())
     except KeyError as error:
-        raise AssetError(
-            f"{head_file} has no array {error}; rebuild it with 'python -m risorius.assets.build'"
-        ) from error
+        raise AssetError(f"{head_file} has no array {error}; install risorius again") from error
 
 
 def _read_layers() -> tuple[Layer, ...]:

@@ -282,9 +282,9 @@ class Head:
         Texel by texel that of `albedo`. Raises AssetError when the file is missing, broken or that
         of another head.
         """
-        names, program = ("ambient_occlusion",), "app.scenes.ambient_occlusion"
-        file = self.ambient_occlusion_file
-        return read_arrays_of(self.fingerprint, file, names, program=program)["ambient_occlusion"]
+        names, file = ("ambient_occlusion",), self.ambient_occlusion_file
+        mend = "bake it with 'python -m risorius.app.scenes.ambient_occlusion'"
+        return read_arrays_of(self.fingerprint, file, names, mend=mend)["ambient_occlusion"]
 
     def finer(self, level: int) -> FineMesh:
         """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.

@@ -19,8 +19,8 @@ import scipy
 
 from risorius.geometry.normals import vertex_normals
 
-from .generator.fields import smooth_maximum, smooth_minimum
 from .model import Part
+from .smooth import smooth_maximum, smooth_minimum
 
 Floats = npt.NDArray[np.float64]
 Field = npt.NDArray[np.float32]  # half as wide: what is done to grids is as quick as memory

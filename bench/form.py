@@ -27,8 +27,8 @@ from risorius.app.files import folder_atomically
 from risorius.assets.data_files import read_arrays
 from risorius.assets.fitting.organs import FittedSkin, place_parts
 from risorius.assets.fitting.warp import ThinPlateSpline, nearest_on
-from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.identities.shaping import lids_on_eyes
+from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Eye, FineMesh, FloatArray, Head, IndexArray, Part
 from risorius.geometry.normals import vertex_normals

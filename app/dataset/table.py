@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from risorius import assets
-from risorius.assets.generator.eyeballs import IRISES
+from risorius.assets.eyeballs import IRISES
 from risorius.assets.identities import DARKEST, LIGHTEST
 from risorius.render import LIGHTS
 from risorius.schema import REST, MadeFrom, OneOf, Record, Rows, Within, called, parsed_toml, read

@@ -1,7 +1,7 @@
 """How open the skin is to light from all around: ambient occlusion, baked once for a head.
 
 That of the built-in head is shipped; `python -m risorius.app.scenes.ambient_occlusion [FILE]` bakes
-it anew, after `python -m risorius.assets.build`. A head of one's own is baked when it is loaded.
+it anew for other data. A head of one's own is baked when it is loaded.
 
 From each vertex rays go out over its normal, more of them the closer they are to it, as light that
 comes from everywhere counts. What a ray meets within REACH takes its part of the light away, less
@@ -234,7 +234,7 @@ def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Bake the light on a head made by `assets.build` into the file beside its data file."""
+    """Bake the light on a head into the file beside its data file."""
     parser = argparse.ArgumentParser(
         prog="python -m risorius.app.scenes.ambient_occlusion",
         description=(__doc__ or "").splitlines()[0],

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from risorius.assets.generator.ambient import INCISORS, in_mouth_light
+from risorius.assets.mouth_light import INCISORS, in_mouth_light
 from risorius.geometry.normals import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
@@ -102,6 +102,6 @@ def _shaded(
 
 
 def _painted_light(points: npt.NDArray[Any], front: float) -> npt.NDArray[Any]:
-    """What the light of the mouth leaves of colours, shape (n, 3); see assets/generator."""
+    """What the light of the mouth leaves of colours, shape (n, 3); see assets/mouth_light.py."""
     there = points - np.array([0.0, 0.0, front - INCISORS])
     return in_mouth_light(there, np.ones((len(points), 3)))

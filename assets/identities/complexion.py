@@ -5,7 +5,7 @@ is called very light (above 55), light (above 41), intermediate (above 28), tan 
 (above -30) or dark (Chardon, Cretois, Hourseau 1991, "Skin colour typology and suntanning
 pathways", Int. J. Cosmetic Science 13:191-208). It is that of the bare skin of the face in the
 picture; lips and cheeks follow, for all that changes are amounts of melanin and blood
-(generator/pigments.py), and hair.
+(pigments.py), and hair.
 
 Where skin is darker than the darkest complexion that is painted, the melanin that comes on top
 absorbs more evenly: published clusters of facial skin have b* of 15 at L* of 27 and of 38, below
@@ -28,13 +28,11 @@ from risorius.geometry.normals import vertex_normals
 
 from ..data_files import Image, read_arrays_of
 from ..errors import AssetError
+from ..eyeballs import IRISES, eyeball
 from ..fitting.head import FittedHead
-from ..generator.eyeballs import IRISES, eyeball
-from ..generator.painting import BEARD_SHADOW
-from ..generator.pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
-from ..generator.tints import BEHIND, IN_FRONT
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
+from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from .hair import CUTS, HAIR, bared, grown, shaded
 from .person import Person
 from .traits import Identity, Sex
@@ -49,6 +47,8 @@ GREY_BROWS = 0.12  # of how grey hair on the scalp is; lashes are not told from 
 FAIR_SKIN = 45.0  # ITA above which hair may be fair
 DARK_SKIN, LATER_GREY = -30.0, 10.0  # ITA below which hair turns grey so much later [years]
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
+BEARD_SHADOW = 0.12  # density of shaved hair in the shipped picture
+BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the hairline back
 GROWN = 0.94  # of a scalp, that is covered by long hair
 DETAIL = 9  # [texels] below which relief is told from colour
 AnyHead = TypeVar("AnyHead", bound=FittedHead)
@@ -84,7 +84,7 @@ PLAIN = Features()
 
 @dataclass(frozen=True)
 class _Tints:
-    """What is needed to recolour the picture: see generator/tints.py."""
+    """What is needed to recolour the picture: its maps are in `data/head_tints.npz`."""
 
     light: SingleArray  # the picture, linear, without hair (H, W, 3)
     melanin: SingleArray  # (H, W)

@@ -18,17 +18,15 @@ import scipy
 
 from risorius.geometry.normals import cross_products, vertex_normals
 
+from ..around import HAIRLINE, STRIP, direction_coordinates, line_height, neck_relief
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
 from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
 from ..fitting.warp import Similarity
-from ..generator.fields import smooth_step
-from ..generator.form import STRIP, neck_relief
-from ..generator.regions import HAIRLINE, line_height
-from ..generator.sections import direction_coordinates
 from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
+from ..smooth import smooth_step
 from .shaping import Field, Shaper, lids_on_eyes, measures_of
 from .traits import SHAPES, Identity, Sex
 

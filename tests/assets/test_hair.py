@@ -17,8 +17,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
-from risorius.assets.generator.sections import direction_coordinates
-from risorius.assets.generator.solids import grid_faces
+from risorius.assets.around import direction_coordinates
 from risorius.assets.identities import (
     CUTS,
     HAIR,
@@ -30,6 +29,7 @@ from risorius.assets.identities import (
 )
 from risorius.assets.identities.hair import bared, grown
 from risorius.assets.model import Part
+from risorius.assets.solids import grid_faces
 from risorius.geometry.normals import vertex_normals
 
 COLOUR = np.array([0.3, 0.2, 0.15])

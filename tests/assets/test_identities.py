@@ -14,7 +14,6 @@ from risorius import assets, sim
 from risorius.app.cli.parameters import PERSON_NAMES
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings
-from risorius.assets.generator.intersections import self_intersections
 from risorius.assets.identities import (
     NAMED,
     Identity,
@@ -25,6 +24,7 @@ from risorius.assets.identities import (
     sample_identity,
 )
 from risorius.assets.identities.traits import LOADINGS, MOST, PRESSED, SHAPES, norms_of
+from risorius.assets.intersections import self_intersections
 from risorius.assets.model import Head
 from risorius.assets.norms import NORMS
 from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps, widest_slit

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from risorius.assets.generator.intersections import self_intersections
+from risorius.assets.intersections import self_intersections
 
 
 def test_large_and_small_triangles_are_compared() -> None:

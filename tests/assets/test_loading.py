@@ -81,9 +81,7 @@ def test_arrays_cannot_be_written() -> None:
 
 def test_missing_data_file_says_how_to_build_it(tmp_path: Path) -> None:
     """The cure is in the message."""
-    with pytest.raises(
-        assets.AssetError, match=r"missing; build it with 'python -m risorius.assets.build'"
-    ):
+    with pytest.raises(assets.AssetError, match=r"missing; install risorius again"):
         load_head(tmp_path / "head.npz")
 
 
@@ -105,7 +103,7 @@ def test_incomplete_data_file_names_what_is_missing(tmp_path: Path) -> None:
     with np.load(HEAD_FILE) as file:
         kept = {name: file[name] for name in file.files if name != "jaw_axis"}
     np.savez(tmp_path / "old.npz", allow_pickle=False, **kept)
-    with pytest.raises(assets.AssetError, match=r"no array 'jaw_axis'; rebuild it"):
+    with pytest.raises(assets.AssetError, match=r"no array 'jaw_axis'; install"):
         load_head(tmp_path / "old.npz")
 
 

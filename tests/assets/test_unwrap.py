@@ -5,7 +5,6 @@ import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.assets.generator import unwrap
 from risorius.assets.model import Head
 
 Points = npt.NDArray[np.float64]
@@ -103,83 +102,3 @@ def test_coordinates_are_upright(head: Head) -> None:
     at = {name: head.uv[vertex] for name, vertex in head.anatomy.items()}
     assert at["glabella"][1] > at["pronasale"][1] > at["pogonion"][1]
     assert at["cheek_left"][0] > 0.5 > at["cheek_right"][0]
-
-
-def test_start_is_valid_and_relaxing_improves_it(head: Head) -> None:
-    """Tutte's embedding turns nothing over; nor does the descent, which lowers the energy."""
-    patch = unwrap.fill_holes(head.vertices, head.faces, head.rings)
-    start = unwrap.tutte(patch)
-    inverse, weights = unwrap._shapes(patch)
-    relaxed = unwrap.relax(patch, start)
-    before, _ = unwrap._energy(start, patch.faces, inverse, weights)
-    after, _ = unwrap._energy(relaxed, patch.faces, inverse, weights)
-    assert signed_areas(start, patch.faces).min() > 0.0
-    assert signed_areas(relaxed, patch.faces).min() > 0.0
-    assert 4.0 < after / weights.sum() < 6.0 < before / weights.sum()  # 4 would be no stretch
-    assert np.all(relaxed[patch.on_midline, 0] == 0.0)
-
-
-@pytest.mark.slow
-def test_rounding_does_not_decide_where_the_descent_ends(head: Head) -> None:
-    """A start that differs in its last digits leads to the same layout: no force is left there."""
-    patch = unwrap.fill_holes(head.vertices, head.faces, head.rings)
-    start = unwrap.tutte(patch)
-    random = np.random.default_rng(5)
-    shaken = start * (1.0 + 1e-9 * random.normal(size=start.shape))
-    relaxed = unwrap.relax(patch, start)
-    _, gradient = unwrap._energy(relaxed, patch.faces, *unwrap._shapes(patch))
-    gradient[patch.on_midline, 0] = 0.0
-    assert np.linalg.norm(gradient) < 1e-5
-    moved = unwrap.relax(patch, shaken) - relaxed
-    moved[:, 1] -= moved[:, 1].mean()  # `unwrap` centres it
-    assert np.abs(moved).max() < 1e-3  # [mm], of some 450
-
-
-def test_a_descent_that_does_not_arrive_is_told(
-    head: Head, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Better no head than one whose layout hangs on the processor."""
-    monkeypatch.setattr(unwrap, "ROUNDS", 3)
-    patch = unwrap.fill_holes(head.vertices, head.faces, head.rings)
-    with pytest.raises(assets.AssetError, match="could not be laid flat: after 3 rounds"):
-        unwrap.relax(patch, unwrap.tutte(patch))
-
-
-def test_energy_gradient_is_that_of_finite_differences(head: Head) -> None:
-    """On a few triangles that are stretched at random."""
-    random = np.random.default_rng(4)
-    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4]], dtype=np.int32)
-    turn = np.radians([0.0, 10.0, 75.0, 130.0, 200.0])
-    flat = np.column_stack([np.cos(turn), np.sin(turn)]) * [[0.0], [1.0], [1.3], [0.8], [1.0]]
-    inverse = np.linalg.inv(np.eye(2) + 0.3 * random.normal(size=(3, 2, 2)))
-    weights = np.array([1.0, 2.0, 0.5])
-    _, gradient = unwrap._energy(flat, faces, inverse, weights)
-    for index in np.ndindex(flat.shape):
-        step = np.zeros_like(flat)
-        step[index] = 1e-6
-        above, _ = unwrap._energy(flat + step, faces, inverse, weights)
-        below, _ = unwrap._energy(flat - step, faces, inverse, weights)
-        assert gradient[index] == pytest.approx((above - below) / 2e-6, rel=1e-4, abs=1e-4)
-
-
-def test_curvature_is_that_of_finite_differences() -> None:
-    """Where triangles are stretched evenly every curvature is positive, so none is changed."""
-    faces = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
-    flat = 1.5 * np.array([[0.0, 0.0], [1.0, 0.1], [0.9, 1.0], [-0.1, 1.1]])
-    corner = flat[faces] / 1.5
-    inverse = np.linalg.inv((corner[:, 1:] - corner[:, :1]).transpose(0, 2, 1))
-    weights = np.array([1.0, 2.0])
-    curvature = unwrap._curvature(flat, faces, inverse, weights).toarray()
-    for row in range(flat.size):
-        step = np.zeros_like(flat)
-        step.flat[row] = 1e-6
-        _, above = unwrap._energy(flat + step, faces, inverse, weights)
-        _, below = unwrap._energy(flat - step, faces, inverse, weights)
-        np.testing.assert_allclose(curvature[row], ((above - below) / 2e-6).ravel(), atol=1e-4)
-
-
-def test_turned_triangle_costs_infinitely_much() -> None:
-    """That is what keeps a descent from turning one over."""
-    flat = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])
-    energy, _ = unwrap._energy(flat, np.array([[0, 1, 2]]), np.eye(2)[None], np.ones(1))
-    assert energy == np.inf

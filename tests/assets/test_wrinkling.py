@@ -10,7 +10,6 @@ import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.assets.generator.creases import smile_lines
 from risorius.assets.loading import HEAD_FILE, load_head
 
 STEEPEST_FURROW = 0.7  # slope: about 35 degrees
@@ -88,19 +87,6 @@ def test_furrows_are_no_cliffs(head: assets.Head) -> None:
     slopes = np.abs(head.wrinkles.map[..., :2].astype(int) - 128)
     assert (slopes > 126).sum() < 10
     assert (slopes > 127 * STEEPEST_FURROW).mean() < 1e-4
-
-
-def test_the_nasolabial_fold_fades_into_the_cheek() -> None:
-    """Where the cheek hangs over it, nothing bends as sharply as a line that is seen."""
-    heights = np.arange(-95.0, -28.0, 0.25)
-    for side in (43.0, 44.5, 46.0):
-        points = np.column_stack(
-            [np.full_like(heights, side), heights, np.full_like(heights, 80.0)]
-        )
-        lines = smile_lines(points, seed=500)
-        height = lines.cover * lines.furrows.roll
-        assert np.ptp(height) > 0.001
-        assert np.abs(np.diff(height, 2)).max() < 0.06 * 0.25**2  # [1/mm], of a slope
 
 
 def test_left_and_right_are_not_alike(head: assets.Head) -> None:

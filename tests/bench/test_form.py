@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from risorius import assets
-from risorius.assets.generator.intersections import self_intersections
+from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import load_head
 from risorius.assets.model import Head
 from risorius.bench.form import (

@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...generator.fields import Points
 from ...model import IndexArray, Part
+from ...smooth import Points
 from .combing import combed, layers_of, roots_of
 from .covered import is_seen
 from .cuts import CUTS

@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from ...generator.fields import Points, Values, smooth_step, unit
-from ...generator.regions import HAIRLINE, line_height
-from ...generator.sections import direction_coordinates, rays
+from ...around import HAIRLINE, direction_coordinates, line_height, rays
 from ...model import IndexArray
+from ...smooth import Points, Values, smooth_step, unit
 from .cuts import Cut
 from .envelope import Envelope
 

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from ...generator.sections import direction_coordinates
+from ...around import direction_coordinates
 from ...topology import places_in_triangle
 from .cuts import Cut
 from .locks import SECTION

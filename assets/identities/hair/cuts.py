@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ...generator.fields import Values
+from ...smooth import Values
 from .locks import Look
 
 

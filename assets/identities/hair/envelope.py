@@ -7,9 +7,9 @@ import scipy
 
 from risorius.geometry.normals import vertex_normals
 
-from ...generator.fields import Points, Values
-from ...generator.sections import TOP, direction_coordinates
+from ...around import TOP, direction_coordinates
 from ...model import IndexArray
+from ...smooth import Points, Values
 from ...topology import places_in_triangle
 
 RISE, FALL = 0.26, 0.16  # how fast hair comes out above ears, and in again below [mm for each mm]

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ...generator.fields import Points, Values, smooth_step, unit
-from ...generator.regions import HAIRLINE, line_height
-from ...generator.sections import TOP, rays
-from ...generator.solids import grid_faces
+from ...around import HAIRLINE, TOP, line_height, rays
+from ...smooth import Points, Values, smooth_step, unit
+from ...solids import grid_faces
 from .combing import PARTED_TO, UNPARTED, curl, near_parting, way_of
 from .cuts import Cut
 from .envelope import Envelope

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy
 
-from ...generator.fields import Points, Values, unit
-from ...generator.sections import direction_coordinates, rays
-from ...generator.solids import grid_faces
+from ...around import direction_coordinates, rays
+from ...smooth import Points, Values, unit
+from ...solids import grid_faces
 
 # The cross-section: place across it, how far it bulges out, and its normal, across and out.
 # Edges go down: seen from its side a lock is no line, and has no gap below it.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...generator.fields import Points
 from ...model import IndexArray, SingleArray
+from ...smooth import Points
 from ...topology import places_in_triangle
 from .combing import ON_TOP, PARTED_TO, near_parting
 from .cuts import Cut

@@ -13,8 +13,8 @@ import numpy as np
 import scipy
 
 from ...data_files import Image
-from ...generator.fields import Points, Values, unit
 from ...model import IndexArray, Part
+from ...smooth import Points, Values, unit
 from ...topology import places_in_triangle
 
 REACH = 35.0  # [mm] beyond which hair does not shade

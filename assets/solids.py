@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from ..topology import Faces, unique_points
-from .fields import Points, Values
+from .smooth import Points, Values
+from .topology import Faces, unique_points
 
 Colour = tuple[float, float, float]
 

@@ -7,7 +7,7 @@ than a narrow window is left.
 
 import numpy as np
 
-from .fields import Points, Values, smooth_step
+from .smooth import Points, Values, smooth_step
 
 DAYLIGHT, GLOOM = 88.0, 30.0  # z [mm]: at the incisors, at the root of the tongue
 INCISORS = 92.5  # z [mm] of the front of the upper ones

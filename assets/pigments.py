@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fields import Points, Values
+from .smooth import Points, Values
 
 PALE = np.array([0.12, 0.27, 0.42])  # density of skin without pigments
 MELANIN = np.array([0.64, 0.87, 1.13])

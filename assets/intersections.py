@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from ..topology import Faces
-from .fields import Points
+from .smooth import Points
+from .topology import Faces
 
 INSIDE = 1e-6  # relative; touching at a corner or an edge does not count as intersecting
 

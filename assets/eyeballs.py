@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .fields import Points, Values, smooth_step
-from .form import EYE_RADIUS
+from .smooth import Points, Values, smooth_step
 from .solids import Solid, ball, joined, mix, welded
 
-IRIS_RADIUS = 5.9  # [mm]
+EYE_RADIUS = 13.0  # [mm] of the shipped eyes; larger than in life, to fill their opening
 PUPIL_RADIUS = 1.8  # in the light of a room
 CORNEA_RADIUS, CORNEA_RISE = 6.4, 1.1  # [mm]; less than in anatomy: the lids are thin
 FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
@@ -27,14 +26,6 @@ LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
 CAUSTIC = 0.45  # of the iris' light, gained below: the cornea gathers there what comes from above
 CANTHUS = (0.80, 0.55, 0.51)
 PUPIL = (0.015, 0.013, 0.013)
-CONJUNCTIVA = (0.77, 0.53, 0.48)
-
-# The pink flesh in the corners of the left eye: centre and radii [mm]. It closes the gap that the
-# ball leaves there, the inner one being the caruncle.
-CORNERS = (
-    ((18.7, -1.6, 74.9), (4.2, 3.2, 2.8)),
-    ((42.2, 0.8, 70.6), (3.0, 2.8, 2.6)),
-)
 
 
 @dataclass(frozen=True)
@@ -115,11 +106,3 @@ def eyeball(iris: Iris = IRIS) -> Solid:
     both = joined([fine, coarse])
     both.faces = np.vstack([both.faces, np.array(seam, dtype=np.int32)])
     return welded(both)
-
-
-def corner_flesh() -> Solid:
-    """Return the flesh in the corners of both eyes."""
-    directions, faces, _ = ball(np.linspace(0.0, np.pi, 7), 10)
-    colours = np.tile(np.array(CONJUNCTIVA), (len(directions), 1))
-    left = [Solid(np.array(centre) + directions * r, faces, colours) for centre, r in CORNERS]
-    return welded(joined([side for solid in left for side in (solid, solid.mirrored())]))
