@@ -193,7 +193,7 @@ def several(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_processes_draw_the_same_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bit for bit, in order, with the triangles of all; also where a refiner remembers frames."""
     script = replace(script_for(None, "plane"), duration=0.5)
-    refinement = replace(SMALL.refinement, look="paper", options={"coherent": True})
+    refinement = replace(SMALL.refinement, preset="paper", options={"coherent": True})
     options = replace(SMALL, size=(160, 90), refinement=refinement)
     most = []
     for count in (1, 3):
