@@ -27,6 +27,9 @@ def lay(target: Path) -> None:
             copy_function=os.symlink,
             ignore=shutil.ignore_patterns("__pycache__"),
         )
+    for folder in sorted(target.rglob("*/"), reverse=True):  # of sources that have left
+        if folder.is_dir() and not any(folder.iterdir()):
+            folder.rmdir()
 
 
 if __name__ == "__main__":
