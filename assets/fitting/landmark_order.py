@@ -113,7 +113,8 @@ def check_counting(vertices: FloatArray, landmarks: IndexArray, template: FloatA
     largest, smallest = (f(np.ptp(each, axis=0).max() for each in points) for f in (max, min))
     if not 0.0 < largest < MOST_SPREAD * smallest:  # a landmark is far off, and that is the fault
         return
-    given, before = (bending(template, each / largest) for each in points)
+    # Around their middle: far from the origin a warp would bend by rounding alone.
+    given, before = (bending(template, (each - each.mean(axis=0)) / largest) for each in points)
     if before < SMOOTHER * given:
         raise AssetError(
             "the landmarks' vertex numbers are counted from 1; count from 0, or subtract 1 from "
