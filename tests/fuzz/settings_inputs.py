@@ -45,7 +45,7 @@ FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
 
 ENVIRONMENTS: dict[str, Row] = {
     "nothing at all": ({"PATH": None, "HOME": None, "LANG": None}, IMAGE, 0),
-    "home is nowhere": ({"HOME": "/nowhere", "XDG_CACHE_HOME": None}, IMAGE, 0),
+    "home is nowhere": ({"HOME": "/proc/nowhere", "XDG_CACHE_HOME": None}, IMAGE, 0),
     "home is a file": ({"HOME": "notes.txt"}, IMAGE, 0),
     "cache is a file": ({"XDG_CACHE_HOME": "notes.txt"}, IMAGE, 0),
     "cache is a loop": ({"XDG_CACHE_HOME": "loop", "NUMBA_CACHE_DIR": "loop"}, IMAGE, 0),
