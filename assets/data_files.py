@@ -83,10 +83,3 @@ def read_image(path: Path, *, mode: str = "RGB") -> Image:
         raise AssetError(f"{path} is not a readable picture ({error}); {AGAIN}") from error
     image.flags.writeable = False
     return image
-
-
-def write_image(path: Path, image: Image) -> None:
-    """Write an image, as small as PNG can be."""
-    import PIL.Image
-
-    PIL.Image.fromarray(image).save(path, format="PNG", optimize=True)

@@ -11,9 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .smooth import Points, Values
-
-PALE = np.array([0.12, 0.27, 0.42])  # density of skin without pigments
 MELANIN = np.array([0.64, 0.87, 1.13])
 BLOOD = np.array([0.07, 0.56, 0.47])
 SHADOW = np.array([0.50, 0.46, 0.38])  # shaved hair: grey, a little blue
@@ -21,24 +18,17 @@ SHADOW = np.array([0.50, 0.46, 0.38])  # shaved hair: grey, a little blue
 
 @dataclass(frozen=True)
 class Complexion:
-    """What a tone means: amounts of melanin, blood and freckles, and the colour of hair (sRGB)."""
+    """What a tone means: amounts of melanin and blood, and the colour of hair (sRGB)."""
 
     melanin: float
     blood: float
-    freckles: float
     hair: tuple[float, float, float]
 
 
-OWN = Complexion(0.40, 1.0, 0.7, (0.20, 0.14, 0.105))  # that of the picture that is shipped
+OWN = Complexion(0.40, 1.0, (0.20, 0.14, 0.105))  # that of the picture that is shipped
 COMPLEXIONS = (  # from light to dark
-    Complexion(0.17, 1.05, 1.0, (0.33, 0.235, 0.165)),
+    Complexion(0.17, 1.05, (0.33, 0.235, 0.165)),
     OWN,
-    Complexion(0.75, 0.95, 0.4, (0.135, 0.095, 0.075)),
-    Complexion(1.55, 0.85, 0.2, (0.075, 0.058, 0.052)),
+    Complexion(0.75, 0.95, (0.135, 0.095, 0.075)),
+    Complexion(1.55, 0.85, (0.075, 0.058, 0.052)),
 )
-
-
-def reflectance(melanin: Values, blood: Values, shadow: Values) -> Points:
-    """Linear light 0..1 that skin with these amounts of pigment throws back, shape (n, 3)."""
-    density = PALE + melanin[:, None] * MELANIN + blood[:, None] * BLOOD + shadow[:, None] * SHADOW
-    return np.asarray(np.exp(-np.maximum(density, 0.0)), dtype=np.float64)

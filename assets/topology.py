@@ -11,20 +11,6 @@ Faces = npt.NDArray[np.int32]
 Edge = tuple[int, int]
 
 
-def edge_key(first: int, second: int) -> Edge:
-    """The undirected edge between two vertices."""
-    return (first, second) if first < second else (second, first)
-
-
-def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
-    """Faces beside each undirected edge, in the order of the face list."""
-    result: dict[Edge, list[int]] = {}
-    for index, (a, b, c) in enumerate(faces.tolist()):
-        for first, second in ((a, b), (b, c), (c, a)):
-            result.setdefault(edge_key(first, second), []).append(index)
-    return result
-
-
 def boundary_loops(faces: Faces) -> list[list[int]]:
     """Closed rows of boundary vertices, in the direction of their faces, longest first.
 

@@ -5,10 +5,19 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from risorius.assets.topology import edge_faces
+from risorius.assets.topology import Edge, Faces
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.int32]
+
+
+def edge_faces(faces: Faces) -> dict[Edge, list[int]]:
+    """Faces beside each undirected edge, in the order of the face list."""
+    result: dict[Edge, list[int]] = {}
+    for index, (a, b, c) in enumerate(faces.tolist()):
+        for first, second in ((a, b), (b, c), (c, a)):
+            result.setdefault((min(first, second), max(first, second)), []).append(index)
+    return result
 
 
 def is_manifold(faces: IndexArray) -> bool:

@@ -16,9 +16,10 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
 from risorius.assets.meshes import Mesh
-from risorius.assets.topology import boundary_loops, edge_faces
+from risorius.assets.topology import boundary_loops
 from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
+from tests.assets.checks import edge_faces
 from tests.heads import Stranger, closed, stranger
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement
 
