@@ -18,6 +18,9 @@ PATH = click.Path(path_type=Path)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 MESHES = ("face", "2k", "20k", "200k", "1M")
+needed_reference = click.option(
+    "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
+)
 json_option = click.option("--json", "json_file", type=PATH, help="Figures for programs.")
 size_option = click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
 
@@ -53,7 +56,7 @@ def bench() -> None:
 )
 @json_option
 def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None) -> None:
-    """Time refinement on the face and on meshes of up to a million triangles, beside peers."""
+    """Time refinement on the face and on meshes of up to a million triangles."""
     from . import refine
 
     save = json_writer(json_file)
@@ -63,41 +66,32 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None)
 
 
 @bench.command("quality")
-@click.option(
-    "--reference",
-    type=FOLDER,
-    help="A folder with face.npz and coarse_2029.npz: scans and their decimation.",
-)
-@click.option(
-    "--finer",
-    type=click.Choice(["4", "16", "none"]),
-    default="16",
-    show_default=True,
-    help="The built-in head with so many times its triangles as the truth.",
-)
+@click.option("--reference", type=FOLDER, help="A folder of `risorius bench reference`.")
 @click.option(
     "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
 )
-def bench_quality(reference: Path | None, finer: str, expressions: tuple[str, ...]) -> None:
-    """Measure how near every scheme comes to a dense face and its picture, for what it spends."""
-    from . import quality
+def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
+    """Measure how near every scheme comes to a dense face and its picture, for what it spends.
 
-    with told():
-        groups = quality.subjects_of(reference, {"4": 1, "16": 2}.get(finer), expressions)
-    scores = {
-        group: quality.measure(members, expressions, say_progress)
-        for group, members in groups.items()
-    }
+    The face is the built-in head, with --reference a scan.
+    """
+    from risorius import assets
+
+    from . import quality, subjects
+
+    with told("--reference: "):
+        scans = subjects.Scans.read(reference) if reference else None
+    known = assets.load("head").expressions if scans is None else scans.fields
+    for name in expressions:
+        if name not in known:
+            raise UserError(f"--expression {in_one_line(name)}: there are {', '.join(known)}")
+    subject = subjects.built_in() if scans is None else subjects.scanned(scans)
+    scores = quality.measure(subject, expressions, say_progress)
     conclude(quality.report(scores), quality.targets(scores))
 
 
 @bench.command("motion")
-@click.option(
-    "--reference",
-    type=FOLDER,
-    required=True,
-    help="a folder with face.npz: vertices, triangles, landmarks68, displacement fields",
-)
+@needed_reference
 def bench_motion(reference: Path) -> None:
     """Compare simulated with scanned skin motion, shape by shape."""
     from . import motion
@@ -108,9 +102,7 @@ def bench_motion(reference: Path) -> None:
 
 
 @bench.command("human")
-@click.option(
-    "--reference", type=FOLDER, required=True, help="A folder with face.npz, identity_modes.npz."
-)
+@needed_reference
 @click.option(
     "--head", "head_file", type=FILE, help="The head.npz of another head than the built-in one."
 )
@@ -124,9 +116,7 @@ def bench_human(reference: Path, head_file: Path | None) -> None:
 
 
 @bench.command("form")
-@click.option(
-    "--reference", type=FOLDER, required=True, help="A folder with face.npz, identity_modes.npz."
-)
+@needed_reference
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
 @click.option("--seed", type=click.IntRange(0), default=7, show_default=True, help="Which person.")
 def bench_form(reference: Path, folder: Path, seed: int) -> None:
@@ -160,28 +150,21 @@ def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> Non
     required=True,
     help="face_landmarker.task, the model of MediaPipe's face landmarker.",
 )
-@click.option(
-    "--reference", type=FOLDER, help="A folder with face.npz: scans, to be shown as well."
-)
 @click.option("--pictures", type=PATH, help="A folder for all that the tracker is shown.")
-def bench_seen(model: Path, reference: Path | None, pictures: Path | None) -> None:
+def bench_seen(model: Path, pictures: Path | None) -> None:
     """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
     from . import seen
-    from .face_tracker import FaceTracker
 
-    with FaceTracker(model) as tracker, told("--reference: "):
-        click.echo(seen.report(seen.measure(tracker, pictures, reference)))
+    with seen.FaceTracker(model) as tracker:
+        click.echo(seen.report(seen.measure(tracker, pictures)))
 
 
 @bench.command("gaps")
-@json_option
-def bench_gaps(json_file: Path | None) -> None:
+def bench_gaps() -> None:
     """Look through lips and lids that ought to be shut, in every action unit."""
     from . import gaps
 
-    save = json_writer(json_file)
     poses = gaps.measure()
-    save([asdict(pose) for pose in poses])
     conclude(gaps.report(poses), gaps.targets(poses))
 
 
@@ -204,7 +187,7 @@ def bench_tearing(mixtures: int) -> None:
     from . import tearing
 
     poses = tearing.measure(mixtures)
-    conclude(tearing.report(poses, mixtures), tearing.targets(poses))
+    conclude(tearing.report(poses), tearing.targets(poses))
 
 
 @bench.command("window")

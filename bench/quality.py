@@ -1,6 +1,7 @@
 """How near a refined mesh comes to the true surface, and to its picture, for what it spends.
 
-A coarse face moves with a dense one (subjects.py), and is refined by all methods of METHODS:
+A coarse face moves with a dense one (subjects.py): the built-in head with one of 16 times its
+triangles, or a decimated scan with the scan. It is refined by all methods of METHODS:
 
     distance   from every dense vertex the nearest point of the refined mesh is found, exactly;
                root of the mean square
@@ -8,7 +9,6 @@ A coarse face moves with a dense one (subjects.py), and is refined by all method
                shadows, from VIEWS, shaded per pixel with the normals that the mesh has
     outline    pixels that one of the two covers and the other does not. Pictures are drawn FINER
                times too large, so that an outline that is off by a part of a pixel counts by that
-    jump       how far the surface goes in a frame while the expression comes (flicker.py)
 
 Edges are split by the criterion `normal`, the paper's, or `displacement`, where the scheme would
 move an edge most; thresholds are scaled together until the mesh has BUDGET times the coarse
@@ -18,26 +18,21 @@ split once or twice, and uniform Loop subdivision.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import astuple, dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from risorius import assets, refine, render
-from risorius.app.errors import in_one_line
+from risorius import refine, render
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.refine.kahler.criterion import Thresholds
 
 from .canvas import Canvas, Drawing
-from .flicker import largest_jump
-from .report import Target, at_least, at_most, table
-from .subjects import Points, Subject, built_in, scanned
+from .report import Target, at_least, table
+from .subjects import Points, Subject
 
 Mesh = Any
 """Positions [mm] and unit normals, shape (N, 3), and triangles, shape (M, 3); RefinedMesh fits."""
@@ -49,14 +44,17 @@ BLACK = render.Background((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, bumps=0.0, background=BLACK)
 LEVEL_BEHIND = 215.0  # grey level where there is no mesh, about that of the window's
 SEARCH_STEPS, SCALES = 18, (1e-5, 1e3)  # of thresholds: too many, too few triangles
-LEAST_GAIN, MOST_JUMP = 20.0, 1.5  # [%] of the error of static; times the input's motion
-STATIC, BEST, CALM = "static", "cubic displacement 2x", "cubic displacement, blended 2x"
+LEAST_GAIN = 20.0  # [%] of the error of static
+STATIC, BEST = "static", "cubic displacement 2x"
 _TOLD = PRESETS[FIRST_PRESET]["face"].told("kahler")
 METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
     STATIC: ("none", {}),
     "loop normal 2x": ("sliding", {"scheme": "loop", "criterion": refine.NormalDrop}),
     BEST: ("sliding", {"scheme": "cubic", "criterion": refine.Displacement, "blend": False}),
-    CALM: ("sliding", {"scheme": "cubic", "criterion": refine.Displacement, "blend": True}),
+    "cubic displacement, blended 2x": (
+        "sliding",
+        {"scheme": "cubic", "criterion": refine.Displacement, "blend": True},
+    ),
     "detail displacement 2x": (
         "sliding",
         {"scheme": "detail", "criterion": refine.Displacement, "blend": False},
@@ -74,8 +72,7 @@ METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
 """Title: refiner and options. "sliding" keeps to the budget, "everywhere" splits all edges."""
 
 
-@dataclass(frozen=True)
-class Score:
+class Score(NamedTuple):
     """Errors of one mesh in one expression."""
 
     method: str
@@ -88,8 +85,6 @@ class Score:
     """Root mean square of grey levels, 0..255, over the pixels that either mesh covers."""
     outline: float
     """Pixels that one mesh covers and the other does not, mean over views."""
-    jump: float
-    """Largest motion of the surface in a frame over that of the input."""
 
 
 class Everywhere(refine.Criterion):
@@ -103,70 +98,37 @@ class Everywhere(refine.Criterion):
         metric[:] = self._splits
 
 
-def subjects_of(
-    reference: Path | None, finer: int | None, expressions: Collection[str]
-) -> dict[str, list[Subject]]:
-    """Whom to measure in these expressions, or in all, by group.
-
-    reference: a folder of scans. finer: level of the built-in head that is the truth for it. Raises
-    ValueError where there is nobody, and for what is no reference.
-    """
-    found = scanned(reference) if reference is not None else []
-    known = dict.fromkeys(name for subject in found for name in subject.poses)
-    of_head = assets.load("head").expressions if finer is not None else {}
-    known |= dict.fromkeys(of_head)
-    if not known:
-        raise ValueError("nothing to measure: give --reference FOLDER, or --finer 4 or 16")
-    for name in expressions:
-        if name not in known:
-            raise ValueError(f"--expression {in_one_line(name)}: there are {', '.join(known)}")
-    asked = set(expressions or known)
-    if finer is not None and asked & set(of_head):  # building it takes ten seconds
-        found.append(built_in(finer))
-    groups: dict[str, list[Subject]] = defaultdict(list)
-    for subject in found:
-        if asked & set(subject.poses):
-            groups[subject.group].append(subject)
-    return groups
-
-
 def measure(
-    subjects: Sequence[Subject],
+    subject: Subject,
     expressions: Collection[str] = (),
     progress: Callable[[str], object] = lambda _: None,
     methods: Collection[str] = tuple(METHODS),
 ) -> list[Score]:
-    """Score methods in all expressions of some subjects, or in those named.
+    """Score methods in all expressions of a subject, or in those named.
 
     `progress`: called with the name of each expression before it is measured.
     """
     scores = []
-    for subject in subjects:
-        with _Pictures(subject) as pictures:
-            bound = {title: _bound(subject, pictures.view, *METHODS[title]) for title in methods}
-            for name, pose in subject.poses.items():
-                if expressions and name not in expressions:
-                    continue
-                title = name if subject.group in subject.name else f"{subject.name}, {name}"
-                progress(title)
-                frames, truth = subject.frames(name), pictures.shoot(_dense(subject, name))
-                for method, (refiner, make) in bound.items():
-                    mesh = make(pose.coarse)
-                    distances = closest_points(pose.dense, mesh[0], mesh[2]).distances
-                    errors = (
-                        len(mesh[2]) / len(subject.coarse_faces),
-                        float(np.sqrt((distances**2).mean())),
-                        *_apart(pictures.shoot(mesh), truth),
-                    )  # before the jump, whose frames overwrite the mesh
-                    jump = largest_jump(refiner, subject.coarse_faces, frames, pictures.view)
-                    scores.append(Score(method, title, *errors, jump))
+    with _Pictures(subject) as pictures:
+        bound = {title: _bound(subject, pictures.view, *METHODS[title]) for title in methods}
+        for name in expressions or subject.poses:
+            progress(name)
+            pose, faces = subject.poses[name], subject.dense_faces
+            truth = pictures.shoot((pose.dense, vertex_normals(pose.dense, faces), faces))
+            for method, make in bound.items():
+                mesh = make(pose.coarse)
+                distances = closest_points(pose.dense, mesh[0], mesh[2]).distances
+                share = len(mesh[2]) / len(subject.coarse_faces)
+                distance = float(np.sqrt((distances**2).mean()))
+                errors = _apart(pictures.shoot(mesh), truth)
+                scores.append(Score(method, name, share, distance, *errors))
     return scores
 
 
 def _bound(
     subject: Subject, view: refine.View, refiner: str, options: Mapping[str, Any]
-) -> tuple[refine.Refiner, Callable[[Points], Mesh]]:
-    """The refiner of a method, and what makes its mesh of positions (V, 3)."""
+) -> Callable[[Points], Mesh]:
+    """What makes the mesh of a method of positions (V, 3)."""
     told = dict(options)
     if told.get("scheme") == "detail":
         told["detail"] = subject.rest.dense, subject.dense_faces
@@ -179,17 +141,14 @@ def _bound(
     bound = refine.create(kind, subject.coarse_faces, subject.rest.coarse, **told)
     if refiner == "sliding":
         most = BUDGET * len(subject.coarse_faces)
-        return bound, lambda positions: _slid(bound, told["criterion"], positions, most, view)
-    return bound, lambda positions: bound.refine(positions, view=view)
+        return lambda positions: _slid(bound, told["criterion"], positions, most, view)
+    return lambda positions: bound.refine(positions, view=view)
 
 
 def _slid(
     refiner: refine.Refiner, criterion: Any, positions: Points, most: float, view: refine.View
 ) -> refine.RefinedMesh:
-    """Refine with thresholds, scaled together, that give `most` triangles or a few less.
-
-    They stay, for frames.
-    """
+    """Refine with thresholds, scaled together, that give `most` triangles or a few less."""
     usual = type(criterion)().thresholds
 
     def refined(logarithm: float) -> refine.RefinedMesh:
@@ -237,11 +196,6 @@ class _Pictures:
         return _block_means(np.where(covered, fine, LEVEL_BEHIND)), covered
 
 
-def _dense(subject: Subject, expression: str) -> Mesh:
-    dense = subject.poses[expression].dense
-    return dense, vertex_normals(dense, subject.dense_faces), subject.dense_faces
-
-
 def _apart(
     shots: tuple[Points, npt.NDArray[np.bool_]], truth: tuple[Points, npt.NDArray[np.bool_]]
 ) -> tuple[float, float]:
@@ -258,39 +212,35 @@ def _block_means(fine: npt.NDArray[Any]) -> Points:
 
 
 def means(scores: Sequence[Score]) -> dict[str, Score]:
-    """The mean over expressions for each method; of `jump` the largest."""
+    """The mean over expressions for each method."""
     found = {}
     for method in dict.fromkeys(score.method for score in scores):
-        rows = [astuple(score)[2:] for score in scores if score.method == method]
-        *mean, _ = np.mean(rows, axis=0).tolist()
-        found[method] = Score(method, "mean", *mean, *np.max(rows, axis=0).tolist()[-1:])
+        rows = [score[2:] for score in scores if score.method == method]
+        found[method] = Score(method, "mean", *np.mean(rows, axis=0).tolist())
     return found
 
 
-def report(scores: Mapping[str, Sequence[Score]]) -> str:
-    """The text to print; scores by group."""
-    lines = []
-    columns = "mean over expressions:<26|x tri:5.2f|mm:6.3f|better:>6|levels:6.2f|better:>6"
-    for group, measured in scores.items():
-        average = means(measured)
-        static = average[STATIC]
-        rows = [
-            (
-                *(method, found.triangles),
-                *(found.distance, f"{_gain(found, static, 'distance'):.1f}%"),
-                *(found.picture, f"{_gain(found, static, 'picture'):.1f}%"),
-                *(found.outline, found.jump),
-            )
-            for method, found in average.items()
-        ]
-        lines += [group, *table(f"{columns}|outline:7.0f|jump:7.2f", rows), ""]
+def report(scores: Sequence[Score]) -> str:
+    """The text to print."""
+    average = means(scores)
+    static = average[STATIC]
+    rows = [
+        (
+            *(method, found.triangles),
+            *(found.distance, f"{_gain(found, static, 'distance'):.1f}%"),
+            *(found.picture, f"{_gain(found, static, 'picture'):.1f}%"),
+            found.outline,
+        )
+        for method, found in average.items()
+    ]
+    columns = "mean over expressions:<31|x tri:5.2f|mm:6.3f|better:>6|levels:6.2f|better:>6"
     return "\n".join(
         [
-            *lines,
+            *table(f"{columns}|outline:7.0f", rows),
+            "",
             "better   than static: per cent of error less, in the mean",
             "levels   RMS of grey levels beside pictures of the dense mesh, three views, 480 x 480",
             "outline  pixels covered by one mesh and not by the other, of one view",
-            "jump     largest motion of the surface in a frame over the input's",
         ]
     )
 
@@ -299,13 +249,8 @@ def _gain(found: Score, static: Score, what: str) -> float:
     return 100.0 * (1.0 - float(getattr(found, what)) / float(getattr(static, what)))
 
 
-def targets(scores: Mapping[str, Sequence[Score]]) -> list[Target]:
+def targets(scores: Sequence[Score]) -> list[Target]:
     """What the scheme `cubic` is held to where `displacement` splits, at twice the triangles."""
-    found = []
-    for group, measured in scores.items():
-        average = means(measured)
-        for what in ("distance", "picture"):
-            gain = _gain(average[BEST], average[STATIC], what)
-            found.append(at_least(f"{group}: {what} less than static", gain, LEAST_GAIN, " %"))
-        found.append(at_most(f"{group}: largest jump, blended", average[CALM].jump, MOST_JUMP))
-    return found
+    average = means(scores)
+    gains = {what: _gain(average[BEST], average[STATIC], what) for what in ("distance", "picture")}
+    return [at_least(f"{w}: less than static", g, LEAST_GAIN, " %") for w, g in gains.items()]

@@ -1,10 +1,12 @@
-"""What a frame of refinement costs, beside what others offer, all in one run.
+"""What a frame of refinement costs, for all methods and sizes of mesh in one run.
 
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
 refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
 table, output and the call from Python. Meshes: the built-in face in six full expressions with the
-default thresholds, and large ones (waving_meshes.py) with thresholds that split 10, 50 or 100 %
-of the edges.
+default thresholds, and large ones with thresholds that split 10, 50 or 100 % of the edges: grids
+with three holes under waves that travel, of jittered squares cut along a random diagonal, so that
+valences run from 4 to 8. Flat at rest, so that every edge bends. Their lengths are in cells: a wave
+is as many triangles long in a small mesh as in a large one, and edges bend alike.
 
 The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
 off, and medians are reported: on a shared machine times drift by a third within a run, and so only
@@ -13,6 +15,7 @@ rows of one mesh can be compared. The best time is reported beside the median fo
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -24,13 +27,11 @@ import numpy.typing as npt
 
 from risorius import assets, refine, sim
 
-from .peers import peers_for
 from .report import processor, table
 from .subjects import SETTLE, settled_positions
-from .timing import interleaved
-from .waving_meshes import Load, waving_mesh
 
 Points = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int32]
 
 FULL_EXPRESSIONS = ("joy", "sadness", "surprise", "anger", "disgust", "fear")
 SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
@@ -50,6 +51,21 @@ METHODS: Mapping[str, Mapping[str, Any]] = {
     "detail, no blend": {"scheme": "detail", "blend": False},
 }
 """Our methods on the face: the paper's, and what each scheme and each option costs."""
+SEED = 2003
+WAVES = ((13.0, 0.4), (29.0, 1.1), (9.0, 2.5))  # length [cells], direction [radians]
+HEIGHT = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
+HOLE = 0.06  # radius of the holes over the length of the mesh
+HOLES = ((0.3, 0.7), (0.7, 0.7), (0.5, 0.25))  # their centres: two eyes and a mouth
+
+
+@dataclass(frozen=True)
+class Load:
+    """A mesh and the frames that it goes through."""
+
+    name: str
+    faces: Faces
+    rest: Points
+    frames: Sequence[Points]
 
 
 @dataclass(frozen=True)
@@ -58,7 +74,6 @@ class Row:
 
     mesh: str
     method: str
-    is_peer: bool
     triangles_in: int
     triangles_out: float
     """Mean over the frames."""
@@ -79,8 +94,6 @@ class Report:
 
     processor: str
     rows: list[Row] = field(default_factory=list)
-    missing: list[str] = field(default_factory=list)
-    """A line for each peer that is not installed."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +103,6 @@ class _Case:
     method: str
     triangles: float
     call: Callable[[Points], object]
-    is_peer: bool = False
 
 
 def measure(
@@ -104,10 +116,6 @@ def measure(
         progress(size)
         load = load_of(size)
         cases = _face_cases(load) if size == "face" else _waving_cases(load)
-        target = next(case.triangles for case in cases if case.method.startswith("kahler"))
-        peers, missing = peers_for(load, round(target))
-        cases += [_Case(peer.name, peer.triangles, peer.call, is_peer=True) for peer in peers]
-        report.missing.extend(line for line in missing if line not in report.missing)
         report.rows.extend(_timed(load, cases, seconds))
     return report
 
@@ -123,6 +131,55 @@ def load_of(size: str) -> Load:
         settled_positions(simulation, head.expressions[name], SETTLE) for name in FULL_EXPRESSIONS
     ]
     return Load("face", head.faces, head.vertices, frames)
+
+
+def waving_mesh(name: str, triangle_count: int, *, frame_count: int = 4) -> Load:
+    """Make a grid of about `triangle_count` triangles, in scan order.
+
+    So neighbours in the mesh are neighbours in memory.
+    """
+    generator = np.random.default_rng(SEED)
+    side = max(4, round((0.5 * triangle_count / (1.0 - len(HOLES) * np.pi * HOLE**2)) ** 0.5))
+    rest = _jittered(side, generator)
+    faces = _cut_cells(side, generator)
+    centres = rest[faces].mean(axis=1)[:, :2] / side
+    is_solid = np.ones(len(faces), dtype=bool)
+    for hole in HOLES:
+        is_solid &= np.linalg.norm(centres - hole, axis=1) > HOLE
+    faces = faces[is_solid]
+    used, faces = np.unique(faces, return_inverse=True)
+    rest, faces = rest[used], faces.reshape(-1, 3)
+    frames = [_waved(rest, phase) for phase in np.arange(frame_count) / frame_count]
+    return Load(name, faces.astype(np.int32), rest, frames)
+
+
+def _jittered(side: int, generator: np.random.Generator) -> Points:
+    x, y = np.meshgrid(np.arange(side + 1.0), np.arange(side + 1.0))
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    points[:, :2] += generator.uniform(-0.3, 0.3, (len(points), 2))
+    return points
+
+
+def _cut_cells(side: int, generator: np.random.Generator) -> npt.NDArray[np.int64]:
+    a = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
+    b, c, d = a + 1, a + side + 2, a + side + 1
+    rising = np.stack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)], axis=1)
+    falling = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
+    is_rising = generator.random(len(a)) < 0.5
+    return np.where(is_rising[:, None, None], rising, falling).reshape(-1, 3)
+
+
+def _waved(rest: Points, phase: float) -> Points:
+    """The mesh at a moment of its waves, stronger in some places than in others."""
+    x, y = rest[:, 0], rest[:, 1]
+    strength = 0.15 + np.sin(x / 61.0) ** 2 * np.sin(y / 47.0) ** 2
+    height = np.zeros(len(rest))
+    for length, direction in WAVES:
+        along = np.cos(direction) * x + np.sin(direction) * y
+        height += np.sin(2.0 * np.pi * (along / length - phase))
+    moved = rest.copy()
+    moved[:, 2] += HEIGHT * strength * height
+    return moved
 
 
 def _face_cases(load: Load) -> list[_Case]:
@@ -176,11 +233,33 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
     times = 1e3 * interleaved(calls, rounds) / len(load.frames)
     return [
         Row(
-            *(load.name, case.method, case.is_peer, len(load.faces), case.triangles),
+            *(load.name, case.method, len(load.faces), case.triangles),
             *(float(np.median(column)), float(np.min(column))),
         )
         for case, column in zip(cases, times.T, strict=True)
     ]
+
+
+def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> npt.NDArray[np.float64]:
+    """Return the seconds of each call in each round, shape (rounds, len(calls)).
+
+    A call is as fast as what ran before it left the caches. Of three or more calls each always
+    follows the same neighbours, so where two are compared closely they are timed as a pair.
+    """
+    seconds = np.zeros((rounds, len(calls)))
+    was_collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for turn in range(rounds):
+            order = range(len(calls)) if turn % 2 == 0 else reversed(range(len(calls)))
+            for k in order:
+                start = time.perf_counter()
+                calls[k]()
+                seconds[turn, k] = time.perf_counter() - start
+    finally:
+        if was_collecting:
+            gc.enable()
+    return seconds
 
 
 def report(found: Report) -> str:
@@ -188,20 +267,18 @@ def report(found: Report) -> str:
     lines = [
         f"Refinement, serial, one core of {found.processor}: medians of interleaved rounds;",
         "positions in, filled render buffers out (normals, criterion, points, table, output).",
-        "Compare rows of one mesh only. * is somebody else's; uniform ones make every triangle 4 "
-        "or 16.",
+        "Compare rows of one mesh only. Uniform ones make 4 or 16 of every triangle.",
     ]
     columns = "method:<27|out:9.0f|ms:9.4f|best:9.4f|ns/tri:7.1f"
     for mesh, group in groupby(found.rows, key=lambda row: row.mesh):
         rows = list(group)
         cells = [
             (
-                row.method + (" *" if row.is_peer else ""),
-                *(row.triangles_out, row.milliseconds, row.best_milliseconds),
+                *(row.method, row.triangles_out, row.milliseconds, row.best_milliseconds),
                 row.nanoseconds_per_triangle,
             )
             for row in rows
         ]
         title = f"{mesh}, {rows[0].triangles_in} triangles"
         lines += ["", title, *table(columns, cells, indent="  ")]
-    return "\n".join([*lines, *(["", *found.missing] if found.missing else [])])
+    return "\n".join(lines)

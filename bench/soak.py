@@ -13,7 +13,9 @@ Every control jumps to a random value in every frame, and frames are of random l
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Iterator
+from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -36,8 +38,7 @@ FURTHEST, AT_REST, MIRRORED = 150.0, 1e-3, 1e-6  # [mm] at most
 ROUNDING = 1e-9  # of the energy: growth below it is arithmetic
 
 
-@dataclass(frozen=True)
-class Soak:
+class Soak(NamedTuple):
     """What was seen."""
 
     seconds: float  # simulated
@@ -55,47 +56,44 @@ def measure(minutes: float) -> Soak:
     head = assets.load("head")
     simulation = sim.create(head)
     seconds, frames, furthest, finite = 0.0, 0, 0.0, True
-    generator = np.random.default_rng(SEED)
     try:
-        while seconds < 60.0 * minutes:
-            seconds += _wild_frame(simulation, generator)
-            frames += 1
+        for dt in _wild_frames(simulation):
+            seconds, frames = seconds + dt, frames + 1
             furthest = max(furthest, float(np.abs(displacements(simulation)).max()))
+            if seconds >= 60.0 * minutes:
+                break
     except sim.SimulationUnstable:
         finite = False
         simulation.reset()
     rest_error = _rest_error(simulation)
     again = min(REPEATED, 60.0 * minutes)
-    return Soak(
-        seconds, frames, finite, furthest, rest_error, _energy_growth(simulation),
-        _digest(simulation, again) == _digest(sim.create(head), again),
-        _mirror_error(simulation, head.mirror),
-    )  # fmt: skip
+    is_same = _digest(simulation, again) == _digest(sim.create(head), again)
+    growth, mirror_error = _energy_growth(simulation), _mirror_error(simulation, head.mirror)
+    return Soak(seconds, frames, finite, furthest, rest_error, growth, is_same, mirror_error)
 
 
 def displacements(simulation: sim.Simulation) -> Array:
     """Displacements [mm] as seen from the cranium, shape (V, 3)."""
     head = simulation.bone_transforms()["cranium"]
-    displacement: Array = (simulation.positions - head[:3, 3]) @ head[
-        :3, :3
-    ] - simulation.rest_positions
-    return displacement
+    seen: Array = (simulation.positions - head[:3, 3]) @ head[:3, :3] - simulation.rest_positions
+    return seen
 
 
-def _wild_frame(
-    simulation: sim.Simulation, generator: np.random.Generator, *, mirrored: bool = False
-) -> float:
-    """One frame of random length with every control at random; its length [s]."""
+def _wild_frames(simulation: sim.Simulation, *, mirrored: bool = False) -> Iterator[float]:
+    """From rest, frames of random length with every control at random; the length of each [s]."""
+    generator = np.random.default_rng(SEED)
+    simulation.reset()
     limits = {name: simulation.limits[name] for name in simulation.controls}
-    share = generator.uniform(size=len(limits))
-    # A third of the values are at a limit, the rest anywhere between.
-    share = np.where(generator.uniform(size=len(limits)) < 1.0 / 3.0, np.round(share), share)
     low, high = np.array(list(limits.values())).T
-    values = dict(zip(limits, (low + share * (high - low)).tolist(), strict=True))
-    simulation.set_all(on_the_other_side(values) if mirrored else values)
-    dt = float(generator.uniform(SHORTEST, LONGEST))
-    simulation.step(dt)
-    return dt
+    while True:
+        share = generator.uniform(size=len(limits))
+        # A third of the values are at a limit, the rest anywhere between.
+        share = np.where(generator.uniform(size=len(limits)) < 1.0 / 3.0, np.round(share), share)
+        values = dict(zip(limits, (low + share * (high - low)).tolist(), strict=True))
+        simulation.set_all(on_the_other_side(values) if mirrored else values)
+        dt = float(generator.uniform(SHORTEST, LONGEST))
+        simulation.step(dt)
+        yield dt
 
 
 def _rest_error(simulation: sim.Simulation) -> float:
@@ -121,43 +119,34 @@ def _energy_growth(simulation: sim.Simulation) -> float:
 
 def _digest(simulation: sim.Simulation, seconds: float) -> str:
     """Digest of all positions over some seconds of random input from rest."""
-    generator = np.random.default_rng(SEED)
-    simulation.reset()
-    digest = hashlib.sha256()
-    passed = 0.0
-    while passed < seconds:
-        passed += _wild_frame(simulation, generator)
+    digest, passed = hashlib.sha256(), 0.0
+    for dt in _wild_frames(simulation):
         digest.update(simulation.positions.tobytes())
+        passed += dt
+        if passed >= seconds:
+            break
     return digest.hexdigest()
 
 
 def _mirror_error(simulation: sim.Simulation, mirror: npt.NDArray[np.int32]) -> float:
     """Greatest difference [mm] between mirrored motion and the motion of mirrored input."""
-    runs = []
-    for mirrored in (False, True):
-        generator = np.random.default_rng(SEED)
-        simulation.reset()
-        run = []
-        for _ in range(MIRRORED_FRAMES):
-            _wild_frame(simulation, generator, mirrored=mirrored)
-            run.append(simulation.positions.copy())
-        runs.append(np.array(run))
-    return float(np.abs(runs[1][:, mirror] * (-1.0, 1.0, 1.0) - runs[0]).max())
+    plain, mirrored = (
+        np.array(
+            [
+                simulation.positions.copy()
+                for _ in islice(_wild_frames(simulation, mirrored=side), MIRRORED_FRAMES)
+            ]
+        )
+        for side in (False, True)
+    )
+    return float(np.abs(mirrored[:, mirror] * (-1.0, 1.0, 1.0) - plain).max())
 
 
 def report(soak: Soak) -> str:
-    """The text to print."""
-    return "\n".join(
-        [
-            f"{soak.seconds / 60.0:.1f} simulated minutes, {soak.frames} frames of 1/240 to",
-            "1/20 s, every control at random in every frame:",
-            f"finite            {'yes' if soak.finite else 'NO'}",
-            f"furthest          {soak.furthest:.2f} mm from rest",
-            f"2 s after release {soak.rest_error:.6f} mm from rest",
-            f"energy growth     {soak.growth:.1e} of a blow, most in a frame without input",
-            f"same bytes        {'yes' if soak.same_bytes else 'NO'}",
-            f"mirrored input    {soak.mirror_error:.1e} mm from the mirrored motion",
-        ]
+    """The text to print, but for what is held to something."""
+    return (
+        f"{soak.seconds / 60.0:.1f} simulated minutes, {soak.frames} frames of 1/240 to 1/20 s, "
+        "every control at\nrandom in every frame."
     )
 
 

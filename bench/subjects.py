@@ -1,19 +1,16 @@
-"""Faces that are known densely and coarsely, at rest and in expressions: truth to measure against.
+"""Faces to measure against: a folder of scans, and the built-in head with its finer meshes.
 
-Two sources. A folder of scanned motion as `bench motion` takes it, with a decimation beside it:
-`face.npz` (vertices, triangles, a displacement field (V, 3) for each expression [cm]) and
-`coarse_2029.npz` (triangles, and where each coarse vertex lies on the dense mesh: fine_triangle,
-barycentric); and, where they are there, other persons of the same triangles, who are moved alike:
-`identities.npz` (vertices of each). And the built-in head: its finer meshes, moved by the
-simulation itself, and of their vertices those that the head has.
+A folder of scans, as `risorius bench reference` makes it of ICT-FaceKit, has `face.npz`: vertices
+(V, 3), triangles (F, 3), landmarks68 (68,), and for each expression a displacement field (V, 3);
+all in centimetres. Fields that end in _L and _R are two halves of one expression, and are added.
 """
 
 from __future__ import annotations
 
-import math
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -22,18 +19,73 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
+from risorius.assets.fitting import FittedHead, fit
+from risorius.assets.fitting.decimation import decimated
+from risorius.assets.meshes import Mesh
 from risorius.assets.model import FineMesh
+from risorius.geometry.closest import closest_points
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
 MILLIMETRES = 10.0  # per unit of a folder of scans (cm)
-COARSE = "coarse_2029.npz"
 DENSE = "face.npz"
-PERSONS = "identities.npz"
+SIDES = {"_L": "Left", "_R": "Right"}
 NOT_MOTION = ("vertices", "triangles", "landmarks68")
 SETTLE = 90  # frames of 1/60 s until a pose is still
-FILM = 90  # frames of 1/30 s in which an expression comes and goes
+COARSE_TRIANGLES = 2029  # of a decimated scan: about those of the built-in head
+
+
+@dataclass(frozen=True)
+class Scans:
+    """A neutral face and what expressions do to it, as they were scanned [mm]."""
+
+    directory: Path
+    mesh: Mesh
+    landmarks: Faces
+    """The 68, as vertex numbers."""
+    fields: Mapping[str, Points]
+    """Expression -> how far all vertices move, shape (V, 3)."""
+
+    @classmethod
+    def read(cls, directory: Path) -> Scans:
+        """Read a folder. Raises ValueError, naming the file, if it is broken."""
+        arrays = read_arrays(directory / DENSE, NOT_MOTION)
+        vertices, triangles, landmarks = (arrays.pop(name) for name in NOT_MOTION)
+        if not (
+            vertices.ndim == triangles.ndim == 2
+            and vertices.shape[1] == triangles.shape[1] == 3
+            and landmarks.shape == (68,)
+            and np.isfinite(vertices).all()
+            and all(((a >= 0) & (a < len(vertices))).all() for a in (triangles, landmarks))
+        ):
+            raise ValueError(
+                f"{directory}: in {DENSE}, vertices must be finite, (V, 3), triangles (F, 3) and "
+                "landmarks68 (68,) numbers of them"
+            )
+        fields: dict[str, Points] = {}
+        for name, array in arrays.items():
+            if array.shape != vertices.shape or not np.isfinite(array).all():
+                raise ValueError(
+                    f"{directory}: {name} in {DENSE} must be finite displacements of all vertices"
+                )
+            stem, end = name[:-2], name[-2:]
+            if end in SIDES:
+                is_whole = all(f"{stem}{each}" in arrays for each in SIDES)
+                name = stem if is_whole else stem + SIDES[end]
+            moved = MILLIMETRES * array.astype(np.float64)
+            fields[name] = fields.get(name, np.zeros_like(moved)) + moved
+        mesh = Mesh(MILLIMETRES * vertices.astype(np.float64), triangles.astype(np.int32))
+        return cls(directory, mesh, landmarks.astype(np.int32), fields)
+
+    @cached_property
+    def head(self) -> FittedHead:
+        """The rig, fitted to the neutral face as to anybody's, by its 68 landmarks."""
+        return fit(self.mesh, self.landmarks)
+
+    def field(self, name: str) -> Points:
+        """How far an expression moves the vertices of `head` [mm], shape (V, 3)."""
+        return self.head.to_millimetres.vectors(self.fields[name][self.head.file_vertices])
 
 
 @dataclass(frozen=True)
@@ -49,111 +101,36 @@ class Subject:
     """A face as a dense mesh, a coarse one, and expressions of both."""
 
     name: str
-    group: str
-    """What it is reported with."""
     dense_faces: Faces
     coarse_faces: Faces
     rest: PosePair
     poses: Mapping[str, PosePair]
-    film: Callable[[str], Sequence[Points]] | None = None
-    """Moves the coarse mesh through an expression, frames of 1/30 s."""
-
-    def frames(self, expression: str) -> Sequence[Points]:
-        """Positions of the coarse mesh while an expression comes, and goes if that is different."""
-        if self.film is not None:
-            return self.film(expression)
-        way = self.poses[expression].coarse - self.rest.coarse
-        return [self.rest.coarse + strength(k) * way for k in range(FILM // 2 + 1)]
 
 
-def strength(frame: int) -> float:
-    """How far an expression has come in a frame of a film, 0..1."""
-    return math.sin(math.pi * frame / FILM) ** 2
+def scanned(scans: Scans) -> Subject:
+    """A scan and a decimation of it, whose vertices go where the scan under them goes."""
+    mesh = scans.mesh
+    points, faces = decimated(mesh.vertices, mesh.faces, COARSE_TRIANGLES)
+    place = closest_points(points, mesh.vertices, mesh.faces)
+    poses = {"": mesh.vertices, **{name: mesh.vertices + by for name, by in scans.fields.items()}}
+    pairs = {name: PosePair(moved, place.interpolate(moved)) for name, moved in poses.items()}
+    return Subject("scan", mesh.faces, faces, pairs.pop(""), pairs)
 
 
-def scanned(folder: str | Path) -> list[Subject]:
-    """Read a folder of scans: every person and every expression in it.
-
-    Fields that end in _L and _R are two halves of one expression, and are added.
-    Raises ValueError, naming the file, if something is missing in it.
-    """
-    dense = read_arrays(Path(folder) / DENSE, ("vertices", "triangles"))
-    coarse = read_arrays(Path(folder) / COARSE, ("triangles", "fine_triangle", "barycentric"))
-    shape = dense["vertices"].shape
-    fields: dict[str, Points] = {}
-    for name, array in dense.items():
-        if name in NOT_MOTION or array.shape != shape:
-            continue
-        expression = name.removesuffix("_L").removesuffix("_R")
-        moved = MILLIMETRES * array.astype(np.float64)
-        fields[expression] = fields.get(expression, np.zeros(shape)) + moved
-    if not fields:
-        raise ValueError(f"{Path(folder) / DENSE}: no displacement field of shape {shape}")
-    persons = {"scan": dense["vertices"]}
-    others = Path(folder) / PERSONS
-    if others.is_file():
-        persons |= {name.replace("_", " "): rest for name, rest in read_arrays(others, ()).items()}
-    strange = [name for name, rest in persons.items() if rest.shape != shape]
-    if strange:
-        raise ValueError(f"{others}: '{strange[0]}' has not the {shape[0]} vertices of {DENSE}")
-
-    def subject(name: str, vertices: npt.NDArray[Any]) -> Subject:
-        """A person, whose skin moves as that of the scan."""
-        rest = MILLIMETRES * vertices.astype(np.float64)
-        corners = dense["triangles"][coarse["fine_triangle"]]
-        weights = coarse["barycentric"].astype(np.float64)
-
-        def pose(points: Points) -> PosePair:
-            return PosePair(points, np.einsum("vi,vij->vj", weights, points[corners]))
-
-        return Subject(
-            name,
-            "scan" if name == "scan" else "other persons",
-            dense["triangles"].astype(np.int32),
-            coarse["triangles"].astype(np.int32),
-            pose(rest),
-            {expression: pose(rest + moved) for expression, moved in fields.items()},
-        )
-
-    return [subject(name, vertices) for name, vertices in persons.items()]
-
-
-def built_in(level: int) -> Subject:
-    """Take the built-in head with 4 or 16 times its triangles (level 1 or 2) as the dense mesh.
+def built_in(level: int = 2) -> Subject:
+    """The built-in head, and as the dense mesh its finer one of that level (1 or 2).
 
     The muscles of its rig move the dense mesh; the coarse one goes along, as its first vertices.
     """
     head = assets.load("head")
-    fine = head.finer(level)
+    fine, count = head.finer(level), len(head.vertices)
     simulation = fine_simulation(head, fine)
-    count = len(head.vertices)
     poses = {}
     for name, values in head.expressions.items():
         moved = settled_positions(simulation, values, SETTLE)
         poses[name] = PosePair(moved, moved[:count])
-    own = sim.create(head)
-
-    def film(expression: str) -> list[Points]:
-        """Move the head itself, faster than the fine one and much alike."""
-        own.reset()
-        frames = []
-        for frame in range(FILM + 1):
-            share = strength(frame)
-            own.set_all({key: share * at for key, at in head.expressions[expression].items()})
-            for _ in range(2):
-                own.step(1.0 / 60.0)
-            frames.append(own.positions.copy())
-        return frames
-
-    return Subject(
-        f"head x {4**level}",
-        "head",
-        fine.faces,
-        head.faces,
-        PosePair(fine.vertices, fine.vertices[:count]),
-        poses,
-        film,
-    )
+    rest = PosePair(fine.vertices, fine.vertices[:count])
+    return Subject("built-in head", fine.faces, head.faces, rest, poses)
 
 
 def fine_simulation(head: assets.Head, fine: FineMesh) -> sim.Simulation:
@@ -187,7 +164,7 @@ def settled_positions(
 def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:
     """All arrays of a file; ValueError where it is broken or one of `needed` is missing."""
     if not path.is_file():
-        raise ValueError(f"{path}: is not there; a reference folder has {DENSE} and {COARSE}")
+        raise ValueError(f"{path}: is not there; `risorius bench reference` makes such a folder")
     try:
         with np.load(path) as file:
             arrays = {name: file[name] for name in file.files}

@@ -7,7 +7,7 @@ against the skin around them, and how deep skin sits in the other lip, an eyebal
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ import numpy.typing as npt
 from risorius import assets, sim
 from risorius.geometry.normals import cross_products
 
-from .report import Target, at_most, table
+from .report import Target, at_most
 from .subjects import settled_positions
 
 Array = npt.NDArray[np.float64]
@@ -27,8 +27,7 @@ MOST_TORN, MOST_IN_A_POSE, DEEPEST = 2.0, 3, 0.1  # [% of poses]; triangles; [mm
 AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
-@dataclass(frozen=True)
-class PoseDefects:
+class PoseDefects(NamedTuple):
     """What one pose does to the skin."""
 
     name: str
@@ -82,23 +81,17 @@ def _inverted(rest: Array, now: Array, faces: npt.NDArray[np.int32]) -> int:
     return count
 
 
-def report(poses: Sequence[PoseDefects], mixtures: int) -> str:
-    """The text to print."""
-    rows = []
+def report(poses: Sequence[PoseDefects]) -> str:
+    """The text to print: how many poses, and which is the worst in each way."""
+    torn = [pose for pose in poses if pose.inverted]
+    lines = [
+        f"{len(poses)} poses: every row of the layers, and random mixtures of muscles; triangles",
+        f"turned by more than a right angle: {sum(p.inverted for p in torn)} in {len(torn)} poses.",
+    ]
     for part in ("inverted", "lips", "lids", "teeth"):
         worst = max(poses, key=lambda pose: float(getattr(pose, part)))
-        value, unit = float(getattr(worst, part)), "" if part == "inverted" else " mm"
-        rows.append((part, f"{value:.4g}{unit}", f" {worst.name if value > 0.0 else '-'}"))
-    return "\n".join(
-        [
-            f"{len(poses)} poses: every row of the layers and {mixtures} random mixtures of "
-            "muscles.",
-            f"triangles turned by more than a right angle: {sum(pose.inverted for pose in poses)} "
-            f"in {sum(pose.inverted > 0 for pose in poses)} poses",
-            "",
-            *table("worst:<10|value:>9| in:<1", rows),
-        ]
-    )
+        lines.append(f"most {part}: {worst.name if getattr(worst, part) > 0.0 else '-'}")
+    return "\n".join(lines)
 
 
 def targets(poses: Sequence[PoseDefects]) -> list[Target]:

@@ -15,15 +15,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from risorius import render
 from risorius.app.performances import script_for
-from risorius.app.refining.presets import FIRST_PRESET, PAPERS_PRESET
 from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.frame_times import PHASES
-from risorius.app.viewer.picture.painter import LEVELS, LevelOfDetail
+from risorius.app.viewer.picture.painter import LevelOfDetail
 from risorius.app.viewer.settings import Display
-from risorius.app.viewer.window.window import REFRESH
 
 from .report import Target, at_least, processor, table
 
@@ -33,35 +30,17 @@ ROUNDS = 3
 IDLE_SECONDS = 8.0
 
 
-class _FixedLevel(LevelOfDetail):
-    """One level of detail, however long a frame takes."""
-
-    def __init__(self, level: int) -> None:
-        super().__init__(is_software=False)
-        self.level = level
-
-    def begin_motion(self) -> None:
-        """No other level."""
-
-    def note(self, seconds: float) -> None:
-        """No other level."""
-
-
 @dataclass
 class _Case:
     """A window in one state, and what was seen of it."""
 
     name: str
-    level: int | None = None  # None: as the window chooses
-    look: str = FIRST_PRESET
     compare: str = "off"
     is_refined: bool = True
     shows_muscles: bool = False
-    are_panels_cached: bool = True
     seconds: list[float] = field(default_factory=list)  # of each frame
     stages: list[list[float]] = field(default_factory=list)  # [ms] of each frame
     spent: list[float] = field(default_factory=list)  # [s] of processor time, of each frame
-    last_level: int = 0
 
 
 def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
@@ -75,9 +54,6 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
         _Case("smile, wipe", compare="wipe"),
         _Case("smile, side by side", compare="side by side"),
         _Case("smile, muscles", shows_muscles=True),
-        _Case("smile, look paper", look=PAPERS_PRESET),
-        _Case("panels in each frame", are_panels_cached=False),
-        *(_Case(f"level {level}: {_described(each)}", level) for level, each in enumerate(LEVELS)),
     ]
     with Viewer(_smile(), size, Display()) as viewer:
         viewer.session.is_looping = True
@@ -93,7 +69,7 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
         f"{os.cpu_count()} cores of {processor()}; {ROUNDS} interleaved rounds.",
         "",
         *table(
-            "case:<30|frames/s:8.1f|median:7.1f|95 %:7.1f|best:7.1f|processor:9.1f|level:5d|"
+            "case:<30|frames/s:8.1f|median:7.1f|95 %:7.1f|best:7.1f|processor:9.1f|"
             f"{PHASES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in PHASES[1:])}|the rest:9.1f",
             map(_cells, cases),
         ),
@@ -114,24 +90,14 @@ def _smile() -> Script:
     return replace(script_for(None, "face"), title="smile", duration=2.0, poses=poses)
 
 
-def _described(detail: render.Detail) -> str:
-    samples = f"{detail.samples} samples" if detail.samples else "1 sample"
-    return samples if detail.scale == 1.0 else f"{samples}, {detail.scale:g} x"
-
-
 def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
     """Let the window play for a while, and note what its frames took."""
     viewer.settings.display = Display(
-        look=case.look,
         compare=case.compare,
         is_refined=case.is_refined,
         overlays=["muscles"] * case.shows_muscles,
     )
-    viewer.refresh = REFRESH if case.are_panels_cached else 0.0
-    is_software = viewer.surface.is_software
-    viewer.painter.level_of_detail = (
-        LevelOfDetail(is_software=is_software) if case.level is None else _FixedLevel(case.level)
-    )
+    viewer.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
     if not viewer.session.is_playing:
         viewer.session.toggle_playing()
     _run(viewer, WARM_UP, lambda *_: None)
@@ -142,7 +108,6 @@ def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
         case.stages.append([viewer.times.milliseconds[stage][-1] for stage in PHASES])
 
     _run(viewer, seconds, note)
-    case.last_level = viewer.painter.level_of_detail.level
 
 
 def _run(viewer: Viewer, seconds: float, note: Callable[[float, float], None]) -> None:
@@ -178,4 +143,4 @@ def _cells(case: _Case) -> list[object]:
     times = [np.median(elapsed), np.percentile(elapsed, 95), elapsed.min()]
     times.append(1e3 * np.median(case.spent))
     stages = np.median(case.stages, axis=0)
-    return [case.name, _rate(case), *times, case.last_level, *stages, rest]
+    return [case.name, _rate(case), *times, *stages, rest]

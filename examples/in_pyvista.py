@@ -2,7 +2,7 @@
 
     python examples/in_pyvista.py [PICTURE.png]
 
-A plate under a wave, coloured by its height. Needs `pip install "risorius[peers]"`; PyVista finds
+A plate under a wave, coloured by its height. Needs `pip install "risorius[pyvista]"`; PyVista finds
 `mesh.risorius` by itself.
 """
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-pyvista = pytest.importorskip("pyvista", reason="needs the extra 'peers'")
+pyvista = pytest.importorskip("pyvista", reason="needs the extra 'pyvista'")
 
 
 @pytest.fixture(autouse=True)

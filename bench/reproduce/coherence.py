@@ -16,11 +16,11 @@ import numpy.typing as npt
 from risorius import refine, render
 from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
-from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 
 from ..canvas import FLAT, RED, Canvas, Drawing, image_table
 from .experiments import Outcome
+from .table1 import papers_refiner
 
 Point = tuple[int, int, int]
 """A point of a refined mesh for life: ends of its edge, and quarters from the lower one."""
@@ -49,13 +49,7 @@ def outcome(size: tuple[int, int] = (250, 200)) -> Outcome:
             (False, "coherent=False: looked up by the splits of the moment", "without"),
             (True, "coherent=True: split in the order in which the edges were", "with"),
         ):
-            refiner = refine.create(
-                "kahler",
-                scene.faces,
-                scene.rest_positions,
-                coherent=is_coherent,
-                **PRESETS[PAPERS_PRESET][scene.name].told("kahler"),
-            )
+            refiner = papers_refiner(scene, coherent=is_coherent)
             cells, values[f"lines turned {memory} memory"] = _moments(scene, refiner, canvas)
             rows.append((title, cells))
     return Outcome(values, image_table(rows))

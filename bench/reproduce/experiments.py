@@ -1,8 +1,8 @@
 """What the paper says, by number, and whether what was measured agrees with it.
 
-`paper.toml` is the one table of experiments, in the order of the paper. An entry there is a
-command, a section of the page and a part of the figures for programs: nothing else has to be told
-of a new one. The command line imports this at once, so it imports nothing that is slow.
+`paper.toml` is the one table of experiments, in the order of the paper. An entry there is a command
+and a part of the page: nothing else has to be told of a new one. The command line imports this at
+once, so it imports nothing that is slow.
 """
 
 from __future__ import annotations
@@ -124,8 +124,6 @@ class Outcome:
     picture: Image | None = None
     text: str = ""
     """A table of more than the claims."""
-    renderer: str = ""
-    """What OpenGL calls itself; empty where nothing is timed."""
 
 
 @dataclass(frozen=True)

@@ -4,17 +4,13 @@ Kähler, Haber, Seidel 2003, section 5: "The rendered mesh is visibly smoothed, 
 artifacts and improving the silhouette of the opened mouth." What is smooth need not be true; so the
 built-in head with 16 times the triangles is moved by the same muscles, drawn alike and taken for
 the truth. Below a picture stands how far it is off, in levels of 255 and in pixels around the
-opening between the lips. For every expression these rows:
-
-    smooth       Gouraud shaded, as in the paper
-    flat         one colour for each triangle
-    difference   of the smooth picture from that of the dense mesh, black where it is CLEAR levels
-    opening      between the lips, dark, and in red where it is not as that of the dense mesh
+opening between the lips: the row under the smooth pictures shows that opening dark, and red where
+it is not as that of the dense mesh.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -32,14 +28,13 @@ from ..canvas import Canvas, Drawing, image_table, without_noise
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
 from .experiments import Outcome
 
-SEEN, CLEAR = 8.0, 48.0  # levels of 255: a change that is seen, one that is clear
+SEEN = 8.0  # levels of 255: a change that is seen
 LEVEL = 2  # of the finer head: 16 times the triangles
 FINER = 2  # pixels are drawn so many times as fine
 SMOOTH = render.Style(
     shading=render.Shading.GOURAUD, textured=False, albedo=render.SKIN, shadows=False,
     background=render.WHITE,
 )  # fmt: skip
-FLAT = replace(SMOOTH, shading=render.Shading.FLAT)
 SKIN, MOUTH, BACKGROUND = range(3)  # channels of a picture of kinds
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 GREEN = np.array([0.0, 1.0, 0.0], np.float32)
@@ -91,7 +86,6 @@ class Cell:
     title: str
     triangles: int
     smooth: Image
-    flat: Image
     kinds: npt.NDArray[np.uint8]  # SKIN, MOUTH, BACKGROUND, FINER times as fine, (H, W)
 
     def off(self, truth: Cell) -> Points:
@@ -99,22 +93,41 @@ class Cell:
         apart = self.smooth.astype(np.float64) - truth.smooth
         return np.asarray(np.sqrt((apart**2).mean(axis=2)))
 
+    def rms(self, truth: Cell) -> float:
+        """Root mean square of that."""
+        return float(np.sqrt((self.off(truth) ** 2).mean()))
+
     def wrong(self, truth: Cell) -> npt.NDArray[np.bool_]:
         """Fine pixels that are the opening of the mouth here, or there, but not in both."""
         return np.asarray((self.kinds == MOUTH) != (truth.kinds == MOUTH))
+
+    def opening(self, truth: Cell) -> Image:
+        """The picture of the opening."""
+        picture = OPENING[self.kinds]
+        picture[self.wrong(truth)] = WRONG
+        return _smaller(picture)
 
 
 def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     """How much of the error of mouths goes away, by the interpolating scheme."""
     changed, left, outline, rows = [], [], [], []
-    for viewpoint, cells in drawn(size):
+    for expression, cells in _drawn(size):
         named, truth = {cell.title: cell for cell in cells}, cells[-1]
         static, refined = named[STATIC.title], named[CUBIC.title]
         changed.append(100.0 * (refined.off(static) > SEEN).mean())
-        before, after = (np.sqrt((cell.off(truth) ** 2).mean()) for cell in (static, refined))
-        left.append(after / before)
+        left.append(refined.rms(truth) / static.rms(truth))
         outline.append(refined.wrong(truth).sum() / static.wrong(truth).sum())
-        rows += _rows(viewpoint.expression, cells)
+        smooth = [
+            (
+                f"{cell.title}: {cell.triangles} triangles, RMS {cell.rms(truth):.1f}",
+                without_noise(cell.smooth),
+            )
+            for cell in cells
+        ]
+        openings = [
+            (f"{cell.wrong(truth).sum()} pixels wrong", cell.opening(truth)) for cell in cells
+        ]
+        rows += [(f"{expression}, smooth", smooth), (f"{expression}, opening", openings)]
     values = {
         "pixels that change visibly [%]": float(np.mean(changed)),
         "difference from the dense mesh, refined over static": float(np.mean(left)),
@@ -123,82 +136,45 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     return Outcome(values, image_table(rows))
 
 
-def drawn(
-    size: tuple[int, int],
-    variants: Sequence[Variant] = VARIANTS,
-    viewpoints: Sequence[Viewpoint] = VIEWPOINTS,
-) -> list[tuple[Viewpoint, list[Cell]]]:
-    """Draw every expression in every variant; the cell of the dense mesh is the last of each."""
+def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
+    """Every expression in every variant; the cell of the dense mesh is the last of each."""
     scene, head = FaceScene(), assets.load("head")
     fine = head.finer(LEVEL)
     simulation = fine_simulation(head, fine)
-    columns = []
-    for variant in variants:
-        told = dict(variant.options)
-        if told.get("scheme") == "detail":
-            told["detail"] = fine.vertices, fine.faces
+    refiners = []
+    for variant in VARIANTS:
+        detail = {"detail": (fine.vertices, fine.faces)} if variant is DETAIL else {}
+        told = {**variant.options, **detail}
         bound = refine.create(variant.refiner, head.faces, head.vertices, **told)
-        columns.append((variant.title, bound, len(head.vertices)))
+        refiners.append((variant.title, bound, len(head.vertices)))
     dense = refine.create("none", fine.faces, fine.vertices)
-    columns.append(("dense mesh", dense, len(fine.vertices)))
-    found = []
+    refiners.append(("dense mesh", dense, len(fine.vertices)))
     with Canvas((FINER * size[0], FINER * size[1])) as canvas:
-        for viewpoint in viewpoints:
+        for viewpoint in VIEWPOINTS:
             now = settled_positions(simulation, {viewpoint.expression: 1.0}, SETTLE)
             lips = now[head.landmarks[48:68]]
             camera = camera_for(scene, viewpoint.view)
             camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))
             camera.pan(*viewpoint.aside)
-            frame = canvas, camera, scene.parts, simulation.bone_transforms()
-            # The first vertices of the dense mesh are those of the coarse one.
-            cells = [_cell(title, each, now[:count], *frame) for title, each, count in columns]
-            found.append((viewpoint, cells))
-    return found
-
-
-def _cell(
-    title: str,
-    refiner: refine.Refiner,
-    positions: Points,
-    canvas: Canvas,
-    camera: render.OrbitCamera,
-    parts: Sequence[Any],
-    bones: Mapping[str, Points],
-) -> Cell:
-    """Draw one variant of an expression, with skin, parts and background in colours, too."""
-
-    def picture(style: render.Style, parts: Sequence[Any]) -> Image:
-        return canvas.draw_image(refiner, positions, Drawing(camera, style, tuple(parts), bones))
-
-    green = [
-        replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0) for part in parts
-    ]
-    smooth, flat = (_smaller(picture(style, parts)) for style in (SMOOTH, FLAT))
-    kinds = picture(KINDS, green).argmax(axis=2).astype(np.uint8)
-    return Cell(title, canvas.stream_for(refiner).triangle_count, smooth, flat, kinds)
+            parts, bones = tuple(scene.parts), simulation.bone_transforms()
+            green = tuple(
+                replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0)
+                for part in parts
+            )
+            cells = []
+            for title, refiner, count in refiners:
+                skin = now[:count]  # the first vertices of the dense mesh are the coarse one's
+                smooth, kinds = (
+                    canvas.draw_image(refiner, skin, Drawing(camera, style, each, bones))
+                    for style, each in ((SMOOTH, parts), (KINDS, green))
+                )
+                of_kind = kinds.argmax(axis=2).astype(np.uint8)
+                triangles = canvas.stream_for(refiner).triangle_count
+                cells.append(Cell(title, triangles, _smaller(smooth), of_kind))
+            yield viewpoint.expression, cells
 
 
 def _smaller(image: Image) -> Image:
     """A picture at its final size."""
     height, width = image.shape[0] // FINER, image.shape[1] // FINER
     return np.asarray(PIL.Image.fromarray(image).resize((width, height), LANCZOS))
-
-
-def _rows(expression: str, cells: Sequence[Cell]) -> list[tuple[str, list[tuple[str, Image]]]]:
-    """The rows of one expression: title, and caption and picture of each cell."""
-    rows: dict[str, list[tuple[str, Image]]] = {}
-    truth = cells[-1]
-    for cell in cells:
-        off, wrong = cell.off(truth), cell.wrong(truth)
-        light = 255.0 * (1.0 - np.clip(off / CLEAR, 0.0, 1.0))
-        opening = OPENING[cell.kinds]
-        opening[wrong] = WRONG
-        for name, caption, picture in (
-            ("smooth", f"{cell.title}: {cell.triangles} triangles", without_noise(cell.smooth)),
-            ("flat", "", without_noise(cell.flat)),
-            ("difference", f"RMS {np.sqrt((off**2).mean()):.1f}", np.dstack([light] * 3)),
-            ("opening", f"{wrong.sum()} pixels wrong", _smaller(opening)),
-        ):
-            cells_of_row = rows.setdefault(f"{expression}, {name}", [])
-            cells_of_row.append((caption, picture.astype(np.uint8)))
-    return list(rows.items())

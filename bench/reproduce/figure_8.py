@@ -11,7 +11,7 @@ and their derivatives on triangle meshes", for the curvature of a triangle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +19,6 @@ import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.app.capture.cameras import camera_for
-from risorius.app.files import Image
 from risorius.app.scenes import Scene, build_scene
 
 from ..canvas import FLAT, GOURAUD, RED, Canvas, Drawing, image_table
@@ -60,50 +59,33 @@ def outcome(size: tuple[int, int] = (380, 340)) -> Outcome:
     values, rows = {}, []
     with Canvas(size) as canvas:
         for pose in POSES:
-            scene = posed(pose)
-            refiner = refine.create("kahler", scene.faces, scene.rest_positions)
-            before, after = measure(refiner, scene.faces, scene.positions)
+            scene = build_scene(pose.scene)
+            scene.pose(pose.values)
+            scene.step(pose.settled)
+            static, refined = (
+                refine.create(name, scene.faces, scene.rest_positions)
+                for name in ("none", "kahler")
+            )
+            before, after = measure(refined, scene.faces, scene.positions)
             values[f"{pose.scene}: degrees off the fold, refined"] = after.off_fold
             nearer = before.off_fold - after.off_fold
             values[f"{pose.scene}: degrees nearer to the fold than before"] = nearer
             thinner = after.smallest_angle / before.smallest_angle
             values[f"{pose.scene}: smallest angle, refined over static"] = thinner
-            pictures = _pictures(canvas, pose, scene, refiner)
-            titles = text_of(before), text_of(after), "where folds run"
-            rows.append((pose.title, list(zip(titles, pictures, strict=True))))
+            camera = camera_for(scene, pose.view)
+            camera.pan(*pose.aim)
+            wire = Drawing(camera, WIRE, scene.parts, scene.bone_transforms())
+            along = render.Lines(lines_along(scene), RED, width=2.0, hidden_opacity=0.0)
+            cells = [
+                (title, canvas.draw_image(refiner, scene.positions, drawing))
+                for title, refiner, drawing in (
+                    (str(before), static, wire),
+                    (str(after), refined, wire),
+                    ("where folds run", static, replace(wire, style=GOURAUD, lines=along)),
+                )
+            ]
+            rows.append((pose.title, cells))
     return Outcome(values, image_table(rows))
-
-
-def _pictures(
-    canvas: Canvas, pose: Pose, scene: Scene, refined: refine.Refiner
-) -> tuple[Image, Image, Image]:
-    """The pictures of a row."""
-    camera = camera_for(scene, pose.view)
-    camera.pan(*pose.aim)
-    bones = scene.bone_transforms()
-    static = refine.create("none", scene.faces, scene.rest_positions)
-    along = render.Lines(lines_along(scene), RED, width=2.0, hidden_opacity=0.0)
-
-    def picture(
-        refiner: refine.Refiner, style: render.Style, lines: render.Lines | None = None
-    ) -> Image:
-        drawing = Drawing(camera, style, scene.parts, bones, lines=lines)
-        return canvas.draw_image(refiner, scene.positions, drawing)
-
-    return picture(static, WIRE), picture(refined, WIRE), picture(static, GOURAUD, along)
-
-
-def posed(pose: Pose) -> Scene:
-    """The scene of a pose, when nothing moves any more."""
-    scene = build_scene(pose.scene)
-    scene.pose(pose.values)
-    scene.step(pose.settled)
-    return scene
-
-
-def text_of(shapes: Shapes) -> str:
-    """What stands below a picture."""
-    return f"smallest angle {shapes.smallest_angle:.0f}°, {shapes.off_fold:.0f}° off the fold"
 
 
 def lines_along(scene: Scene) -> list[Points]:
@@ -118,14 +100,14 @@ def lines_along(scene: Scene) -> list[Points]:
     return list(np.stack([middles - half, middles + half], axis=1)[is_fold])
 
 
-@dataclass(frozen=True)
-class Shapes:
+class Shapes(NamedTuple):
     """The triangles of folds in the mean, larger ones counting more."""
 
-    count: int
     smallest_angle: float  # [degrees] of a triangle's three
-    elongation: float  # length / width, 1.7 for half a square
     off_fold: float  # [degrees] from the long axis to the fold; 45 where that is left to chance
+
+    def __str__(self) -> str:
+        return f"smallest angle {self.smallest_angle:.0f}°, {self.off_fold:.0f}° off the fold"
 
 
 def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[Shapes, Shapes]:
@@ -166,13 +148,9 @@ def _shapes(corners: Points, directions: Points) -> Shapes:
     """Measure triangles with these corners (n, 3, 3) against directions (n, 3)."""
     edges = np.roll(corners, -1, axis=1) - corners
     areas = np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
-    _, sizes, axes = np.linalg.svd(corners - corners.mean(axis=1, keepdims=True))
+    _, _, axes = np.linalg.svd(corners - corners.mean(axis=1, keepdims=True))
     units = edges / np.maximum(np.linalg.norm(edges, axis=2, keepdims=True), 1e-12)
     angles = np.arccos(np.clip(-(units * np.roll(units, 1, axis=1)).sum(axis=2), -1.0, 1.0))
     off = np.arccos(np.clip(np.abs((axes[:, 0] * directions).sum(axis=1)), 0.0, 1.0))
-    longer = sizes[:, 0] / np.maximum(sizes[:, 1], 1e-12)
-    means = (np.average(each, weights=areas) for each in (angles.min(axis=1), longer, off))
-    smallest, elongation, off_fold = means
-    return Shapes(
-        len(corners), float(np.degrees(smallest)), float(elongation), float(np.degrees(off_fold))
-    )
+    smallest, off_fold = (np.average(each, weights=areas) for each in (angles.min(axis=1), off))
+    return Shapes(float(np.degrees(smallest)), float(np.degrees(off_fold)))

@@ -10,15 +10,16 @@ to. So the same is given for a picture of a few pixels, without drawing, and wit
 less there is beside refinement, the more c_rt says about it. On a mesh as small as the plane even
 the last is mostly the fixed cost of a call from Python.
 
-Static and refined are timed in pairs (timing.py). A refined mesh has more triangles, so a time
+Static and refined are timed in pairs. A refined mesh has more triangles, so a time
 below that of the static one cannot be: then c_rt < static / refined triangles, and that is noise.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,8 +31,8 @@ from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 
 from ..canvas import Canvas, Drawing
+from ..refine import interleaved
 from ..report import driver, table
-from ..timing import paired
 from .experiments import Measured, Outcome
 
 Points = npt.NDArray[np.float64]
@@ -84,10 +85,10 @@ def measure(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
     return {scene.name: _measured(scene, rounds) for scene in scenes}, renderer
 
 
-def papers_refiner(scene: Scene) -> refine.Refiner:
+def papers_refiner(scene: Scene, **options: Any) -> refine.Refiner:
     """The paper's refiner, bound to the scene's mesh, with thresholds that suit it."""
-    options = PRESETS[PAPERS_PRESET][scene.name].told("kahler")
-    return refine.create("kahler", scene.faces, scene.rest_positions, **options)
+    told = PRESETS[PAPERS_PRESET][scene.name].told("kahler")
+    return refine.create("kahler", scene.faces, scene.rest_positions, **told, **options)
 
 
 def _measured(scene: Scene, rounds: int) -> list[Row]:
@@ -95,38 +96,28 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     static = refine.create("none", scene.faces, scene.rest_positions)
     dynamic = papers_refiner(scene)
     positions, count = _fullest_frame(scene, dynamic)
-    seconds = {}
-    for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL)):
-        with Canvas(size) as canvas:
-            draw = _drawing(scene, canvas, positions)
-            seconds[way] = paired(partial(draw, static), partial(draw, dynamic), rounds)
-            if size == SIZE:
-                upload = _uploading(canvas, positions)
-                quick = paired(partial(upload, static), partial(upload, dynamic), QUICK * rounds)
-                seconds[UPLOADED] = quick
-    seconds[ALONE] = paired(
-        lambda: static.refine(positions), lambda: dynamic.refine(positions), QUICK * rounds
-    )
-    return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
-
-
-def _drawing(scene: Scene, canvas: Canvas, positions: Points) -> Callable[[refine.Refiner], None]:
     drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD)
 
-    def draw(refiner: refine.Refiner) -> None:
+    def draw(canvas: Canvas, refiner: refine.Refiner) -> None:
         canvas.draw(refiner, positions, drawing)
         canvas.surface.gl.finish()
 
-    return draw
-
-
-def _uploading(canvas: Canvas, positions: Points) -> Callable[[refine.Refiner], None]:
-    def upload(refiner: refine.Refiner) -> None:
+    def upload(canvas: Canvas, refiner: refine.Refiner) -> None:
         stream = canvas.stream_for(refiner)
         mesh = refiner.refine(positions, out=stream)
         stream.upload(len(mesh.positions), len(mesh.triangles))
 
-    return upload
+    def timed(work: Callable[[refine.Refiner], object], rounds: int) -> npt.NDArray[np.float64]:
+        return interleaved([partial(work, static), partial(work, dynamic)], rounds)
+
+    seconds = {}
+    for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL)):
+        with Canvas(size) as canvas:
+            seconds[way] = timed(partial(draw, canvas), rounds)
+            if size == SIZE:
+                seconds[UPLOADED] = timed(partial(upload, canvas), QUICK * rounds)
+    seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), QUICK * rounds)
+    return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
 
 
 def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
@@ -147,28 +138,24 @@ def outcome(*, rounds: int) -> Outcome:
     """Measure the table, for the page and the command."""
     measured, renderer = measure(rounds=rounds)
     values: dict[str, Measured | float] = {}
-    for scene, rows in measured.items():
-        values[f"{scene}, static triangles"] = rows[0].static
-        values[f"{scene}, most triangles"] = rows[0].dynamic
-        values.update({row.title: row.ratio for row in rows})
-    return Outcome(values, text=report(measured), renderer=renderer)
-
-
-def report(measured: Mapping[str, Sequence[Row]]) -> str:
-    """The paper's rows and ours."""
-    lines = [
-        "The frame with the most triangles of the scene's own animation, Gouraud shaded; times in",
-        "ms, medians of static and refined in turn; c_rt with its quartiles.",
-        "",
+    for scene, ours in measured.items():
+        values[f"{scene}, static triangles"] = ours[0].static
+        values[f"{scene}, most triangles"] = ours[0].dynamic
+        values.update({row.title: row.ratio for row in ours})
+    rows = [
+        (
+            *(row.title, row.static, row.dynamic, row.static_time, row.dynamic_time),
+            *(row.ratio.value, *(row.ratio.quartiles or (None, None))),
+        )
+        for scene, ours in measured.items()
+        for row in (PAPER[scene], *ours)
     ]
     columns = ":<26|static:7d|dynamic:8d|t static:9.3f|t dynamic:9.3f|c_rt:6.2f|25 %:6.2f|75 %:6.2f"
-    for number, (scene, ours) in enumerate(measured.items()):
-        rows = [
-            (
-                *(row.title, row.static, row.dynamic, row.static_time, row.dynamic_time),
-                *(row.ratio.value, *(row.ratio.quartiles or (None, None))),
-            )
-            for row in (PAPER[scene], *ours)
-        ]
-        lines += [*table(columns, rows)[0 if number == 0 else 1 :], ""]  # the titles once
-    return "\n".join(lines).rstrip()
+    lines = [
+        f"The frame with the most triangles of the scene's own animation, by {renderer},",
+        "Gouraud shaded; times in ms, medians of static and refined in turn; c_rt with its",
+        "quartiles.",
+        "",
+        *table(columns, rows),
+    ]
+    return Outcome(values, text="\n".join(lines))

@@ -1,7 +1,7 @@
-"""Programs that draw the figures of the documentation: what they are told, and what they write.
+"""Programs that draw the figures of the documentation: what they are told, and how they draw.
 
 `python docs/figures/figures.py FILE.png ...` takes pictures of `risorius capture` and `risorius
-reproduce` into docs/pictures.
+reproduce`, and those that programs on pages write, into docs/pictures.
 """
 
 from __future__ import annotations
@@ -10,56 +10,53 @@ import argparse
 import io
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import PIL.Image
 
-from risorius.app.cli.parameters import LEAST, MOST
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.captions import contact_sheet
 from risorius.app.errors import UserError, report_user_errors
 from risorius.app.files import Image, check_file, written_atomically
+from risorius.app.scenes import Scene
 from risorius.app.stopping import handle_signals
+from risorius.bench.canvas import without_noise
 
 Figure = Callable[[], Image]
 FOLDER = Path("docs/pictures")
+SETTLED = 1.5  # [s] after which a pose stands still
 QUALITY = 96  # of 100: no difference is seen at full size
 LARGER = 1.5  # times, that a picture without any loss may be: line art is smaller so
 
 
-def parse(arguments: Sequence[str], about: str | None, *, width: int = 0) -> argparse.Namespace:
-    """Read `folder` and `only` from the command line, and `width` where there is one to choose."""
-    parser = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
-    parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
-    parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="these alone")
-    if width:
-        parser.add_argument("--width", type=_pixels, default=width, help="of a picture in it")
-    return parser.parse_args(arguments)
+def shoot(
+    scene: Scene,
+    pose: Mapping[str, float],
+    options: CaptureOptions,
+    target: npt.ArrayLike | None = None,
+) -> Image:
+    """Hold a pose until it stands still, and draw it. target: what the camera looks at [mm]."""
+    scene.reset()
+    scene.pose(pose)
+    scene.step(SETTLED)
+    with Capture(scene, options) as capture:
+        if target is not None:
+            capture.camera.target = np.asarray(target, dtype=np.float64)
+        return capture.draw_image()
 
 
-def _pixels(text: str) -> int:
-    if text.isdecimal() and LEAST <= int(text) <= MOST:
-        return int(text)
-    raise argparse.ArgumentTypeError(f"'{text}' is no width; write {LEAST} to {MOST} pixels")
+def seen_from(options: CaptureOptions, view: str) -> CaptureOptions:
+    """The same from another view."""
+    return replace(options, camera=view)
 
 
-def chosen(figures: Mapping[str, Figure], only: Sequence[str]) -> dict[str, Figure]:
-    """Those of `figures` that are named, or all of them; UserError for an unknown name."""
-    for name in only:
-        if name not in figures:
-            raise UserError(f"unknown figure '{name}'; there are {', '.join(figures)}")
-    return {name: figures[name] for name in only or figures}
-
-
-def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
-    """Draw each figure into NAME.webp in the folder, which is looked at before one is drawn."""
-    for name in figures:
-        check_file(folder / f"{name}.webp")
-    for name, figure in figures.items():
-        target = folder / f"{name}.webp"
-        packed = webp(figure())
-        with written_atomically(target) as part:
-            part.write_bytes(packed)
+def sheet(cells: Sequence[tuple[str, Image]], columns: int) -> Image:
+    """Named pictures of one size, each with its name below it."""
+    return without_noise(contact_sheet(cells, columns=columns, cell_width=cells[0][1].shape[1]))
 
 
 def webp(image: Image) -> bytes:
@@ -68,26 +65,39 @@ def webp(image: Image) -> bytes:
     page = PIL.Image.fromarray(image)
     page.save(exact, "WEBP", lossless=True, quality=80)
     page.save(near, "WEBP", quality=QUALITY)
-    is_exact = exact.tell() <= LARGER * near.tell()
-    return (exact if is_exact else near).getvalue()
+    return (exact if exact.tell() <= LARGER * near.tell() else near).getvalue()
 
 
-def read(file: Path) -> Image:
+def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
+    """Draw each figure into NAME.webp in the folder, which is looked at before one is drawn."""
+    for name in figures:
+        check_file(folder / f"{name}.webp")
+    for name, figure in figures.items():
+        packed = webp(figure())
+        with written_atomically(folder / f"{name}.webp") as part:
+            part.write_bytes(packed)
+
+
+def run(about: str | None, figures: Mapping[str, Figure]) -> None:
+    """Draw what the command line asks for: mistakes are one line, signals are heard."""
+    parser = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
+    parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
+    parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="these alone")
+    given = parser.parse_args()
+    handle_signals()
+    with report_user_errors():
+        for name in given.only:
+            if name not in figures:
+                raise UserError(f"unknown figure '{name}'; there are {', '.join(figures)}")
+        draw(given.folder, {name: figures[name] for name in given.only or figures})
+
+
+def _read(file: Path) -> Image:
     """A picture without its alpha."""
     return np.asarray(PIL.Image.open(file).convert("RGB"))
 
 
-def run(main: Callable[[Sequence[str]], None]) -> None:
-    """Run a program by the rules of the command: mistakes are one line, signals are heard."""
+if __name__ == "__main__":
     handle_signals()
     with report_user_errors():
-        main(sys.argv[1:])
-
-
-def _take(arguments: Sequence[str]) -> None:
-    files = [Path(argument) for argument in arguments]
-    draw(FOLDER, {file.stem: partial(read, file) for file in files})
-
-
-if __name__ == "__main__":
-    run(_take)
+        draw(FOLDER, {Path(file).stem: partial(_read, Path(file)) for file in sys.argv[1:]})

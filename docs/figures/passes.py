@@ -1,8 +1,7 @@
-"""Draw the picture of docs/passes.md: `python docs/figures/passes.py [FOLDER]`."""
+"""Draw the pictures of docs/passes.md and of strain: `python docs/figures/passes.py [FOLDER]`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import figures
@@ -13,19 +12,18 @@ from PIL import ImageDraw
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.capture.captions import contact_sheet
 from risorius.app.files import Image
 from risorius.app.passes.labelled import labelled
 from risorius.app.passes.passes import NAMES, Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
-from risorius.bench.canvas import without_noise
 
 SIZE = (440, 500)
 POSE = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15}
 TURN = (-24.0, 4.0)  # [degrees] of the camera
 SETTLED = 1.0  # [s]
 MARGIN = 0.04  # of the picture, free on each side
+STRAINED = ("joy", "surprise", "disgust")
 FULL = 0.3  # stretch or compression that has the full colour
 SEEN, HIDDEN = (40, 230, 60), (235, 60, 40)
 COLOURS = {
@@ -53,7 +51,7 @@ def passes(size: tuple[int, int] = SIZE) -> Image:
     cells = {
         "colour": picture,
         "segmentation": _looked_up(images["segmentation"], COLOURS),
-        "landmarks: hidden ones red": _dotted(picture, known.labels["landmarks"]),
+        "landmarks: hidden ones red": dotted(picture, known.labels, 2.5),
         "depth: near is light": _grey(images["depth"], on),
         "normal: right red, up green, to the eye blue": _directions(images["normal"], on),
         "triangle of the simulated mesh": _looked_up(images["triangle"], _scattered(scene.faces)),
@@ -61,7 +59,22 @@ def passes(size: tuple[int, int] = SIZE) -> Image:
         "tension: stretch red, compression blue": _tinted(images["tension"], on),
     }
     named = [(name, np.asarray(image).astype(np.uint8)) for name, image in cells.items()]
-    return without_noise(contact_sheet(named, columns=4, cell_width=size[0]))
+    return figures.sheet(named, 4)
+
+
+def tension(size: tuple[int, int] = (330, 400)) -> Image:
+    """The face in some expressions, coloured by how the skin is stretched and compressed."""
+    scene, cells = FaceScene(), []
+    with Capture(scene, CaptureOptions(size, camera="-18,2,1.45")) as studio:
+        for pose in STRAINED:
+            scene.reset()
+            scene.pose({pose: 1.0})
+            scene.step(figures.SETTLED)
+            passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
+            images = labelled(passes, studio.camera, ("depth", "tension")).images
+            tinted = _tinted(images["tension"], images["depth"] > 0.0).astype(np.uint8)
+            cells.append((f"{pose}: stretch red, compression blue", tinted))
+    return figures.sheet(cells, len(cells))
 
 
 def _looked_up(numbers: npt.NDArray[Any], colours: Any, on: Any = None) -> npt.NDArray[Any]:
@@ -99,19 +112,15 @@ def _tinted(tension: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray
     return np.clip(225.0 + share @ towards, 0.0, 255.0) * on[..., None]
 
 
-def _dotted(picture: Image, landmarks: dict[str, Any]) -> Image:
+def dotted(picture: Image, labels: dict[str, Any], radius: float) -> Image:
+    """A picture with its landmarks, hidden ones red."""
     page = PIL.Image.fromarray(picture)
-    draw = ImageDraw.Draw(page)
+    draw, landmarks = ImageDraw.Draw(page), labels["landmarks"]
     for (x, y), is_visible in zip(landmarks["pixels"], landmarks["visible"], strict=True):
-        draw.ellipse((x - 3, y - 3, x + 2, y + 2), fill=SEEN if is_visible else HIDDEN)
+        place = (x - radius, y - radius, x + radius, y + radius)
+        draw.ellipse(place, fill=SEEN if is_visible else HIDDEN)
     return np.asarray(page)
 
 
-def main(arguments: Sequence[str]) -> None:
-    """Draw the picture into the folder given."""
-    given = figures.parse(arguments, __doc__)
-    figures.draw(given.folder, figures.chosen({"passes": passes}, given.only))
-
-
 if __name__ == "__main__":
-    figures.run(main)
+    figures.run(__doc__, {"passes": passes, "refine_tension": tension})

@@ -1,10 +1,9 @@
 """Draw the figures of docs/refinement.md: `python docs/figures/refinement.py [FOLDER]`.
 
 refine_cases      the 27 split configurations and their triangulations
-refine_masks      weights of the smoothing rules, first and second level
 refine_lookup     numbering of points, and one triangle looked up
-refine_sequences  the 271 sequences of splits
-refine_tension    the face, coloured by stretch and compression
+
+Line drawings through Pillow, drawn three times too large and scaled down.
 """
 
 from __future__ import annotations
@@ -14,14 +13,76 @@ from collections.abc import Sequence
 import figures
 import numpy as np
 import numpy.typing as npt
-from diagrams import FAINT, FILL, INK, MOVED, NEW, SECOND, Diagram, equilateral
-from strain import tension_map
+import PIL.Image
+from PIL import ImageDraw
 
+from risorius.app.capture.captions import font
 from risorius.app.files import Image
-from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 
 Places = npt.NDArray[np.float64]
+
+SCALE = 3
+PAPER, INK, FAINT = (255, 255, 255), (32, 34, 40), (150, 154, 162)
+FILL, NEW = (236, 240, 245), (0, 114, 178)
+SECOND = (213, 94, 0)
+Colour = tuple[int, int, int]
+Place = npt.ArrayLike
+
+
+class Diagram:
+    """A white picture to draw on.
+
+    Points are pixels of the finished picture, y upward.
+    """
+
+    def __init__(self, width: int, height: int) -> None:
+        self.size = (width, height)
+        self._image = PIL.Image.new("RGB", (width * SCALE, height * SCALE), PAPER)
+        self._draw = ImageDraw.Draw(self._image)
+
+    def image(self) -> Image:
+        """The finished picture, shape (height, width, 3)."""
+        return np.asarray(self._image.resize(self.size, PIL.Image.Resampling.LANCZOS))
+
+    def line(self, points: Sequence[Place]) -> None:
+        """A polyline."""
+        places = [self._place(point) for point in points]
+        self._draw.line(places, fill=INK, width=round(1.2 * SCALE), joint="curve")
+
+    def polygon(self, points: Sequence[Place], fill: Colour) -> None:
+        """A filled area."""
+        self._draw.polygon([self._place(point) for point in points], fill=fill)
+
+    def disc(self, point: Place, colour: Colour, radius: float = 3.0) -> None:
+        """A round mark."""
+        x, y = self._place(point)
+        reach = radius * SCALE
+        self._draw.ellipse((x - reach, y - reach, x + reach, y + reach), fill=colour)
+
+    def text(
+        self,
+        point: Place,
+        text: str,
+        colour: Colour = INK,
+        size: float = 12.0,
+        anchor: str = "mm",
+    ) -> None:
+        """Text at a point (Pillow's anchors)."""
+        self._draw.text(
+            self._place(point), text, font=font(size * SCALE), fill=colour, anchor=anchor
+        )
+
+    def _place(self, point: Place) -> tuple[float, float]:
+        x, y = np.asarray(point, dtype=np.float64)
+        return float(x * SCALE), float((self.size[1] - y) * SCALE)
+
+
+def equilateral(centre: Place, side: float) -> npt.NDArray[np.float64]:
+    """Corners 0, 1, 2 of an upright triangle, counter-clockwise from the lower left, (3, 2)."""
+    height = side * np.sqrt(3.0) / 2.0
+    offsets = np.array([[-side / 2, -height / 2], [side / 2, -height / 2], [0.0, height / 2]])
+    return np.asarray(np.asarray(centre, dtype=np.float64) + offsets)
 
 
 def points_in(corners: Places) -> Places:
@@ -41,9 +102,6 @@ def triangulation(
     corners: Places,
     triangles: Sequence[Sequence[int]],
     splits: tuple[int, int, int],
-    *,
-    width: float = 1.2,
-    radius: float = 2.6,
 ) -> None:
     """Draw one triangle cut up, its new points marked by level."""
     points = points_in(corners)
@@ -52,10 +110,10 @@ def triangulation(
         (min(a, b), max(a, b)) for t in triangles for a, b in zip(t, (*t[1:], t[0]), strict=True)
     }
     for a, b in sorted(sides):
-        diagram.line([points[a], points[b]], INK, width)
+        diagram.line([points[a], points[b]])
     for number in new_points(splits):
         is_middle = number % 3 == 0
-        diagram.disc(points[number], NEW if is_middle else SECOND, radius)
+        diagram.disc(points[number], NEW if is_middle else SECOND, 2.6)
 
 
 def cases() -> Image:
@@ -70,30 +128,6 @@ def cases() -> Image:
         triangulation(diagram, equilateral(centre, 0.78 * cell), triangles, splits)
         title = f"{number}: {''.join(map(str, splits))}, {len(triangles)}"
         diagram.text((centre[0], centre[1] - 0.48 * cell), title, size=10.5)
-    return diagram.image()
-
-
-def sequences() -> Image:
-    """The triangulations of all 271 sequences, by length."""
-    tables = sequence_tables()
-    cell, columns = 44, 20
-    lengths = [len(sequence) for sequence in tables.sequences]
-    rows = [-(-lengths.count(length) // columns) for length in range(7)]
-    diagram = Diagram(columns * cell + 34, sum(rows) * cell + 7 * 8)
-    top = float(diagram.size[1])
-    for length in range(7):
-        numbers = [k for k, own in enumerate(lengths) if own == length]
-        diagram.text((16, top - cell / 2), str(length), FAINT, 15)
-        for place, k in enumerate(numbers):
-            column, row = place % columns, place // columns
-            centre = (34 + (column + 0.5) * cell, top - (row + 0.5) * cell)
-            sequence = tables.sequences[k]
-            triangles = tables.patterns.of(k).tolist()
-            splits = (sequence.count(0), sequence.count(1), sequence.count(2))
-            triangulation(
-                diagram, equilateral(centre, 0.86 * cell), triangles, splits, width=0.7, radius=1.1
-            )
-        top -= rows[length] * cell + 8
     return diagram.image()
 
 
@@ -134,115 +168,5 @@ def lookup() -> Image:
     return diagram.image()
 
 
-def masks() -> Image:
-    """Weights of the paper's rules (its Figs. 3 and 4)."""
-    diagram = Diagram(900, 330)
-    a_half, a_vertex = "border: 1/2, 1/2", "border: 3/4, 1/8, 1/8"
-    for x, title, rule, border, marks in (
-        (120, "first level", _first_level, a_half, (INK, NEW, INK)),
-        (345, "vertex, valence n", _vertex_rule, a_vertex, (INK, MOVED, INK)),
-        (570, "second level", _second_level, a_half, (MOVED, SECOND, NEW)),
-        (790, "middle, moved again", _middle_again, a_vertex, (MOVED, NEW, MOVED)),
-    ):
-        diagram.text((x, 316), title, size=14)
-        rule(diagram, x, 210)
-        diagram.line([(x - 70, 52), (x + 70, 52)])
-        for place, colour in zip((x - 70, x, x + 70), marks, strict=True):
-            mark = diagram.square if colour == NEW else diagram.disc
-            mark((place, 52), colour)
-        diagram.text((x, 26), border, size=12)
-    return diagram.image()
-
-
-def _diamond(x: float, y: float, reach: float) -> tuple[Places, Places, Places, Places]:
-    a, b = np.array([x - reach, y]), np.array([x + reach, y])
-    c, d = np.array([x, y + 1.15 * reach]), np.array([x, y - 1.15 * reach])
-    return a, b, c, d
-
-
-def _outline(diagram: Diagram, a: Places, b: Places, c: Places, d: Places) -> None:
-    diagram.polygon([a, d, b, c], FILL)
-    diagram.line([a, b])
-    diagram.line([a, c, b, d, a])
-
-
-def _first_level(diagram: Diagram, x: float, y: float) -> None:
-    a, b, c, d = _diamond(x, y, 72)
-    _outline(diagram, a, b, c, d)
-    for place, weight, side in ((a, "3/8", -1), (b, "3/8", 1)):
-        diagram.disc(place, INK)
-        diagram.text(place, weight, offset=(18 * side, 10))
-    for place, weight, side in ((c, "1/8", 1), (d, "1/8", -1)):
-        diagram.disc(place, INK)
-        diagram.text(place, weight, offset=(20, 4 * side))
-    diagram.square((x, y), NEW)
-
-
-def _vertex_rule(diagram: Diagram, x: float, y: float) -> None:
-    angles = 2.0 * np.pi * (np.arange(5) + 0.25) / 5
-    ring = np.array([x, y]) + 74 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    diagram.polygon(list(ring), FILL)
-    diagram.line([*ring, ring[0]])
-    for place in ring:
-        diagram.line([(x, y), place])
-        diagram.disc(place, INK)
-        diagram.text(np.array([x, y]) + 1.2 * (place - [x, y]), "b")
-    diagram.disc((x, y), MOVED, 4)
-    diagram.text((x + 36, y - 13), "1 - nb", MOVED)
-    diagram.text((x, 95), "b = 3/(8n), 3/16 for n = 3", size=12)
-
-
-def _second_level(diagram: Diagram, x: float, y: float) -> None:
-    a, b, c, d = _diamond(x, y, 78)
-    _outline(diagram, a, b, c, d)
-    p, r, m = (a + c) / 2, (a + d) / 2, (a + b) / 2
-    for place in (p, r):
-        diagram.line([place, m], FAINT, dashed=True)
-    diagram.disc(a, MOVED, 4)
-    diagram.text(a, "3/8", offset=(-6, 18), colour=MOVED)
-    diagram.square(m, NEW)
-    diagram.text(m, "3/8", offset=(16, 13))
-    for place, side in ((p, 1), (r, -1)):
-        diagram.square(place, NEW, hollow=True)
-        diagram.text(place, "1/8", offset=(-20, 6 * side))
-    diagram.disc((a + m) / 2, SECOND, 3.6)
-    for place in (b, c, d):
-        diagram.disc(place, FAINT)
-
-
-def _middle_again(diagram: Diagram, x: float, y: float) -> None:
-    a, b, c, d = _diamond(x, y, 78)
-    _outline(diagram, a, b, c, d)
-    m = (a + b) / 2
-    for start, end in ((a, c), (b, c), (a, d), (b, d)):
-        place = (start + end) / 2
-        diagram.line([place, m], FAINT, dashed=True)
-        diagram.square(place, NEW, hollow=True)
-        away = np.sign(place - m)
-        diagram.text(place, "1/16", offset=(24 * away[0], 7 * away[1]))
-    for place, side in ((a, -1), (b, 1)):
-        diagram.disc(place, MOVED, 4)
-        diagram.text(place, "1/16", offset=(2 * side, -17), colour=MOVED)
-    for place in (c, d):
-        diagram.disc(place, FAINT)
-    diagram.square(m, NEW)
-    diagram.text(m, "5/8", offset=(0, 16), colour=NEW)
-
-
-FIGURES = {
-    "refine_cases": cases,
-    "refine_masks": masks,
-    "refine_lookup": lookup,
-    "refine_sequences": sequences,
-    "refine_tension": tension_map,
-}
-
-
-def main(arguments: Sequence[str]) -> None:
-    """Draw the figures into the folder given."""
-    given = figures.parse(arguments, __doc__)
-    figures.draw(given.folder, figures.chosen(FIGURES, given.only))
-
-
 if __name__ == "__main__":
-    figures.run(main)
+    figures.run(__doc__, {"refine_cases": cases, "refine_lookup": lookup})

@@ -1,51 +1,39 @@
 """Draw the pictures of docs/viewer.md: `xvfb-run -a python docs/figures/viewer.py [FOLDER]`.
 
-Each is a window as a user would see it, brought there by the same commands that menus use; `plate`
-alone is a picture of `risorius capture`.
+Each is a window as a user would see it, brought there by the same commands that menus use.
 """
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 import figures
-import numpy as np
 from imgui_bundle import imgui
 
-from risorius import assets, render
-from risorius.app.anatomy import AnatomyView
-from risorius.app.capture import Capture, CaptureOptions
+from risorius import assets
 from risorius.app.capture.cameras import camera_for
 from risorius.app.files import Image
 from risorius.app.performances import script_for
-from risorius.app.scenes import FaceScene
 from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.picture.skin_drag import SkinDrag
 from risorius.app.viewer.settings import Display
 from risorius.assets.fitting.guess import FIRST
 from risorius.bench.canvas import without_noise
 
 SIZE = (1160, 700)
-PLATE, PLATE_CAMERA = (900, 1080), "-28,3,0.98"
-SETTLED = 1.5  # [s]
-PULLED = np.array([-9.0, 8.0, 0.0])  # [mm] how far the corner of the mouth is drawn
 MOST_FRAMES = 400
 
 
 def wait_until_settled(viewer: Viewer) -> None:
     """Let the face come to rest, and the picture be drawn in full."""
-    for _ in range(8):
-        viewer.frame()
-    for _ in range(MOST_FRAMES):
-        if viewer.is_idle:
+    for frame in range(MOST_FRAMES):
+        if frame > 8 and viewer.is_idle:
             return
-        viewer.messages.seconds_left = (
-            0.0 if viewer.messages.is_fading else viewer.messages.seconds_left
-        )
+        if viewer.messages.is_fading:
+            viewer.messages.seconds_left = 0.0
         viewer.frame()
 
 
@@ -62,13 +50,6 @@ def controls(viewer: Viewer) -> None:
     viewer.settings.display.overlays = ["muscles"]
 
 
-def steps(viewer: Viewer) -> None:
-    """The window at the very first start; the first of the steps is done."""
-    viewer.first_steps.begin()
-    viewer.session.set("zygomaticus_major_left", 0.9)
-    viewer.first_steps.done[0] = True
-
-
 def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
     viewer.session.toggle_alone("disgust")
@@ -82,24 +63,6 @@ def wipe(viewer: Viewer) -> None:
 def show_refinement(viewer: Viewer) -> None:
     """Of the panel Mechanism show what says how the mesh is refined, and its colours."""
     viewer.settings.folds |= dict.fromkeys(("Overlays", "Light and person", "Milliseconds"), False)
-
-
-def finger(viewer: Viewer) -> None:
-    """The skin, dragged by the mouse and let go: muscles hold it, and a line says which."""
-    scene = viewer.session.scene
-    corner = scene.positions[scene.head.landmarks[48]].copy()  # type: ignore[attr-defined]
-    sight = np.array([0.0, 0.0, -1.0])
-    drag = SkinDrag(viewer.session, viewer.settings, corner, sight, True)
-    viewer.mouse.skin_drag = drag
-    for _ in range(20):
-        drag.to(corner + PULLED)
-        viewer.frame()
-    viewer.messages.attempt(drag.let_go)
-    viewer.mouse.forget()
-    told = viewer.messages.text
-    wait_until_settled(viewer)
-    viewer.messages.say(told)
-    viewer.frame()
 
 
 def timeline(viewer: Viewer) -> None:
@@ -121,14 +84,6 @@ def curves(viewer: Viewer) -> None:
     viewer.selection.places = places_of(viewer.session.script).between(3.5, 4.0)
 
 
-def export(viewer: Viewer) -> None:
-    """What can be exported, and how."""
-    viewer.session.toggle_alone("joy")
-    viewer.exporter.choices.folder = "~/films"
-    viewer.exporter.choices.is_turntable = True
-    viewer.exporter.ask()
-
-
 def landmarks(viewer: Viewer) -> None:
     """Landmarks of a mesh, guessed from five points: the built-in head, as if it was foreign."""
     head = assets.load("head")
@@ -148,27 +103,12 @@ def landmarks(viewer: Viewer) -> None:
     viewer.frame()
 
 
-def plate() -> Image:
-    """Muscles and skull of one side in a smile, to be framed."""
-    scene = FaceScene()
-    style = render.Style(background=render.DARK)
-    anatomy = AnatomyView(("muscles", "skull"), 0.12, "right")
-    options = CaptureOptions(PLATE, camera=PLATE_CAMERA, style=style, anatomy=anatomy)
-    with Capture(scene, options) as capture:
-        scene.pose({"joy": 0.85})
-        scene.step(SETTLED)
-        return without_noise(capture.draw_image())
-
-
 STOPS: dict[str, Callable[[Viewer], None]] = {
     "viewer": face,
-    "viewer_steps": steps,
     "viewer_controls": controls,
     "viewer_wipe": wipe,
-    "viewer_pull": finger,
     "viewer_timeline": timeline,
     "viewer_curves": curves,
-    "viewer_export": export,
     "viewer_landmarks": landmarks,
 }
 
@@ -186,15 +126,5 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
         return without_noise(viewer.surface.read())
 
 
-def main(arguments: Sequence[str]) -> None:
-    """Draw the pictures into the folder given."""
-    given = figures.parse(arguments, __doc__)
-    every: dict[str, figures.Figure] = {
-        name: partial(draw_image, stop) for name, stop in STOPS.items()
-    }
-    every["anatomy"] = plate
-    figures.draw(given.folder, figures.chosen(every, given.only))
-
-
 if __name__ == "__main__":
-    figures.run(main)
+    figures.run(__doc__, {name: partial(draw_image, stop) for name, stop in STOPS.items()})

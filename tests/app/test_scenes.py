@@ -10,7 +10,7 @@ from risorius.app.errors import UserError
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.scenes import ClothScene, FaceScene, PlaneScene, clamped
-from risorius.bench.lines_of_sight import meshes_of, widest_slit
+from risorius.bench.gaps import meshes_of, widest_slit
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 

@@ -17,7 +17,7 @@ from risorius.assets.fitting import FittedHead, fit, fit_head
 from risorius.assets.fitting.warp import Similarity, ThinPlateSpline
 from risorius.assets.meshes import Mesh
 from risorius.assets.topology import boundary_loops
-from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps
+from risorius.bench.gaps import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.assets.checks import edge_faces
 from tests.heads import Stranger, closed, stranger

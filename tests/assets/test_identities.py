@@ -27,7 +27,7 @@ from risorius.assets.identities.traits import LOADINGS, MOST, PRESSED, SHAPES, n
 from risorius.assets.intersections import self_intersections
 from risorius.assets.model import Head
 from risorius.assets.norms import NORMS
-from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps, widest_slit
+from risorius.bench.gaps import eyeballs_of, lid_gaps, widest_slit
 from tests.assets.checks import mirror_error
 from tests.sim.poses import inverted_triangles
 

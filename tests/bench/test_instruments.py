@@ -1,9 +1,6 @@
-"""What `bench soak`, `bench tearing` and all timings measure with sees what is there."""
+"""What `bench soak` and `bench tearing` measure with sees what is there."""
 
 from __future__ import annotations
-
-import gc
-import time
 
 import numpy as np
 import pytest
@@ -11,7 +8,6 @@ import pytest
 from risorius import assets, sim
 from risorius.app.controls import mirror
 from risorius.bench import soak, tearing
-from risorius.bench.timing import interleaved
 
 
 def test_a_folded_triangle_is_counted() -> None:
@@ -71,25 +67,3 @@ def test_growing_energy_is_seen() -> None:
     level = np.full(121, 2.0)
     level[7] += 1e-10
     assert soak._energy_growth(Growing(level.tolist())) == 0.0  # type: ignore[arg-type]
-
-
-def test_calls_are_timed_in_turn_and_alone() -> None:
-    """Forwards, then backwards; preparing is not counted, and no garbage is collected meanwhile."""
-    order: list[str] = []
-
-    def call(name: str) -> None:
-        order.append(f"{name}{gc.isenabled():d}")
-        time.sleep(0.002)
-
-    def prepare(name: str) -> None:
-        order.append(name)
-        time.sleep(0.02)
-
-    seconds = interleaved(
-        [lambda: call("a"), lambda: call("b")], 2,
-        prepare=[lambda: prepare("A"), lambda: prepare("B")],
-    )  # fmt: skip
-    assert order == ["A", "a0", "B", "b0", "B", "b0", "A", "a0"]
-    assert gc.isenabled()
-    assert seconds.shape == (2, 2)
-    assert 0.002 <= seconds.min() < 0.02

@@ -13,8 +13,6 @@ import pytest
 from risorius.bench import reference
 from tests.app.command_line import risorius
 
-pytest.importorskip("pyvista", reason="decimation needs PyVista, the extra 'peers'")
-
 SIZE = 40  # cells along a side of the face
 COUNT = (SIZE + 1) ** 2  # vertices of the face
 LIFT = np.array([0.0, 0.5, 0.25])
@@ -78,40 +76,20 @@ def test_the_face_and_its_motion(checkout: Path) -> None:
     assert arrays["landmarks68"].tolist() == list(range(68))
 
 
-def test_the_coarse_face_lies_on_the_dense_one(checkout: Path) -> None:
-    """About as many triangles as it is called after; places follow from where vertices lie."""
+def test_identity_modes(checkout: Path) -> None:
+    """Each is how its component moves the face."""
     files = made(checkout)
-    dense, coarse = files["face"], files["coarse_2029"]
-    assert 2027 <= len(coarse["triangles"]) <= 2029
-    assert coarse["triangles"].max() == len(coarse["vertices"]) - 1
-    corners = dense["vertices"][dense["triangles"][coarse["fine_triangle"]]]
-    places = np.einsum("vi,vij->vj", coarse["barycentric"], corners)
-    np.testing.assert_allclose(places, coarse["vertices"], atol=1e-4)
-    assert coarse["barycentric"].min() > -1e-6
-    a, b, c = np.moveaxis(coarse["vertices"][coarse["triangles"]], 1, 0)
-    assert (np.cross(b - a, c - a)[:, 2] > 0.0).all()  # no triangle of the dome is turned over
-
-
-def test_other_persons(checkout: Path) -> None:
-    """Each is the neutral face along the components, and no two are alike."""
-    files = made(checkout)
-    rest = files["face"]["vertices"]
-    scales = [float((each * rest).sum() / (rest**2).sum()) for each in files["identities"].values()]
-    assert len(set(np.round(scales, 5))) == len(scales) == 5
-    for scale, each in zip(scales, files["identities"].values(), strict=True):
-        assert 0.001 < abs(scale - 1.0) < 0.05
-        np.testing.assert_allclose(each, scale * rest, atol=1e-4)
+    assert files["identity_modes"]["modes"].shape == (1, COUNT, 3)
+    expected = 0.01 * files["face"]["vertices"]
+    np.testing.assert_allclose(files["identity_modes"]["modes"][0], expected, atol=1e-5)
 
 
 @pytest.mark.slow
 def test_bench_quality_runs_on_it(checkout: Path) -> None:
     """The folder is what `--reference` takes."""
     made(checkout)
-    result = risorius(
-        "bench", "quality", "--reference", checkout.parent / "made", "--finer", "none"
-    )
+    result = risorius("bench", "quality", "--reference", checkout.parent / "made")
     assert result.exit_code in (0, 1), result.output  # targets are of faces, and this is a dome
-    assert "scan\n" in result.output and "other persons\n" in result.output
     rows = [line for line in result.output.splitlines() if line.startswith("cubic twice ")]
     triangles, _, better = rows[0].removeprefix("cubic twice").split()[:3]
     assert float(triangles) > 10 and float(better.rstrip("%")) > 50, "nearer to the dense face"

@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import click
 import pytest
 from click.testing import CliRunner
 
-from risorius.bench import commands, gaps, motion, quality, soak, tearing
+from risorius.bench import commands, gaps, motion, quality, soak, subjects, tearing
 from risorius.bench.gaps import PoseGaps
-from risorius.bench.quality import BEST, CALM, STATIC, Score
+from risorius.bench.quality import BEST, STATIC, Score
 from risorius.bench.soak import Soak
 from risorius.bench.tearing import PoseDefects
 
 SOUND = Soak(60.0, 3600, True, 94.0, 0.0, 0.0, True, 1e-12)
-CLOSED = PoseGaps("blink", 0.1, 0.0, 0.2)
+CLOSED = PoseGaps("blink", 0.1, 0.0)
 WHOLE = PoseDefects("joy", 0, 0.01, 0.0, 0.0)
-ALIKE = motion.Row("joy", 0.96, 1.0, 0.1, 0.5)
-NEARER = [
-    Score(STATIC, "joy", 1.0, 1.0, 10.0, 9.0, 1.0),
-    Score(BEST, "joy", 2.0, 0.6, 6.0, 9.0, 9.0),
-    Score(CALM, "joy", 2.0, 0.8, 7.0, 9.0, 1.1),
-]
+ALIKE = motion.Row("joy", 0.96, 1.0, 0.1)
+NEARER = [Score(STATIC, "joy", 1.0, 1.0, 10.0, 9.0), Score(BEST, "joy", 2.0, 0.6, 6.0, 9.0)]
 
 
 def run(
@@ -40,28 +34,26 @@ def run(
 
 
 def of_soak(**change: Any) -> tuple[int, str]:
-    return run(commands.bench_soak, {(soak, "measure"): replace(SOUND, **change)})
+    return run(commands.bench_soak, {(soak, "measure"): SOUND._replace(**change)})
 
 
 def of_gaps(**change: Any) -> tuple[int, str]:
-    return run(commands.bench_gaps, {(gaps, "measure"): [CLOSED, replace(CLOSED, **change)]})
+    return run(commands.bench_gaps, {(gaps, "measure"): [CLOSED, CLOSED._replace(**change)]})
 
 
 def of_tearing(**change: Any) -> tuple[int, str]:
-    poses = [*[WHOLE] * 99, replace(WHOLE, **change)]
+    poses = [*[WHOLE] * 99, WHOLE._replace(**change)]
     return run(commands.bench_tearing, {(tearing, "measure"): poses})
 
 
 def of_motion(**change: Any) -> tuple[int, str]:
-    rows = [*[ALIKE] * 9, replace(ALIKE, **change)]
-    return run(
-        commands.bench_motion, {(motion, "measure"): (rows, [], {"ada": rows})}, "--reference", "."
-    )
+    measured = [*[ALIKE] * 9, ALIKE._replace(**change)], []
+    return run(commands.bench_motion, {(motion, "measure"): measured}, "--reference", ".")
 
 
 def of_quality(**change: Any) -> tuple[int, str]:
-    scores = [NEARER[0], *(replace(each, **change) for each in NEARER[1:])]
-    measured = {(quality, "subjects_of"): {"head": []}, (quality, "measure"): scores}
+    scores = [NEARER[0], NEARER[1]._replace(**change)]
+    measured = {(subjects, "built_in"): None, (quality, "measure"): scores}
     return run(commands.bench_quality, measured)
 
 
@@ -82,7 +74,6 @@ def of_quality(**change: Any) -> tuple[int, str]:
         (of_motion, {"cosine": 0.1}),
         (of_quality, {"distance": 0.9}),
         (of_quality, {"picture": 9.9}),
-        (of_quality, {"jump": 1.6}),
     ],
 )  # fmt: skip
 def test_a_missed_target_is_told_and_ends_with_one(
@@ -95,25 +86,17 @@ def test_a_missed_target_is_told_and_ends_with_one(
     assert code == 1 and "  MISSED  " in told
 
 
-def test_figures_are_written_though_a_target_is_missed(tmp_path: Path) -> None:
-    """A program that reads them wants these most."""
-    file = tmp_path / "gaps.json"
-    measured = {(gaps, "measure"): [replace(CLOSED, lips=3.0)]}
-    assert run(commands.bench_gaps, measured, "--json", str(file))[0] == 1 and file.exists()
-
-
 @pytest.mark.slow
 def test_soak_table() -> None:
     """A few seconds of wild input are reported, and the face stays sound."""
     found = soak.measure(0.05)
-    text = soak.report(found)
-    assert "NO" not in text and all(target.is_met for target in soak.targets(found))
-    assert "0.1 simulated minutes" in text or "0.0 simulated minutes" in text
+    assert all(target.is_met for target in soak.targets(found))
+    assert "simulated minutes" in soak.report(found)
 
 
 @pytest.mark.slow
 def test_tearing_table() -> None:
     """Expressions and mixtures are looked at, and the worst is named."""
-    text = tearing.report(tearing.measure(3), 3)
-    assert "3 random mixtures" in text
-    assert text.splitlines()[-1].startswith("teeth")
+    text = tearing.report(poses := tearing.measure(3))
+    assert f"{len(poses)} poses" in text and len(poses) > 203
+    assert text.splitlines()[-1].startswith("most teeth: ")

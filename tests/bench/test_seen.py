@@ -15,7 +15,7 @@ import pytest
 
 from risorius.app.recordings.names import ARKIT
 from risorius.bench import seen
-from risorius.bench.face_tracker import FaceTracker, Scores, in_mirror, mean_of
+from risorius.bench.seen import FaceTracker, Scores
 from tests.app.command_line import risorius
 
 MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
@@ -42,22 +42,9 @@ def test_every_shape_is_asked_for_once() -> None:
 def test_a_pair_counts_by_its_mean() -> None:
     """A smile of both sides is seen beside one side of a squint; the neutral face is taken off."""
     scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
-    own, highest, score = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
-    assert (own, highest, score) == (pytest.approx(0.4), "eyeSquint", pytest.approx(0.35))
-
-
-def test_mirrors_swap_sides() -> None:
-    """Left and right of a mirrored picture change places, twice is once more the same."""
-    scores = {"jawLeft": 0.1, "jawRight": 0.2, "jawOpen": 0.3, "_neutral": 0.4}
-    mirrored = {"jawRight": 0.1, "jawLeft": 0.2, "jawOpen": 0.3, "_neutral": 0.4}
-    assert in_mirror(scores) == mirrored
-    assert in_mirror(mirrored) == scores
-
-
-def test_pictures_without_a_face_do_not_count() -> None:
-    """The mean is that of the others; of none it is nothing."""
-    assert mean_of([{"jawOpen": 0.2}, {}, {"jawOpen": 0.4}]) == {"jawOpen": pytest.approx(0.3)}
-    assert mean_of([{}, {}]) == {}
+    shape = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
+    assert shape == (pytest.approx(0.4), "eyeSquint", pytest.approx(0.35))
+    assert shape.verdict == "seen" and seen.Shape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"
 
 
 def test_without_mediapipe_one_line_says_so(
@@ -91,7 +78,7 @@ def test_the_tracker_sees_an_open_jaw(tmp_path: Path) -> None:
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     with FaceTracker(MODEL) as tracker:
         assert tracker.scores(np.zeros((64, 64, 3), dtype=np.uint8)) == {}
-        with seen.Sitting(tracker, seen.FaceScene(), tmp_path) as sitting:
+        with seen.Sitting(tracker, tmp_path) as sitting:
             neutral = sitting.pose("neutral", ())
             opened = sitting.pose("jawOpen", ("jawOpen",))
         own, _, score = seen.compared(opened, neutral, ("jawOpen",))

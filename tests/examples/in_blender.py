@@ -131,8 +131,6 @@ def main():
     seen["unblended"] = len(copy.data.polygons)
     copy.risorius.look = "PAPER"
     seen["paper"] = len(copy.data.polygons)
-    copy.risorius.threshold_once = copy.risorius.threshold_twice = 1.0
-    seen["no_splits"] = len(copy.data.polygons)
     copy.risorius.look = "SMOOTH"
 
     seen["rendered"] = render([10, 14])

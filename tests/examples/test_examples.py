@@ -8,10 +8,9 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-import numpy as np
 import pytest
 
-from risorius import assets, refine
+from risorius import refine
 from risorius.app.dataset.making import make_set
 from risorius.app.dataset.request import request_of
 
@@ -32,14 +31,13 @@ def test_every_example_is_tested() -> None:
     found = {path.stem for path in FOLDER.glob("*.py")}
     assert found == {
         *("plain_script", "in_trimesh", "in_pyvista", "in_newton"),
-        *("own_refiner", "own_recording", "read_dataset"),
+        *("own_refiner", "read_dataset"),
     }
 
 
 @pytest.mark.parametrize(
     ("program", "words", "code", "told"),
     [
-        ("own_recording.py", (), 2, "required: recording"),
         ("read_dataset.py", (), 2, "required: folder"),
         ("blender/build.py", ("--help",), 0, "linux-x64"),
         ("blender/build.py", ("amiga",), 2, "invalid choice: 'amiga'"),
@@ -84,7 +82,7 @@ def test_in_trimesh() -> None:
 
 def test_in_pyvista(tmp_path: Path) -> None:
     """The plotter draws the refined plane; there is something in its image."""
-    pytest.importorskip("pyvista", reason="needs the extra 'peers': pip install risorius[peers]")
+    pytest.importorskip("pyvista", reason="needs the extra 'pyvista'")
     image = tmp_path / "plane.png"
     counts = example("in_pyvista").main(image)
     assert len(counts) == 12
@@ -113,22 +111,6 @@ def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     with pytest.raises(ValueError, match="takes \\['attributes', 'longest'\\]"):
         refine.create("quarters", [[0, 1, 2]], [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], level=3)
-
-
-def test_own_recording(tmp_path: Path) -> None:
-    """The mouth of the mesh opens when that of the recording does, and shuts again."""
-    times = np.linspace(0.0, 3.0, 91)
-    jaw = np.interp(times, [0.5, 1.0, 1.5, 2.0], [0.0, 0.8, 0.8, 0.0])
-    rows = [f"{time:.4f},{value:.4f}" for time, value in zip(times, jaw, strict=True)]
-    take = tmp_path / "take.csv"
-    take.write_text("\n".join(["time,jawOpen", *rows]), encoding="utf-8")
-    head = assets.load("head")
-    frames = example("own_recording").main(take)
-    assert frames.shape == (181, *head.vertices.shape)
-    lips = frames[:, head.landmarks[[62, 66]]]
-    gaps = np.linalg.norm(lips[:, 0] - lips[:, 1], axis=1)
-    assert gaps[90] > gaps[0] + 10.0
-    assert abs(gaps[-1] - gaps[0]) < 0.5
 
 
 @pytest.mark.slow

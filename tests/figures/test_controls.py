@@ -1,31 +1,29 @@
-"""The program behind the pictures of docs/controls.md."""
-
-from pathlib import Path
+"""The programs behind the pictures of docs/controls.md and docs/head.md."""
 
 import controls
+import head
 import numpy as np
 import pytest
-from PIL import Image
 
-from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 
 
 @pytest.mark.slow
-def test_some_controls_are_drawn(tmp_path: Path) -> None:
+def test_portraits_of_a_control() -> None:
     """Two views of each; a face that does something looks different."""
-    controls.main([str(tmp_path), "--width", "48", "--only", "viseme_sil", "AU27"])
-    image = np.asarray(Image.open(tmp_path / "some.webp").convert("RGB"))
-    assert image.shape[1] == 4 * 48
-    rest, opened = image[:50, :96].astype(int), image[:50, 96:].astype(int)
-    assert rest.std() > 10.0
-    assert np.abs(rest - opened).max() > 50
+    scene = FaceScene()
+    rest, opened = (controls.portrait(scene, name, (48, 54)) for name in ("viseme_sil", "AU27"))
+    assert rest.shape == (54, 2 * 48, 3) and rest.std() > 10.0
+    assert np.abs(rest.astype(int) - opened).max() > 50
 
 
-def test_an_unknown_control_is_named(tmp_path: Path) -> None:
-    """A typing error is no traceback."""
-    with pytest.raises(UserError, match="there is no control called 'AU127'"):
-        controls.main([str(tmp_path), "--width", "48", "--only", "AU127"])
+@pytest.mark.slow
+def test_views_of_the_head() -> None:
+    """Four portraits wide, a row for each style, and something is on each portrait."""
+    sheet = head.views((48, 60))
+    assert sheet.shape[1] == 4 * 48
+    for row in np.split(sheet, len(head.STYLES)):
+        assert all(cell[:48].std() > 10.0 for cell in np.split(row, 4, axis=1))
 
 
 def test_one_tile_for_both_sides() -> None:
@@ -37,17 +35,10 @@ def test_one_tile_for_both_sides() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("count", "columns"), [(1, 1), (2, 2), (5, 5), (12, 4), (15, 5), (45, 5), (7, 4), (11, 4)]
-)
-def test_columns_leave_few_cells_empty(count: int, columns: int) -> None:
-    """Four columns, unless another number fills the last row better; never an empty column."""
-    assert controls.columns_for(count) == columns
-
-
 def test_every_sheet_is_full() -> None:
-    """No tile of the built-in head's sheets stands alone in the last row."""
+    """No tile of the built-in head's sheets stands alone in the last row; turned heads are some."""
     groups = FaceScene().groups
-    for title in controls.LAYERS:
+    for title in controls.LAYERS.values():
         count = len(controls.without_sides(groups[title]))
         assert count % controls.columns_for(count) == 0, title
+    assert set(controls.TURNING) <= set(groups["Action units"])

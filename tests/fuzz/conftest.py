@@ -17,7 +17,6 @@ LONG_WORK = (
     "risorius.bench.reproduce.figure_9.outcome",
     "risorius.bench.reproduce.figure_10.outcome",
     "risorius.app.viewer.window.splash_screen.SplashScreen",
-    "risorius.bench.reproduce.frame_rate.measure",
     "risorius.bench.gaps.measure",
     "risorius.bench.motion.measure",
     "risorius.bench.reproduce.coherence.outcome",

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine, sim
 from risorius.assets.model import Head
-from risorius.bench.lines_of_sight import eyeballs_of, lid_gaps, meshes_of
+from risorius.bench.gaps import eyeballs_of, lid_gaps, meshes_of
 from risorius.sim.contact import PRESSED_OVERLAP
 from tests.sim.poses import (
     FRAME,

@@ -13,7 +13,7 @@ import pytest
 
 from risorius import refine, sim
 from risorius.assets.model import Head
-from risorius.bench.lines_of_sight import meshes_of, widest_slit
+from risorius.bench.gaps import meshes_of, widest_slit
 from tests.sim.poses import both_sides, settled_displacement
 
 SHUT = 0.2  # mm: less than a pixel of a full-screen close-up

@@ -47,10 +47,6 @@ class Bound:
         self.counts = len(rest.vertices), len(rest.polygons)
         self.corners = None  # of the triangles that are in the copy
         self.uv_shown = rest.uv_layers.active and rest.uv_layers.active.name
-        options = dict(LOOKS[settings.look], blend=settings.blend)
-        if settings.look == "PAPER":
-            options["threshold_once"] = settings.threshold_once
-            options["threshold_twice"] = max(settings.threshold_once, settings.threshold_twice)
         self.refiner = refine.create(
             "kahler",
             numbers(triangles, "vertices", 3, np.int32),
@@ -59,7 +55,8 @@ class Bound:
                 layer.name: (numbers(layer.uv, "vector", 2, np.float32), loops)
                 for layer in rest.uv_layers
             },
-            **options,
+            **LOOKS[settings.look],
+            blend=settings.blend,
         )
 
     def refine(self, source: bpy.types.Mesh, mesh: bpy.types.Mesh) -> None:
@@ -150,13 +147,6 @@ def is_source(settings: "RisoriusSettings", thing: bpy.types.Object) -> bool:
     return thing.type == "MESH" and thing != settings.id_data
 
 
-def threshold(name: str, default: float) -> Any:
-    """A setting of the paper's rule."""
-    return bpy.props.FloatProperty(
-        name=name, default=default, min=0.0001, max=2.0, precision=4, update=changed
-    )
-
-
 class RisoriusSettings(bpy.types.PropertyGroup):
     """What is kept with each refined copy, in the file."""
 
@@ -175,8 +165,6 @@ class RisoriusSettings(bpy.types.PropertyGroup):
     blend: bpy.props.BoolProperty(
         name="Blend", description="New points grow, so nothing pops", default=True, update=changed
     )
-    threshold_once: threshold("Split Once", 0.02)
-    threshold_twice: threshold("Split Twice", 0.08)
     problem: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
 
 
@@ -235,12 +223,8 @@ class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
         if not settings or settings.source is None:
             layout.operator(OBJECT_OT_risorius_refine.bl_idname, icon="MOD_SUBSURF")
             return
-        for name in ("source", "rest", "look"):
+        for name in ("source", "rest", "look", "blend"):
             layout.prop(settings, name)
-        if settings.look == "PAPER":
-            layout.prop(settings, "threshold_once")
-            layout.prop(settings, "threshold_twice")
-        layout.prop(settings, "blend")
         if settings.problem:
             layout.label(text=settings.problem, icon="ERROR")
         else:

@@ -1,11 +1,10 @@
-"""Verdicts can be bad; `reproduce all` writes page, pictures and figures, whatever they say."""
+"""Verdicts can be bad; `reproduce all` writes page and pictures, whatever they say."""
 
 from __future__ import annotations
 
-import json
 import math
+import re
 from fractions import Fraction
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ import pytest
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL, COLUMNS, ROWS
-from risorius.bench.reproduce import commands, page
+from risorius.bench.reproduce import commands
 from risorius.bench.reproduce.experiments import (
     EXPERIMENTS,
     INFERRED,
@@ -115,7 +114,7 @@ def test_what_was_inferred_is_what_runs() -> None:
 
 
 MADE: dict[str, Outcome] = {
-    "good": Outcome({"lines": 0}, np.full((8, 8, 3), 200, np.uint8), renderer="softpipe"),
+    "good": Outcome({"lines": 0}, np.full((8, 8, 3), 200, np.uint8)),
     "bad": Outcome({"<c_rt>": Measured(3.0, (2.9, 3.1)), "time": Measured(0.4, least=0.5)}),
 }
 PLANTED = (
@@ -139,8 +138,7 @@ def planted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two experiments that take no time: one is met, one is missed and noise."""
 
     monkeypatch.setattr(Experiment, "callable", property(lambda each: lambda: MADE[each.name]))
-    for module in (commands, page):
-        monkeypatch.setattr(module, "EXPERIMENTS", PLANTED)
+    monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED)
 
 
 def test_a_missed_tolerance_is_told_after_all_is_written(planted: None, tmp_path: Path) -> None:
@@ -153,56 +151,20 @@ def test_a_missed_tolerance_is_told_after_all_is_written(planted: None, tmp_path
         "risorius: noise: time is 0.4, allowed: at most 9; possible from 0.5",
     ]
     names = {path.name for path in (tmp_path / "new").iterdir()}
-    assert names == {"index.html", "results.json", "good.png"}
-
-
-def test_figures_for_programs(planted: None, tmp_path: Path) -> None:
-    """Numbers, tolerances, verdicts, what was inferred, and where it was made."""
-    risorius("reproduce", "all", "-o", tmp_path)
-    figures = json.loads((tmp_path / "results.json").read_text())
-    good, bad = figures["experiments"]
-    assert figures["missed"] == 2 and figures["OpenGL"] == "softpipe"
-    assert good["claims"][0]["verdict"] == "met"
-    assert bad["claims"][0]["quartiles"] == [2.9, 3.1]
-    assert [each["verdict"] for each in bad["claims"]] == ["MISSED", "noise"]
-    assert "0.02, 0.08" in [each["value"] for each in figures["inferred"]]
-    assert {"made by", "on", "processor", "system", "paper"} < set(figures)
-
-
-class Page(HTMLParser):
-    """What a browser would load, and tags that are never closed."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.loads: list[str] = []
-        self.open: list[str] = []
-
-    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        """Note it."""
-        self.loads += [value or "" for name, value in attributes if name in ("src", "href")]
-        if tag not in ("meta", "img"):
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        """The last one that is open."""
-        assert self.open.pop() == tag
+    assert names == {"index.html", "good.png"}
 
 
 def test_the_page_stands_alone(planted: None, tmp_path: Path) -> None:
     """It loads nothing but pictures beside it, escapes what it says, and shows every verdict."""
     risorius("reproduce", "all", "-o", tmp_path)
     text = (tmp_path / "index.html").read_text(encoding="utf-8")
-    read = Page()
-    read.feed(text)
-    assert not read.open
-    assert set(read.loads) == {"#good", "#bad", "good.png"}
+    assert re.findall(r"(?:src|href)=\"([^\"]*)\"", text) == ["good.png"]
     assert "url(" not in text and "@import" not in text
-    assert "&lt;c_rt&gt;" in text and "Good &amp; sound" in text
-    assert "<b>1</b> of 3 statements" in text
-    for words in ('class="met">met', 'class="missed">MISSED', 'class="noise">noise', "softpipe"):
+    assert "<c_rt>" not in text and "&lt;c_rt&gt;" in text and "Good &amp; sound" in text
+    assert "1 of 3 statements" in text and "0.02, 0.08" in text
+    for words in ("met ", "MISSED ", "noise ", "not too slow", "3.00 (2.90 to 3.10)"):
         assert words in text
     assert text.index("section 1") < text.index("section 2") < text.index("does not give")
-    assert "width=device-width" in text
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda each: each.name)
@@ -213,11 +175,3 @@ def test_every_experiment_is_a_command(experiment: Experiment) -> None:
     assert ("--output" in result.output) == experiment.picture
     assert ("--rounds" in result.output) == (experiment.rounds is not None)
     assert callable(experiment.callable)
-
-
-@pytest.mark.slow
-def test_frame_rate() -> None:
-    """Every number of the statement is measured; whether it is met is the machine's affair."""
-    (experiment,) = (each for each in EXPERIMENTS if each.name == "frame-rate")
-    for finding in experiment.run(rounds=4).findings:
-        assert np.isfinite(finding.measured.value), finding.claim.value
