@@ -1,8 +1,9 @@
-"""The one exception that means: tell the user in one line and stop with exit code 2."""
+"""What users are told in one line: what they can mend, with exit code 2, and what takes long."""
 
 from __future__ import annotations
 
 import contextlib
+import logging
 import sys
 from collections.abc import Iterator
 from importlib import import_module
@@ -76,3 +77,24 @@ def report_user_errors() -> Iterator[None]:
             raise
         click.echo(f"risorius: {line}", err=True)
         sys.exit(2)
+
+
+class _CompilingNote(logging.Handler):
+    """Says once that kernels are compiled, and once that they cannot be kept (risorius/jit.py)."""
+
+    _said: frozenset[int] = frozenset()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if record.levelno not in self._said:
+            self._said |= {record.levelno}
+            line = "Compiling, this once; it takes half a minute (risorius warm: all at once)."
+            if record.levelno >= logging.WARNING:
+                line = f"risorius: {record.getMessage()}"
+            click.echo(line, err=True)
+
+
+def announce_compiling() -> None:
+    """From here on tell the user when kernels are compiled, which takes long once."""
+    log = logging.getLogger("risorius.jit")
+    log.handlers, log.propagate = [_CompilingNote()], False
+    log.setLevel(logging.INFO)

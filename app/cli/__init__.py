@@ -11,9 +11,8 @@ import click
 
 from risorius import __version__
 
-from ..errors import in_one_line, report_user_errors
+from ..errors import announce_compiling, in_one_line, report_user_errors
 from . import commands
-from .compiling import announce
 
 
 class OneLineGroup(click.Group):
@@ -51,7 +50,7 @@ def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""
     if sys.stderr is None:  # closed by whoever started us; progress bars ask it what it is
         sys.stderr = open(os.devnull, "w")
-    announce()
+    announce_compiling()
 
 
 for command in commands.ALL:

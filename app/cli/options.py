@@ -248,11 +248,6 @@ PLAYBACK = (
     ),
     click.option("--mirror", is_flag=True, help="Left and right change places."),
     click.option(
-        "--smooth",
-        is_flag=True,
-        help="Calm channels that tremble; costs 15 to 45 ms and up to 14 % of a short peak.",
-    ),
-    click.option(
         "--lead",
         type=FiniteRange(0, 0.5),
         default=LEAD,

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..recordings.calibration import ANGLES, Calibration, gains_of, neutral_now, usual_gains
+from ..recordings.calibration import Calibration, gains_of, neutral_now, usual_gains
 from ..recordings.mapping import load_mapping
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 from .frame import LiveFrame
@@ -154,10 +154,7 @@ class LiveFace:
             self._end_calibration()
 
     def _take(self, frame: LiveFrame, at: float) -> None:
-        for name, value in frame.channels.items():
-            # A channel that several packets of a frame name: the greatest, see vmc.py.
-            is_older = name in self._pending and name not in ANGLES
-            self._pending[name] = max(value, self._pending[name]) if is_older else value
+        self._pending.update(frame.channels)
         if not frame.is_complete:
             return
         self.channels.update(self._pending)

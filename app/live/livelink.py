@@ -72,8 +72,8 @@ def _text(packet: bytes, at: int) -> tuple[bytes, int]:
     return packet[at + 4 : end], end
 
 
-def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[bytes]:
-    """What the app would send of these channels: one packet; a channel that is missing is 0."""
+def packet_of(channels: Mapping[str, float], *, subject: str, frame: int) -> bytes:
+    """What the app would send of these channels; a channel that is missing is 0."""
     values = [channels.get(name, 0.0) for name in ARKIT]
     for angle in ANGLES:
         degrees = channels.get(angle or "", 0.0) + OUTWARD.get(angle or "", 0.0)
@@ -82,4 +82,4 @@ def packets(channels: Mapping[str, float], *, subject: str, frame: int) -> list[
     for text in (_DEVICE, subject.encode()[:LONGEST_TEXT]):
         head += struct.pack(">i", len(text)) + text
     time = struct.pack(">ifii", frame, 0.0, RATE, 1)
-    return [head + time + struct.pack(f">B{COUNT}f", COUNT, *values)]
+    return head + time + struct.pack(f">B{COUNT}f", COUNT, *values)

@@ -21,14 +21,12 @@ class Protocol:
     """How faces come in packets.
 
     title: as people call it. port: where receivers listen unless told. parse: see frame.py.
-    packets: what a sender would send: (channels, subject=, frame=) -> packets.
     library: a module that not everybody has installed, "" for none.
     """
 
     title: str
     port: int
     parse: Callable[[bytes], LiveFrame | None]
-    packets: Callable[..., list[bytes]]
     library: str = ""
 
     def check(self) -> None:
@@ -38,8 +36,8 @@ class Protocol:
 
 
 PROTOCOLS: Mapping[str, Protocol] = {
-    "livelink": Protocol("Live Link Face", livelink.PORT, livelink.parse, livelink.packets),
-    "vmc": Protocol("VMC", vmc.PORT, vmc.parse, vmc.packets, library="pythonosc"),
+    "livelink": Protocol("Live Link Face", livelink.PORT, livelink.parse),
+    "vmc": Protocol("VMC", vmc.PORT, vmc.parse, library="pythonosc"),
 }
 
 

@@ -119,16 +119,6 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     return neutral
 
 
-def note_of_neutral(take: Take, method: str | None = None) -> tuple[str, ...]:
-    """What there is to say of `method`: that the take has not so many seconds, if it has not."""
-    if method is None or not method.startswith("first") or _seconds_in(method) <= take.duration:
-        return ()
-    return (
-        f"--neutral {method} is longer than the recording, {take.duration:.2f} s: the neutral face "
-        "is the median of all of it.",
-    )
-
-
 def neutral_now(channels: Mapping[str, float]) -> dict[str, float]:
     """The neutral face of somebody who holds it in this frame."""
     return {name: value for name, value in channels.items() if name not in VISEMES}

@@ -14,7 +14,7 @@ import numpy as np
 
 from .gaps import whole_take
 from .names import EYE_ANGLES
-from .table import FACE_COLUMNS, Table, one_face
+from .table import Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
 
@@ -27,7 +27,6 @@ POSE = {
 }
 GAZE = ("gaze_angle_x", "gaze_angle_y")
 VECTORS = ("gaze_0_x", "gaze_0_y", "gaze_0_z", "gaze_1_x", "gaze_1_y", "gaze_1_z")
-LANDMARKS = re.compile(r"(eye_lmk_)?[xyz]_\d+$|p_(\d+|scale|[rt][xyz])$|pose_t[xyz]$")
 FAR = 10.0  # an intensity beyond is none
 SEEN = 0.5  # success is 0 or 1; a confidence below is none
 
@@ -45,7 +44,7 @@ def read(table: Table, request: Request) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes: list[str] = []
-    times, used = times_of(table, request.rate, notes)
+    times, _ = times_of(table, request.rate, notes)
     places = table.places
     intensities = {
         f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY.match(name))
@@ -56,7 +55,10 @@ def read(table: Table, request: Request) -> Take:
     wanted = intensities | only_present | {name: places[name] for name in others}
     numbers = table.numbers_of(wanted)
 
-    channels = _units({name: numbers[name] for name in intensities}, notes)
+    channels = {
+        name: np.where(np.abs(numbers[name]) > FAR, np.nan, np.clip(numbers[name] / 5.0, 0.0, 1.0))
+        for name in intensities
+    }
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in only_present}
     if only_present:
         notes.append(f"{', '.join(sorted(only_present))}: only present or absent, 0 or 1.")
@@ -66,7 +68,6 @@ def read(table: Table, request: Request) -> Take:
     channels |= _eyes(numbers, channels, notes)
     lost = numbers.get("success", numbers.get("confidence", np.ones(1))) < SEEN
     channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
-    known = {*others, *used, *FACE_COLUMNS}
     version = 2 if "face_id" in places or "gaze_angle_x" in places else 1
     return whole_take(
         f"OpenFace {version}",
@@ -74,29 +75,7 @@ def read(table: Table, request: Request) -> Take:
         times,
         channels,
         notes=[*table.notes, *notes],
-        unknown=[
-            name
-            for name in table.names
-            if (folded := name.casefold()) not in known
-            and name
-            and not any(each.match(folded) for each in (INTENSITY, PRESENCE, LANDMARKS))
-        ],
     )
-
-
-def _units(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """Intensities 0 to 1: OpenFace writes 0 to 5, and some tools divide without a new name."""
-    if not units:
-        return {}
-    units = {name: np.where(np.abs(v) > FAR, np.nan, v) for name, v in units.items()}
-    highest = max(float(np.nanmax(values, initial=0.0)) for values in units.values())
-    if highest > 1.0:
-        return {name: np.clip(values / 5.0, 0.0, 1.0) for name, values in units.items()}
-    notes.append(
-        f"Action units reach {highest:.2g} at most: they were taken for 0 to 1, not for the 0 to 5 "
-        "that OpenFace writes."
-    )
-    return {name: np.clip(values, 0.0, 1.0) for name, values in units.items()}
 
 
 def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -> dict[str, Array]:

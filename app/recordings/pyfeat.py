@@ -20,7 +20,7 @@ from .gaps import whole_take
 from .named_columns import shares
 from .names import shape_of
 from .openface import eyes_in_head
-from .table import FACE_COLUMNS, Table, one_face
+from .table import Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
 
@@ -28,10 +28,6 @@ UNIT = re.compile(r"au(\d\d)$")
 BOX = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
 POSE = ("pitch", "yaw", "roll")
 GAZE = ("gaze_pitch", "gaze_yaw")
-NOT_TAKEN = re.compile(
-    r"[xyz](_\d+)?$|frame(height|width)$|identity(_\d+)?$|input$|gaze_angle$|_neutral$|mesh_.*|"
-    r"(anger|disgust|fear|happiness|sadness|surprise|neutral|happy|sad|contempt|valence|arousal)$"
-)
 NEVER_SEEN = ("cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight")
 INSTEAD = ("AU6", "AU9")
 LARGEST_RADIANS = 1.6  # a head that is seen turns no further
@@ -47,7 +43,7 @@ def read(table: Table, request: Request) -> Take:
     """The take in the table."""
     table = one_face(table, request)
     notes: list[str] = []
-    times, used = times_of(table, request.rate, notes)
+    times, _ = times_of(table, request.rate, notes)
     places = table.places
     units = {f"AU{int(m[1])}": n for name, n in places.items() if (m := UNIT.match(name))}
     shapes = {shape: n for name, n in places.items() if (shape := shape_of(name))}
@@ -68,20 +64,12 @@ def read(table: Table, request: Request) -> Take:
         channels |= _eyes(numbers, channels, notes)
     lost = ~(numbers.get("facescore", np.ones(1)) > 0.0)
     channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
-    known = {*others, *used, *FACE_COLUMNS, *BOX}
     return whole_take(
         "py-feat 2" if shapes else "py-feat 1",
         table.source,
         times,
         channels,
         notes=[*table.notes, *notes],
-        unknown=[
-            name
-            for name in table.names
-            if name
-            and (folded := name.casefold()) not in known
-            and not (UNIT.match(folded) or NOT_TAKEN.match(folded) or shape_of(folded))
-        ],
     )
 
 

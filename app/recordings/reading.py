@@ -1,4 +1,4 @@
-"""A file -> a Take: encoding and format are recognised from what it holds, never from its name.
+"""A file -> a Take: its format is recognised from what it holds, never from its name.
 
 `TABLES` and `DOCUMENTS` list the formats, the most special first. A new one is two functions, one
 that recognises it and one that reads it, and a row here.
@@ -6,7 +6,6 @@ that recognises it and one that reads it, and a row here.
 
 from __future__ import annotations
 
-import codecs
 import contextlib
 import re
 from collections.abc import Callable
@@ -55,11 +54,6 @@ KNOWN = (
 )
 LONGEST_FILE = 2**29  # [bytes]; ten minutes of py-feat's 2183 columns are about as long
 BEGINNING = 2**16  # [bytes] that tell whether a file is a recording; a header of 2183 names fits
-MARKS = (
-    (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
-)
 NOT_IN_TEXT = re.compile("[\x00-\x08\x0e-\x1a\x1c-\x1f]")  # characters of no text and no table
 JSON = re.compile(r"\s*(\{|\[\s*(\[\s*)*[\{\]])")  # no script in TOML begins so
 SPEAKS_OF_FACES = re.compile(
@@ -150,18 +144,8 @@ def read_beginning(path: Path) -> str:
 
 
 def _decoded(content: bytes) -> str | None:
-    """The text in these bytes; None where they are no text. What is torn at the end is left out."""
-    for mark, encoding in MARKS:
-        if content.startswith(mark):
-            return _checked(content.decode(encoding, errors="ignore"))
-    try:
-        return _checked(codecs.getincrementaldecoder("utf-8")().decode(content))
-    except UnicodeDecodeError:
-        return _checked(content.decode("cp1252", errors="replace"))
-
-
-def _checked(text: str) -> str | None:
-    """The text with line ends of one kind, unless it holds what no text does."""
+    """The text in these bytes, with line ends of one kind; None where they are no text."""
+    text = content.decode("utf-8-sig", errors="replace")  # the beginning of a file may be torn
     if NOT_IN_TEXT.search(text, 0, BEGINNING):
         return None
     return text.replace("\r\n", "\n").replace("\r", "\n")

@@ -6,25 +6,23 @@ A line that says what it is, and under it a few short ones, aligned; one screen 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import counted, in_one_line
-from ..script import Limits
-from .calibration import Calibration
-from .mapping import MappingTable, chosen
+from .calibration import ANGLES, Calibration
+from .mapping import chosen
 from .names import ARKIT
-from .take import Array, Take
+from .take import Take
 
 WIDTH = 100  # [characters] of a line
 MOST_LINES = 3  # of one heading
 MOST_NOTES = 6
 MOST_NAMED = 5  # of neutral channels
 SLIGHT = 0.02  # of a neutral channel: no need to be told
-OFTEN = 0.01  # of all frames, in which a control is cut off, before that is said
 
 
 @dataclass(frozen=True)
@@ -65,29 +63,17 @@ class Report:
         return f"{name}: {self.recognised}" + (f"; {counted(count, 'note')}" if count else "")
 
 
-def report_of(
-    take: Take,
-    calibration: Calibration,
-    mapping: MappingTable,
-    controls: Mapping[str, Array],
-    limits: Limits,
-) -> Report:
-    """What there is to say of a take; controls: what it makes of each, not yet cut off."""
+def report_of(take: Take, calibration: Calibration) -> Report:
+    """What there is to say of a take."""
     channels = take.channels
     still = _still(take)
-    used = set(chosen(channels)) - still
-    silent = {name for name in used if not set(mapping.row(name)) & limits.keys()}
     shapes = [name for name in ARKIT if name in channels]
     rows = [
-        ("used", _used(used - silent)),
+        ("used", _used(set(chosen(channels)) - still)),
         ("neutral", _neutral(calibration)),
-        ("gain", _gains(calibration, used)),
-        ("left out", _listed(set(channels) - set(chosen(channels)) - still, "told by others")),
         ("constant", _listed(still)),
         ("missing", _listed(name for name in ARKIT if shapes and name not in channels)),
-        ("not mapped", _listed(silent)),
         ("unknown", _listed(take.unknown)),
-        ("cut off", _listed(_beyond(controls, limits), "goes further than the face can")),
         *(("note", note) for note in take.notes[:MOST_NOTES]),
     ]
     return Report(take.source, _recognised(take), tuple(row for row in rows if row[1]))
@@ -124,41 +110,20 @@ def _used(names: set[str]) -> str:
 
 def _neutral(calibration: Calibration) -> str:
     """How far the face is from 0 at rest, and where most."""
-    neutral = {name: abs(value) for name, value in calibration.neutral.items() if name in ARKIT}
-    neutral |= {n: abs(v) for n, v in calibration.neutral.items() if n.startswith("AU")}
-    count = sum(value > SLIGHT for value in neutral.values())
-    if not count:
+    neutral = {
+        name: abs(value)
+        for name, value in calibration.neutral.items()
+        if name not in ANGLES and abs(value) > SLIGHT
+    }
+    if not neutral:
         return ""
     furthest = sorted(neutral, key=lambda name: -neutral[name])[:MOST_NAMED]
-    far = [name for name in furthest if neutral[name] > SLIGHT]
-    most = neutral[furthest[0]]
-    return f"{count} channels rest above 0, by up to {most:.2g}; most {_listed(far)}"
+    most = f"by up to {neutral[furthest[0]]:.2g}; most {_listed(furthest)}"
+    return f"{counted(len(neutral), 'channel')} above 0 at rest, {most}"
 
 
-def _gains(calibration: Calibration, used: set[str]) -> str:
-    """What is not taken as it is."""
-    by_gain: dict[float, list[str]] = {}
-    for name in sorted(used & calibration.gains.keys()):
-        by_gain.setdefault(calibration.gains[name], []).append(name)
-    told = [f"{gain:g} of {_listed(names)}" for gain, names in by_gain.items() if gain != 1.0]
-    rest = "all others" if told else "all"
-    others = [f"{calibration.default_gain:g} of {rest}"] * (calibration.default_gain != 1.0)
-    return "; ".join([*told, *others])
-
-
-def _beyond(controls: Mapping[str, Array], limits: Limits) -> list[str]:
-    """The controls that are asked for more than there is in many frames."""
-    beyond = []
-    for name in controls.keys() & limits.keys():
-        low, high = limits[name]
-        share = np.mean((controls[name] < low - OFTEN) | (controls[name] > high + OFTEN))
-        if share > OFTEN:
-            beyond.append(f"{name} in {share:.0%} of frames")
-    return beyond
-
-
-def _listed(names: Iterable[str], why: str = "") -> str:
-    """Names one after another, pairs in one word, and why."""
+def _listed(names: Iterable[str]) -> str:
+    """Names one after another, pairs in one word."""
     listed = sorted(names)
     told: list[str] = []
     for name in listed:
@@ -167,4 +132,4 @@ def _listed(names: Iterable[str], why: str = "") -> str:
             told.append(name.removesuffix("Left") + "Left/Right")
         elif not (name.endswith("Right") and name.removesuffix("Right") + "Left" in listed):
             told.append(name)
-    return " ".join(told) + (f": {why}" if told and why else "")
+    return " ".join(told)

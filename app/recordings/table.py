@@ -2,7 +2,7 @@
 
 Numbers are read by `numpy.loadtxt`, whose parser is compiled: ten minutes of 60 frames a second
 (36 000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but bring 80 MB and more
-for one function, and stop or guess at rows that are too short, decimal commas, blanks and NaN,
+for one function, and stop or guess at rows that are too short, blanks and NaN,
 which we find and tell of by line and column here. The csv module alone took 2 to 3 s.
 """
 
@@ -18,7 +18,7 @@ import numpy as np
 from ..errors import UserError, counted
 from .take import Array, Request
 
-DELIMITERS = ",;\t|"
+DELIMITERS = ",\t"
 UNIT_SEPARATOR = "\x1f"  # stands between cells that were quoted: it is in no cell
 LONGEST_NAME = 80  # [characters] of a column; what is longer is no header
 LARGEST = 1e30  # what is larger is no measurement; nanoseconds since 1970 are 1.8e18
@@ -128,9 +128,6 @@ def table_in(text: str, *, source: str) -> Table:
     rows = [(before + number, line) for number, line in rows[1:] if line.strip(" \t,;|\x1f")]
     if not rows:
         raise UserError(f"{source}: has a header and no rows below it; nothing was recorded")
-    if delimiter != "," and any(re.search(r"\d,\d", line) for _, line in rows[:100]):
-        rows = [(number, line.replace(",", ".")) for number, line in rows]
-        notes.append("Decimal commas were read as points.")
     kept = _of_one_length(rows, len(names), delimiter_within, notes)
     if 2 * len(kept) < len(rows):
         fitting = {number for number, _ in kept}

@@ -13,9 +13,9 @@ import numpy.typing as npt
 from .table import Table
 from .take import Array
 
-RATES = (24000 / 1001, 24.0, 25.0, 30000 / 1001, 30.0, 50.0, 60000 / 1001, 60.0)  # [frames / s]
+RATES = (24.0, 25.0, 30.0, 50.0, 60.0)  # [frames / s]
 DEFAULT_RATE = 30.0  # of most cameras
-TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:([:;])(\d+)(?:[.,](\d+))?)?$")
+TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:[:;](\d+)(?:[.,](\d+))?)?$")
 DAY = 86_400.0  # [s]
 LONGEST_PAUSE = 3600.0  # [s] over midnight; what goes back further is a wrong time
 SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
@@ -118,33 +118,27 @@ class _Timecode:
     """What cells of timecode say; arrays of shape (rows,).
 
     seconds: of the day, NaN where there is no timecode. frames: counted in this second.
-    fractions: of a frame. is_drop_frame: two numbers a minute are left out.
+    fractions: of a frame.
     """
 
     seconds: Array
     frames: Array
     fractions: Array
-    is_drop_frame: bool
 
     @classmethod
     def of(cls, cells: Sequence[str]) -> _Timecode:
         """The timecode in these cells."""
-        rows, marks = np.full((len(cells), 5), np.nan), set[str | None]()
+        rows = np.full((len(cells), 5), np.nan)
         for row, cell in enumerate(cells):
             if part := TIMECODE.match(cell):
-                *whole, mark, frame, fraction = part.groups(default="0")
-                rows[row] = *map(int, whole), int(frame), float(f"0.{fraction}")
-                marks.add(mark)
+                *whole, fraction = part.groups(default="0")
+                rows[row] = *map(int, whole), float(f"0.{fraction}")
         seconds = rows[:, :3] @ (3600.0, 60.0, 1.0)
-        return cls(seconds, np.nan_to_num(rows[:, 3]), np.nan_to_num(rows[:, 4]), ";" in marks)
+        return cls(seconds, np.nan_to_num(rows[:, 3]), np.nan_to_num(rows[:, 4]))
 
     def numbers(self, base: int) -> Array:
         """Frames since midnight of the first day, where a second has `base` of them."""
-        seconds = _unwrapped(self.seconds)
-        numbers: Array = seconds * base + self.frames
-        if self.is_drop_frame:  # two numbers a minute (four of 60), but in each tenth minute
-            minutes = np.floor(seconds / 60.0)
-            numbers -= (base // 15) * (minutes - np.floor(minutes / 10.0))
+        numbers: Array = _unwrapped(self.seconds) * base + self.frames
         return numbers
 
 
@@ -157,11 +151,7 @@ def _jumps(numbers: Array) -> int:
 def _rate_in(code: _Timecode, notes: list[str]) -> float:
     """The frame rate of timecodes, from the highest number of a frame in a second."""
     highest = int(code.frames.max())
-    if code.is_drop_frame:
-        rate = RATES[-2] if highest >= 30 else RATES[3]
-        notes.append(f"Drop-frame timecode: {rate:.2f} frames a second.")
-        return rate
-    rate = next((each for each in RATES if each == int(each) and each > highest), 240.0)
+    rate = next((each for each in RATES if each > highest), 240.0)
     if highest >= rate:  # no camera: thousandths
         rate = 1000.0
     if len(np.unique(code.seconds)) > 1:

@@ -1,37 +1,14 @@
-"""How far a sound swings in each of many equal stretches of time, quickly, whatever the zoom.
-
-A pyramid, as in audio editors: each level holds the lowest and highest sample of blocks that are
-BLOCK times as long as those below; the lowest level is the sound itself. Stretches are read from
-the coarsest level of which each has several blocks.
-"""
+"""How far a sound swings in each of many equal stretches of time, quickly, whatever the zoom."""
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .decoding import Sound
 
-BLOCK = 32  # blocks of a level that make one of the next
-LEAST = 4  # blocks of a stretch, so that its edges are seen at the right place
-
-
-class _Level(NamedTuple):
-    """The lowest and highest of every block of so many frames, which has so many entries."""
-
-    frames: int
-    entries: int  # a frame of the sound itself has one for each channel
-    low: npt.NDArray[np.int16]
-    high: npt.NDArray[np.int16]
-
-    def coarser(self) -> _Level:
-        """The next level."""
-        starts = np.arange(0, len(self.low), BLOCK * self.entries)
-        low = np.minimum.reduceat(self.low, starts)
-        high = np.maximum.reduceat(self.high, starts)
-        return _Level(self.frames * BLOCK, 1, low, high)
+BLOCK = 512  # samples of which the lowest and the highest are known
+LEAST = 4  # blocks of a stretch, so that its edges are right; of shorter ones samples are read
 
 
 class Peaks:
@@ -39,13 +16,11 @@ class Peaks:
 
     def __init__(self, sound: Sound) -> None:
         self._rate = sound.rate
-        samples = sound.samples.reshape(-1)
-        level = _Level(1, sound.samples.shape[1], samples, samples)
-        self._levels = [level]
-        while len(level.low) > BLOCK:
-            level = level.coarser()
-            self._levels.append(level)
-        self._loudest = max(-int(level.low.min()), int(level.high.max()), 1)
+        swings = sound.samples.min(axis=1), sound.samples.max(axis=1)
+        starts = np.arange(0, len(sound.samples), BLOCK)
+        blocks = np.minimum.reduceat(swings[0], starts), np.maximum.reduceat(swings[1], starts)
+        self._levels = {BLOCK: blocks, 1: swings}
+        self._loudest = max(-int(blocks[0].min()), int(blocks[1].max()), 1)
 
     def between(
         self, start: float, end: float, count: int
@@ -56,18 +31,14 @@ class Peaks:
         seen, too. 0 where there is no sound. start: not below 0.
         """
         edges = np.linspace(start, end, count + 1) * self._rate
-        longest = (edges[-1] - edges[0]) / count / LEAST
-        level = next(
-            (each for each in reversed(self._levels) if each.frames <= longest), self._levels[0]
-        )
-        places = np.floor(edges / level.frames).astype(np.int64) * level.entries
-        places = places[places < len(level.low)]
-        inside = slice(len(places[:count]))
+        length = BLOCK if edges[-1] - edges[0] >= count * LEAST * BLOCK else 1
+        low, high = self._levels[length]
+        places = np.floor(edges / length).astype(np.int64)
+        begins = places[:-1][places[:-1] < len(low)]
         swings = np.zeros((2, count))
-        if inside.stop:
-            end_of_last = places[-1] if len(places) > count else len(level.low)
-            part = slice(places[0], max(end_of_last, places[:count][-1] + level.entries))
-            begins = places[:count] - places[0]
-            swings[0, inside] = np.minimum.reduceat(level.low[part], begins)
-            swings[1, inside] = np.maximum.reduceat(level.high[part], begins)
+        if len(begins):
+            last = max(min(int(places[len(begins)]), len(low)), int(begins[-1]) + 1)
+            part = slice(begins[0], last)
+            swings[0, : len(begins)] = np.minimum.reduceat(low[part], begins - begins[0])
+            swings[1, : len(begins)] = np.maximum.reduceat(high[part], begins - begins[0])
         return swings[0] / self._loudest, swings[1] / self._loudest

@@ -24,13 +24,13 @@ def told(notes: tuple[str, ...], words: str) -> bool:
     return any(words in note for note in notes)
 
 
-def table(columns: Columns, delimiter: str = ",", comma: bool = False) -> str:
-    """A table in text; comma: of decimals."""
+def table(columns: Columns, delimiter: str = ",") -> str:
+    """A table in text."""
     rows = zip(*columns.values(), strict=True)
     lines = [delimiter.join(columns)]
     for row in rows:
         cells = [f"{cell:.6f}" if isinstance(cell, float) else str(cell) for cell in row]
-        lines.append(delimiter.join(cell.replace(".", ",") if comma else cell for cell in cells))
+        lines.append(delimiter.join(cells))
     return "\n".join(lines) + "\n"
 
 

@@ -47,19 +47,13 @@ PARTS = ("offscreen", "window", "films")
     "missing", [each for count in range(4) for each in itertools.combinations(PARTS, count)]
 )
 def test_the_verdict_is_what_works(ill: object, missing: tuple[str, ...]) -> None:
-    """Each part, each command, the summary and the exit code agree."""
+    """Each part, the summary and the exit code agree."""
     ill(*missing)  # type: ignore[operator]
     result = ask()
     lines = dict(line.split(": ", 1) for line in result.output.splitlines() if ": " in line)
     for part in PARTS:
         assert lines[part].startswith("no." if part in missing else "yes.")
-    assert lines["view, replay"].startswith("no" if "window" in missing else "works")
-    frames = lines["capture, demo, reproduce"]
-    assert frames.startswith("no" if "offscreen" in missing else "works")
-    if "offscreen" not in missing:
-        assert ("films need ffmpeg" in frames) == ("films" in missing)
-    silent = " but a device for sound" if lines["sound"].startswith("no.") else ""
-    assert (f"Everything is there{silent}." in result.output) == (not missing)
+    assert ("Everything is there." in result.output) == (not missing)
     assert lines.get("Missing", "").startswith(", ".join(missing))
     draws = not {"offscreen", "window"} <= set(missing)
     assert result.exit_code == (0 if not missing else 1 if draws else 2)
@@ -73,8 +67,7 @@ def test_offscreen_alone(ill: object, missing: tuple[str, ...]) -> None:
     result = ask("--offscreen")
     assert result.exit_code == (2 if "offscreen" in missing else 0)
     assert "window" not in result.output and "films" not in result.output
-    everything = "Everything is there for offscreen frames; nothing else was looked at."
-    assert (everything in result.output) == ("offscreen" not in missing)
+    assert ("Everything is there." in result.output) == ("offscreen" not in missing)
 
 
 @pytest.mark.parametrize("program", ["exec sleep 100", "exec >&-; exit 3", None])
@@ -87,5 +80,6 @@ def test_an_ffmpeg_that_does_not_answer(
     fake = tmp_path / "ffmpeg"
     fake.unlink() if program is None else fake.write_text(f"#!/bin/sh\n{program}\n")
     result = ask()
-    assert result.exit_code == 1 and f"films: no. {fake} d" in result.output
+    assert result.exit_code == 1 and "films: no. " in result.output
+    assert str(fake) in result.output
     assert "Cure: unset IMAGEIO_FFMPEG_EXE" in result.output

@@ -84,7 +84,6 @@ def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
         ("window", "bench window"),
         ("films", "bench capture"),
         ("films", "capture --set joy -o joy.mp4 --size 64x48 --quiet"),
-        ("live", "send take.csv --to vmc"),
         ("live", "view --live vmc"),
         ("export", "export --set joy -o joy.usd --quiet"),
         ("export", "export --set joy -o joy.vtkhdf --quiet"),

@@ -216,20 +216,6 @@ def test_midnight(tmp_path: Path) -> None:
     assert times == pytest.approx(np.arange(120) / 60.0, abs=1e-9)
 
 
-def test_drop_frame(tmp_path: Path) -> None:
-    """29.97 frames a second: numbers 0 and 1 are left out in each minute but each tenth."""
-    codes, number = [], 0
-    for _ in range(1900):
-        second, frame = divmod(number, 30)
-        codes.append(f"00:{second // 60:02}:{second % 60:02};{frame:02}")
-        number += 1
-        if number % 1800 == 0 and number % 18_000:
-            number += 2
-    times, notes = take_of(tmp_path, codes)
-    assert times == pytest.approx(np.arange(1900) * 1001 / 30000, abs=1e-6)
-    assert told(notes, "Drop-frame")
-
-
 def test_thousandths(tmp_path: Path) -> None:
     """Some programs write thousandths of a second in the place of frames."""
     codes = [f"10:00:{n // 25:02}:{n % 25 * 40:03}" for n in range(100)]

@@ -30,9 +30,9 @@ def check(path: Path) -> tuple[str, ...]:
     return take.notes
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 def test_encodings(encoding: str, tmp_path: Path) -> None:
-    """Found from the bytes, a name that is no ASCII stays what it is."""
+    """With or without a mark, a name that is no ASCII stays what it is."""
     path = tmp_path / "take.csv"
     text = table({"Stimmung für später": [1] * 6} | COLUMNS)
     path.write_bytes(text.encode(encoding))
@@ -41,20 +41,12 @@ def test_encodings(encoding: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
-@pytest.mark.parametrize("delimiter", [",", ";", "\t", "|"])
+@pytest.mark.parametrize("delimiter", [",", "\t"])
 def test_delimiters_and_line_ends(delimiter: str, ending: str, tmp_path: Path) -> None:
     """What stands between cells is found from the header."""
     path = tmp_path / "take.csv"
     path.write_bytes(table(COLUMNS, delimiter).replace("\n", ending).encode())
     check(path)
-
-
-@pytest.mark.parametrize("delimiter", [";", "\t"])
-def test_decimal_commas(delimiter: str, tmp_path: Path) -> None:
-    """Numbers may have commas where cells have another delimiter."""
-    path = tmp_path / "take.csv"
-    path.write_text(table(COLUMNS, delimiter, comma=True))
-    assert told(check(path), "Decimal commas")
 
 
 @pytest.mark.parametrize(
@@ -180,7 +172,7 @@ def test_files_of_ours_are_no_recordings(text: str, tmp_path: Path) -> None:
                  max_size=3),
         min_size=1, max_size=8,
     ),
-    st.sampled_from(",;\t|"),
+    st.sampled_from(",\t"),
     st.booleans(),
 )  # fmt: skip
 def test_numbers_are_read_as_they_are(

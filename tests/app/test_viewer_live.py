@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, State
+from risorius.app.live import LOOPBACK, Listening, LiveFace, State
 from risorius.app.live.sender import Sender
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session import live_commands
@@ -62,9 +62,9 @@ def silent(viewer: Viewer, clock: FrameClock) -> Iterator[None]:
     viewer.live.stop()
 
 
-def listen(viewer: Viewer, kind: str = "livelink") -> LiveFace:
+def listen(viewer: Viewer) -> LiveFace:
     """Listen on a free port."""
-    viewer.live.start(Listening(kind, port=0))
+    viewer.live.start(Listening("livelink", port=0))
     face = viewer.live.face
     assert face is not None
     return face
@@ -73,7 +73,7 @@ def listen(viewer: Viewer, kind: str = "livelink") -> LiveFace:
 @contextmanager
 def sending(face: LiveFace, file: Path) -> Iterator[None]:
     """Another process plays a recording to the window, again and again."""
-    words = ["send", file, "--loop", "--to", face.listening.kind, "--port", face.port]
+    words = ["send", file, "--loop", "--port", face.port]
     process = subprocess.Popen(
         [sys.executable, "-m", "risorius", *map(str, words)], stdout=subprocess.DEVNULL
     )
@@ -88,7 +88,7 @@ def hold(viewer: Viewer, face: LiveFace, seconds: float, **channels: float) -> N
     """Send the same face with every frame of the window, for a while and until it leads."""
     clock = face._clock
     end = clock() + seconds
-    with Sender("livelink", LOOPBACK, face.port, "Ada") as sender:
+    with Sender(LOOPBACK, face.port, "Ada") as sender:
 
         def leads() -> bool:
             """Whether that is enough; if not, send it once more."""
@@ -111,16 +111,9 @@ def write_take(file: Path, **channels: float) -> Path:
     return file
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        pytest.param(kind, marks=() if kind == "livelink" else pytest.mark.slow)
-        for kind in PROTOCOLS
-    ],
-)
-def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path, kind: str) -> None:
-    """In every protocol the mouth opens; when nothing comes any more it closes and all is idle."""
-    face = listen(viewer, kind)
+def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path) -> None:
+    """The mouth opens; when nothing comes any more it closes and all is idle."""
+    face = listen(viewer)
     assert until(viewer, lambda: "live state" in viewer.gui.places)
     with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
         assert until(viewer, lambda: moved(viewer) > 8.0)
@@ -224,7 +217,7 @@ def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
     face = listen(viewer)
     viewer.messages.text = ""
     assert until(viewer, lambda: viewer.is_idle)
-    with Sender("livelink", LOOPBACK, face.port, "Ada") as sender:
+    with Sender(LOOPBACK, face.port, "Ada") as sender:
         sender.send({"jawOpen": 0.8})
         viewer.wait_for_frame()
         assert face.silence < 60.0 and not viewer.is_idle

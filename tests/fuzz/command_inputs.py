@@ -69,7 +69,6 @@ REFUSED = {
     "view --live vmc --scene plane": "moves the scene 'face'",
     "view --port 11111": "--port goes with --live",
     "send good.toml": "is no table and no JSON",
-    "send good.toml --to phone": "'phone' is not one of",
     # Sizes.
     "capture good.toml -o x.png --size 16": "'16' is no size",
     # Cameras.
