@@ -19,7 +19,7 @@ class Job:
     """A line that is to be done.
 
     command: where its click command is, "module:name". folder: where its relative paths begin.
-    inputs, outputs: the files that it reads and writes. beside: files that come with the latter.
+    inputs, outputs: the files that it reads and writes. log: the file of what it prints.
     """
 
     number: int
@@ -29,7 +29,16 @@ class Job:
     folder: Path
     inputs: tuple[Path, ...]
     outputs: tuple[Path, ...]
-    beside: tuple[Path, ...] = ()
+    log: Path
+
+    def is_done(self) -> bool:
+        """Whether all outputs are there, and none is older than an input; they are never half."""
+        files = (*self.outputs, *self.inputs)
+        if not all(path.exists() for path in files):
+            return False
+        times = [path.stat().st_mtime_ns for path in files]
+        count = len(self.outputs)
+        return min(times[:count]) >= max(times[count:], default=0)
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
@@ -55,7 +64,7 @@ def clashes(jobs: Sequence[Job]) -> Iterator[tuple[int, str]]:
     """Lines that cannot be done beside others: their numbers, and why."""
     writer_of: dict[str, Job] = {}
     for job in jobs:
-        for output in (*job.outputs, *job.beside):
+        for output in job.outputs:
             other = writer_of.setdefault(os.path.realpath(output), job)
             if other is not job:
                 yield job.number, f"{output}: is written by line {other.number} already"

@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import os
 import socket
-import sys
+import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -16,8 +17,8 @@ import click
 from ..errors import UserError, counted
 from ..files import written_atomically
 from ..motion import tally
-from ..workers import run_all
-from .journal import Journal, made_from
+from ..stopping import cleaned_up_if_stopped
+from ..workers import Send, WorkerPool
 from .listing import Job
 
 OK, FAILED, SKIPPED = "ok", "failed", "skipped"
@@ -30,11 +31,9 @@ class Result:
 
     job: Job
     status: str
-    seconds: float
-    frames: int
-    attempts: int
-    error: str
-    log: Path
+    seconds: float = 0.0
+    frames: int = 0
+    error: str = ""
 
     @property
     def rate(self) -> float:
@@ -43,45 +42,46 @@ class Result:
 
 
 def run_lines(
-    jobs: Sequence[Job],
-    journal: Journal,
-    logs: Path,
-    *,
-    processes: int,
-    scheduler: str | None,
-    resume: bool,
+    jobs: Sequence[Job], *, processes: int, scheduler: str | None, resume: bool
 ) -> Iterator[Result]:
-    """Do the lines, and yield what became of each as it ends; with `resume` not those done.
+    """Do the lines, and yield what became of each as it ends; with `resume` not those done."""
+    done = {job for job in jobs if resume and job.is_done()}
+    waiting = [job for job in jobs if job not in done]
+    yield from (Result(job, SKIPPED) for job in done)
+    for job in waiting:
+        job.log.unlink(missing_ok=True)
+    if scheduler is None:
+        yield from _run_here(waiting, processes)
+        return
+    from .cluster import run_on_cluster
 
-    logs: the folder of what the lines print, one file each.
-    """
-    waiting: list[Job] = []
-    for job in jobs:
-        made = journal.made(job) if resume else None
-        if made is None:
-            waiting.append(job)
-            continue
-        yield Result(job, SKIPPED, made["seconds"], made["frames"], 0, "", _log(logs, job))
-    journal.begin(waiting)
-    states = [made_from(job) for job in waiting]
-    files = [_log(logs, job) for job in waiting]
-    for file in files:
-        file.unlink(missing_ok=True)
-    for outcome in run_all(do, waiting, jobs=processes, scheduler=scheduler, logs=files):
-        job, frames = waiting[outcome.index], outcome.result or 0
-        if outcome.error is None:
-            journal.add(job, states[outcome.index], frames, outcome.seconds)
-        status, log = OK if outcome.error is None else FAILED, files[outcome.index]
-        error = outcome.error or ""
-        yield Result(job, status, outcome.seconds, frames, outcome.attempts, error, log)
+    for job, result, why in run_on_cluster(do_line, waiting, scheduler):
+        yield result or Result(job, FAILED, error=why)
 
 
-def _log(folder: Path, job: Job) -> Path:
-    return folder / f"line_{job.number:04d}.log"
+def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
+    pool = WorkerPool(processes)
+    with cleaned_up_if_stopped(pool.stop), ThreadPoolExecutor(processes) as threads:
+        try:
+            for ended in as_completed([threads.submit(do_line, pool, job) for job in jobs]):
+                yield ended.result()
+        finally:
+            threads.shutdown(wait=False, cancel_futures=True)
+            pool.stop()
 
 
-def do(job: Job) -> int:
-    """In a process that works: do a line, and return how many frames were played for it."""
+def do_line(pool: WorkerPool, job: Job) -> Result:
+    """Have a line done by a process."""
+    begin, frames = time.monotonic(), list[int]()
+    try:
+        pool.run(_do, job, tell=frames.append, log=job.log)
+    except UserError as error:
+        return Result(job, FAILED, time.monotonic() - begin, error=str(error))
+    return Result(job, OK, time.monotonic() - begin, frames[-1])
+
+
+def _do(job: Job, send: Send) -> None:
+    """In that process: do a line, and tell how many frames were played for it."""
     print(f"risorius {job.text}", flush=True)
     try:
         os.chdir(job.folder)
@@ -92,13 +92,11 @@ def do(job: Job) -> int:
         ) from None
     module, _, name = job.command.partition(":")
     command: click.Command = getattr(import_module(module), name)
-    before = tally.frames
     try:
         command.main(list(job.arguments), prog_name=f"risorius {name}", standalone_mode=False)
     except click.ClickException as error:
         raise UserError(error.format_message()) from None
-    sys.stdout.flush()
-    return tally.frames - before
+    send(tally.frames)
 
 
 def table(results: Sequence[Result], seconds: float) -> Iterator[str]:
@@ -125,11 +123,9 @@ def save_summary(target: Path, results: Sequence[Result]) -> None:
             "status": each.status,
             "seconds": f"{each.seconds:.3f}",
             "frames": each.frames,
-            "frames_per_second": f"{each.rate:.3f}",
-            "attempts": each.attempts,
             "outputs": " ".join(map(str, each.job.outputs)),
             "error": each.error,
-            "log": each.log,
+            "log": each.job.log,
             "command": each.job.text,
         }
         for each in sorted(results, key=lambda each: each.job.number)

@@ -12,7 +12,6 @@ import numpy as np
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
-from .. import process_cache
 from ..anatomy import SKIN_ALONE, AnatomyView
 from ..files import Image
 from ..motion import play
@@ -80,19 +79,9 @@ class Capture:
     def __init__(self, scene: Scene, options: CaptureOptions) -> None:
         self.scene = scene
         self.options = options
+        self.surface = render.open_offscreen(options.size, samples=options.samples)
+        self.pipeline = Pipeline(scene, render.Renderer(self.surface))
         refinements = (*options.beside, options.refinement)
-
-        def opened() -> tuple[render.OffscreenSurface, Pipeline]:
-            """A surface, and the scene's textures on it."""
-            surface = render.open_offscreen(options.size, samples=options.samples)
-            return surface, Pipeline(scene, render.Renderer(surface))
-
-        # What is kept holds its scene, so that no other can have this identity.
-        key = (options.size, options.samples, id(scene))
-        self.surface, self.pipeline = process_cache.cached(
-            "surface", key, opened, lambda made: made[0].close()
-        )
-        self.surface.make_current()
         meshes = [self.pipeline.bind(each) for each in refinements]
         self._passes = Passes(self.pipeline, meshes[-1]) if options.passes else None
         self.viewports = side_by_side(self.surface.size, meshes)
@@ -108,8 +97,7 @@ class Capture:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if not process_cache.is_enabled():
-            self.surface.close()
+        self.surface.close()
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""

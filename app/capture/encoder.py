@@ -1,9 +1,7 @@
 """Frames -> a film: what it can be, by the suffix of its name, and ffmpeg, which codes it.
 
-ffmpeg is a process of its own; its failures are told in one line.
-
-The writer of `imageio_ffmpeg` takes no notice of how ffmpeg ends, so a film that a full disk cut
-short would pass as whole, and waits for ever for one that hangs.
+ffmpeg is a process of its own; its failures are told in one line. The writer of `imageio_ffmpeg`
+takes no notice of how it ends, so a film that a full disk cut short would pass as whole.
 """
 
 from __future__ import annotations
@@ -11,13 +9,10 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import select
 import signal
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -39,9 +34,7 @@ VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1"
 # Each frame has colours of its own: nothing is kept until the end of a long film.
 GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single{0}[p];[b][p]paletteuse=new=1{1}"
 WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -loop 0"
-PATIENCE = 60.0  # [s] without a sign of life, until ffmpeg is given up
-TICK = 0.01  # [s] between two looks at it
-DYING = 1.0  # [s] for the end of a killed process
+DYING = 1.0  # [s] for the end of a process that is killed, or has given up
 
 
 @dataclass(frozen=True)
@@ -173,15 +166,12 @@ class Encoder:
             raise UserError(f"no film without ffmpeg: {name}: {error.strerror}") from None
         assert self._process.stdin is not None
         self._frames = self._process.stdin
-        if sys.platform != "win32":  # there a pipe cannot be waited for
-            os.set_blocking(self._frames.fileno(), False)
 
     def add(self, image: npt.NDArray[np.uint8]) -> None:
-        """Hand over a frame, (H, W, 3 or 4); UserError where ffmpeg has given up, or hangs."""
+        """Hand over a frame, (H, W, 3 or 4); UserError where ffmpeg has given up."""
         left = np.ascontiguousarray(image).data.cast("B")
         try:
             while left:
-                self._wait_until(self._takes_more)
                 left = left[self._frames.write(left) or 0 :]
         except BrokenPipeError:
             raise self._failure() from None
@@ -189,7 +179,7 @@ class Encoder:
     def finish(self) -> None:
         """Wait until the file is whole; UserError if it is not."""
         self._frames.close()
-        if self._end_code():
+        if self._process.wait():
             raise self._failure()
 
     def stop(self) -> None:
@@ -204,52 +194,15 @@ class Encoder:
         self._messages.close()
         self._frames.close()
 
-    def _takes_more(self) -> bool:
-        if sys.platform == "win32":
-            return True
-        return bool(select.select([], [self._frames], [], TICK)[1])
-
-    def _end_code(self) -> int:
-        """Wait for the end of the process, and return its code.
-
-        Not with `wait`: that holds a lock for which `stop`, called by a signal, would wait forever.
-        """
-
-        def has_ended() -> bool:
-            time.sleep(TICK)
-            return self._process.poll() is not None
-
-        self._wait_until(has_ended)
-        return int(self._process.returncode)
-
-    def _wait_until(self, is_over: Callable[[], bool]) -> None:
-        """Wait; UserError where nothing happens for so long that nothing will.
-
-        A film that grows is a sign of life: to write its last frames, and then to move the index
-        of a long one to its front, may take minutes. Ticks are counted, not seconds, so that no
-        time passes while this process is stopped itself.
-        """
-        idle, seen = 0, self._state_of_film()
-        while not is_over():
-            now = self._state_of_film()
-            idle, seen = (idle + 1 if now == seen else 0), now
-            if idle * TICK > PATIENCE:
-                raise UserError(
-                    f"{self._target}: cannot be written: ffmpeg hangs, it did nothing for "
-                    f"{PATIENCE:g} s; try again, or write frames to a folder (-o NAME)"
-                )
-
-    def _state_of_film(self) -> object:
-        try:
-            found = self._part.stat()
-        except OSError:
-            return None
-        return found.st_size, found.st_mtime_ns
-
     def _failure(self) -> UserError:
-        code = self._end_code()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(DYING)
         self._messages.seek(0)
         said = self._messages.read().decode(errors="replace").strip().splitlines()
         # Without the part of ffmpeg that speaks: "[out#0/mp4 @ 0x55e9629d] ".
-        why = re.sub(r"^(\[[^]]*\] )+", "", said[-1]) if said else f"it ended with code {code}"
+        why = (
+            re.sub(r"^(\[[^]]*\] )+", "", said[-1])
+            if said
+            else f"it ended with code {self._process.returncode}"
+        )
         return UserError(f"{self._target}: cannot be written: ffmpeg: {why}")

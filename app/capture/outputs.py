@@ -10,8 +10,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import PIL.Image
+import scipy
 
 from ..files import (
     QUICK,
@@ -23,10 +23,9 @@ from ..files import (
 )
 from ..passes.labelled import ENDS, Labelled
 from ..stopping import cleaned_up_if_stopped
-from ..workers.child import share_of_cores
+from ..workers import share_of_cores
 from .encoder import Encoder, Soundtrack, check_format, size_of_film
 
-AROUND = 6  # halvings: colours reach 64 pixels, the largest block of a coder, beyond an edge
 FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
 
 
@@ -112,33 +111,12 @@ def with_colours_around(image: Image) -> Image:
     What codes blocks of pixels, or colours at half the size, mixes edges with what is around them;
     black there would be seen as a dark fringe.
     """
-    weight: npt.NDArray[np.float32] = np.greater(image[..., 3:], 0).astype(np.float32)
+    is_clear = image[..., 3] == 0
+    if is_clear.all():
+        return image
+    nearest = scipy.ndimage.distance_transform_edt(
+        is_clear, return_distances=False, return_indices=True
+    )
     filled = image.copy()
-    seen: npt.NDArray[np.float32] = (image[..., :3] * weight).astype(np.float32)
-    around = _filled(seen, weight, AROUND)
-    filled[..., :3] = np.where(weight > 0.0, image[..., :3], around + 0.5)
+    filled[..., :3] = image[..., :3][tuple(nearest)]
     return filled
-
-
-def _filled(
-    colours: npt.NDArray[np.float32], weight: npt.NDArray[np.float32], halvings: int
-) -> npt.NDArray[np.float32]:
-    """Colours (H, W, 3), 0 where the weight (H, W, 1) is, with means of those around there."""
-    if not halvings:
-        return colours
-    height, width = weight.shape[:2]
-    padding = ((0, height % 2), (0, width % 2), (0, 0))
-
-    def halved(values: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
-        """Sums of two by two."""
-        even = np.pad(values, padding)
-        rows = even[::2] + even[1::2]
-        summed: npt.NDArray[np.float32] = rows[:, ::2] + rows[:, 1::2]
-        return summed
-
-    count = halved(weight)
-    means = np.divide(halved(colours), np.maximum(count, 1.0), dtype=np.float32)
-    some: npt.NDArray[np.float32] = np.minimum(count, np.float32(1.0))
-    coarse = _filled(means, some, halvings - 1)
-    fine = coarse.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
-    return np.where(weight > 0.0, colours, fine)

@@ -7,31 +7,21 @@ draw comes through pipes, in order, while they go on with the next frames.
 
 from __future__ import annotations
 
-import contextlib
-import logging
-import logging.handlers
-import os
-import pickle
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from functools import partial
-from queue import Queue
 
 from risorius import render
 
-from ..errors import UserError
+from ..errors import UserError, announce_compiling
 from ..motion import counted_frames, scene_of
 from ..script import Script
 from ..stopping import cleaned_up_if_stopped
-from ..workers.child import Child, DiedError, share_of_cores, streams
+from ..workers import DiedError, Send, Worker, share_of_cores
 from .drawing import Capture, CaptureOptions, Frame
 
 SAMPLES_EACH = 1e8  # 27 frames of 1280 x 720: fewer are not worth a start of three seconds
 MOST = 8  # more of them than one encoder can follow
-AHEAD = 32e6  # [bytes] of pictures that a process draws ahead of the film, or two pictures
-COMPILER = "risorius.jit"  # the log that tells of code that is compiled
-STILL = "still"  # handed over in place of a frame that is the one before it
 
 
 @dataclass(frozen=True)
@@ -56,115 +46,53 @@ def worthwhile(options: CaptureOptions, frame_count: int) -> int:
         return count if surface.is_software else 1
 
 
-@contextlib.contextmanager
 def drawing(
     script: Script, options: CaptureOptions, until: float, count: int, *, progress: bool
-) -> Iterator[Iterator[tuple[float, Callable[[], Frame]]]]:
+) -> Generator[tuple[float, Callable[[], Frame]]]:
     """Let `count` processes play a script; yield each frame's time [s] and what hands it over.
 
     Each frame of the span has to be taken. What goes wrong in a process is raised there.
     """
-    drawers: list[Child] = []
+    drawers: list[Worker] = []
+    shown: list[Frame] = []
 
     def stop() -> None:
         """End them all; they have nothing to clean up."""
         for drawer in drawers:
             drawer.process.kill()
 
-    def frames() -> Iterator[tuple[float, Callable[[], Frame]]]:
-        """All frames, from one process after the other."""
-        rate, shown = options.frames_per_second, list[Frame]()
+    def take(messages: Iterator[Frame | None]) -> Frame:
+        """The next frame: of this process, or the last one again."""
+        try:
+            frame = next(messages)
+        except DiedError as why:
+            raise UserError(
+                f"a process that draws the film ended ({why}); try again, and where memory is "
+                "short, take a smaller --size"
+            ) from None
+        if frame is not None:
+            shown[:] = [frame]
+        return shown[0]
 
-        def take(drawer: Child) -> Frame:
-            """The next frame: of this process, or the last one again."""
-            if (frame := _next_of(drawer)) is not None:
-                shown[:] = [frame]
-            return shown[0]
-
-        for index in counted_frames(until, rate, progress=progress):
-            yield index / rate, partial(take, drawers[index % count])
-
-    environment = {**os.environ, "LP_NUM_THREADS": "0"}  # no threads beside it
+    rate = options.frames_per_second
     with cleaned_up_if_stopped(stop):
         try:
             for first in range(count):
-                drawers.append(Child(__name__, environment))
-                with contextlib.suppress(DiedError):  # told where its first frame is taken
-                    drawers[-1].send(Share(script, options, until, first, count))
-            yield frames()
+                drawers.append(Worker(_draw, Share(script, options, until, first, count)))
+            drawn = [drawer.messages() for drawer in drawers]
+            for index in counted_frames(until, rate, progress=progress):
+                yield index / rate, partial(take, drawn[index % count])
         finally:
             stop()
             for drawer in drawers:
                 drawer.close()
 
 
-def _next_of(drawer: Child) -> Frame | None:
-    """The next frame of a process, None where it is the one before it.
-
-    Raises what it raised, UserError where it died.
-    """
-    while True:
-        try:
-            found = drawer.receive()
-        except DiedError as why:
-            raise UserError(
-                f"a process that draws the film ended ({why}); try again, and where memory is "
-                "short, take a smaller --size"
-            ) from None
-        if isinstance(found, Frame) or found == STILL:
-            return found if isinstance(found, Frame) else None
-        if isinstance(found, Exception):
-            raise found
-        logging.getLogger(COMPILER).handle(found)
-
-
-class _LogForwarder(logging.handlers.QueueHandler):
-    """Has the process that asked say what is compiled here."""
-
-    queue: Queue[object]
-
-    def enqueue(self, record: logging.LogRecord) -> None:
-        """Hand a line over, where frames wait, too."""
-        self.queue.put(record)
-
-
-def serve() -> None:
-    """Draw the share that the standard input tells, onto the standard output."""
-    requests, results = streams()
-    try:
-        share: Share = pickle.load(requests)
-    except (EOFError, pickle.UnpicklingError):  # whoever began this process was stopped
-        return
-    width, height = share.options.size
-    room = max(int(AHEAD / (4 * width * height)), 2)
-    drawn: Queue[object] = Queue(room)
-    log = logging.getLogger(COMPILER)
-    log.addHandler(_LogForwarder(drawn))
-    log.setLevel(logging.INFO)
-    log.propagate = False
-
-    def hand_over() -> None:
-        """Write what is drawn while the next is; where nobody reads, the process is over."""
-        try:
-            while (item := drawn.get()) is not None:
-                pickle.dump(item, results, pickle.HIGHEST_PROTOCOL)
-                results.flush()
-        except BrokenPipeError:
-            os._exit(1)
-
-    writer = threading.Thread(target=hand_over)
-    writer.start()
-    try:
-        _draw(share, drawn.put)
-    except Exception as error:
-        drawn.put(error)
-    finally:
-        drawn.put(None)
-        writer.join()
-
-
-def _draw(share: Share, hand_over: Callable[[object], None]) -> None:
+def _draw(share: Share, send: Send) -> None:
+    """In a process: hand over the frames that are its own, None for one like that before it."""
     options = share.options
+    if share.first == 0:
+        announce_compiling()
     first = 0 if options.span is None else round(options.span[0] * options.frames_per_second)
     with Capture(scene_of(share.script, options.head), options) as capture:
         playing = capture.play(share.script, until=share.until, progress=False)
@@ -172,8 +100,8 @@ def _draw(share: Share, hand_over: Callable[[object], None]) -> None:
             is_mine = index >= first and index % share.every == share.first
             is_still = index >= first and capture.is_still()
             if is_mine and not is_still:
-                hand_over(capture.draw_frame())
+                send(capture.draw_frame())
                 continue
             capture.refine()
             if is_mine:
-                hand_over(STILL)
+                send(None)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator
 from pathlib import Path
-from typing import NamedTuple
 
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
@@ -17,14 +16,6 @@ from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
 from .encoder import HEARD, Soundtrack, check_name, format_of
-
-
-class Taker(NamedTuple):
-    """Who takes frames of a script that plays."""
-
-    wants: Callable[[float], bool]
-    """Whether the frame at this time [s] is one of them."""
-    take: Callable[[float, Frame], None]
 
 
 def capture(
@@ -44,51 +35,42 @@ def capture(
     """
     _check(script, options, output, sheet, time)
     _check_passes(script, output, options)
-    begin, end = options.span or (0.0, script.duration)
-    takers, count, most = list[Taker](), 1, 0
-    with contextlib.ExitStack() as stack:
-        if sheet is not None:
-            takers.append(stack.enter_context(_sheet_of(script, options, sheet)))
-        if output is not None and _is_image(output):
-            moment, picture = _moment_of(script, options, time), output
-            takers.append(
-                Taker(
-                    lambda now: now == moment,
-                    lambda _, frame: save_labelled(picture, frame.image, frame.known),
-                )
-            )
-            end = max(end, moment) if sheet else moment
-        elif output is not None:
-            sink = _sink_for(output, options, overwrite, soundtrack_of(script, options.span))
-            add, first = stack.enter_context(sink), begin - 0.5 / options.frames_per_second
-            takers.append(
-                Taker(lambda now: now >= first, lambda _, frame: add(frame.image, frame.known))
-            )
-            frames = round((end - begin) * options.frames_per_second + 0.5) + 1
-            count = processes.worthwhile(options, frames)
+    most = [0]
+    if sheet is not None:
+        most.append(_draw_sheet(script, options, sheet, progress))
+    if output is not None and _is_image(output):
+        moment = _moment_of(script, options, time)
+        playing = _played(script, options, moment, progress)
+        for frame in (draw() for now, draw in playing if now == moment):
+            save_labelled(output, frame.image, frame.known)
+            most.append(frame.triangle_count)
+    elif output is not None:
+        begin, end = options.span or (0.0, script.duration)
+        frames = round((end - begin) * options.frames_per_second + 0.5) + 1
+        count = processes.worthwhile(options, frames)
+        sink = _sink_for(output, options, overwrite, soundtrack_of(script, options.span))
         playing = _played(script, options, end, progress, count)
-        for now, draw in stack.enter_context(contextlib.closing(playing)):
-            if taking := [taker for taker in takers if taker.wants(now)]:
-                frame = draw()
-                most = max(most, frame.triangle_count)
-                for taker in taking:
-                    taker.take(now, frame)
-    return most
+        with sink as add, contextlib.closing(playing):
+            for now, draw in playing:
+                if now >= begin - 0.5 / options.frames_per_second:
+                    frame = draw()
+                    add(frame.image, frame.known)
+                    most.append(frame.triangle_count)
+    return max(most)
 
 
-@contextlib.contextmanager
-def _sheet_of(script: Script, options: CaptureOptions, sheet: Path) -> Iterator[Taker]:
-    """Takes the frames of the named poses, and lays them out in a picture at the end."""
-    half, wanted = 0.5 / options.frames_per_second, list(script.key_poses)
-    named: list[tuple[str, Image]] = []
-
-    def take(now: float, frame: Frame) -> None:
-        """For as many poses as are at this frame."""
-        while wanted and wanted[0].time <= now + half:
-            named.append((wanted.pop(0).name or "", frame.image))
-
-    yield Taker(lambda now: bool(wanted) and wanted[0].time <= now + half, take)
+def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: bool) -> int:
+    """Lay pictures of the named poses out in one; the largest number of triangles in them."""
+    half, most = 0.5 / options.frames_per_second, 0
+    wanted, named = list(script.key_poses), list[tuple[str, Image]]()
+    for now, draw in _played(script, options, script.duration, progress):
+        if wanted and wanted[0].time <= now + half:
+            frame = draw()
+            most = max(most, frame.triangle_count)
+            while wanted and wanted[0].time <= now + half:
+                named.append((wanted.pop(0).name or "", frame.image))
     save_png(sheet, contact_sheet(named, columns=2 if options.beside else 3))
+    return most
 
 
 def _moment_of(script: Script, options: CaptureOptions, time: float | None) -> float:
@@ -99,12 +81,11 @@ def _moment_of(script: Script, options: CaptureOptions, time: float | None) -> f
 
 
 def _played(
-    script: Script, options: CaptureOptions, until: float, progress: bool, count: int
+    script: Script, options: CaptureOptions, until: float, progress: bool, count: int = 1
 ) -> Generator[tuple[float, Callable[[], Frame]]]:
     """The time [s] of each frame, and what draws it: this process, or as many as `count` says."""
     if count > 1:
-        with processes.drawing(script, options, until, count, progress=progress) as frames:
-            yield from frames
+        yield from processes.drawing(script, options, until, count, progress=progress)
         return
     with Capture(scene_of(script, options.head), options) as recording:
         for now in recording.play(script, until=until, progress=progress):

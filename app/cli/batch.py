@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import fields
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 from tqdm import tqdm
 
-from ..batch.journal import Journal
 from ..batch.listing import Job, clashes, lines_of, words_of
 from ..errors import UserError, counted, in_one_line
 from ..files import cannot_be_written, check_apart, check_folder
-from ..recordings.conversion import Playback
 from ..stopping import cleaned_up_if_stopped
 from .options import PATH, SILENT
 
@@ -39,7 +35,7 @@ MOST_TOLD = 20  # lines that are wrong
 @click.option(
     "--resume",
     is_flag=True,
-    help="Leave out lines whose outputs are there and would come out the same.",
+    help="Leave out lines whose outputs are there, and no older than what they are made of.",
 )
 @click.option(
     "--logs", type=PATH, help="A folder for what lines print; LIST_logs beside LIST unless told."
@@ -60,25 +56,18 @@ def batch(
     where you stand. All lines are checked before the first is begun.
     """
     from ..batch.running import FAILED, run_lines, save_summary, table
-    from ..workers.child import cores
+    from ..workers import share_of_cores
 
     if jobs is not None and scheduler is not None:
         raise UserError("--jobs is for this computer; with --scheduler the cluster has its workers")
     start = time.monotonic()
     logs = (logs or listing.parent / f"{listing.stem}_logs").absolute()
-    journal = Journal(logs / "journal.jsonl")
-    listed = jobs_in(listing, journal)
+    listed = jobs_in(listing, logs, resume=resume)
     with cannot_be_written(logs):
         logs.mkdir(parents=True, exist_ok=True)
     results = []
-    lines = run_lines(
-        listed,
-        journal,
-        logs,
-        processes=jobs or cores(),
-        scheduler=scheduler,
-        resume=resume,
-    )
+    processes = jobs or share_of_cores()
+    lines = run_lines(listed, processes=processes, scheduler=scheduler, resume=resume)
     with tqdm(total=len(listed), unit="line", disable=quiet or None) as bar:
         with cleaned_up_if_stopped(bar.close):
             for result in lines:
@@ -98,12 +87,12 @@ def batch(
         sys.exit(1)
 
 
-def jobs_in(listing: Path, journal: Journal) -> list[Job]:
+def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
     """What the lines of a list ask for; tells what is wrong with which, and ends the program."""
     jobs, wrong = [], []
     for number, text in lines_of(listing):
         try:
-            jobs.append(_job(number, text, journal))
+            jobs.append(_job(number, text, logs, resume=resume))
         except (UserError, click.ClickException) as error:
             message = error.format_message() if isinstance(error, click.ClickException) else error
             wrong.append((number, " ".join(str(message).split()).rstrip(".")))
@@ -120,7 +109,7 @@ def jobs_in(listing: Path, journal: Journal) -> list[Job]:
     return jobs
 
 
-def _job(number: int, text: str, journal: Journal) -> Job:
+def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
     """What a line asks for. Raises UserError, or click's errors, for what cannot be done."""
     name, *arguments = words_of(text)
     command = _listed(name)
@@ -130,9 +119,9 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         value for key, value in given.items() if isinstance(value, Path) and key not in OUTPUTS
     ]
     _check_files(name, given, inputs, outputs)
-    beside = _beside(name, given)
-    if given.get("overwrite") is False:
-        _check_free(name, outputs, beside, journal)
+    if given.get("overwrite") is False and (resume or not outputs[0].suffix):
+        if not resume:
+            check_folder(outputs[0], overwrite=False)
         arguments.insert(0, "--overwrite")  # what is there then, an attempt before has left
     assert command.callback is not None
     return Job(
@@ -141,9 +130,9 @@ def _job(number: int, text: str, journal: Journal) -> Job:
         f"{command.callback.__module__}:{command.callback.__name__}",
         tuple(arguments),
         Path.cwd(),
-        tuple(path.absolute() for path in (*inputs, *_named_in(given))),
+        tuple(path.absolute() for path in inputs),
         tuple(path.absolute() for path in outputs),
-        tuple(path.absolute() for path in beside),
+        logs / f"line_{number:04d}.log",
     )
 
 
@@ -179,43 +168,3 @@ def _check_files(
         from ..capture.encoder import check_name
 
         check_name(given["output"])
-
-
-def _check_free(
-    name: str, outputs: Sequence[Path], beside: Sequence[Path], journal: Journal
-) -> None:
-    """UserError where something is in the place of outputs that no batch has put there."""
-    for path in beside if name == "export" and not outputs[0].exists() else ():
-        if os.path.lexists(path) and not journal.began(outputs[0].absolute()):
-            raise UserError(f"{path}: is there; choose another name, or add --overwrite")
-    for path in outputs:
-        if not journal.began(path.absolute()) and path.is_dir():
-            check_folder(path, overwrite=False)
-
-
-def _beside(name: str, given: dict[str, Any]) -> list[Path]:
-    """The files that come with the one that a line names."""
-    from ..export.formats import format_for
-    from ..passes.labelled import beside
-
-    output: Path | None = given.get("output")
-    if name == "export" and output is not None:
-        return list(format_for(output, given["name"]).outputs(output)[1:])
-    is_picture = output is not None and output.suffix.lower() == ".png"
-    return beside(output) if output and is_picture and given.get("passes") else []
-
-
-def _named_in(given: dict[str, Any]) -> Iterator[Path]:
-    """The files that a line's script names: its sound. UserError for what cannot be played.
-
-    A recording, whose reading takes long, is played by the controls that every face has.
-    """
-    from ..performances import limits_of, script_for
-
-    script, settings = given.get("script"), given.get("settings", ())
-    if settings or (script is not None and script.suffix.lower() == ".toml"):
-        playback = Playback(**{each.name: given[each.name] for each in fields(Playback)})
-        performance = script_for(script, given["scene"], settings, playback=playback)
-        performance.check(limits_of(performance.scene))
-        if performance.sound is not None:
-            yield performance.sound

@@ -117,32 +117,26 @@ def view(
 
 @click.command()
 @click.argument("recording", type=PATH, required=False)
-@click.option(
-    "--to", "kind", type=click.Choice(list(PROTOCOLS)), default="livelink", show_default=True
-)
 @click.option("--port", type=click.IntRange(1, 65535), help="Unless told, the protocol's own.")
 @click.option("--address", default=LOOPBACK, show_default=True, help="Of the receiving computer.")
 @click.option("--loop", is_flag=True, help="Again and again, until Ctrl-C.")
-def send(recording: Path | None, kind: str, port: int | None, address: str, loop: bool) -> None:
-    """Send RECORDING as a phone would.
+def send(recording: Path | None, port: int | None, address: str, loop: bool) -> None:
+    """Send RECORDING as Live Link Face would.
 
-    `risorius view --live` follows it. Without RECORDING a short one is sent that comes along.
+    `risorius view --live livelink` follows it. Without RECORDING a short one is sent that comes
+    along.
     """
-    from ..live.sender import Sender, carried
+    from ..live.sender import Sender
     from ..recordings.reading import read_take
 
     if recording is None:  # what `risorius export` makes of scripts/speech.toml
         recording = Path(str(files("risorius.assets") / "data" / "speech.csv"))
     take = read_take(recording)
-    channels, left_out = carried(take)
-    with Sender(kind, address, port, recording.stem) as sender:
-        title = PROTOCOLS[kind].title
+    with Sender(address, port, recording.stem) as sender:
         click.echo(
-            f"{in_one_line(recording)}: {take.kind}, {take.duration:.2f} s, {len(channels)} "
-            f"channels, to {address}, port {sender.port}, as {title}; Ctrl-C ends it"
+            f"{in_one_line(recording)}: {take.kind}, {take.duration:.2f} s, to {address}, port "
+            f"{sender.port}; Ctrl-C ends it"
         )
-        if left_out:
-            click.echo(f"not sent: {in_one_line(', '.join(left_out))}")
         sender.play(take, is_looping=loop)
 
 
@@ -297,7 +291,7 @@ def doctor(offscreen: bool, quiet: bool) -> None:
 @SILENT
 def warm(quiet: bool) -> None:
     """Compile everything once, so that no later start has to."""
-    from .compiling import warm as compile_all
+    from .warming import warm as compile_all
 
     compile_all(quiet)
 

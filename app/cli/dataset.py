@@ -21,12 +21,6 @@ MOST = 1_000_000  # samples; their names have six digits
     "--sample", type=PATH, help="Your table of what faces do; --sample-table prints ours."
 )
 @click.option(
-    "--camera",
-    metavar="YAW[,PITCH[,ZOOM]]",
-    help="Where from, in degrees: each a number or LOW:HIGH, as in -30:30,-10:10,0.9:1.2; "
-    "as the table has it unless told.",
-)
-@click.option(
     "--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Which samples."
 )
 @click.option(

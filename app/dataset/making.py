@@ -1,34 +1,29 @@
-"""Making a set: samples in processes, one person after the other, then what is told of them all."""
+"""Making a set: samples in processes, person by person, then what is told of them all."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from tqdm import tqdm
 
 from ..errors import UserError
 from ..files import save_text, written_atomically
-from ..process_cache import cached
 from ..stopping import cleaned_up_if_stopped
-from ..workers import run_all
+from ..workers import Send, run_all
 from .folder import SetFolder
-from .persons import check_head
+from .persons import check_heads
 from .request import Request
 from .sampling import draw
 from .studio import Studio
 from .summary import card_of, write_index
 
-BATCH = 8  # samples that a process is given at once, all of one person
-
 
 @dataclass(frozen=True)
-class Batch:
-    """Samples that a process is to make."""
+class Share:
+    """What a process is to make: samples by their numbers, person after person."""
 
     request: Request
-    person: int
     indices: tuple[int, ...]
 
 
@@ -62,64 +57,65 @@ def make_set(
                 f"{request.output}: has sample {max(there)} already; give --count {max(there) + 1} "
                 "or more"
             )
-        batches = _batches(request, [index for index in range(count) if index not in there])
+        missing = [index for index in range(count) if index not in there]
+        shares = _shares(request, missing, jobs)
         is_silent = not progress or None
         if request.heads:
-            heads = dict.fromkeys(request.heads[batch.person] for batch in batches)
-            _check_heads([*heads], folder, jobs, is_silent)
+            _check_heads(request, missing, folder, jobs, is_silent)
         size = 0
         bar = tqdm(total=count, initial=len(there), unit="sample", disable=is_silent, leave=False)
-        logs = [folder.log] * len(batches)
         with cleaned_up_if_stopped(bar.close), bar:
-            for outcome in run_all(make_samples, batches, jobs=jobs, logs=logs):
-                if outcome.error is not None:
-                    raise UserError(f"{outcome.error} (with --resume the set goes on)")
-                size += outcome.result
-                bar.update(len(outcome.item.indices))
+            try:
+                for bytes_of_sample in run_all(make_samples, shares, log=folder.log):
+                    size += bytes_of_sample
+                    bar.update()
+            except UserError as error:
+                raise UserError(f"{error} (with --resume the set goes on)") from None
         _finish(folder, request, count)
     return Made(count, count - len(there), size)
 
 
 def _check_heads(
-    heads: Sequence[Path], folder: SetFolder, jobs: int, is_silent: bool | None
+    request: Request, missing: Sequence[int], folder: SetFolder, jobs: int, is_silent: bool | None
 ) -> None:
     """UserError, before the first sample, that names all heads which cannot be fitted.
 
     Found later, one would spoil the set: it is resumed with the same heads alone.
     """
-    broken = []
-    logs = [folder.log] * len(heads)
+    heads = [request.heads[person] for person in _by_person(request, missing)]
+    shares, broken = [heads[first::jobs] for first in range(min(jobs, len(heads)))], set[str]()
     bar = tqdm(total=len(heads), unit="head", disable=is_silent, leave=False)
     with cleaned_up_if_stopped(bar.close), bar:
-        for outcome in run_all(check_head, heads, jobs=jobs, logs=logs):
-            if outcome.error is not None:
-                broken.append(outcome.error)
+        for why in run_all(check_heads, shares, log=folder.log):
+            broken |= {why} - {None}
             bar.update()
     if broken:
         raise UserError("; ".join(sorted(broken)))
 
 
-def make_samples(batch: Batch) -> int:
-    """Make the samples of a batch that are not there; how many bytes they have."""
-    request = batch.request
-    studio = cached("studio of a data set", request.output, lambda: Studio(request))
-    folder = SetFolder(request.output)
-    size = 0
-    for index in batch.indices:
+def make_samples(share: Share, send: Send) -> None:
+    """Make the samples of a share that are not there, and tell how many bytes each has."""
+    studio, folder = Studio(share.request), SetFolder(share.request.output)
+    for index in share.indices:
         if not folder.has(index):  # a process before may have died behind it
-            size += folder.write_sample(index, studio.shoot(index).save)
-    return size
+            send(folder.write_sample(index, studio.shoot(index).save))
 
 
-def _batches(request: Request, missing: Sequence[int]) -> list[Batch]:
-    """The samples of one person together, for a head takes seconds to build."""
-    by_person: dict[int, list[int]] = {}
-    for index in missing:
-        by_person.setdefault(draw(request.table, request.seed, index).person, []).append(index)
+def _by_person(request: Request, indices: Sequence[int]) -> dict[int, list[int]]:
+    """The samples of each person together, for a head takes seconds to build."""
+    found: dict[int, list[int]] = {}
+    for index in indices:
+        found.setdefault(draw(request.table, request.seed, index).person, []).append(index)
+    return dict(sorted(found.items()))
+
+
+def _shares(request: Request, missing: Sequence[int], jobs: int) -> list[Share]:
+    """As many shares as processes, about equally large."""
+    ordered = [index for indices in _by_person(request, missing).values() for index in indices]
+    each = -(-len(ordered) // jobs)
     return [
-        Batch(request, person, tuple(indices[first : first + BATCH]))
-        for person, indices in sorted(by_person.items())
-        for first in range(0, len(indices), BATCH)
+        Share(request, tuple(ordered[first : first + each]))
+        for first in range(0, len(ordered), max(each, 1))
     ]
 
 

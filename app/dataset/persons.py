@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import (
     Features,
@@ -18,6 +20,7 @@ from risorius.assets.identities import (
     sample_identity,
 )
 
+from ..workers import Send
 from .request import Request
 
 PERSONS = 1  # sets their seeds apart from those of samples
@@ -56,9 +59,15 @@ def person_of(request: Request, number: int) -> Somebody:
     return Somebody(coloured(head, angle=tone, irises=irises, features=features), labels)
 
 
-def check_head(file: Path) -> None:
-    """Raise AssetError for a head of the user's that cannot be fitted."""
-    _fitted(file)
+def check_heads(files: Sequence[Path], send: Send) -> None:
+    """Tell of each head of the user's why it cannot be fitted; None where it can."""
+    for file in files:
+        try:
+            _fitted(file)
+        except AssetError as error:
+            send(str(error))
+        else:
+            send(None)
 
 
 def _fitted(file: Path) -> FittedHead:

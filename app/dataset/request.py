@@ -16,7 +16,7 @@ from ..errors import UserError
 from ..passes.labelled import check_wanted
 from ..passes.passes import IMAGES
 from .surroundings import Backgrounds, backgrounds_of, digest, files_in
-from .table import SampleTable, load_table, with_camera
+from .table import SampleTable, load_table
 
 HEADS = tuple(f".{name}" for name in FORMATS)
 
@@ -63,7 +63,6 @@ def request_of(
     size: tuple[int, int],
     passes: Sequence[str],
     sample: Path | None = None,
-    camera: str | None = None,
     background: str | None = None,
     heads: Path | None = None,
 ) -> Request:
@@ -71,14 +70,11 @@ def request_of(
     check_wanted(passes, "face")
     passes = tuple(name for name in IMAGES if name in passes)
     samples = load_table(sample)
-    if camera is not None:
-        samples = with_camera(samples, camera)
     found = () if heads is None else _heads_in(heads)
     if found:
         samples = replace(samples, persons=replace(samples.persons, count=len(found)))
     told = {
         "sample": sample,
-        "camera": camera,
         "seed": seed,
         "passes": ",".join(passes),
         "size": "x".join(map(str, size)),

@@ -6,7 +6,7 @@ Sources of what stands in it are named there. This reads and checks it.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -199,25 +199,6 @@ def load_table(path: Path | None) -> SampleTable:
             is_added = name in FILLED_UP and isinstance(rows, dict)
             sections[name] = {**sections[name], **rows} if is_added else rows
     return read(SampleTable, sections, where, error=UserError)
-
-
-def with_camera(table: SampleTable, text: str) -> SampleTable:
-    """A table whose camera is `--camera yaw[,pitch[,zoom]]`: each a number, or LOW:HIGH.
-
-    Raises UserError.
-    """
-    parts = dict(zip(("yaw", "pitch", "zoom"), text.split(","), strict=False))
-    try:
-        given = {name: [float(each) for each in part.split(":")] for name, part in parts.items()}
-        if text.count(",") > 2:
-            raise ValueError
-    except ValueError:
-        raise UserError(
-            f"--camera {text}: write yaw[,pitch[,zoom]], numbers or LOW:HIGH, as in -30:30,0:10"
-        ) from None
-    pairs = {name: ends * 2 if len(ends) == 1 else ends for name, ends in given.items()}
-    camera = asdict(table.camera) | pairs
-    return replace(table, camera=read(Camera, camera, f"--camera {text}", error=UserError))
 
 
 @cache

@@ -22,7 +22,6 @@ from risorius.assets.identities import HAIR, Person, recoloured
 
 from ..controls.mirror import parted
 from ..errors import UserError
-from ..process_cache import cached, file_state
 from .mouth import Tongue, shaded_mouth
 from .surface_attachment import SurfaceAttachment
 
@@ -360,16 +359,7 @@ SCENES: dict[str, Callable[[], Scene]] = {
 
 
 def build_scene(name: str, head: FittedHead | None = None) -> Scene:
-    """The scene called `name`, with a head of the user's; UserError where it has none.
-
-    It may have been played before; `play` begins with a reset.
-    """
-    # A scene that is kept holds its head, so that no other can have this identity.
-    key = (name, None if head is None else id(head))
-    return cached("scene", key, lambda: _new_scene(name, head))
-
-
-def _new_scene(name: str, head: FittedHead | None) -> Scene:
+    """The scene called `name`, with a head of the user's; UserError where it has none."""
     if head is None:
         return SCENES[name]()
     if name != "face":
@@ -382,8 +372,7 @@ def _new_scene(name: str, head: FittedHead | None) -> Scene:
 
 def own_head(head: Path, landmarks: Path) -> FittedHead:
     """The user's own head, fitted."""
-    key = file_state(head), file_state(landmarks)
-    fitted = cached("head", key, lambda: fit_head(head, landmarks))
+    fitted = fit_head(head, landmarks)
     for note in fitted.notes:
         LOG.warning("risorius: %s: %s", head, note)
     return fitted

@@ -33,11 +33,11 @@ Before its first key a channel keeps that key's value, after its last key the la
 `docs/scripts.md` is the user's page of this format.
 """
 
-from .bounds import LONGEST_FILE
 from .model import (
     DECIMALS,
     EASING_NAMES,
     LARGEST,
+    LONGEST_FILE,
     Channel,
     Floats,
     Key,

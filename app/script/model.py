@@ -29,6 +29,7 @@ Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of ea
 
 MOST_OUTLINES = 16  # of a channel that are kept
 DECIMALS = 6  # of numbers that come from sliders and clocks
+LONGEST_FILE = 2**25  # [bytes]; three quarters of an hour of capture, and /dev/zero has no end
 LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
 
 Number = Annotated[float, Within(-LARGEST, LARGEST)]

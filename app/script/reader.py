@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 import os
+import re
 import sys
 from array import array
 from dataclasses import dataclass, field
@@ -19,11 +20,21 @@ from risorius.schema import MadeFrom, Record, parsed_toml, quoted, read
 
 from ..errors import UserError, in_one_line
 from ..files import read_text
-from .bounds import LONGEST_FILE, excess_in
 from .easing import ALLOWED
-from .model import EASING_NUMBERS, LARGEST, Channel, Key, Number, Pose, Script
+from .model import EASING_NUMBERS, LARGEST, LONGEST_FILE, Channel, Key, Number, Pose, Script
 
 SOON_READ = 2**20  # [bytes]; a longer script is said to be read
+# A TOML parser makes a table for each part of a key, and looks at all parts of one again for each
+# of them, so that a few kilobytes of dots could take hours. Lines of keys in quotes are cheap.
+LONGEST_BARE = 2**22  # [characters] outside of quotes and comments
+# Strings and comments, in which dots mean nothing. No text makes this slow: what has been taken is
+# not given back, and each kind of string can be unfinished once.
+QUOTED = re.compile(
+    r'"""(?:[^"\\]|\\.|"(?!""))*+"""|' r"'''.*?'''|"
+    r'"(?:[^"\\\n]|\\.)*+"|' r"'[^'\n]*+'|#[^\n]*+",
+    re.DOTALL,
+)  # fmt: skip
+LONG_KEY = re.compile(r"(?:\.[^.=,\n\[\]{}]*+){3}")  # of more than three parts; a script needs two
 
 
 def _channel(entries: Any) -> Channel:
@@ -103,9 +114,13 @@ def load_script(path: Path) -> Script:
 
 def parse_script(text: str, *, source: str) -> Script:
     """Turn the TOML text of a script into a Script; `source` names it in error texts."""
-    excess = excess_in(text)
-    if excess:
-        raise UserError(f"{source}: {excess}; no script needs that")
+    bare = QUOTED.sub(lambda found: "_" + "\n" * found[0].count("\n"), text)
+    if len(bare) > LONGEST_BARE:
+        most = f"{LONGEST_BARE >> 20} MB outside of quotes, where long tracks have lines"
+        raise UserError(f"{source}: has more than {most}")
+    if long_key := LONG_KEY.search(bare):
+        line = bare.count("\n", 0, long_key.start()) + 1
+        raise UserError(f"{source}: line {line}: a key has more than 3 parts with dots between")
     try:
         document = parsed_toml(text)
     except ValueError as error:

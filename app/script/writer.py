@@ -17,8 +17,7 @@ from pathlib import Path
 
 from ..errors import UserError
 from ..files import save_text
-from .bounds import LONGEST_FILE
-from .model import Channel, Pose, Script, rounded
+from .model import LONGEST_FILE, Channel, Pose, Script, rounded
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 MOST_TABLES = 24  # keys of a track that are written as tables; those of more as lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from risorius.app import process_cache
+from risorius.app.motion import playing
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import load_script
@@ -79,11 +80,16 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
 
 @pytest.fixture(scope="module")
 def shared_scenes() -> Iterator[None]:
-    """Commands of a file share scenes and surfaces, as those of a worker do."""
+    """Commands of a file share scenes of the built-in head; each plays from a reset on."""
+    built = playing.build_scene
+    shared = functools.cache(built)
     with pytest.MonkeyPatch.context() as this_process:
-        this_process.setattr(process_cache, "_cached", {})
+        this_process.setattr(
+            playing,
+            "build_scene",
+            lambda name, head=None: shared(name) if head is None else built(name, head),
+        )
         yield
-        process_cache.clear()
 
 
 @pytest.fixture(scope="module")

@@ -133,7 +133,6 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
     for folder, options, told in (
         (made, (), "holds a data set; add --resume"),
         (made, ("--resume", "--seed", "12"), "was begun with seed 11, not 12"),
-        (made, ("--resume", "--camera", "0"), "was begun with [camera]"),
         (made, ("--resume", "--background", "red"), "was begun with background null, not [1.0"),
         (made, ("--resume", "--passes", "depth"), "was begun with passes"),
         (other, ("--resume",), "is not empty and no data set"),
@@ -272,7 +271,6 @@ def test_broken_heads_are_told_before_the_first_sample(heads: Path, tmp_path: Pa
     ("options", "told"),
     [
         (("--passes", "colour"), "'colour' is no pass"),
-        (("--camera", "x"), "--camera x: write yaw"),
         (("--background", "no such"), "neither a folder nor a colour"),
         (("--background", "broken"), "broken/face.png: cannot be read as a picture"),
         (("--heads", "/nowhere"), "no such folder"),

@@ -15,7 +15,6 @@ from risorius.app.dataset.table import (
     SampleTable,
     load_table,
     paired_units,
-    with_camera,
 )
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
@@ -67,7 +66,8 @@ def test_a_sample_follows_from_seed_and_number_alone(seed: int, index: int) -> N
 
 
 def test_another_camera_leaves_the_faces_as_they_are() -> None:
-    other = with_camera(TABLE, "0,5:10,1")
+    camera = replace(TABLE.camera, yaw=(0.0, 0.0), pitch=(5.0, 10.0), zoom=(1.0, 1.0))
+    other = replace(TABLE, camera=camera)
     for index in range(50):
         one, two = draw(TABLE, 4, index), draw(other, 4, index)
         assert replace(two, view=one.view) == one
@@ -151,9 +151,3 @@ def test_a_wrong_table_is_told_in_one_line(tmp_path: Path, text: str, told: str)
         read(tmp_path, text)
     assert str(raised.value).startswith(str(tmp_path / "my.toml"))
     assert told in str(raised.value)
-
-
-@pytest.mark.parametrize("text", ["a", "1,2,3,4", "10:5", "95", "1:2:3", "nan", ""])
-def test_a_wrong_camera_is_told(text: str) -> None:
-    with pytest.raises(UserError, match=f"--camera {text}"):
-        with_camera(TABLE, text)

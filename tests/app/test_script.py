@@ -157,9 +157,9 @@ def test_free_slopes_are_read_and_written() -> None:
     ("text", "message"),
     [
         ("pose = = 3", r"bad.toml: not valid TOML: .*line 1"),
-        ("x=1\na = " + 5000 * "[", r"bad.toml: line 2: more than 8 brackets are open at once"),
+        ("x=1\na = " + 5000 * "[", r"bad.toml: not valid TOML: brackets are nested too deep"),
         ("a" + 30_000 * ".a" + "=1", r"bad.toml: line 1: a key has more than 3 parts with dots"),
-        ("".join(f"[a{n}]\n" for n in range(100_001)), r"more than 100000 headers other than"),
+        ("".join(f"[a{n}]\n" for n in range(500_000)), r"more than 4 MB outside of quotes"),
         ("durration = 1\n[[pose]]\ntime=1", r"unknown key 'durration'; did you mean 'duration'"),
         ("[[pose]]\njoy=1", r"'pose' 1, 'time': is missing"),
         ("[[pose]]\ntime='x'", r"'pose' 1, 'time': was 'x', must be a number"),
@@ -249,7 +249,7 @@ def test_what_is_no_plain_file_is_not_opened(tmp_path: Path) -> None:
             load_script(path)
 
 
-def test_dots_and_brackets_in_words_are_none(tmp_path: Path) -> None:
+def test_dots_in_words_are_none(tmp_path: Path) -> None:
     """Strings and comments may hold anything; numbers have points."""
     text = (
         "# e.g. a.b.c.d.e [[[[[[[[[[ it's fine\ntitle = 'a.b.c.d.e [[[[[[[[[[[['\n"

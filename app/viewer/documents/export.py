@@ -23,7 +23,7 @@ from ...export.formats import Request, check_request, export, format_for
 from ...files import Image, check_file, save_png
 from ...scenes import FaceScene, Scene
 from ...script import Script, pose_script
-from ...workers.progress import Task
+from ...workers import Task
 from ..frame_times import FrameTimes
 from ..interface.gui import wake_up
 from ..messages import Message
@@ -193,7 +193,7 @@ class Exporter:
     def has_news(self) -> bool:
         """Whether there is more to be told of it than a moment ago."""
         job = self.job
-        if job is None or (job.told == job.task.share and job.task.outcome is None):
+        if job is None or (job.told == job.task.share and not job.task.is_done):
             return False
         if not job.told:  # to start the process is no measure of how fast it is
             job.began = time.monotonic(), job.task.share
@@ -203,15 +203,13 @@ class Exporter:
     def poll(self) -> Message:
         """Look whether it is done, and say so; UserError where it failed."""
         job = self.job
-        outcome = None if job is None else job.task.outcome
-        if job is None or outcome is None:
+        if job is None or not job.task.is_done:
             return None
         self.job, is_cancelled = None, job.task.is_stopped
         job.task.stop(waits=False)
         if is_cancelled:
             return f"Cancelled: {job.target.name}"
-        if outcome.error is not None:
-            raise UserError(outcome.error)
+        job.task.check()
         return f"Written to {job.target}"
 
     def close(self) -> None:

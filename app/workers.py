@@ -1,0 +1,310 @@
+"""Work in processes of their own, here or on a Dask cluster; one that dies costs one attempt.
+
+A process is started anew for each piece of work and never forked: one that was forked after OpenGL
+was opened hangs. It is in a session of its own, so that Ctrl-C is for the process that started it.
+Work is a function at the top of a module; its arguments and what it hands over are pickled. When
+whoever started it ends, however that happens, it ends, too, and half-written files go.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import os
+import pickle
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from .errors import UserError, in_one_line, line_for
+from .motion import tally
+from .stopping import cleaned_up_if_stopped, handle_signals
+
+Send = Callable[[object], None]  # hands something over to whoever started the work
+LIBRARIES = ("LP_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Who takes as many threads as there are cores, in each process: software OpenGL, and BLAS."""
+ATTEMPTS = 3  # at work whose process dies
+AHEAD = 4  # messages that wait while nobody takes them
+GRACE = 5.0  # [s] for a process to clean up, until it is killed
+PAUSE = 0.2  # [s] between two numbers of frames
+TOLD, FAILED, DONE = "told", "failed", "done"
+
+
+class DiedError(Exception):
+    """The process died; the text says of what."""
+
+
+class Worker:
+    """A process that does one piece of work, as the process that started it sees it."""
+
+    def __init__(
+        self,
+        work: Callable[..., object],
+        *arguments: Any,
+        threads: int = 1,
+        log: Path | None = None,
+    ) -> None:
+        """Begin `work(*arguments, send)`.
+
+        threads: of each of LIBRARIES. log: what is printed there is added to this file, and else to
+        the error stream.
+        """
+        code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
+        with contextlib.ExitStack() as stack:
+            self.process = subprocess.Popen(
+                [sys.executable, "-c", code],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=None if log is None else stack.enter_context(log.open("ab")),
+                env={**os.environ, **dict.fromkeys(LIBRARIES, str(threads))},
+                start_new_session=True,
+            )
+        assert self.process.stdin is not None and self.process.stdout is not None
+        self._answers = self.process.stdout
+        with contextlib.suppress(OSError):  # it died, which is told with its messages
+            self.process.stdin.write(pickle.dumps((work, arguments)))
+            self.process.stdin.flush()
+
+    def messages(self) -> Iterator[Any]:
+        """What it hands over; UserError for what it raised, DiedError where the process died."""
+        while True:
+            try:
+                kind, content = pickle.load(self._answers)
+            except (EOFError, OSError, pickle.UnpicklingError):
+                self.close()
+                code = self.process.returncode
+                why = signal.Signals(-code).name if code < 0 else f"exit code {code}"
+                raise DiedError(why) from None
+            if kind == TOLD:
+                yield content
+                continue
+            self.close()
+            if kind == FAILED:
+                raise UserError(content)
+            return
+
+    def close(self) -> None:
+        """Wait for its end, and force it if need be."""
+        try:
+            self.process.wait(GRACE)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+
+def serve() -> None:
+    """In such a process: do the work that the standard input tells."""
+    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(2, 1)  # what is printed is no message
+    handle_signals()
+    faulthandler.enable()  # a fault in a driver tells the log where
+    try:
+        request = pickle.load(requests)
+    except EOFError:  # whoever began this process was stopped
+        return
+
+    def end_with_whoever_asked() -> None:
+        os.read(requests.fileno(), 1)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    waiting: queue.Queue[bytes] = queue.Queue(AHEAD)
+
+    def hand_over() -> None:
+        """Write what waits while the next is made; where nobody reads, the process is over."""
+        try:
+            while content := waiting.get():
+                answers.write(content)
+                answers.flush()
+        except BrokenPipeError:
+            os._exit(1)
+
+    writer = threading.Thread(target=hand_over)
+    writer.start()
+    threading.Thread(target=end_with_whoever_asked, daemon=True).start()
+    end = _done(*request, send=lambda each: waiting.put(pickle.dumps((TOLD, each))))
+    waiting.put(pickle.dumps(end))
+    waiting.put(b"")
+    writer.join()
+
+
+def _done(work: Callable[..., object], arguments: Sequence[Any], *, send: Send) -> tuple[str, str]:
+    """Do the work, and return what became of it, with a line that says why it failed."""
+    try:
+        work(*arguments, send)
+    except Exception as error:
+        line = line_for(error)
+        if line is None:  # a defect
+            traceback.print_exc()
+            line = in_one_line(f"{type(error).__name__}: {error}")
+        return FAILED, line
+    return DONE, ""
+
+
+class WorkerPool:
+    """Processes of one run, which end with it; threads of this process wait for them."""
+
+    def __init__(self, jobs: int = 1) -> None:
+        """jobs: how many there will be at once; they share the cores."""
+        self._threads = max(1, share_of_cores() // jobs)
+        self._workers = list[Worker]()
+        self._is_over = False
+
+    def run(
+        self,
+        work: Callable[..., object],
+        *arguments: Any,
+        tell: Callable[[Any], object] = lambda _: None,
+        log: Path | None = None,
+        attempts: int = ATTEMPTS,
+    ) -> None:
+        """Do work in a process, again where that dies; tell: is called with what it hands over.
+
+        Raises UserError with what it raised, for its last death, and where all is stopped.
+        """
+        why = ""
+        for attempt in range(attempts):
+            if self._is_over:
+                break
+            worker = Worker(work, *arguments, threads=self._threads, log=log)
+            self._workers.append(worker)
+            if self._is_over:  # told so while it was started
+                worker.process.terminate()
+            try:
+                for message in worker.messages():
+                    tell(message)
+                return
+            except DiedError as end:
+                why = str(end)
+                if log is not None:
+                    with contextlib.suppress(OSError), log.open("a", encoding="utf-8") as file:
+                        file.write(
+                            f"risorius: the process of attempt {attempt + 1} died of {why}\n"
+                        )
+            finally:
+                self._workers.remove(worker)
+        if self._is_over:
+            raise UserError("stopped")
+        times = f" {attempts} times, at last" if attempts > 1 else ""
+        raise UserError(f"the process that worked on it died{times} of {why}")
+
+    def stop(self) -> None:
+        """End all processes at once; they remove what they have half written."""
+        self._is_over = True
+        workers = [*self._workers]
+        for worker in workers:
+            worker.process.terminate()
+        for worker in workers:
+            worker.close()
+
+
+def run_all(
+    work: Callable[..., object], shares: Sequence[Any], *, log: Path | None = None
+) -> Iterator[Any]:
+    """Do `work(share, send)` for all shares at once; yield what they hand over, as it comes.
+
+    A share whose process died is begun anew. Whoever stops early, or is stopped, ends all of them.
+    Raises UserError for the first that failed.
+    """
+    pool, told = WorkerPool(max(len(shares), 1)), queue.SimpleQueue[Any]()
+    end = object()
+
+    def run(share: Any) -> None:
+        try:
+            pool.run(work, share, tell=told.put, log=log)
+            told.put(end)
+        except Exception as error:
+            told.put(error)
+
+    with cleaned_up_if_stopped(pool.stop), ThreadPoolExecutor(max(len(shares), 1)) as threads:
+        try:
+            left = len([threads.submit(run, share) for share in shares])
+            while left:
+                message = told.get()
+                if isinstance(message, Exception):
+                    raise message
+                if message is end:
+                    left -= 1
+                else:
+                    yield message
+        finally:
+            pool.stop()
+
+
+class Task:
+    """Work that plays frames in a process; the one that waits stays free."""
+
+    def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):
+        """Begin; wake: called when it has ended, from a thread."""
+        self._frame_count, self._frames = frame_count, 0
+        self._pool = WorkerPool(share_of_cores())  # one of them: the others are the window's
+        thread = ThreadPoolExecutor(1)
+        self._end = thread.submit(self._pool.run, count_frames, work, tell=self._count, attempts=1)
+        self._end.add_done_callback(lambda _: wake())
+        thread.shutdown(wait=False)
+        self._stopping: threading.Thread | None = None
+
+    def _count(self, frames: int) -> None:
+        self._frames = frames
+
+    @property
+    def share(self) -> float:
+        """How much of it is done, 0..1; 0 where it is stopped."""
+        return 0.0 if self.is_stopped else min(self._frames / self._frame_count, 1.0)
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it has ended."""
+        return self._end.done()
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether it was told to end."""
+        return self._stopping is not None
+
+    def check(self) -> None:
+        """Raise UserError where it failed; of what has ended."""
+        self._end.result()
+
+    def stop(self, *, waits: bool) -> None:
+        """End it, wherever it is; it removes what it has half written, which takes a while."""
+        if self._stopping is None:
+            self._stopping = threading.Thread(target=self._pool.stop)
+            self._stopping.start()
+        if waits:
+            self._stopping.join()
+
+
+def count_frames(work: Callable[[], object], send: Send) -> None:
+    """In that process: do it, and tell again and again how many frames were played."""
+    is_done = threading.Event()
+    if hasattr(os, "nice"):
+        os.nice(5)  # whoever waits goes first
+
+    def report() -> None:
+        while not is_done.wait(PAUSE):
+            send(tally.frames)
+
+    thread = threading.Thread(target=report)
+    thread.start()
+    try:
+        work()
+    finally:
+        is_done.set()
+        thread.join()
+
+
+def share_of_cores() -> int:
+    """How many cores are for one command: `LP_NUM_THREADS`, which limits OpenGL, limits all."""
+    told = os.environ.get("LP_NUM_THREADS", "")
+    if told.isdecimal():
+        return max(int(told), 1)
+    has_affinity = hasattr(os, "sched_getaffinity")
+    return len(os.sched_getaffinity(0)) if has_affinity else os.cpu_count() or 1
