@@ -36,10 +36,11 @@ class DrawnMesh:
 
     label: str  # what it is called under the picture
     refiner: refine.Refiner
-    stream: render.Stream
+    stream: render.Stream | render.GpuStream
     relief: Relief | None = None  # by which wrinkles move what was refined
     strength: float = 1.0  # how much of them shows
-    mesh: refine.RefinedMesh | None = None  # what was refined last
+    mesh: refine.RefinedMesh | None = None  # what was refined last, of:
+    positions: npt.NDArray[np.float64] | None = None
 
     def refine(
         self,
@@ -49,16 +50,21 @@ class DrawnMesh:
     ) -> None:
         """Fill the lent buffers with refined triangles, for whoever looks through the area."""
         view = refine.View(camera.eye, camera.focal(area[2] / area[3], area[3]))
-        self.mesh = self.refiner.refine(positions, out=self.stream, view=view)
+        out: Any = self.stream  # of the kind that `Pipeline.bind` has found it to take
+        self.mesh, self.positions = self.refiner.refine(positions, out=out, view=view), positions
 
     def upload(self, wrinkling: Amounts | None = None, strength: float = 1.0) -> None:
         """Hand over what was refined last, moved as far as the scene's vertices wrinkle."""
-        assert self.mesh is not None
+        assert self.mesh is not None and self.positions is not None
         self.strength = strength
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
         if rows is not None and self.relief is not None and self.has_uv:
             self.relief.move(self.mesh, strength * rows)
-        self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
+        if isinstance(self.stream, render.GpuStream):
+            frame: Any = self.mesh  # of a refiner that fetches rows on demand
+            self.stream.show(frame, self.positions, rows)
+        else:
+            self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
 
     @property
     def has_uv(self) -> bool:
@@ -106,9 +112,14 @@ class Pipeline:
     def bind(self, refinement: Refinement) -> DrawnMesh:
         """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
         refiner = refiner_for(self.scene, refinement)
-        stream = self.renderer.lend_stream(
-            refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
-        )
+        room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+        stream: render.Stream | render.GpuStream
+        if self.renderer.lends_gpu_streams and getattr(refiner, "runs_on_gpu", False):
+            ends = self.scene.rest_positions[refiner.edges]
+            longest = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0)
+            stream = self.renderer.lend_gpu_stream(*room, margin=float(longest))
+        else:
+            stream = self.renderer.lend_stream(*room)
         return DrawnMesh(refinement.label, refiner, stream, relief_of(self.scene, refinement))
 
     def set_tone(self, tone: float | None) -> None:

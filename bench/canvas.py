@@ -62,6 +62,7 @@ class Canvas:
         self._scene = _Shown()
         self._pipeline = Pipeline(self._scene, self.renderer)
         self._meshes: dict[refine.Refiner, DrawnMesh] = {}
+        self._streams: dict[refine.Refiner, render.Stream] = {}
         self._room: render.Stream | None = None  # for surfaces that no refiner made
 
     def __enter__(self) -> Canvas:
@@ -72,12 +73,13 @@ class Canvas:
 
     def stream_for(self, refiner: refine.Refiner) -> render.Stream:
         """The buffers lent to a refiner, the same at every call."""
-        if refiner not in self._meshes:
+        if refiner not in self._streams:
             stream = self.renderer.lend_stream(
                 refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
             )
+            self._streams[refiner] = stream
             self._meshes[refiner] = DrawnMesh("", refiner, stream)
-        return self._meshes[refiner].stream
+        return self._streams[refiner]
 
     def draw(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing

@@ -6,6 +6,7 @@ import contextlib
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -54,14 +55,24 @@ def bench() -> None:
     show_default=True,
     help="How long each mesh is timed, at least five rounds.",
 )
+@click.option(
+    "--refiner",
+    type=click.Choice(["kahler", "kahler-gl"]),
+    default="kahler",
+    show_default=True,
+    help="kahler-gl: on the graphics card, beside kahler.",
+)
 @json_option
-def bench_refine(sizes: tuple[str, ...], seconds: float, json_file: Path | None) -> None:
+def bench_refine(
+    sizes: tuple[str, ...], seconds: float, refiner: str, json_file: Path | None
+) -> None:
     """Time refinement on the face and on meshes of up to a million triangles."""
-    from . import refine
+    from . import refine, refine_gl
 
     save = json_writer(json_file)
-    found = refine.measure(sizes or refine.SIZES, seconds, say_progress)
-    click.echo(refine.report(found))
+    room = refine_gl if refiner == "kahler-gl" else refine
+    found: Any = room.measure(sizes or refine.SIZES, seconds, say_progress)
+    click.echo(room.report(found))
     save(asdict(found))
 
 

@@ -44,7 +44,7 @@ from .beyond.view_dependent import ScreenEdge, Silhouette
 from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
 from .border.corner_values import Values
-from .border.plugin import Origins, RefinedMesh, Refiner, Stream, View
+from .border.plugin import GpuStream, Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, available, create, parameters, refiners, register
 from .border.stream import StreamArrays
 from .hosts import TrimeshRefiner, WeldedRefiner, from_trimesh
@@ -79,6 +79,7 @@ __all__ = [
     "Curvature",
     "Displacement",
     "FrameBuffers",
+    "GpuStream",
     "Kahler",
     "Loop",
     "Maximum",

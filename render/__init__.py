@@ -27,7 +27,7 @@ from .parts import Part
 from .probe import Finding, probe
 from .render_target import Rectangle
 from .renderer import Renderer
-from .stream import Stream
+from .stream import GpuStream, Stream
 from .style import (
     BLACK,
     CLAY,
@@ -65,6 +65,7 @@ __all__ = [
     "Finding",
     "GLError",
     "Geometry",
+    "GpuStream",
     "Image",
     "Light",
     "Lines",

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from .camera_view import CameraView
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
-from .stream import Stream
+from .stream import MeshBuffers
 from .texture import BumpMap
 
 Floats = npt.NDArray[np.float32]
@@ -54,7 +54,7 @@ class GeometryBuffer:
 
     def draw(
         self,
-        stream: Stream,
+        stream: MeshBuffers,
         parts: Sequence[PlacedPart],
         view: CameraView,
         values: Floats | None,

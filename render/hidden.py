@@ -19,7 +19,7 @@ from .materials import set_inside
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, RenderTarget
-from .stream import Share, Stream
+from .stream import MeshBuffers, Share
 from .style import ColourBy, Shading, Style
 
 TILE = 8  # [pixels] each way
@@ -164,7 +164,7 @@ def _clipped(place: npt.NDArray[np.float32], last: int) -> npt.NDArray[np.intp]:
 
 def draw_sides(
     gl: moderngl.Context,
-    stream: Stream,
+    stream: MeshBuffers,
     shares: Sequence[tuple[moderngl.Program, Share]],
     view: CameraView,
     style: Style,
@@ -184,8 +184,8 @@ def draw_sides(
     if is_free and occluder is not None and occluder.target.samples:
         covered = view.covered_pixels(stream.corners)
         occluder.look(view, covered)
-        positions = stream.vertices[: stream.vertex_count, :3]
-        triangles = stream.triangles[: stream.triangle_count]
+        positions = stream.drawn_rows[:, :3]
+        triangles = stream.drawn_triangles
         is_seen = occluder.may_be_seen(positions, triangles, away=True)
         is_inner = np.zeros_like(is_seen)
         if style.shading is Shading.PIXEL and not style.wireframe:
@@ -203,9 +203,9 @@ def draw_sides(
     gl.disable(moderngl.CULL_FACE)
 
 
-def _shows_inside(stream: Stream, view: CameraView) -> npt.NDArray[np.bool_]:
+def _shows_inside(stream: MeshBuffers, view: CameraView) -> npt.NDArray[np.bool_]:
     """Which triangles turn so far away that they show their inner side alone, (triangle_count,)."""
-    rows = stream.vertices[: stream.vertex_count]
+    rows = stream.drawn_rows
     with np.errstate(all="ignore"):
         to_eye, normal = view.camera.eye.astype(np.float32) - rows[:, :3], rows[:, 3:6]
         facing, *squares = (
@@ -213,7 +213,7 @@ def _shows_inside(stream: Stream, view: CameraView) -> npt.NDArray[np.bool_]:
             for each in ((to_eye, normal), (to_eye, to_eye), (normal, normal))
         )
         is_inner = facing < -INWARD * np.sqrt(squares[0] * squares[1])
-    shows: npt.NDArray[np.bool_] = is_inner[stream.triangles[: stream.triangle_count]].all(axis=1)
+    shows: npt.NDArray[np.bool_] = is_inner[stream.drawn_triangles].all(axis=1)
     return shows
 
 

@@ -20,6 +20,7 @@ class Finding:
 
     name: "offscreen" or "window".
     message: the GLError's text where it failed, "" where it works.
+    lends_gpu_streams: whether meshes can be refined where they are drawn.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Finding:
     version: str = ""
     is_software: bool = False
     samples: int = 0
+    lends_gpu_streams: bool = False
 
     def __str__(self) -> str:
         if not self.is_ok:
@@ -83,7 +85,7 @@ def write_finding(name: str) -> None:
 
 def _examine(name: str) -> dict[str, object]:
     """Open a small surface here and describe its OpenGL; the fields of a Finding."""
-    from .surface import Surface, open_offscreen
+    from .surface import NEWEST, Surface, open_offscreen
     from .window import open_window
 
     try:
@@ -103,6 +105,7 @@ def _examine(name: str) -> dict[str, object]:
                 "version": surface.gl.info["GL_VERSION"],
                 "is_software": surface.is_software,
                 "samples": surface.gl.max_samples,
+                "lends_gpu_streams": surface.gl.version_code >= NEWEST,
             }
     except GLError as error:
         return {"is_ok": False, "message": str(error)}

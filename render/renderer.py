@@ -34,9 +34,9 @@ from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, scaled
 from .shadow import DEEP, OFFSET, ShadowMap, Thrower
-from .stream import Share, Stream
+from .stream import GpuStream, MeshBuffers, Share, Stream
 from .style import ColourBy, Shading, Style
-from .surface import Image, Surface
+from .surface import NEWEST, Image, Surface
 from .texture import BumpMap, Texture
 from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
@@ -50,12 +50,15 @@ class Renderer:
         surface.make_current()
         self.surface = surface
         self._gl = surface.gl
+        self.lends_gpu_streams = self._gl.version_code >= NEWEST
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
         self._parts = PartStore(self._gl)
         self._values: moderngl.Texture | None = None
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
-        self._shadow_of: Stream | None = None  # a mesh whose shadow is there before it is drawn
+        self._shadow_of: MeshBuffers | None = (
+            None  # a mesh whose shadow is there before it is drawn
+        )
         self._geometry_buffer: GeometryBuffer | None = None
         self._occluder: Occluder | None = None
 
@@ -63,6 +66,16 @@ class Renderer:
         """Lend arrays for a mesh of at most so many vertices and triangles (see Stream)."""
         self.surface.make_current()
         return Stream(self._gl, vertex_capacity, triangle_capacity, columns)
+
+    def lend_gpu_stream(
+        self, vertex_capacity: int, triangle_capacity: int, columns: int, margin: float
+    ) -> GpuStream:
+        """Lend buffers to a program that makes such a mesh on the graphics card (see GpuStream).
+
+        margin: how far its vertices are beyond those of the mesh that it is made of, at most.
+        """
+        self.surface.make_current()
+        return GpuStream(self._gl, vertex_capacity, triangle_capacity, columns, margin)
 
     def load_texture(self, image: Image, occlusion: Image | None = None) -> Texture:
         """Hand an image to OpenGL, from which draw_mesh takes the albedo.
@@ -92,7 +105,7 @@ class Renderer:
 
     def draw_mesh(
         self,
-        stream: Stream,
+        stream: MeshBuffers,
         camera: OrbitCamera,
         style: Style,
         *,
@@ -155,7 +168,7 @@ class Renderer:
         camera: OrbitCamera,
         style: Style,
         *,
-        stream: Stream | None = None,
+        stream: MeshBuffers | None = None,
         viewport: Rectangle | None = None,
         clip: Rectangle | None = None,
     ) -> None:
@@ -175,7 +188,7 @@ class Renderer:
 
     def draw_outline(
         self,
-        stream: Stream,
+        stream: MeshBuffers,
         camera: OrbitCamera,
         style: Style,
         *,
@@ -192,9 +205,7 @@ class Renderer:
         if not is_smooth or style.colour_by is not ColourBy.NONE or not stream.triangle_count:
             return
         view = self._camera_view(camera, viewport, clip)
-        rows = fringes(
-            stream.vertices[: stream.vertex_count], stream.triangles[: stream.triangle_count], view
-        )
+        rows = fringes(stream.drawn_rows, stream.drawn_triangles, view)
         if not len(rows):
             return
         if self._use_layer(view, stream.corners):
@@ -289,7 +300,7 @@ class Renderer:
 
     def draw_geometry(
         self,
-        stream: Stream,
+        stream: MeshBuffers,
         parts: Iterable[Part],
         transforms: Mapping[str, npt.NDArray[np.float64]],
         camera: OrbitCamera,
@@ -376,7 +387,7 @@ class Renderer:
 
 
 def _shares(
-    stream: Stream, style: Style, bumps: BumpMap | None
+    stream: MeshBuffers, style: Style, bumps: BumpMap | None
 ) -> list[tuple[Share, BumpMap | None]]:
     """The triangles that are drawn alike, and their bumps; values go by the order of all."""
     if bumps is None or not (style.shows_bumps and stream.has_bumps):

@@ -18,7 +18,7 @@ from .camera_view import CameraView
 from .light import Vector
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
-from .stream import Stream
+from .stream import MeshBuffers
 
 RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
 REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
@@ -27,7 +27,7 @@ OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
 DEEP = 0.06  # the same for hair cards, 9 mm: they lie over each other, and all are lit
 STEEP = 0.999  # of a light's height, from which on it has no direction sideways
 
-Thrower = Stream | PlacedPart
+Thrower = MeshBuffers | PlacedPart
 FloatArray = npt.NDArray[np.float64]
 
 # -1..1 -> 0..1 in x, y and z, for row vectors.
@@ -67,9 +67,9 @@ class ShadowMap:
         gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
         self._target.clear(depth=1.0)
         for thrower in throwers:
-            transform = np.eye(4) if isinstance(thrower, Stream) else thrower[1]
+            transform = np.eye(4) if isinstance(thrower, MeshBuffers) else thrower[1]
             write_uniform(self._program, "light_matrix", transform.T @ to_light)
-            (thrower if isinstance(thrower, Stream) else thrower[0]).draw(self._program)
+            (thrower if isinstance(thrower, MeshBuffers) else thrower[0]).draw(self._program)
         self._drawn_for = frame_number, view.fingerprint
 
     def is_of(self, view: CameraView, frame_number: int) -> bool:

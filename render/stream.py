@@ -1,12 +1,13 @@
 """Triangles that change every frame: arrays lent to whoever makes them, and the buffers behind.
 
 The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) with whatever
-program it likes; `upload` hands exactly those rows to OpenGL. Nothing is allocated per frame.
+program it likes; `upload` hands exactly those rows to OpenGL. Nothing is allocated per frame. Or
+the buffers themselves are lent, to a program that runs on the graphics card.
 Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and are forgotten.
 """
 
 from enum import Enum
-from typing import Any
+from typing import Any, Protocol
 
 import moderngl
 import numpy as np
@@ -25,19 +26,17 @@ class Share(Enum):
     OTHERS = "others"  # and second
 
 
+NUMBER = 4  # bytes
+COMMAND_WORDS = 7
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
 
 
-class Stream:
-    """One mesh of at most so many vertices and triangles, rewritten every frame.
+class MeshBuffers:
+    """One mesh of at most so many vertices and triangles, rewritten every frame, to be drawn.
 
-    vertices: x y z, nx ny nz[, u v], shape (vertex_capacity, 6 or 8), float32; the borrower writes.
-    triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
-    source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
-        borrower writes; never uploaded.
-    vertex_count, triangle_count: what the last `upload` handed over.
-    has_bumps: whether that came with amounts of a bump map.
-    corners: of the box that holds the uploaded vertices, shape (8, 3), float64.
+    columns: of its rows, 6 (position, normal) or 8 (and texture u, v).
+    has_bumps: whether its last frame came with amounts of a bump map.
+    corners: of a box that holds its vertices, shape (8, 3), float64.
     """
 
     def __init__(
@@ -52,23 +51,178 @@ class Stream:
                 f"a stream of {vertex_capacity} vertices and {triangle_capacity} triangles; "
                 "it must hold at least one of each"
             )
-        self.vertices: npt.NDArray[np.float32] = np.zeros((vertex_capacity, columns), np.float32)
-        self.triangles: npt.NDArray[np.uint32] = np.zeros((triangle_capacity, 3), np.uint32)
-        self.source: npt.NDArray[np.int32] = np.zeros(triangle_capacity, np.int32)
-        self.vertex_count = 0
-        self.triangle_count = 0
+        self.context = gl
+        self.columns = columns
         self.corners = np.zeros((8, 3))
-        self._gl = gl
-        self._vertex_buffer = gl.buffer(reserve=self.vertices.nbytes, dynamic=True)
         self.has_bumps = False
+        self._room = vertex_capacity, triangle_capacity
+        self.vertex_buffer = gl.buffer(reserve=NUMBER * columns * vertex_capacity, dynamic=True)
+        self.index_buffer = gl.buffer(reserve=3 * NUMBER * triangle_capacity, dynamic=True)
+        # Made when a mesh first has bumps: their amounts, and its triangles parted by them. Then
+        # vertices and triangles are kept on this side, too.
         self._bump_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
         self._value_buffer: moderngl.Buffer | None = None
-        self._index_buffer = gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
         self._chosen_buffer: moderngl.Buffer | None = None
         self._ranges: _Ranges = {}
         self._vertex_arrays: dict[
             tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray
         ] = {}
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices its last frame has."""
+        raise NotImplementedError
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles."""
+        raise NotImplementedError
+
+    @property
+    def drawn_rows(self) -> npt.NDArray[np.float32]:
+        """Its vertices, x y z, nx ny nz[, u v], shape (vertex_count, columns)."""
+        raise NotImplementedError
+
+    @property
+    def drawn_triangles(self) -> npt.NDArray[np.uint32]:
+        """Its triangles, shape (triangle_count, 3)."""
+        raise NotImplementedError
+
+    def _upload_bumps(self, bump_amounts: npt.NDArray[np.float32]) -> None:
+        """Upload amounts, and the triangles anew: first those that have bumps."""
+        if self._bump_buffers is None:
+            vertices, triangles = self._room
+            self._bump_buffers = (
+                self.context.buffer(reserve=2 * NUMBER * vertices, dynamic=True),
+                self.context.buffer(reserve=3 * NUMBER * triangles, dynamic=True),
+            )
+        parts = self.drawn_triangles
+        is_bumped = (bump_amounts.max(axis=1) > 0.0)[parts].any(axis=1)
+        parted = np.concatenate([parts[is_bumped], parts[~is_bumped]])
+        count = int(is_bumped.sum())
+        self._ranges[Share.BUMPED] = 0, count
+        self._ranges[Share.SMOOTH] = count, len(parts) - count
+        for buffer, array in zip(self._bump_buffers, (bump_amounts, parted), strict=True):
+            buffer.orphan()
+            buffer.write(np.ascontiguousarray(array))
+
+    def check_uv(self) -> None:
+        """Raise ValueError where rows have no texture coordinates, but a texture comes."""
+        if self.columns != 8:
+            raise ValueError(
+                f"a texture meets a stream of {self.columns} columns; it needs texture "
+                "coordinates: lend a stream of 8 columns (position, normal, u v), or draw without "
+                "texture"
+            )
+
+    def upload_values(self, values: npt.NDArray[np.float32] | None) -> None:
+        """Hand two numbers for each uploaded vertex to OpenGL, (vertex_count, 2); None: zeros.
+
+        ValueError for another shape. Programs that are first drawn with after that have in_values.
+        """
+        if values is None:
+            values = np.zeros((self.vertex_count, 2), np.float32)
+        if values.shape != (self.vertex_count, 2):
+            raise ValueError(
+                f"values has shape {values.shape}; it must be ({self.vertex_count}, 2), two "
+                "numbers for each uploaded vertex"
+            )
+        if self._value_buffer is None:
+            room = 2 * NUMBER * self._room[0]
+            self._value_buffer = self.context.buffer(reserve=room, dynamic=True)
+        self._value_buffer.orphan()
+        self._value_buffer.write(np.ascontiguousarray(values, np.float32))
+
+    def choose(self, is_chosen: npt.NDArray[np.bool_], is_other: npt.NDArray[np.bool_]) -> None:
+        """Choose among the uploaded triangles, twice (triangle_count,), for `draw`."""
+        if self._chosen_buffer is None:
+            room = 3 * NUMBER * self._room[1]
+            self._chosen_buffer = self.context.buffer(reserve=room, dynamic=True)
+        triangles = self.drawn_triangles
+        chosen, others = triangles[is_chosen], triangles[is_other]
+        self._ranges[Share.CHOSEN] = 0, len(chosen)
+        self._ranges[Share.OTHERS] = len(chosen), len(others)
+        self._chosen_buffer.orphan()
+        self._chosen_buffer.write(np.concatenate([chosen, others]))
+
+    def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
+        """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
+
+        `share`: BUMPED and SMOOTH need bump_amounts, and give the program in_bumps.
+        """
+        if share is Share.ALL:
+            self._draw_all(self._vertex_array(program, self.index_buffer))
+            return
+        first, count = self._ranges.get(share, (0, 0))
+        if count == 0:
+            return
+        if share in (Share.CHOSEN, Share.OTHERS):
+            assert self._chosen_buffer is not None
+            indices = self._chosen_buffer
+        else:
+            assert self._bump_buffers is not None
+            indices = self._bump_buffers[1]
+        array = self._vertex_array(program, indices)
+        array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
+
+    def _draw_all(self, array: moderngl.VertexArray) -> None:
+        """Draw all triangles, in their order."""
+        raise NotImplementedError
+
+    def _vertex_array(
+        self, program: moderngl.Program, indices: moderngl.Buffer
+    ) -> moderngl.VertexArray:
+        """What a program reads of a buffer of triangles; the same one each time."""
+        array = self._vertex_arrays.get((program, indices))
+        if array is None:
+            names = ("in_position", "in_normal")
+            layout = ("3f 3f", *names) if self.columns == 6 else ("3f 3f 2f", *names, "in_uv")
+            content: list[Any] = [(self.vertex_buffer, *layout)]
+            if self._bump_buffers is not None:
+                content.append((self._bump_buffers[0], "2f", "in_bumps"))
+            if self._value_buffer is not None:
+                content.append((self._value_buffer, "2f", "in_values"))
+            array = self.context.vertex_array(
+                program,
+                content,
+                index_buffer=indices,
+                index_element_size=4,
+                skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
+            )
+            self._vertex_arrays[program, indices] = array
+        return array
+
+
+class Stream(MeshBuffers):
+    """Arrays of such a mesh, lent to whoever makes it, and uploaded.
+
+    vertices: x y z, nx ny nz[, u v], shape (vertex_capacity, 6 or 8), float32; the borrower writes.
+    triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
+    source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
+        borrower writes; never uploaded.
+    vertex_count, triangle_count: what the last `upload` handed over.
+    """
+
+    vertex_count: int = 0
+    triangle_count: int = 0
+
+    def __init__(
+        self, gl: moderngl.Context, vertex_capacity: int, triangle_capacity: int, columns: int
+    ) -> None:
+        super().__init__(gl, vertex_capacity, triangle_capacity, columns)
+        self.vertices: npt.NDArray[np.float32] = np.zeros((vertex_capacity, columns), np.float32)
+        self.triangles: npt.NDArray[np.uint32] = np.zeros((triangle_capacity, 3), np.uint32)
+        self.source: npt.NDArray[np.int32] = np.zeros(triangle_capacity, np.int32)
+
+    @property
+    def drawn_rows(self) -> npt.NDArray[np.float32]:
+        """What was uploaded of the vertices."""
+        return self.vertices[: self.vertex_count]
+
+    @property
+    def drawn_triangles(self) -> npt.NDArray[np.uint32]:
+        """What was uploaded of the triangles."""
+        return self.triangles[: self.triangle_count]
 
     def upload(
         self,
@@ -95,105 +249,111 @@ class Stream:
             )
         self.vertex_count, self.triangle_count = vertex_count, triangle_count
         self.has_bumps = bump_amounts is not None
-        self._ranges = {Share.ALL: (0, triangle_count)}
+        self._ranges = {}
         if vertex_count == 0 or triangle_count == 0:
             return
         self.corners = box_corners(self.vertices[:vertex_count, :3])
         # Orphaning gives the driver a fresh block while it may still draw from the old one.
-        self._vertex_buffer.orphan()
-        self._vertex_buffer.write(self.vertices[:vertex_count])
-        self._index_buffer.orphan()
-        self._index_buffer.write(self.triangles[:triangle_count])
+        self.vertex_buffer.orphan()
+        self.vertex_buffer.write(self.vertices[:vertex_count])
+        self.index_buffer.orphan()
+        self.index_buffer.write(self.triangles[:triangle_count])
         if bump_amounts is not None:
             self._upload_bumps(bump_amounts)
 
-    def _upload_bumps(self, bump_amounts: npt.NDArray[np.float32]) -> None:
-        """Upload amounts, and the triangles anew: first those that have bumps."""
-        if self._bump_buffers is None:
-            room = 2 * self.vertices.itemsize * len(self.vertices)
-            self._bump_buffers = (
-                self._gl.buffer(reserve=room, dynamic=True),
-                self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True),
-            )
-        triangles = self.triangles[: self.triangle_count]
-        is_bumped = (bump_amounts.max(axis=1) > 0.0)[triangles].any(axis=1)
-        parted = np.concatenate([triangles[is_bumped], triangles[~is_bumped]])
-        count = int(is_bumped.sum())
-        self._ranges[Share.BUMPED] = 0, count
-        self._ranges[Share.SMOOTH] = count, len(triangles) - count
-        for buffer, array in zip(self._bump_buffers, (bump_amounts, parted), strict=True):
-            buffer.orphan()
-            buffer.write(np.ascontiguousarray(array))
+    def _draw_all(self, array: moderngl.VertexArray) -> None:
+        if self.vertex_count and self.triangle_count:
+            array.render(moderngl.TRIANGLES, vertices=3 * self.triangle_count)
 
-    def check_uv(self) -> None:
-        """Raise ValueError where rows have no texture coordinates, but a texture comes."""
-        if (columns := self.vertices.shape[1]) != 8:
-            raise ValueError(
-                f"a texture meets a stream of {columns} columns; it needs texture coordinates: "
-                "lend a stream of 8 columns (position, normal, u v), or draw without texture"
-            )
 
-    def upload_values(self, values: npt.NDArray[np.float32] | None) -> None:
-        """Hand two numbers for each uploaded vertex to OpenGL, (vertex_count, 2); None: zeros.
+class Fetched(Protocol):
+    """A frame that lies on the graphics card: what it is made of is fetched when it is read."""
 
-        ValueError for another shape. Programs that are first drawn with after that have in_values.
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices it has."""
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles."""
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float32]:
+        """x y z, nx ny nz[, u v], shape (vertex_count, columns); may be written."""
+
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]:
+        """Shape (triangle_count, 3)."""
+
+
+class GpuStream(MeshBuffers):
+    """Buffers of such a mesh, lent to a program on the graphics card that makes it there.
+
+    It is drawn by the command that this program writes, without anybody on this side learning how
+    much there is. What needs rows or triangles here fetches them, and waits: bumps, outlines,
+    colours by triangle, and software that leaves hidden triangles out.
+
+    vertex_buffer, index_buffer: rows and triangles, as in a `Stream`.
+    source_buffer: the triangle that each comes from, int32.
+    command_buffer: a DrawElementsIndirectCommand, then how many vertices and triangles (7 uint32).
+    """
+
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        vertex_capacity: int,
+        triangle_capacity: int,
+        columns: int,
+        margin: float,
+    ) -> None:
+        super().__init__(gl, vertex_capacity, triangle_capacity, columns)
+        self.source_buffer = gl.buffer(reserve=NUMBER * triangle_capacity)
+        self.command_buffer = gl.buffer(bytes(NUMBER * COMMAND_WORDS))
+        self._margin = margin
+        self._frame: Fetched | None = None
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices its last frame has; fetched."""
+        return 0 if self._frame is None else self._frame.vertex_count
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles; fetched."""
+        return 0 if self._frame is None else self._frame.triangle_count
+
+    @property
+    def drawn_rows(self) -> npt.NDArray[np.float32]:
+        """Its vertices, fetched."""
+        assert self._frame is not None
+        return self._frame.vertices
+
+    @property
+    def drawn_triangles(self) -> npt.NDArray[np.uint32]:
+        """Its triangles, fetched."""
+        assert self._frame is not None
+        return self._frame.triangles
+
+    def show(
+        self,
+        frame: Fetched,
+        positions: npt.NDArray[np.floating],
+        bump_amounts: npt.NDArray[np.float32] | None = None,
+    ) -> None:
+        """Draw from now on what was made in these buffers.
+
+        frame: fetches it. positions: of the mesh that it was made of, (V, 3).
+        bump_amounts: as `Stream.upload` takes them; then fetched rows, which may have been changed,
+            are handed over again.
         """
-        if values is None:
-            values = np.zeros((self.vertex_count, 2), np.float32)
-        if values.shape != (self.vertex_count, 2):
-            raise ValueError(
-                f"values has shape {values.shape}; it must be ({self.vertex_count}, 2), two "
-                "numbers for each uploaded vertex"
-            )
-        if self._value_buffer is None:
-            room = 2 * self.vertices.itemsize * len(self.vertices)
-            self._value_buffer = self._gl.buffer(reserve=room, dynamic=True)
-        self._value_buffer.orphan()
-        self._value_buffer.write(np.ascontiguousarray(values, np.float32))
+        self._frame = frame
+        self.has_bumps = bump_amounts is not None
+        self._ranges = {}
+        box = np.stack([positions.min(axis=0) - self._margin, positions.max(axis=0) + self._margin])
+        self.corners = box_corners(box)
+        if bump_amounts is not None:
+            self.vertex_buffer.write(frame.vertices)
+            self._upload_bumps(bump_amounts)
 
-    def choose(self, is_chosen: npt.NDArray[np.bool_], is_other: npt.NDArray[np.bool_]) -> None:
-        """Choose among the uploaded triangles, twice (triangle_count,), for `draw`."""
-        if self._chosen_buffer is None:
-            self._chosen_buffer = self._gl.buffer(reserve=self.triangles.nbytes, dynamic=True)
-        triangles = self.triangles[: self.triangle_count]
-        chosen, others = triangles[is_chosen], triangles[is_other]
-        self._ranges[Share.CHOSEN] = 0, len(chosen)
-        self._ranges[Share.OTHERS] = len(chosen), len(others)
-        self._chosen_buffer.orphan()
-        self._chosen_buffer.write(np.concatenate([chosen, others]))
-
-    def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
-        """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
-
-        `share`: BUMPED and SMOOTH need bump_amounts, and give the program in_bumps.
-        """
-        first, count = self._ranges.get(share, (0, 0))
-        if self.vertex_count == 0 or count == 0:
-            return
-        indices = self._index_buffer
-        if share in (Share.CHOSEN, Share.OTHERS):
-            assert self._chosen_buffer is not None
-            indices = self._chosen_buffer
-        elif share is not Share.ALL:
-            assert self._bump_buffers is not None
-            indices = self._bump_buffers[1]
-        array = self._vertex_arrays.get((program, indices))
-        if array is None:
-            names = ("in_position", "in_normal")
-            layout = (
-                ("3f 3f", *names) if self.vertices.shape[1] == 6 else ("3f 3f 2f", *names, "in_uv")
-            )
-            content: list[Any] = [(self._vertex_buffer, *layout)]
-            if self._bump_buffers is not None:
-                content.append((self._bump_buffers[0], "2f", "in_bumps"))
-            if self._value_buffer is not None:
-                content.append((self._value_buffer, "2f", "in_values"))
-            array = self._gl.vertex_array(
-                program,
-                content,
-                index_buffer=indices,
-                index_element_size=4,
-                skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
-            )
-            self._vertex_arrays[program, indices] = array
-        array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
+    def _draw_all(self, array: moderngl.VertexArray) -> None:
+        array.render_indirect(self.command_buffer, moderngl.TRIANGLES, count=1)

@@ -6,6 +6,7 @@ hidden or covered, and a panel that is drawn after `resolve` is part of it.
     surface.begin();  ...draw...;  [surface.resolve(); ...draw a panel on top...;]  surface.end()
 """
 
+import contextlib
 import os
 import sys
 from typing import Any, ClassVar, Self
@@ -18,6 +19,7 @@ from .errors import GLError, diagnose
 from .render_target import RenderTarget
 
 Image = npt.NDArray[np.uint8]
+NEWEST, OLDEST = 430, 330  # OpenGL, times 100: with compute shaders, and what all drawing needs
 
 
 class Surface:
@@ -194,20 +196,29 @@ def _offscreen_context() -> tuple[moderngl.Context, bool]:
     """
     if not sys.platform.startswith("linux"):
         try:
-            return moderngl.create_context(require=330, standalone=True), True
+            return _standalone_context(), True
         except Exception as error:
             raise diagnose("offscreen OpenGL", error) from None
     try:
-        egl: dict[str, Any] = {"backend": "egl"}
-        return moderngl.create_context(require=330, standalone=True, **egl), True
+        return _standalone_context(backend="egl"), True
     except Exception as error:
         egl_error = error
     if os.environ.get("DISPLAY"):
         try:
-            return moderngl.create_context(require=330, standalone=True), False
+            return _standalone_context(), False
         except Exception as error:
             raise diagnose("offscreen OpenGL (EGL)", f"{egl_error}; then X11: {error}") from None
     raise diagnose("offscreen OpenGL (EGL)", egl_error) from None
+
+
+def _standalone_context(**how: Any) -> moderngl.Context:
+    """One of the newest OpenGL that we have a use for, else of the oldest that will do.
+
+    Some drivers give what they are asked for and no more.
+    """
+    with contextlib.suppress(Exception):  # glcontext raises nothing better
+        return moderngl.create_context(require=NEWEST, standalone=True, **how)
+    return moderngl.create_context(require=OLDEST, standalone=True, **how)
 
 
 def image_of(pixels: bytes, size: tuple[int, int], components: int = 3) -> Image:

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 
 from .camera_view import CameraView
-from .stream import Share, Stream
+from .stream import MeshBuffers, Share
 from .style import Style
 
 Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
@@ -38,7 +38,7 @@ def blending(gl: moderngl.Context) -> Iterator[None]:
 
 
 def draw_nearest(
-    gl: moderngl.Context, stream: Stream, shares: Sequence[tuple[moderngl.Program, Share]]
+    gl: moderngl.Context, stream: MeshBuffers, shares: Sequence[tuple[moderngl.Program, Share]]
 ) -> None:
     """Blend the nearest layer of a mesh alone: its depths first, then what lies at them.
 
@@ -79,11 +79,11 @@ def in_view(plane: Plane, view: CameraView) -> Plane:
     return a, b, c, d
 
 
-def fade_seen(fade: Plane | None, stream: Stream, view: CameraView) -> Plane | None:
+def fade_seen(fade: Plane | None, stream: MeshBuffers, view: CameraView) -> Plane | None:
     """Where a mesh fades, in view space; None where nothing of that is inside the frame."""
     if fade is None:
         return None
-    places = stream.vertices[: stream.vertex_count, :3]
+    places = stream.drawn_rows[:, :3]
     faded = places[places @ np.array(fade[:3], np.float32) + fade[3] < 1.0].astype(np.float64)
     is_seen = len(faded) and min(view.covered_pixels(faded, 0.0)[2:]) > 0
     return in_view(fade, view) if is_seen else None

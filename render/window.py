@@ -16,7 +16,16 @@ from .compositor import Compositor, Detail
 from .errors import GLError, diagnose
 from .render_target import Rectangle, RenderTarget
 from .style import Colour
-from .surface import Image, Surface, check_size, clamp_samples, image_of, most_samples
+from .surface import (
+    NEWEST,
+    OLDEST,
+    Image,
+    Surface,
+    check_size,
+    clamp_samples,
+    image_of,
+    most_samples,
+)
 
 TITLE_BAR = 40  # [units at scale 1] that a desktop puts above a window (chosen: a little ample)
 
@@ -187,15 +196,18 @@ def open_window(
     with _complaints(glfw) as complaints:
         if not glfw.init():
             raise diagnose("opening a window", "; ".join(complaints))
-        _hint(glfw, visible)
-        handle = glfw.create_window(*size, title, None, None)
-        if not handle:
+        for version in (NEWEST, OLDEST):
+            complaints.clear()
+            _hint(glfw, visible, version)
+            if handle := glfw.create_window(*size, title, None, None):
+                break
+        else:
             raise diagnose("opening a window", "; ".join(complaints))
     glfw.make_context_current(handle)
     glfw.swap_interval(1 if visible else 0)
     try:
         loader: dict[str, Any] = {"context": _Loader(glfw)}
-        gl = moderngl.create_context(require=330, **loader)
+        gl = moderngl.create_context(require=OLDEST, **loader)
         surface = WindowSurface(glfw, handle, gl, samples)
     except Exception as error:
         glfw.destroy_window(handle)
@@ -233,10 +245,10 @@ def _units_are_pixels(glfw: ModuleType) -> bool:
     return glfw.get_platform() in (glfw.PLATFORM_X11, glfw.PLATFORM_WIN32)
 
 
-def _hint(glfw: ModuleType, visible: bool) -> None:
+def _hint(glfw: ModuleType, visible: bool, version: int) -> None:
     glfw.default_window_hints()
-    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, 3)
-    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, 3)
+    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version // 100)
+    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version // 10 % 10)
     glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
     glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)  # macOS refuses 3.3 core without it
     glfw.window_hint(glfw.VISIBLE, visible)

@@ -13,7 +13,10 @@ from tests import budgets
 from tests.as_installed import lay
 
 ROOT = Path(__file__).parents[1]
-FOLDERS = ("app", "assets", "bench", "docs", "examples", "refine", "render", "risorius", "sim")
+FOLDERS = (
+    *("app", "assets", "bench", "docs", "examples"),
+    *("refine", "refine_gl", "render", "risorius", "sim"),
+)
 LONGEST_FILE, LONGEST_FUNCTION = 400, 60  # lines
 
 
@@ -48,7 +51,7 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
     )
     modules = {name.removeprefix("risorius.").partition(".")[0] for name in result.stdout.split()}
     assert package in modules
-    neighbours = {"app", "assets", "bench", "refine", "render", "sim"} - {package}
+    neighbours = {"app", "assets", "bench", "refine", "refine_gl", "render", "sim"} - {package}
     assert not modules & (banned | neighbours)
 
 
@@ -57,6 +60,7 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
     [
         ("risorius", {"click", "numba", "numpy", "pydantic", "pydantic_core", "pyvista", "tqdm"}),
         ("refine", {"numpy"}),
+        ("refine_gl", {"moderngl", "numpy"}),
         ("sim", {"numpy", "scipy"}),
         ("render", {"glfw", "moderngl", "numpy", "pyrr"}),
         ("assets", {"PIL", "fast_simplification", "numpy", "scipy", "trimesh"}),

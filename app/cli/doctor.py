@@ -52,7 +52,7 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
     lines += map(str, found.values())
     if not offscreen_only:
         works["films"], films = _films()
-        lines += [films, _extras(), *_names()]
+        lines += [_card(list(found.values())), films, _extras(), *_names()]
     missing = [name for name, is_there in works.items() if not is_there]
     names = f"Missing: {', '.join(missing)}; the cure is in its line above."
     lines = [in_one_line(line) for line in (*lines, names if missing else "Everything is there.")]
@@ -60,6 +60,17 @@ def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
         return Health.WHOLE, lines
     draws = works["offscreen"] or works.get("window", False)
     return Health.PARTLY if draws else Health.NOTHING, lines
+
+
+def _card(findings: list[render.Finding]) -> str:
+    """Whether the refiner `kahler-gl` runs, which nothing else needs."""
+    able = [each for each in findings if each.lends_gpu_streams]
+    if not able:
+        return "kahler-gl: no. It needs OpenGL 4.3; the refiner kahler does the same"
+    ways = ", ".join(each.name for each in able)
+    if all(each.is_software for each in able):
+        return f"kahler-gl: yes ({ways}), by software, where the refiner kahler is faster"
+    return f"kahler-gl: yes ({ways})"
 
 
 def _names() -> list[str]:

@@ -33,19 +33,27 @@ class Preset:
         return self.options.get(refiner, {})
 
 
+ON_CARD = "kahler-gl"  # `kahler` on the graphics card, of which it has less
+
+
+def _alike(told: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Options that `kahler` and its twin on the graphics card both have."""
+    return {"kahler": told, ON_CARD: told}
+
+
 # By `displacement` alone outlines of crown and chin would stay polygons: edges there are long, turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
 SMOOTH = Preset(
-    options={"kahler": {"scheme": "cubic", "criterion": "displacement+rest"}}, raises_wrinkles=True
+    options=_alike({"scheme": "cubic", "criterion": "displacement+rest"}), raises_wrinkles=True
 )
 # The hem of a cloth turns in the sheet itself.
-SMOOTH_CLOTH = Preset(options={"kahler": {"scheme": "cubic", "criterion": "displacement+border"}})
+SMOOTH_CLOTH = Preset(options=_alike({"scheme": "cubic", "criterion": "displacement+border"}))
 PAPER = Preset()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
 # makes about as many triangles at most as in Table 1 (1328).
 PLANE = {"threshold_once": 0.001, "threshold_twice": 0.005}
-PAPERS_PLANE = Preset(options={"kahler": PLANE})
-SMOOTH_PLANE = Preset(options={"kahler": {"normals": "refined", **PLANE}})
+PAPERS_PLANE = Preset(options=_alike(PLANE))
+SMOOTH_PLANE = Preset(options={**_alike(PLANE), "kahler": {"normals": "refined", **PLANE}})
 
 PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then by scene
     {

@@ -42,6 +42,8 @@ class BaseRefiner(Refiner):
     of a triangle's corners is the same mix of these rows, texture coordinates and attributes too.
     """
 
+    runs_on_gpu = False
+    """Whether `refine` takes a `GpuStream`, too."""
     connectivity: Connectivity
     """Edges, neighbours and wedges of the mesh, found once."""
     rest_positions: Doubles
@@ -160,6 +162,27 @@ class BaseRefiner(Refiner):
         Raises ValueError if `positions` or the arrays of `out` have a wrong shape or type, or if
         positions are not finite.
         """
+        stream = self._lend_own_stream() if out is None else out
+        if out is not None and not hasattr(out, "reserve"):
+            self._accept(out, self.vertex_capacity, self.triangle_capacity)
+        self.take(positions, view)
+        vertex_count, triangle_count = self.fill(stream, view)
+        vertices, triangles, source = self._accepted
+        uv, attributes = self.values_in(vertices[:vertex_count])
+        return RefinedMesh(
+            self._geometry[0][:vertex_count],
+            self._geometry[1][:vertex_count],
+            triangles[:triangle_count],
+            source[:triangle_count],
+            uv,
+            attributes,
+        )
+
+    def take(self, positions: npt.NDArray[np.floating], view: View | None) -> None:
+        """Check what a frame is given, and copy it into `positions` and `points`.
+
+        Raises ValueError for a wrong shape or type, and for positions that are not finite.
+        """
         if type(positions) is not np.ndarray:
             positions = as_array("positions", positions, f"floats of shape {self._shape}")
         if view is not None and not isinstance(view, View):
@@ -169,25 +192,9 @@ class BaseRefiner(Refiner):
                 f"positions must be floats of shape {self._shape} like the mesh that was bound, "
                 f"got {positions.dtype} of shape {positions.shape}"
             )
-        stream = self._lend_own_stream() if out is None else out
-        if out is not None and not hasattr(out, "reserve"):
-            self._accept(out, self.vertex_capacity, self.triangle_capacity)
         self.positions[...] = positions
         if round_finite(self.positions, self.points) > 0:
             raise ValueError(not_finite(positions))
-        vertex_count, triangle_count = self.fill(stream, view)
-        vertices, triangles, source = self._accepted
-        uv, attributes = None, _NO_ATTRIBUTES
-        if self._values is not None:
-            uv, attributes = self._attributes_in(vertices[:vertex_count])
-        return RefinedMesh(
-            self._geometry[0][:vertex_count],
-            self._geometry[1][:vertex_count],
-            triangles[:triangle_count],
-            source[:triangle_count],
-            uv,
-            attributes,
-        )
 
     def _own(self, *things: object) -> None:
         """Raise ValueError if one of these, which learn one mesh, serves another refiner."""
@@ -226,9 +233,10 @@ class BaseRefiner(Refiner):
             )
         return self._own_stream
 
-    def _attributes_in(self, vertices: Floats) -> tuple[Floats | None, Mapping[str, Floats]]:
-        """Views of texture coordinates and attributes in the rows of a frame."""
-        assert self._values is not None
+    def values_in(self, vertices: Floats) -> tuple[Floats | None, Mapping[str, Floats]]:
+        """Texture coordinates and attributes in rows of a frame, shape (N, columns): views."""
+        if self._values is None:
+            return None, _NO_ATTRIBUTES
         values = vertices[:, GEOMETRY_COLUMNS:]
         uv = values[:, :2] if self._values.has_uv else None
         return uv, {name: values[:, columns] for name, columns in self._values.columns.items()}

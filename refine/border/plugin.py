@@ -94,8 +94,7 @@ class Stream(Protocol):
 
     The arrays may be views of mapped memory: of a file, of another process, of a buffer of the GPU.
     The built-in refiners read rows again that they have written in the same frame, so the memory
-    should be fast to read, too. A refiner that writes elsewhere may ask its callers for streams
-    with other members; then it cannot be drawn by those who lend arrays.
+    should be fast to read, too.
     """
 
     @property
@@ -109,6 +108,36 @@ class Stream(Protocol):
     @property
     def source(self) -> npt.NDArray[np.int32]:
         """C-contiguous, shape (..,)."""
+
+
+class GpuStream(Protocol):
+    """A stream that lives on the graphics card, for refiners that write there (`refine_gl/`).
+
+    Its buffers are those of an OpenGL context that is current where the refiner is called, as
+    moderngl has them, with room for `vertex_capacity` and `triangle_capacity`. Rows, triangles and
+    sources lie in them as in the arrays of a `Stream`; nobody on this side learns how many.
+    """
+
+    @property
+    def context(self) -> Any:
+        """The context; a refiner hands its mesh over where it meets a new one."""
+
+    @property
+    def vertex_buffer(self) -> Any:
+        """Rows, 4 x vertex_columns bytes each."""
+
+    @property
+    def index_buffer(self) -> Any:
+        """Triangles, 12 bytes each."""
+
+    @property
+    def source_buffer(self) -> Any:
+        """The input triangle of each, 4 bytes."""
+
+    @property
+    def command_buffer(self) -> Any:
+        """Seven numbers of 4 bytes: a DrawElementsIndirectCommand (OpenGL 4.0) that draws the frame
+        as one instance, then how many vertices and how many triangles that is."""
 
 
 @runtime_checkable

@@ -39,7 +39,8 @@ def wedge_values(mesh: Connectivity, values: Floats) -> Floats:
 
     `values`: shape (A, k); the mesh says which row of it a wedge has.
     """
-    return np.where(mesh.wedge_uv[:, None] < 0, np.float32(0.0), values[mesh.wedge_uv])
+    zeros = np.zeros((1, values.shape[1]), np.float32)
+    return np.concatenate([values, zeros])[mesh.wedge_uv]  # -1 is the last row
 
 
 def write_wedges(mesh: Connectivity, values: Floats, rows: Floats) -> None:

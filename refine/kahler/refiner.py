@@ -22,7 +22,8 @@ from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import StreamArrays
-from ..mesh.arrays import Floats
+from ..mesh.arrays import Doubles, Floats, Indices, Small
+from ..mesh.connectivity import Connectivity
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
 from .frame import buffers_for
@@ -141,12 +142,20 @@ class Kahler(BaseRefiner):
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""
-        mesh = self.connectivity
-        point_counts = np.array(POINTS_OF_EDGE)[self._frame.splits[:-1]]
-        # Place along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
-        block_starts = np.cumsum(point_counts) - point_counts
-        within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
-        place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
-        ends = np.repeat(self.edges[mesh.attribute_edges], point_counts, axis=0)
-        weights = np.column_stack([4 - place, place, np.zeros_like(place)]) / 4.0
-        return super().origins().followed_by(np.column_stack([ends, ends[:, 0]]), weights)
+        points = points_on_edges(self.connectivity, self.edge_splits)
+        return super().origins().followed_by(*points)
+
+
+def points_on_edges(mesh: Connectivity, splits: Small) -> tuple[Indices, Doubles]:
+    """Where the new points lie on the mesh: vertices and their weights, shape (N, 3) each.
+
+    `splits`: of edges, shape (E,).
+    """
+    point_counts = np.array(POINTS_OF_EDGE)[splits[mesh.attribute_edges]]
+    # Place along the edge, in quarters, of the points of a block: x 2 x or 1 2 3.
+    block_starts = np.cumsum(point_counts) - point_counts
+    within = np.arange(point_counts.sum()) - np.repeat(block_starts, point_counts)
+    place = np.where(np.repeat(point_counts, point_counts) == 1, 2, within + 1)
+    ends = np.repeat(mesh.edges[mesh.attribute_edges], point_counts, axis=0)
+    weights = np.column_stack([4 - place, place, np.zeros_like(place)]) / 4.0
+    return np.column_stack([ends, ends[:, 0]]), weights

@@ -60,6 +60,30 @@ def test_the_verdict_is_what_works(ill: object, missing: tuple[str, ...]) -> Non
     assert ask("--quiet").output == "" and ask("--quiet").exit_code == result.exit_code
 
 
+@pytest.mark.parametrize(
+    ("able", "is_software", "told"),
+    [
+        ((), True, "no. It needs OpenGL 4.3; the refiner kahler does the same"),
+        (("window",), False, "yes (window)"),
+        (
+            ("offscreen", "window"),
+            True,
+            "yes (offscreen, window), by software, where the refiner kahler is faster",
+        ),
+    ],
+)
+def test_refinement_on_the_card(
+    able: tuple[str, ...], is_software: bool, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A line says whether kahler-gl would run, and where; without it nothing is missing."""
+    findings = [
+        render.Finding(name, True, is_software=is_software, lends_gpu_streams=name in able)
+        for name in ("offscreen", "window")
+    ]
+    monkeypatch.setattr(render, "probe", lambda **_: findings)
+    assert f"\nkahler-gl: {told}\n" in ask().output
+
+
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
 def test_offscreen_alone(ill: object, missing: tuple[str, ...]) -> None:
     """What is not asked for is neither missing nor there."""

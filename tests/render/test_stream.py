@@ -59,7 +59,7 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
     stream = lent(renderer, shape)
     style = render.Style(wireframe=True, colour_by=render.ColourBy.SPLITS)
     lines = render.Lines([shape.positions[:50]], (1.0, 0.0, 0.0))
-    buffers = stream._vertex_buffer, stream._index_buffer
+    buffers = stream.vertex_buffer, stream.index_buffer
     sizes = [buffer.size for buffer in buffers]
     peaks = []
     for frame in range(120):
@@ -73,7 +73,7 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
         surface.end()
         surface.read()
         peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-    assert (stream._vertex_buffer, stream._index_buffer) == buffers
+    assert (stream.vertex_buffer, stream.index_buffer) == buffers
     assert [buffer.size for buffer in buffers] == sizes
     assert peaks[-1] < 1.03 * peaks[20]
 

@@ -162,3 +162,13 @@ def test_lent_stream_that_stops_growing() -> None:
     with pytest.raises(ValueError, match=r"stream.triangles must be .* shape \(>= \d+, 3\), got"):
         refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
     assert len(refiner.refine(mesh.vertices, out=stream).positions) == before
+
+
+@pytest.mark.parametrize("name", ["none", "loop", "kahler"])
+def test_values_of_corners_where_there_is_no_triangle(name: str) -> None:
+    """A mesh of vertices alone has no corners that could give them values: they get zeros."""
+    nothing = np.zeros((0, 3), int)
+    refiner = refine.create(name, nothing, np.eye(3), uv=np.ones((4, 2)), face_uv=nothing)
+    mesh = refiner.refine(np.eye(3))
+    assert mesh.uv is not None
+    np.testing.assert_array_equal(mesh.uv, np.zeros((3, 2)))

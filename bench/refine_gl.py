@@ -1,0 +1,209 @@
+"""What a frame of refinement costs on the graphics card, by its own clock, beside the processor.
+
+The meshes of `bench refine`, by the paper's rule and as the window shows them (cubic edges,
+blended, normals of the refined surface). Milliseconds of the card are timer queries around all
+passes of a frame: what it computes, without the upload. Whoever draws by arrays uploads rows and
+triangles; by `kahler-gl` the positions are uploaded alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import refine
+from risorius.app.errors import UserError
+from risorius.refine_gl import KahlerGl
+from risorius.refine_gl.tables import GROUP
+from risorius.render.surface import is_software
+
+from .refine import Load, interleaved, load_of
+from .report import processor, table
+
+METHODS: Mapping[str, Mapping[str, Any]] = {
+    "paper's rule": {},
+    "window's look": {"scheme": "cubic", "criterion": "displacement+rest"},
+}
+FEWEST_ROUNDS, MOST_ROUNDS = 3, 100
+
+
+@dataclass(frozen=True)
+class Row:
+    """One method on one mesh; numbers of triangles and bytes are means over its frames."""
+
+    mesh: str
+    method: str
+    triangles_in: int
+    triangles_out: float
+    processor_milliseconds: float
+    """Of a frame by `kahler`, from positions to filled arrays, median [ms]."""
+    card_milliseconds: float
+    """Of the passes of a frame, median [ms]."""
+    dispatches: int
+    upload_bytes: int
+    """What a frame hands over,"""
+    arrays_bytes: float
+    """and what it would hand over as rows and triangles."""
+    traffic_bytes: float
+    """What the passes read and write at the least."""
+    room_bytes: int
+    """Of all buffers."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """All that one run found."""
+
+    processor: str
+    card: str
+    """What OpenGL calls itself."""
+    is_software: bool
+    rows: list[Row] = field(default_factory=list)
+
+
+def measure(
+    sizes: Sequence[str],
+    seconds: float,
+    progress: Callable[[str], object] = lambda _: None,
+) -> Report:
+    """Measure each of `sizes` (see `refine.load_of`) for about `seconds`.
+
+    Raises UserError without OpenGL 4.3.
+    """
+    found: list[Row] = []
+    card = None
+    for size in sizes:
+        progress(size)
+        load = load_of(size)
+        for method, options in METHODS.items():
+            bound = refine.create("kahler-gl", load.faces, load.rest, **options)
+            if not isinstance(bound, KahlerGl):
+                raise UserError(
+                    "--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` tells more"
+                )
+            card = bound
+            found.append(_row(load, method, options, bound, seconds / len(METHODS)))
+    assert card is not None
+    return Report(processor(), card.driver, is_software(card.driver), found)
+
+
+def _row(
+    load: Load, method: str, options: Mapping[str, Any], card: KahlerGl, seconds: float
+) -> Row:
+    """Time a method on all frames of a mesh."""
+    serial = refine.create("kahler", load.faces, load.rest, **options)
+    first = [card.cost_of(frame) for frame in load.frames]  # compiles
+    counts = [serial.refine(frame) for frame in load.frames]
+    sizes = [(mesh.vertex_count, mesh.triangle_count) for mesh in counts]
+    moved = [sum(traffic(card, frame).values()) for frame in load.frames]
+    times: list[float] = []
+
+    def on_card() -> None:
+        times.extend(card.cost_of(frame).milliseconds for frame in load.frames)
+
+    def on_processor() -> None:
+        for frame in load.frames:
+            serial.refine(frame)
+
+    both = on_processor, on_card
+    spent = interleaved(both, 1).sum()
+    rounds = int(np.clip(seconds / max(spent, 1e-9), FEWEST_ROUNDS, MOST_ROUNDS))
+    seconds_of = interleaved(both, rounds)[:, 0] / len(load.frames)
+    arrays = [4 * card.vertex_columns * rows + 12 * triangles for rows, triangles in sizes]
+    return Row(
+        mesh=load.name,
+        method=method,
+        triangles_in=len(load.faces),
+        triangles_out=float(np.mean([triangles for _, triangles in sizes])),
+        processor_milliseconds=1e3 * float(np.median(seconds_of)),
+        card_milliseconds=float(np.median(times)),
+        dispatches=first[0].dispatches,
+        upload_bytes=first[0].upload_bytes,
+        arrays_bytes=float(np.mean(arrays)),
+        traffic_bytes=float(np.mean(moved)),
+        room_bytes=first[0].room_bytes,
+    )
+
+
+def traffic(card: KahlerGl, positions: npt.NDArray[np.float64]) -> dict[str, int]:
+    """Bytes that each pass of a frame reads and writes, where a thread keeps what it has read.
+
+    Counted by what a thread of it names, in shaders/: vectors have 16 bytes, numbers 4.
+    """
+    mesh, frame = card.connectivity, card.refine(positions)
+    v, e, f = mesh.vertex_count, len(mesh.edges), len(mesh.faces)
+    w, r, n, m = len(mesh.wedge_vertices), len(mesh.attribute_edges), *_counts(frame)
+    splits = card.splits[mesh.attribute_edges]
+    once, twice = int((splits > 0).sum()), int((splits > 1).sum())
+    centres = n - w - int((splits + (splits >> 1)).sum())
+    values = 4 * (card.vertex_columns - 6)
+    is_curved = card.scheme == "cubic"
+    found = {
+        "normals": v * (8 + 24 + 32) + 3 * f * (4 + 12 + 72) + is_curved * (32 * v + 12 * f),
+        "mark": r * (4 + 16 + 8) + (e * (3 * 16 + 12) if is_curved else r * (32 + 12)),
+        "configure": f * (3 * 4 + 3 * 4 + 16),
+        "offsets": 8 * (r + 2 * f) // GROUP + 28,
+    }
+    look_up = f * (12 + 12 + 8) + (m - f) * 24 + 16 * m
+    if is_curved:
+        found |= {
+            "steepen": v * (8 + 4 + 32) + 2 * e * 20,
+            "displace": e * (16 + 48 + 64 + 64),
+            "centres": f * (24 + 96 + 16),
+            "surface_vertices": v * (8 + 32) + 3 * f * (12 + 48),
+            "surface_edges": e * (24 + 64 + 48 + 32),
+            "place_curves": w * (36 + 24 + 2 * values)
+            + 4 * r
+            + look_up
+            + once * (20 + 96 + 24 + 3 * values)
+            + twice * (32 + 48 + 6 * values),
+            "place_centres": 4 * f + centres * (36 + 240 + 24),
+        }
+    else:
+        found |= {
+            "place": w * (20 + 32 + 24 + 2 * values)
+            + v * (9 * 20)
+            + 4 * r
+            + look_up
+            + once * (20 + 96 + 40 + 3 * values),
+            "quarters": 4 * r + twice * (40 + 10 * 16 + 60 + 72 + 6 * values),
+        }
+    return found
+
+
+def _counts(frame: refine.RefinedMesh) -> tuple[int, int]:
+    return frame.vertex_count, frame.triangle_count
+
+
+def report(found: Report) -> str:
+    """The text to print."""
+    kind = (
+        "software, which is no card: compare bytes, not times" if found.is_software else "hardware"
+    )
+    lines = [
+        f"Refinement by kahler-gl on {found.card} ({kind}),",
+        f"and by kahler on one core of {found.processor}; medians of interleaved rounds.",
+        "card: the passes, by timer queries (software: until they end); up: MB of a frame, and as",
+        "arrays; moved: MB that the passes read and write at the least; room: MB of all buffers.",
+    ]
+    columns = "method:<15|out:9.0f|kahler ms:10.3f|card ms:9.3f|passes:7d|up:8.3f|as arrays:10.3f"
+    columns += "|moved:8.2f|room:7.1f"
+    for mesh, group in groupby(found.rows, key=lambda row: row.mesh):
+        rows = list(group)
+        cells = [
+            (
+                *(row.method, row.triangles_out, row.processor_milliseconds),
+                *(row.card_milliseconds, row.dispatches),
+                *(1e-6 * row.upload_bytes, 1e-6 * row.arrays_bytes),
+                *(1e-6 * row.traffic_bytes, 1e-6 * row.room_bytes),
+            )
+            for row in rows
+        ]
+        title = f"{mesh}, {rows[0].triangles_in} triangles"
+        lines += ["", title, *table(columns, cells, indent="  ")]
+    return "\n".join(lines)

@@ -1,0 +1,62 @@
+"""OpenGL where no caller brings any: a context of this process, in a thread of its own.
+
+A context is current in one thread, and a thread has one that is current. So ours gets its own, and
+whatever a caller has current stays so, be it of EGL, GLX or a window library. Calls are handed over
+and waited for, which takes tens of microseconds; frames that are read back take longer.
+"""
+
+import functools
+import os
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, TypeVar
+
+import moderngl
+
+Result = TypeVar("Result")
+LEAST_VERSION = 430
+"""Of OpenGL, times 100: the first with compute shaders."""
+
+
+class GpuError(RuntimeError):
+    """OpenGL cannot refine: it is missing, too old, or has too little room; says which."""
+
+
+class OwnContext:
+    """The context, and the thread in which it is current."""
+
+    def __init__(self) -> None:
+        """Open it; raises GpuError where OpenGL is missing or too old."""
+        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="kahler-gl")
+        try:
+            self.gl: moderngl.Context = self.run(_open)
+        except Exception as error:  # glcontext raises nothing better
+            self._thread.shutdown()
+            reason = " ".join(str(error).split())
+            raise GpuError(f"no OpenGL 4.3 without a window ({reason})") from None
+
+    def run(self, call: Callable[..., Result], *arguments: Any) -> Result:
+        """Call something where the context is current, and wait for what it returns."""
+        return self._thread.submit(call, *arguments).result()
+
+    def collect(self) -> None:
+        """Give back to OpenGL what nobody holds any more."""
+        self.run(self.gl.gc)
+
+
+def _open() -> moderngl.Context:
+    how: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    gl = moderngl.create_context(require=LEAST_VERSION, standalone=True, **how)
+    gl.gc_mode = "context_gc"
+    return gl
+
+
+@functools.cache
+def own_context() -> OwnContext:
+    """The one of this process; GpuError where there can be none."""
+    return OwnContext()
+
+
+if hasattr(os, "register_at_fork"):  # threads do not live on in a child
+    os.register_at_fork(after_in_child=own_context.cache_clear)

@@ -1,0 +1,204 @@
+"""One mesh in one OpenGL context: its buffers, its programs, and the passes of a frame.
+
+The paper's rule takes six:
+
+    normals     a vertex           sum of the cross products around it, of length one
+    mark        an attribute edge  how often it is split; scan of its points        (4.1)
+    configure   a triangle         row of the table; scan of its subtriangles       (4.3, 4.4)
+    offsets     one group          scan over blocks; the command that draws it all
+    place       a wedge, an attribute edge, a triangle: rows and subtriangles       (4.2, 4.3)
+    quarters    an attribute edge that is split twice: its second level             (4.2)
+
+Cubic edges and the normals of their surface have others before and after `mark` (rules.py). Prefix
+sums number points and subtriangles in the order of `refine.Kahler`. A barrier follows each pass.
+Nobody here learns how much came of it: the draw command holds that.
+"""
+
+import time
+from importlib.resources import files
+
+import moderngl
+import numpy as np
+
+from risorius.refine import GpuStream
+from risorius.refine.mesh.arrays import Doubles, Floats, Unsigned
+
+from .context import LEAST_VERSION, GpuError
+from .rules import THREADS, Rules
+from .tables import Tables, groups_of
+
+MOST_GROUPS = 65535
+"""Of a dispatch, that OpenGL promises."""
+VECTOR, NUMBER, DOUBLE = 16, 4, 8
+"""Bytes."""
+STANDING = 1e-3
+"""No card does all passes within [ms]."""
+_STREAM = {4: "vertex_buffer", 5: "index_buffer", 6: "source_buffer", 7: "command_buffer"}
+
+
+class Frames:
+    """Buffers and programs of one mesh in one context, which has to be current in all calls."""
+
+    def __init__(
+        self, gl: moderngl.Context, tables: Tables, rules: Rules, rest_positions: Doubles
+    ) -> None:
+        """Hand the mesh over, and look at it at rest: positions of shape (V, 3).
+
+        Raises GpuError where OpenGL is too old, or has too little room.
+        """
+        if gl.version_code < LEAST_VERSION:
+            raise GpuError(
+                f"OpenGL 4.3 is needed, and this context has {gl.version_code / 100:.1f}"
+            )
+        self.gl = gl
+        self._tables = tables
+        sizes = tables.sizes
+        check_room(gl, tables, rules)
+        self.passes = rules.passes
+        self._sizes = gl.buffer(_block(tables))
+        self._mesh = _buffer(gl, NUMBER * len(tables.words))
+        self._mesh.write(tables.words)
+        self._positions = _buffer(gl, 3 * DOUBLE * sizes["vertex_count"])
+        self._fields = _buffer(gl, VECTOR * tables.field_count)
+        self._work = _buffer(gl, NUMBER * tables.work_count)
+        rest_cosines = np.where(rules.undefined_edges(), -np.inf, 0.0).astype(np.float32)
+        self._work.write(rest_cosines, offset=NUMBER * sizes["rest_cosines_at"])
+        self._programs = {name: _compile(gl, tables, name) for name in self.passes}
+        self._frame = 0
+        self._bind()
+        self._hand_over(rest_positions, None)
+        for name in self.passes[: self.passes.index("mark") + 1]:
+            self._dispatch(name, is_rest=True)
+
+    @property
+    def room_bytes(self) -> int:
+        """Of all buffers but those of the stream."""
+        held = self._sizes, self._mesh, self._positions, self._fields, self._work
+        return sum(int(each.size) for each in held)
+
+    def run(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> None:
+        """Refine a frame into the buffers of a stream.
+
+        `positions`: shape (V, 3); `metric`: what the processor measured, shape (E,).
+        """
+        self._begin(positions, metric, stream)
+        for name in self.passes:
+            self._dispatch(name)
+
+    def timed(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> float:
+        """Do the same; how long the passes took, by the card's own clock [ms]. This waits.
+
+        Where that stands still, as software's does, by that of the processor.
+        """
+        self._begin(positions, metric, stream)
+        clock = self.gl.query(time=True)
+        self.gl.finish()
+        start = time.perf_counter()
+        with clock:
+            for name in self.passes:
+                self._dispatch(name)
+        self.gl.finish()
+        waited = time.perf_counter() - start
+        taken = 1e-6 * float(clock.elapsed)
+        return taken if taken > STANDING else 1e3 * waited
+
+    def _begin(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> None:
+        self._frame += 1
+        self._bind()
+        for binding, name in _STREAM.items():
+            getattr(stream, name).bind_to_storage_buffer(binding)
+        self._hand_over(positions, metric)
+
+    def fetch_numbers(self, name: str, count: int) -> Unsigned:
+        """The first numbers that passes have handed on under a name; this waits for the frame."""
+        return self._fetch(self._work, NUMBER, name, count)
+
+    def fetch_vectors(self, name: str, count: int) -> Floats:
+        """The first vectors, shape (count, 4)."""
+        return self._fetch(self._fields, VECTOR, name, count).view(np.float32).reshape(-1, 4)
+
+    def _fetch(self, buffer: moderngl.Buffer, size: int, name: str, count: int) -> Unsigned:
+        start = size * self._tables.sizes[f"{name}_at"]
+        read = buffer.read(size * count, offset=start) if count else b""
+        return np.frombuffer(read, np.uint32)
+
+    def _bind(self) -> None:
+        """Take the places that shaders look at; others use them, too."""
+        self._sizes.bind_to_uniform_block(0)
+        for binding, buffer in enumerate((self._mesh, self._positions, self._fields, self._work)):
+            buffer.bind_to_storage_buffer(binding)
+
+    def _hand_over(self, positions: Doubles, metric: Floats | None) -> None:
+        """Upload positions, in double precision; the driver may still read those before."""
+        if len(positions):
+            self._positions.orphan()
+            self._positions.write(positions)
+        if metric is not None and len(metric):
+            self._work.write(metric, offset=NUMBER * self._tables.sizes["other_metrics_at"])
+
+    def _dispatch(self, name: str, *, is_rest: bool = False) -> None:
+        program = self._programs[name]
+        for uniform, value in (("frame", self._frame), ("is_rest", is_rest)):
+            if uniform in program:
+                program[uniform] = value
+        program.run(groups_of_pass(name, self._tables.sizes))
+        self.gl.memory_barrier()
+
+
+def groups_of_pass(name: str, sizes: dict[str, int]) -> int:
+    """How many groups of threads a pass takes: one at least."""
+    return max(sum(groups_of(sizes[count]) for count in THREADS[name]), 1)
+
+
+def check_room(gl: moderngl.Context, tables: Tables, rules: Rules) -> None:
+    """Raise GpuError for a mesh that is larger than what the driver's buffers hold."""
+    sizes = tables.sizes
+    rows = sizes["wedge_count"] + 3 * sizes["attribute_edge_count"]
+    rows += sizes["face_count"] if rules.blends else 0
+    largest = max(
+        NUMBER * sizes["columns"] * rows,
+        3 * NUMBER * sizes["most_subtriangles"] * sizes["face_count"],
+        NUMBER * len(tables.words),
+        VECTOR * tables.field_count,
+    )
+    room = int(gl.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
+    groups = max(groups_of_pass(name, sizes) for name in rules.passes)
+    if largest > room or groups > MOST_GROUPS:
+        raise GpuError(
+            f"a mesh of {sizes['face_count']} triangles needs buffers of {largest / 2**20:.0f} MB, "
+            f"and this driver has up to {room / 2**20:.0f} MB"
+        )
+
+
+def _buffer(gl: moderngl.Context, size: int) -> moderngl.Buffer:
+    """A buffer of zeros; OpenGL has none without room."""
+    return gl.buffer(bytes(max(size, VECTOR)), dynamic=True)
+
+
+def _block(tables: Tables) -> bytes:
+    """The uniform block, in std140: numbers of four bytes, in whole vectors of four."""
+    limits = np.array(list(tables.limits.values()), np.float32).view(np.uint32)
+    words = np.concatenate([limits, np.array(list(tables.sizes.values()), np.uint32)])
+    return np.pad(words, (0, -len(words) % 4)).tobytes()
+
+
+def _text(name: str) -> str:
+    return (files(__package__) / "shaders" / f"{name}.glsl").read_text(encoding="utf-8")
+
+
+def _compile(gl: moderngl.Context, tables: Tables, name: str) -> moderngl.ComputeShader:
+    """The program of a pass; all meshes of a context share it."""
+    if gl.extra is None:
+        gl.extra = {}  # of whoever uses a context
+    known: dict[str, moderngl.ComputeShader] = gl.extra.setdefault(__name__, {})
+    names = ["common", name, *(["look_up"] if name in ("place", "place_curves") else [])]
+    texts = [f"#line 1\n{_text(each)}" for each in names]
+    source = "\n".join(["#version 430 core", tables.head, *texts])
+    if source not in known:
+        try:
+            known[source] = gl.compute_shader(source)
+        except Exception as error:  # moderngl raises nothing better
+            lines = [line for line in str(error).splitlines() if "error" in line.lower()]
+            complaint = " ".join((lines or [str(error)])[-1].split())
+            raise GpuError(f"the driver refuses {name}.glsl: {complaint}") from None
+    return known[source]

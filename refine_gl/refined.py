@@ -1,0 +1,119 @@
+"""What a frame hands out: a `refine.RefinedMesh` whose arrays are fetched when they are read."""
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from risorius.refine import GpuStream, RefinedMesh
+from risorius.refine.mesh.arrays import Floats, Indices, Unsigned, Wide
+
+NUMBER = 4
+"""Bytes."""
+COMMAND_WORDS = 7
+"""Of a command buffer: DrawElementsIndirectCommand (5), numbers of vertices and of triangles."""
+
+Run = Callable[..., Any]
+"""Calls a function with arguments where the context of a stream is current."""
+Columns = tuple[Floats | None, Mapping[str, Floats]]
+"""Texture coordinates and attributes in the rows of a frame."""
+
+
+class GpuBuffers:
+    """A stream without anybody who draws it: the buffers of `refine.GpuStream`, made here."""
+
+    def __init__(
+        self, gl: moderngl.Context, columns: int, vertex_capacity: int, triangle_capacity: int
+    ) -> None:
+        """Make room for the largest frame."""
+        self.context = gl
+        self.vertex_buffer = gl.buffer(reserve=max(NUMBER * columns * vertex_capacity, 16))
+        self.index_buffer = gl.buffer(reserve=max(3 * NUMBER * triangle_capacity, 16))
+        self.source_buffer = gl.buffer(reserve=max(NUMBER * triangle_capacity, 16))
+        self.command_buffer = gl.buffer(reserve=NUMBER * COMMAND_WORDS)
+
+    @property
+    def room_bytes(self) -> int:
+        """Of all four."""
+        return sum(int(each.size) for each in vars(self).values() if each is not self.context)
+
+
+class GpuMesh:
+    """Triangles of one frame, in buffers that the next frame overwrites.
+
+    Members are those of `refine.RefinedMesh`. Each is fetched once, which waits for the frame.
+    """
+
+    def __init__(
+        self, stream: GpuStream, run: Run, columns: int, parted: Callable[[Floats], Columns]
+    ) -> None:
+        """`columns`: of a row; `parted`: takes texture coordinates and attributes out of rows."""
+        self._stream = stream
+        self._run = run
+        self._columns = columns
+        self._parted = parted
+
+    @cached_property
+    def _counts(self) -> Wide:
+        words = self._fetched("command_buffer", COMMAND_WORDS).view(np.uint32)
+        return words[-2:].astype(np.int64)
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices there are: 28 bytes are fetched."""
+        return int(self._counts[0])
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles."""
+        return int(self._counts[1])
+
+    @cached_property
+    def vertices(self) -> Floats:
+        """Rows x y z, nx ny nz[, u v][, attributes], shape (N, columns); others are views of it."""
+        words = self._fetched("vertex_buffer", self._columns * self.vertex_count)
+        return words.view(np.float32).reshape(-1, self._columns)
+
+    @property
+    def positions(self) -> Floats:
+        """Vertex positions, shape (N, 3)."""
+        return self.vertices[:, 0:3]
+
+    @property
+    def normals(self) -> Floats:
+        """Unit vertex normals, shape (N, 3)."""
+        return self.vertices[:, 3:6]
+
+    @cached_property
+    def triangles(self) -> Unsigned:
+        """Vertices of each triangle, shape (M, 3)."""
+        return self._fetched("index_buffer", 3 * self.triangle_count).reshape(-1, 3)
+
+    @cached_property
+    def source(self) -> Indices:
+        """Input triangle that each is part of, shape (M,)."""
+        return self._fetched("source_buffer", self.triangle_count).view(np.int32)
+
+    @property
+    def uv(self) -> Floats | None:
+        """Texture coordinates, shape (N, 2); None if the mesh was bound without."""
+        return self._parted(self.vertices)[0]
+
+    @property
+    def attributes(self) -> Mapping[str, Floats]:
+        """The attributes that were bound, by name, shape (N, k)."""
+        return self._parted(self.vertices)[1]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle as arrays."""
+        arrays = [getattr(self, name) for name in RefinedMesh._fields[:-1]]
+        return RefinedMesh, (*arrays, dict(self.attributes))
+
+    def _fetched(self, name: str, count: int) -> Unsigned:
+        """The first numbers of a buffer, in memory of their own that may be written."""
+        words = np.empty(count, np.uint32)
+        if count:
+            self._run(getattr(self._stream, name).read_into, words, words.nbytes)
+        return words

@@ -1,0 +1,251 @@
+"""The refiner `kahler-gl`: the paper's, frame by frame on the graphics card.
+
+Kähler, Haber, Seidel 2003, sections 4.1 to 4.4, as `refine.Kahler` does them; frames.py has the
+passes. Handed a stream that lives on the card (`refine.GpuStream`) it writes there, in the caller's
+context, and fetches nothing. Handed arrays, or nothing, it uses a context of its own.
+"""
+
+import functools
+import logging
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, NamedTuple, Unpack, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.refine import (
+    THRESHOLD_ONCE,
+    THRESHOLD_TWICE,
+    BaseRefiner,
+    Criterion,
+    GpuStream,
+    Kahler,
+    NormalDrop,
+    Origins,
+    RefinedMesh,
+    Stream,
+    Values,
+    View,
+    create_kahler,
+)
+from risorius.refine.beyond.options import criterion_of
+from risorius.refine.kahler.refiner import points_on_edges
+from risorius.refine.mesh.arrays import Floats, Small
+
+from .context import GpuError, OwnContext, own_context
+from .frames import Frames, check_room
+from .refined import GpuBuffers, GpuMesh, Run
+from .rules import SCHEMES, Rules, Told
+from .tables import tables_of
+
+log = logging.getLogger(__name__)
+
+
+def create_kahler_gl(
+    faces: npt.ArrayLike,
+    rest_positions: npt.ArrayLike,
+    *,
+    threshold_once: float = THRESHOLD_ONCE,
+    threshold_twice: float = THRESHOLD_TWICE,
+    criterion: str | Criterion | Sequence[str | Criterion] = "normal",
+    scheme: Literal["loop", "cubic"] = "loop",
+    blend: bool | None = None,
+    coherent: bool = False,
+    **values: Unpack[Values],
+) -> "KahlerGl | Kahler":
+    """Bind the paper's refiner to a mesh (`refine.create`), on the card where OpenGL allows it.
+
+    - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
+      split once or twice, for the paper's criterion, "normal".
+    - `criterion`: "normal", "rest", "displacement", several as "normal+rest"; others, named or as
+      objects, are measured by the processor in every frame.
+    - `scheme`: "loop", the paper's, with its normals, or "cubic", with those of its own surface.
+    - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
+      chooses True for "cubic", unless it is `coherent`, and False for "loop", which has no other.
+    - `coherent`: whether triangulations continue those of the frame before (section 4.4).
+    - `values`: `uv`, `face_uv` and `attributes`, as `refine.create` takes them.
+
+    Where there is no OpenGL 4.3, or too little room for the mesh, the log says so, once, and what
+    comes back is the refiner `kahler`, told the same.
+    """
+    for name, flag in (("blend", blend), ("coherent", coherent)):
+        if flag not in (None, True, False):
+            raise ValueError(f"{name} must be True or False, got {flag!r}")
+    if scheme not in SCHEMES:
+        raise ValueError(f"scheme must be one of {SCHEMES} in kahler-gl, got {scheme!r}")
+    if blend and (coherent or scheme == "loop"):
+        raise ValueError('blend=True needs scheme="cubic" in kahler-gl, and coherent=False')
+    if blend is None:
+        blend = scheme == "cubic" and not coherent
+    decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
+    told = Told(scheme, decides, blend, bool(coherent))
+    try:
+        return KahlerGl(faces, rest_positions, own=own_context(), told=told, **values)
+    except GpuError as error:
+        _tell(f"kahler-gl: {error}; the processor refines instead (kahler)")
+    return create_kahler(faces, rest_positions, **told._asdict(), **values)
+
+
+@functools.cache
+def _tell(text: str) -> None:
+    log.warning(text)
+
+
+class FrameCost(NamedTuple):
+    """What a frame took on the card."""
+
+    milliseconds: float
+    """By the card's own clock, from the first pass to the last [ms]."""
+    dispatches: int
+    upload_bytes: int
+    """What was handed over for it."""
+    room_bytes: int
+    """All buffers."""
+
+
+class KahlerGl(BaseRefiner):
+    """Refinement after Kähler, Haber, Seidel 2003, by compute shaders."""
+
+    runs_on_gpu = True
+
+    def __init__(
+        self,
+        faces: npt.ArrayLike,
+        rest_positions: npt.ArrayLike,
+        *,
+        own: OwnContext,
+        told: Told,
+        **values: Unpack[Values],
+    ) -> None:
+        """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames that bring none.
+
+        Raises GpuError where the mesh is too large for the driver.
+        """
+        super().__init__(faces, rest_positions, **values)
+        self.find_normals()
+        self._rules = Rules(self.connectivity, self.rest_positions, self.normals, told)
+        table = None if self._values is None else self._values.values
+        self._tables = tables_of(self.connectivity, table, self._rules)
+        own.run(check_room, own.gl, self._tables, self._rules)
+        self._own_context = own
+        self._own_buffers: GpuBuffers | None = None
+        self._frames: Frames | None = None  # of the context of the last frame
+        self._run: Run = _here
+        self._fetched_splits: Small | None = self.edge_splits
+
+    @property
+    def vertex_capacity(self) -> int:
+        """Most output vertices: every wedge, three points on every attribute edge, and centres."""
+        mesh = self.connectivity
+        centres = len(mesh.faces) if self._rules.blends else 0
+        return len(mesh.wedge_vertices) + 3 * len(mesh.attribute_edges) + centres
+
+    @property
+    def triangle_capacity(self) -> int:
+        """Most output triangles: the longest row of the table for each."""
+        return self._tables.sizes["most_subtriangles"] * len(self.connectivity.faces)
+
+    @property
+    def splits(self) -> Small:
+        """How often each edge was split in the last frame, shape (E,), read only; fetched."""
+        if self._fetched_splits is None:
+            assert self._frames is not None
+            numbers = self._run(self._frames.fetch_numbers, "splits", len(self.edges))
+            self._fetched_splits = numbers.astype(np.uint8)
+            self._fetched_splits.flags.writeable = False
+        return self._fetched_splits
+
+    @property
+    def removals_out_of_order(self) -> int:
+        """Splits taken back while a later one stayed, in all frames of this context; fetched."""
+        frames = self._frames
+        return 0 if frames is None else int(self._run(frames.fetch_numbers, "removals", 1)[0])
+
+    def origins(self) -> Origins:
+        """Say for every vertex of the last frame where it lies on the input mesh; fetched."""
+        mesh, splits = self.connectivity, self.splits
+        origins = super().origins().followed_by(*points_on_edges(mesh, splits))
+        if not self._rules.blends or self._frames is None:
+            return origins
+        counts = np.append(splits, 0)[mesh.triangle_edges].sum(axis=1)
+        centres = np.flatnonzero(counts > 1)  # where the fan has a middle
+        weights = self._run(self._frames.fetch_vectors, "centres", len(mesh.faces))[centres, :3]
+        return origins.followed_by(mesh.faces[centres], weights)
+
+    def refine(
+        self,
+        positions: npt.NDArray[np.floating],
+        out: Stream | GpuStream | None = None,
+        view: View | None = None,
+    ) -> RefinedMesh:
+        """Turn deformed `positions`, shape (V, 3), into triangles; see `Refiner.refine`.
+
+        `out`: a stream on the card, whose context is current here, or one of arrays.
+        """
+        if out is not None and not hasattr(out, "command_buffer"):
+            return super().refine(positions, out, view)
+        self.take(positions, view)
+        mesh = self._refine_own(view) if out is None else self._refine_in(out, _here, view)
+        return cast(RefinedMesh, mesh)  # it has all members of one
+
+    def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
+        """Refine in a context of our own, and copy the frame into arrays that were lent."""
+        mesh = self._refine_own(view)
+        vertex_count, triangle_count = mesh.vertex_count, mesh.triangle_count
+        out = self.reserve(stream, vertex_count, triangle_count)
+        out.vertices[:vertex_count] = mesh.vertices
+        out.triangles[:triangle_count] = mesh.triangles
+        out.source[:triangle_count] = mesh.source
+        return vertex_count, triangle_count
+
+    def cost_of(self, positions: npt.NDArray[np.floating]) -> FrameCost:
+        """Refine a frame in a context of our own, and once more against the clock; this waits."""
+        self.take(positions, None)
+        self._refine_own(None)
+        frames, buffers, metric = self._frames, self._own_buffers, self._measured(None)
+        assert frames is not None and buffers is not None
+        milliseconds = self._run(frames.timed, self.positions, metric, buffers)
+        upload = self.positions.nbytes + (0 if metric is None else metric.nbytes)
+        room = frames.room_bytes + buffers.room_bytes
+        return FrameCost(milliseconds, len(self._rules.passes), upload, room)
+
+    @property
+    def scheme(self) -> str:
+        """Where its points go: "loop" or "cubic"."""
+        return self._rules.scheme
+
+    @property
+    def driver(self) -> str:
+        """What OpenGL calls the card that frames without a context go to."""
+        return str(self._own_context.run(self._own_context.gl.info.__getitem__, "GL_RENDERER"))
+
+    def _refine_own(self, view: View | None) -> GpuMesh:
+        own = self._own_context
+        own.collect()
+        if self._own_buffers is None:
+            room = self.vertex_columns, self.vertex_capacity, self.triangle_capacity
+            self._own_buffers = own.run(GpuBuffers, own.gl, *room)
+        return self._refine_in(self._own_buffers, own.run, view)
+
+    def _refine_in(self, stream: Any, run: Run, view: View | None) -> GpuMesh:
+        """Refine into the buffers of a stream; a context that is new gets the mesh first."""
+        if self._frames is None or self._frames.gl is not stream.context:
+            self._frames = run(
+                Frames, stream.context, self._tables, self._rules, self.rest_positions
+            )
+        self._run = run
+        self._fetched_splits = None
+        run(self._frames.run, self.positions, self._measured(view), stream)
+        return GpuMesh(stream, run, self.vertex_columns, self.values_in)
+
+    def _measured(self, view: View | None) -> Floats | None:
+        """What the processor measures of the frame, shape (E,); None if the card does it all."""
+        if self._rules.others is None:
+            return None
+        self.find_normals()
+        return self._rules.measure_others(self.positions, self.normals, view)
+
+
+def _here(call: Callable[..., Any], *arguments: Any) -> Any:
+    """Call something in this thread."""
+    return call(*arguments)

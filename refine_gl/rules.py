@@ -1,0 +1,231 @@
+"""What `kahler-gl` is told, and what shaders make of it: which passes, switches and numbers.
+
+Two schemes: `loop`, the paper's, and `cubic` with the normals of its own surface, which is what
+films and the window show. Criteria `normal`, `rest` and `displacement` are decided on the card;
+others are measured by the processor, four bytes an edge, and handed over in every frame.
+"""
+
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.refine import (
+    Connectivity,
+    Criterion,
+    Displacement,
+    Maximum,
+    NormalDrop,
+    RestCurvature,
+    View,
+)
+from risorius.refine.beyond.blending import FANS, RAMP
+from risorius.refine.beyond.cubic import STEEPER, follow_borders, weigh_corners
+from risorius.refine.beyond.displacement import HASTE
+from risorius.refine.beyond.measuring import mean_length
+from risorius.refine.kahler.coherence import sequence_tables
+from risorius.refine.kahler.criterion import Thresholds, find_undefined_normals
+from risorius.refine.kahler.table import CONFIGURATIONS
+from risorius.refine.mesh.arrays import Doubles, Floats
+from risorius.refine.mesh.rings import vertex_rings
+from risorius.refine.mesh.vectors import ONE
+
+SCHEMES = "loop", "cubic"
+Arrays = Mapping[str, npt.NDArray[np.generic]]
+
+
+OUTPUT = "wedge_count", "attribute_edge_count", "face_count"
+THREADS: Mapping[str, tuple[str, ...]] = {
+    "normals": ("vertex_count",),
+    "steepen": ("vertex_count",),
+    "displace": ("edge_count",),
+    "centres": ("face_count",),
+    "surface_vertices": ("vertex_count",),
+    "surface_edges": ("edge_count",),
+    "mark": ("attribute_edge_count",),
+    "configure": ("face_count",),
+    "offsets": (),  # one group
+    "place": OUTPUT,
+    "quarters": ("attribute_edge_count",),
+    "place_curves": OUTPUT,
+    "place_centres": ("face_count",),
+}
+"""What each pass has a thread for. Passes are dispatches; their shaders have their names."""
+CURVES = "steepen", "displace", "centres", "surface_vertices", "surface_edges"
+"""Passes of cubic edges before any is marked."""
+
+
+class Told(NamedTuple):
+    """What a refiner was told; the names are those of `refine.create_kahler`."""
+
+    scheme: Literal["loop", "cubic"]
+    criterion: Criterion
+    blend: bool
+    coherent: bool
+
+
+class Rules:
+    """That, bound to a mesh."""
+
+    def __init__(
+        self, mesh: Connectivity, rest_positions: Doubles, rest_normals: Floats, told: Told
+    ) -> None:
+        """Raise ValueError for criteria that the card has not."""
+        self._mesh, self._rest = mesh, rest_positions
+        self.scheme, decides, self.blends, self.coherent = told
+        parts = _parts(decides)
+        if told.scheme == "loop" and any(isinstance(each, Displacement) for each in parts):
+            raise ValueError('criterion "displacement" needs scheme="cubic" in kahler-gl')
+        if silent := [type(each).__name__ for each in parts if not each.measures]:
+            raise ValueError(
+                f"kahler-gl takes criteria that measure, and {silent[0]} has no method "
+                "measure(positions, normals, metric); the refiner kahler takes it"
+            )
+        self._drop = next((each for each in parts if type(each) is NormalDrop), None)
+        self._displacement = next((each for each in parts if type(each) is Displacement), None)
+        still = [each for each in parts if type(each) is RestCurvature]
+        taken = [self._drop, self._displacement, *still]
+        others = [each for each in parts if not any(each is one for one in taken)]
+        self.others = Maximum(others) if others else None
+        """Criteria that the processor measures; None if there are none."""
+        for bound in (*still, self.others):
+            if bound is not None:
+                bound.bind(mesh, rest_positions, rest_normals)
+        self._still = np.full(len(mesh.edges), -np.inf, np.float32)
+        metric = np.zeros_like(self._still)
+        for each in still:
+            each.measure(rest_positions, rest_normals, metric)
+            np.maximum(self._still, metric, out=self._still)
+        self._patterns = FANS if told.blend else CONFIGURATIONS
+        if told.coherent:
+            self._patterns = sequence_tables().patterns
+
+    @property
+    def passes(self) -> list[str]:
+        """The dispatches of a frame, in their order."""
+        decided = ["mark", "configure", "offsets"]
+        if self.scheme == "loop":
+            return ["normals", *decided, "place", "quarters"]
+        centres = ["place_centres"] if self.blends else []
+        return ["normals", *CURVES, *decided, "place_curves", *centres]
+
+    @property
+    def switches(self) -> list[str]:
+        """What shaders are compiled for."""
+        chosen = {
+            "CURVED": self.scheme == "cubic",
+            "BLENDED": self.blends,
+            "COHERENT": self.coherent,
+            "BY_NORMAL": self._drop is not None,
+            "BY_DISPLACEMENT": self._displacement is not None,
+            "BY_REST": bool((self._still > -np.inf).any()),
+            "BY_OTHERS": self.others is not None,
+        }
+        return [name for name, is_on in chosen.items() if is_on]
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """Numbers that are not whole, as shaders name them."""
+        by, unit = self._displacement, mean_length(self._mesh, self._rest)
+        limits = _limits("drop", None if self._drop is None else self._drop.thresholds)
+        limits |= _limits("size", None if by is None else by.thresholds, unit)
+        soon = np.float32(0.0)
+        if by is not None:
+            soon = np.float32(HASTE) * by.thresholds.once / by.thresholds.width
+        haste = RAMP / soon if soon > 0.0 else np.float32(0.0)
+        limits |= {"size_soon": float(soon), "size_ramp": float(RAMP), "size_haste": float(haste)}
+        return limits | {"turning": 0.0 if by is None else float(np.float32(by.turning))}
+
+    def arrays(self) -> Arrays:
+        """What the scheme, the criteria and the table hand over once per mesh."""
+        patterns, corners = self._patterns, self._patterns.subtriangles.astype(np.uint32)
+        found: dict[str, npt.NDArray[np.generic]] = {
+            "counts": patterns.counts,
+            "patterns": corners[..., 0] | corners[..., 1] << 8 | corners[..., 2] << 16,
+        }
+        if self.coherent:
+            tables = sequence_tables()
+            found["transitions"] = tables.transitions | tables.removals.astype(np.uint32) << 16
+        if "BY_REST" in self.switches:
+            found["still_metrics"] = self._still
+        return {**found, **(self._ring() if self.scheme == "loop" else self._curves())}
+
+    def fields(self) -> dict[str, int]:
+        """Vectors that passes hand on, by name, and how many."""
+        vertices, edges, faces = (
+            self._mesh.vertex_count,
+            len(self._mesh.edges),
+            len(self._mesh.faces),
+        )
+        fields = {"points": vertices, "normals": vertices, "middles": edges}
+        if self.scheme == "cubic":
+            fields |= dict.fromkeys(
+                ("tangent_normals", "steeper", "seen", "surface_normals"), vertices
+            )
+            fields |= {"displaced": 3 * edges, "edge_normals": edges, "centres": faces}
+        return fields
+
+    def undefined_edges(self) -> npt.NDArray[np.bool_]:
+        """Edges that have no direction to compare with at rest: the paper's criterion splits none.
+
+        Shape (E,).
+        """
+        undefined = np.empty(self._mesh.vertex_count, np.bool_)
+        find_undefined_normals(self._mesh.faces, self._rest, undefined)
+        return np.asarray(undefined[self._mesh.edges].any(axis=1))
+
+    def measure_others(self, positions: Doubles, normals: Floats, view: View | None) -> Floats:
+        """What the processor measures of a frame: the metric of every edge, shape (E,)."""
+        assert self.others is not None
+        metric = np.empty(len(self._mesh.edges), np.float32)
+        self.others.set_view(view)
+        self.others.measure(positions, normals, metric)
+        return metric
+
+    def _ring(self) -> Arrays:
+        """What the paper's rule for vertices asks for."""
+        rings = vertex_rings(self._mesh)
+        return {
+            "wings": self._mesh.around.wings,
+            "near": rings.near,
+            "ring_starts": rings.starts,
+            "others": rings.others,
+            "ring_own": rings.own,
+            "ring_weight": rings.ring,
+        }
+
+    def _curves(self) -> Arrays:
+        """What cubic edges and the normals of their surface ask for."""
+        mesh = self._mesh
+        ends = mesh.edges.ravel()
+        valences = np.bincount(ends, minlength=mesh.vertex_count)
+        order = np.argsort(ends, kind="stable")
+        weights = np.zeros(mesh.faces.shape, np.float32)
+        weigh_corners(self._rest, mesh.faces, weights)
+        return {
+            "corner_weights": weights,
+            "triangle_edges": mesh.triangle_edges.view(np.uint32),
+            "edge_sides": mesh.edge_sides,
+            "beyond": follow_borders(mesh, self._rest),
+            "neighbour_starts": np.concatenate([[0], np.cumsum(valences)]),
+            "neighbours": mesh.edges[:, ::-1].ravel()[order],
+            "neighbour_share": (STEEPER / np.maximum(valences, 1)).astype(np.float32),
+        }
+
+
+def _parts(decides: Criterion) -> list[Criterion]:
+    """A criterion, or those that a maximum is of."""
+    if type(decides) is not Maximum:
+        return [decides]
+    return [part for each in decides.parts for part in _parts(each)]
+
+
+def _limits(name: str, thresholds: Thresholds | None, unit: np.float32 = ONE) -> dict[str, float]:
+    """Of a criterion that the card measures, in the unit of its measure; zeros for none."""
+    limits = dict.fromkeys(("once", "twice", "width", "most"), 0.0)
+    if thresholds is not None:
+        numbers = thresholds.once, thresholds.twice, thresholds.width
+        limits = dict(zip(limits, [float(unit * number) for number in numbers], strict=False))
+        limits["most"] = float(thresholds.most)
+    return {f"{name}_{end}": limit for end, limit in limits.items()}

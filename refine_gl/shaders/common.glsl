@@ -1,0 +1,107 @@
+// What all passes share: the buffers, and arithmetic that rounds as that of refine/ does.
+//
+// Eight storage buffers, as many as OpenGL 4.3 promises; no pass takes more than six. Arrays lie in
+// them one behind the other: `faces(k)` is a macro made by tables.py for `mesh[faces_at + (k)]`.
+// `precise` forbids fused and reordered sums, so that a sum is the one that the processor makes.
+
+layout(local_size_x = GROUP) in;
+layout(std430, binding = 0) readonly buffer Mesh { uint mesh[]; };  // once per mesh
+layout(std430, binding = 1) readonly buffer Positions { double positions[]; };  // once per frame
+layout(std430, binding = 2) buffer Fields { vec4 fields[]; };  // what passes hand on, in vectors
+layout(std430, binding = 3) buffer Work { uint work[]; };  // and in numbers
+layout(std430, binding = 4) buffer Rows { float rows[]; };  // the output
+layout(std430, binding = 5) writeonly buffer Triangles { uint triangles[]; };
+layout(std430, binding = 6) writeonly buffer Source { uint source[]; };
+layout(std430, binding = 7) buffer Command { uint command[]; };  // how much of it there is
+
+const uint NONE = 0xffffffffu;
+shared uint sums[GROUP];
+
+// The sum of the values of this thread and those before it in its group (Hillis and Steele 1986).
+uint scanned(uint value) {
+    uint k = gl_LocalInvocationIndex;
+    sums[k] = value;
+    barrier();
+    for (uint reach = 1u; reach < uint(GROUP); reach <<= 1) {
+        uint other = k >= reach ? sums[k - reach] : 0u;
+        barrier();
+        sums[k] += other;
+        barrier();
+    }
+    return sums[k];
+}
+
+// From vertex a to b, rounded when it has been taken.
+vec3 between(uint a, uint b) {
+    precise dvec3 way = dvec3(
+        positions[3u * b] - positions[3u * a],
+        positions[3u * b + 1u] - positions[3u * a + 1u],
+        positions[3u * b + 2u] - positions[3u * a + 2u]);
+    return vec3(way);
+}
+
+float dotted(vec3 u, vec3 v) {
+    precise float sum = u.x * v.x + u.y * v.y + u.z * v.z;
+    return sum;
+}
+
+vec3 crossed(vec3 u, vec3 v) {
+    precise vec3 product = vec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
+    return product;
+}
+
+// OpenGL lets a driver's single square root and quotient be off by two units in the last place;
+// those of double precision, rounded, are not.
+float root_of(float x) { return float(sqrt(double(x))); }
+
+// Length one; zero stays zero.
+vec3 unit(vec3 v) {
+    float squared = dotted(v, v);
+    if (1e-30 < squared && squared < 1e37) {
+        precise vec3 scaled = float(1.0LF / double(root_of(squared))) * v;
+        return scaled;
+    }
+    precise double exact = double(v.x) * double(v.x) + double(v.y) * double(v.y) + double(v.z) * double(v.z);
+    double size = sqrt(exact);  // single precision does not hold the square
+    return size == 0.0LF ? vec3(0.0) : vec3(dvec3(v) / size);
+}
+
+// A share of the way; to the last bit one of the two at 0 and at 1.
+vec3 mixed(vec3 start, vec3 end, float share) {
+    if (share == 1.0) return end;
+    precise float rest = 1.0 - share;
+    precise vec3 from_start = rest * start, from_end = share * end, both = from_start + from_end;
+    return both;
+}
+
+vec3 row_of(uint k, uint first) {
+    uint at = columns * k + first;
+    return vec3(rows[at], rows[at + 1u], rows[at + 2u]);
+}
+
+void write_row(uint k, uint first, vec3 v) {
+    uint at = columns * k + first;
+    rows[at] = v.x;
+    rows[at + 1u] = v.y;
+    rows[at + 2u] = v.z;
+}
+
+uint first_row(uint r) { return first_points(r) + blocks(r / uint(GROUP)); }
+uint first_triangle(uint t) { return first_triangles(t) + blocks(attribute_edge_blocks + t / uint(GROUP)); }
+
+#ifdef BLENDED
+bool has_centre(uint row) { return (patterns(most_subtriangles * row) & 255u) == uint(CENTRE); }
+uint first_centre(uint t) {
+    return first_centres(t) + blocks(attribute_edge_blocks + face_blocks + t / uint(GROUP));
+}
+#endif
+
+// Texture coordinates and attributes of a new point, of its own side of a seam.
+void place_values(uint r, uint row, float at_a, float at_b) {
+    for (uint i = 0u; i < value_count; ++i) {
+        precise float a = at_a * edge_values(2u * value_count * r + i);
+        precise float b = at_b * edge_values(2u * value_count * r + value_count + i);
+        precise float mean = a + b;
+        rows[columns * row + 6u + i] = mean;
+    }
+}

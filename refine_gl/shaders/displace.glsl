@@ -1,0 +1,40 @@
+// An edge: how far its three points stand out of it on a cubic curve across the normals at its ends,
+// on a border along the border; and its middle on the surface where every edge is split.
+// Vlachos, Peters, Boyd, Mitchell 2001, as refine/beyond/cubic.py has it.
+const float FULLNESS = 1.2, TINIEST = 1.17549435e-38;
+
+float length_of(vec3 v) { return root_of(dotted(v, v)); }
+
+float share_of(float size, float other) {
+    precise float both = size + other;
+    return float(double(size) / double(max(both, TINIEST)));
+}
+
+void main() {
+    uint e = gl_GlobalInvocationID.x;
+    if (e >= edge_count) return;
+    uint a = edge_points(4u * e), b = edge_points(4u * e + 1u);
+    vec3 d = between(a, b);
+    precise vec3 turn_a, turn_b;
+    if (edge_points(4u * e + 2u) != a) {  // not on a border
+        vec3 at_a = steeper(a).xyz, at_b = steeper(b).xyz;
+        precise float height_a = -FULLNESS * dotted(d, at_a), height_b = -FULLNESS * dotted(d, at_b);
+        turn_a = height_a * at_a;
+        turn_b = height_b * at_b;
+    } else {
+        uint p = beyond(2u * e), q = beyond(2u * e + 1u);
+        float size = length_of(d);
+        precise vec3 along_a = share_of(size, length_of(between(p, a))) * between(p, b);
+        precise vec3 along_b = share_of(size, length_of(between(b, q))) * between(a, q);
+        turn_a = along_a - d;
+        turn_b = along_b - d;
+    }
+    precise vec3 near_a = 0.140625 * turn_a, near_b = 0.046875 * turn_b, difference = turn_a - turn_b;
+    precise vec3 far_a = 0.046875 * turn_a, far_b = 0.140625 * turn_b;
+    precise vec3 first = near_a - near_b, middle = 0.125 * difference, last = far_a - far_b;
+    displaced(3u * e) = vec4(first, 0.0);
+    displaced(3u * e + 1u) = vec4(middle, 0.0);
+    displaced(3u * e + 2u) = vec4(last, 0.0);
+    precise vec3 ends = seen(a).xyz + seen(b).xyz, straight = 0.5 * ends, whole = straight + middle;
+    middles(e) = vec4(whole, 0.0);
+}

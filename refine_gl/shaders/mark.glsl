@@ -1,0 +1,84 @@
+// An attribute edge: how often it is split (section 4.1), and where its points are within the group.
+uniform uint frame;
+uniform bool is_rest;
+
+#ifdef BY_NORMAL
+float drop_of(uint e, uint a, uint b) {
+    float cosine = dotted(normals(a).xyz, normals(b).xyz);
+    precise float drop = rest_cosines(e) - cosine;
+    // Where it is not 0 at rest it is -infinity: no direction to compare with, and never a split.
+    if (is_rest && rest_cosines(e) == 0.0) work[rest_cosines_at + e] = floatBitsToUint(cosine);
+    return drop;
+}
+#endif
+
+float scaled(float measure, float once, float width, float most) {
+    precise float above = measure - once;
+    return min(float(double(above) / double(width)), most);
+}
+
+// Of the criteria that measure, which is above 0 for one split, above 1 for two: the largest.
+float metric_of(uint e, float drop) {
+    float metric = uintBitsToFloat(0xff800000u);
+#if defined(BY_NORMAL) && defined(BLENDED)
+    metric = scaled(drop, drop_once, drop_width, drop_most);
+#endif
+#ifdef BY_DISPLACEMENT
+    float size = scaled(middles(e).w, size_once, size_width, size_most);
+    if (size_soon < size_ramp && 0.0 < size && size < 1.0) {  // refine/beyond/displacement.py
+        if (size < size_soon) {
+            precise float sooner = size * size_haste;
+            size = sooner;
+        } else {
+            precise float left = 1.0 - size, whole = 1.0 - size_soon, slope = 1.0 - size_ramp;
+            precise float later = 1.0 - slope * float(double(left) / double(whole));
+            size = later;
+        }
+    }
+    metric = max(metric, size);
+#endif
+#ifdef BY_REST
+    metric = max(metric, still_metrics(e));
+#endif
+#ifdef BY_OTHERS
+    metric = max(metric, other_metrics(e));
+#endif
+    return metric;
+}
+
+uint split_of(uint e, bool is_original) {
+    uint split = 0u;
+    float drop = 0.0;
+#ifdef BY_NORMAL
+    drop = drop_of(e, edge_points(4u * e), edge_points(4u * e + 1u));
+#ifndef BLENDED
+    split = uint(drop > drop_once) + uint(drop > drop_twice);
+#endif
+#endif
+    float metric = metric_of(e, drop);
+#ifdef CURVED
+    if (is_original) {  // how far the points have grown out of the edge
+#ifdef BLENDED
+        edge_normals(e).w = min(max(metric / 0.25, 0.0), 1.0);
+        displaced(3u * e).w = min(max((metric - 1.0) / 0.25, 0.0), 1.0);
+#else
+        edge_normals(e).w = displaced(3u * e).w = 1.0;
+#endif
+    }
+#endif
+    return max(split, uint(metric > 0.0) + uint(metric > 1.0));
+}
+
+void main() {
+    uint r = gl_GlobalInvocationID.x, split = 0u;
+    if (r < attribute_edge_count && !(is_rest && r >= edge_count)) {
+        uint e = attribute_edges(r);
+        splits(r) = split = split_of(e, r < edge_count);
+#ifndef CURVED  // all write the same, and nobody clears it
+        if (split > 0u) moved(edge_points(4u * e)) = moved(edge_points(4u * e + 1u)) = frame;
+#endif
+    }
+    uint points_on = split + (split >> 1), sum = scanned(points_on);
+    if (r < attribute_edge_count) first_points(r) = sum - points_on;
+    if (gl_LocalInvocationIndex == GROUP - 1) blocks(gl_WorkGroupID.x) = sum;
+}

@@ -1,0 +1,24 @@
+// A vertex: its normal, the sum of the cross products around it in the order of triangles; for cubic
+// edges another by the weights that corners have at rest, and its place as seen from vertex 0, so
+// that a mesh far from the origin loses nothing.
+void main() {
+    uint v = gl_GlobalInvocationID.x;
+    if (v >= vertex_count) return;
+    precise vec3 plain = vec3(0.0), weighted = vec3(0.0);
+    for (uint k = corner_starts(v); k < corner_starts(v + 1u); ++k) {
+        uint corner = vertex_corners(k), t = corner / 3u;
+        uint a = faces(3u * t), b = faces(3u * t + 1u), c = faces(3u * t + 2u);
+        precise vec3 normal = crossed(between(a, b), between(a, c));
+        plain += normal;
+#ifdef CURVED
+        precise vec3 share = corner_weights(corner) * normal;
+        weighted += share;
+#endif
+    }
+    points(v) = vec4(vec3(positions[3u * v], positions[3u * v + 1u], positions[3u * v + 2u]), 0.0);
+    normals(v) = vec4(unit(plain), 0.0);
+#ifdef CURVED
+    tangent_normals(v) = vec4(unit(weighted), 0.0);
+    seen(v) = vec4(between(0u, v), 0.0);
+#endif
+}

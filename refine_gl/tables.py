@@ -1,0 +1,136 @@
+"""What shaders are handed once per mesh: index arrays and weights, one behind the other.
+
+A storage buffer is one array, and OpenGL 4.3 promises a pass no more than eight of them. So all
+arrays of one kind lie in one buffer, and a shader reads `faces(k)`, a macro that adds where `faces`
+begins. Where that is, and how many there are of what, are the numbers of a uniform block.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from risorius.refine import Connectivity
+from risorius.refine.border.rows import GEOMETRY_COLUMNS, wedge_values
+from risorius.refine.kahler.table import CENTRE
+from risorius.refine.mesh.arrays import Floats, Unsigned
+
+from .rules import Arrays, Rules
+
+GROUP = 256
+"""Threads of a group, which sum in common: OpenGL 4.3 promises 1024, 4 a triangle of its scan."""
+
+
+class Tables(NamedTuple):
+    """One mesh as shaders see it."""
+
+    words: Unsigned
+    """All its arrays, floats by their bits, one behind the other."""
+    sizes: dict[str, int]
+    """Counts, and as `NAME_at` where arrays begin: numbers of the uniform block."""
+    limits: dict[str, float]
+    """Its other numbers, which may be infinite."""
+    head: str
+    """What shaders begin with: switches, the uniform block, a macro for each array."""
+    field_count: int
+    """Vectors that passes hand on."""
+    work_count: int
+    """Numbers that they hand on."""
+
+
+def tables_of(mesh: Connectivity, values: Floats | None, rules: Rules) -> Tables:
+    """Lay out a mesh. `values`: of corners, shape (A, k)."""
+    arrays = {**_arrays(mesh), **_values(mesh, values), **rules.arrays()}
+    sizes, views = _counts(mesh, values, arrays), {}
+    words = [np.zeros(0, np.uint32)]
+    for name, array in arrays.items():
+        sizes[f"{name}_at"] = sum(map(len, words))
+        kind = np.float32 if array.dtype == np.float32 else np.uint32
+        words.append(np.ascontiguousarray(array, kind).ravel().view(np.uint32))
+        views[name] = f"mesh[{name}_at + (k)]"
+        if kind is np.float32:
+            views[name] = f"uintBitsToFloat({views[name]})"
+    fields, work = rules.fields(), _work(mesh, sizes)
+    for buffer, parts in (("fields", fields), ("work", work)):
+        for place, name in enumerate(parts):
+            sizes[f"{name}_at"] = sum(list(parts.values())[:place])
+            views[name] = f"{buffer}[{name}_at + (k)]"
+    for name in ("rest_cosines", "other_metrics"):
+        views[name] = f"uintBitsToFloat({views[name]})"
+    limits = rules.limits
+    lines = [
+        *(f"#define {name}" for name in rules.switches),
+        f"#define GROUP {GROUP}",
+        f"#define CENTRE {CENTRE}",
+        "layout(std140, binding = 0) uniform Sizes {",
+        *(f"float {name};" for name in limits),
+        *(f"uint {name};" for name in sizes),
+        "};",
+        *(f"#define {name}(k) {code}" for name, code in views.items()),
+    ]
+    counts = sum(fields.values()), sum(work.values())
+    return Tables(np.concatenate(words), sizes, limits, "\n".join(lines), *counts)
+
+
+def groups_of(threads: int) -> int:
+    """How many groups so many threads take."""
+    return -(-threads // GROUP)
+
+
+def _counts(mesh: Connectivity, values: Floats | None, arrays: Arrays) -> dict[str, int]:
+    """How many there are of what."""
+    value_count = 0 if values is None else values.shape[1]
+    return {
+        "vertex_count": mesh.vertex_count,
+        "edge_count": len(mesh.edges),
+        "wedge_count": len(mesh.wedge_vertices),
+        "attribute_edge_count": len(mesh.attribute_edges),
+        "face_count": len(mesh.faces),
+        "value_count": value_count,
+        "columns": GEOMETRY_COLUMNS + value_count,
+        "attribute_edge_blocks": groups_of(len(mesh.attribute_edges)),
+        "face_blocks": groups_of(len(mesh.faces)),
+        "most_subtriangles": arrays["patterns"].size // arrays["counts"].size,
+    }
+
+
+def _work(mesh: Connectivity, sizes: dict[str, int]) -> dict[str, int]:
+    """Numbers that passes hand on, by name, and how many; some passes have no use for some."""
+    edges, faces = len(mesh.edges), len(mesh.faces)
+    return {
+        "splits": len(mesh.attribute_edges),
+        "first_points": len(mesh.attribute_edges),
+        "moved": mesh.vertex_count,
+        "configurations": faces,
+        "first_triangles": faces,
+        "first_centres": faces,
+        "states": faces,
+        "removals": 1,
+        "rest_cosines": edges,
+        "other_metrics": edges,
+        "blocks": sizes["attribute_edge_blocks"] + 2 * sizes["face_blocks"],
+    }
+
+
+def _arrays(mesh: Connectivity) -> Arrays:
+    """The connectivity, and the corners around each vertex in the order of triangles."""
+    corners = mesh.faces.ravel()
+    sums = np.cumsum(np.bincount(corners, minlength=mesh.vertex_count))
+    return {
+        "faces": mesh.faces,
+        "corners": mesh.corners,
+        "corner_starts": np.concatenate([[0], sums]),
+        "vertex_corners": np.argsort(corners, kind="stable"),
+        "edge_points": mesh.around.points,
+        "attribute_edges": mesh.attribute_edges,
+        "triangle_attribute_edges": mesh.triangle_attribute_edges,
+        "wedge_vertices": mesh.wedge_vertices,
+    }
+
+
+def _values(mesh: Connectivity, values: Floats | None) -> Arrays:
+    """Texture coordinates and attributes of wedges, and at both ends of attribute edges."""
+    if values is None:
+        none = np.zeros(0, np.float32)
+        return {"wedge_values": none, "edge_values": none}
+    ends = values[mesh.attribute_edge_uv]
+    return {"wedge_values": wedge_values(mesh, values), "edge_values": ends}

@@ -1,0 +1,227 @@
+"""What the graphics card makes is what the processor makes: splits, triangles and rows.
+
+To the bit on Mesa's software OpenGL, which rounds as the processor does.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import assets, refine, sim
+from risorius.assets.model import Head
+from risorius.refine_gl import KahlerGl
+from tests import meshes
+
+from .agreement import Points, assert_same, bound_twice
+
+POSES = ("rest", "joy", "anger", "yawn", "kiss")
+VIEW = refine.View((3.0, 2.0, 20.0), 60.0)
+FAR = np.array([700.0, -300.0, 900.0])
+QUICK = ("joy", "kiss far away")
+LOOK: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
+RULES: dict[str, dict[str, Any]] = {
+    "one level": {"threshold_twice": np.inf},
+    "two levels": {},
+    "window's look": LOOK,
+}
+both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in head."""
+    return assets.load("head")
+
+
+@pytest.fixture(scope="module")
+def poses(head: Head) -> dict[str, Points]:
+    """Vertices of the head, by the name of the pose; one turned and far from the origin."""
+    found = {}
+    face = sim.create(head)
+    for name in POSES:
+        face.reset()
+        if name != "rest":
+            face.set(name, 1.0)
+        for _ in range(60):
+            face.step(1 / 60)
+        found[name] = face.positions.copy()
+    found["kiss far away"] = found["kiss"] @ meshes.rotation(3).T + FAR
+    return found
+
+
+def with_seam(head: Head) -> dict[str, npt.NDArray[Any]]:
+    """Texture coordinates that part along a made-up seam, x = 0."""
+    is_left = head.vertices[head.faces].mean(axis=1)[:, 0] > 0
+    uv = np.random.default_rng(1).random((len(head.vertices), 2))
+    return {
+        "uv": np.vstack([uv, uv + 2.0]),
+        "face_uv": head.faces + len(head.vertices) * is_left[:, None],
+    }
+
+
+@pytest.mark.parametrize("rules", RULES)
+@pytest.mark.parametrize("is_seamed", [False, True], ids=["whole", "seam"])
+@pytest.mark.parametrize(
+    "pose",
+    [
+        name if name in QUICK else pytest.param(name, marks=pytest.mark.slow)
+        for name in (*POSES, "kiss far away")
+    ],
+)
+def test_head(pose: str, is_seamed: bool, rules: str, head: Head, poses: dict[str, Points]) -> None:
+    """Every pose of the head, with a texture seam and without, split once or up to twice."""
+    values = with_seam(head) if is_seamed else {}
+    processor, card = bound_twice(head.faces, head.vertices, **RULES[rules], **values)
+    mesh = assert_same(processor, card, poses[pose])
+    is_split = pose != "rest" or rules == "window's look"
+    assert card.splits.max() == ((1 if rules == "one level" else 2) if is_split else 0)
+    refine.check(card, mesh, poses[pose])
+
+
+@both_rules
+@pytest.mark.parametrize("name", meshes.NAMED)
+def test_small_meshes(name: str, rules: str) -> None:
+    """One mesh for each oddity: borders, fins, flips, doubles, debris; three frames of each."""
+    mesh = meshes.NAMED[name]()
+    processor, card = bound_twice(mesh.faces, mesh.vertices, **RULES[rules])
+    for seed, amplitude in ((0, 0.0), (1, 0.5), (2, 0.2)):
+        positions = meshes.wrinkled(mesh, seed, amplitude)
+        refine.check(card, assert_same(processor, card, positions), positions)
+
+
+@both_rules
+def test_many_neighbours(rules: str) -> None:
+    """A ring of more than eight vertices, most of which stand in another table."""
+    mesh = meshes.double_cone(23)
+    processor, card = bound_twice(mesh.faces, mesh.vertices, **RULES[rules])
+    assert_same(processor, card, meshes.wrinkled(mesh, 4, 0.5))
+
+
+@pytest.mark.parametrize("make", [lambda: [], lambda: [(0, 0, 1), (2, 2, 2)]])
+def test_meshes_without_edges(make: Callable[[], Any]) -> None:
+    """No triangle at all, and none that has edges, are handed through."""
+    processor, card = bound_twice(make(), np.eye(3))
+    assert_same(processor, card, 2.0 * np.eye(3))
+    processor, card = bound_twice([], np.zeros((0, 3)))
+    assert_same(processor, card, np.zeros((0, 3)))
+
+
+@both_rules
+def test_attributes(rules: str) -> None:
+    """Texture coordinates and other values of corners are mixed alike, of wide rows, too."""
+    mesh = meshes.tube()
+    assert mesh.uv is not None and mesh.face_uv is not None
+    generator = np.random.default_rng(5)
+    values = {"colour": generator.random((len(mesh.vertices), 3)), "id": (mesh.uv, mesh.face_uv)}
+    processor, card = bound_twice(
+        mesh.faces,
+        mesh.vertices,
+        uv=mesh.uv,
+        face_uv=mesh.face_uv,
+        attributes=values,
+        **RULES[rules],
+    )
+    for seed in range(3):
+        got = assert_same(processor, card, meshes.wrinkled(mesh, seed, 0.6))
+        assert got.attributes["colour"].shape == (got.vertex_count, 3)
+
+
+@both_rules
+@pytest.mark.parametrize("side", [30, 100, pytest.param(330, marks=pytest.mark.slow)])
+def test_sums_over_many_groups(side: int, rules: str) -> None:
+    """Grids of up to 217 800 triangles: numbers run on from group to group of threads."""
+    mesh = meshes.open_grid(side, side)
+    x, y, _ = mesh.vertices.T
+    height = 2.0 * np.sin(0.9 * x) * np.sin(0.7 * y) * x / side
+    processor, card = bound_twice(mesh.faces, mesh.vertices, **RULES[rules])
+    got = assert_same(processor, card, np.column_stack([x, y, height]))
+    assert got.triangle_count > 1.5 * len(mesh.faces)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"criterion": "normal+rest"},
+        {"criterion": "normal+displacement", "scheme": "cubic"},
+        {"criterion": ["displacement", refine.Curvature(), refine.RestCurvature()], "blend": True},
+        {"criterion": refine.Displacement(0.02, 0.1, turning=0.0), "blend": False},
+        {"criterion": "normal", "threshold_twice": np.inf, "scheme": "cubic"},
+        {"criterion": "silhouette"},
+    ],
+)
+def test_criteria(options: dict[str, Any]) -> None:
+    """Those that the card decides by, their mixes, and others, which the processor measures."""
+    options = {"scheme": "cubic" if "blend" in options else "loop", **options}
+    mesh = meshes.irregular(7, 8, 6, 1)
+    card, processor = (
+        refine.create(name, mesh.faces, mesh.vertices, **copy.deepcopy(options))
+        for name in ("kahler-gl", "kahler")
+    )
+    assert isinstance(card, KahlerGl)
+    for seed in range(3):
+        positions = meshes.wrinkled(mesh, seed, 0.3 * seed)
+        refine.check(card, assert_same(processor, card, positions, VIEW), positions)
+
+
+def random_mesh(seed: int) -> tuple[meshes.Mesh, dict[str, Any]]:
+    """A bumpy grid with holes, or any triangles over any vertices; some with texture seams."""
+    generator = np.random.default_rng(seed)
+    if seed % 2:
+        mesh = meshes.irregular(seed, *generator.integers(2, 14, 2), holes=seed % 4)
+    else:
+        count, face_count = generator.integers(3, 60), generator.integers(1, 200)
+        faces = generator.integers(0, count, (face_count, 3)).astype(np.int32)
+        mesh = meshes.Mesh(generator.normal(size=(count, 3)), faces)
+    options: dict[str, Any] = {"threshold_once": 0.1, "threshold_twice": 0.6} if seed % 3 else {}
+    if seed % 5 == 0:
+        options["face_uv"] = generator.integers(0, 4, mesh.faces.shape)
+        options["uv"] = generator.random((4, 2))
+    if seed % 7 == 0:
+        options["coherent"] = True
+    elif seed % 2 == seed // 2 % 2:
+        options |= LOOK | {"blend": None if seed % 3 else False}
+    return mesh, options
+
+
+def assert_random_meshes_same(seeds: range) -> set[int]:
+    """Two frames of a mesh for each seed; returns the configurations that were met."""
+    met: set[int] = set()
+    for seed in seeds:
+        mesh, options = random_mesh(seed)
+        processor, card = bound_twice(mesh.faces, mesh.vertices, **options)
+        for frame in range(2):
+            assert_same(processor, card, meshes.wrinkled(mesh, seed + frame, 0.5))
+        splits = np.append(processor.splits, 0)[processor.triangle_edges].astype(int)
+        met |= set((splits @ [1, 3, 9]).tolist())
+    return met
+
+
+def test_random_meshes() -> None:
+    """Meshes that are no manifolds, with seams, with memory: all 27 configurations occur."""
+    assert assert_random_meshes_same(range(40)) == set(range(27))
+
+
+@pytest.mark.slow
+def test_a_thousand_random_meshes() -> None:
+    """The same of many more."""
+    assert_random_meshes_same(range(40, 1040))
+
+
+@pytest.mark.parametrize("frames", [60, pytest.param(500, marks=pytest.mark.slow)])
+def test_coherent_frames(frames: int, head: Head) -> None:
+    """A face that moves: what triangles remember stays on the card, and is the same."""
+    face = sim.create(head)
+    processor, card = bound_twice(head.faces, head.vertices, coherent=True)
+    for frame in range(frames):
+        for place, name in enumerate(("joy", "anger", "yawn")):
+            face.set(name, float(frame // 20 % 3 == place))
+        face.step(1 / 60)
+        assert_same(processor, card, face.positions)
+    assert isinstance(processor, refine.Kahler) and processor.history is not None
+    assert card.removals_out_of_order == processor.history.removals_out_of_order > 0

@@ -1,0 +1,138 @@
+"""Drawn from where it was made: the same pictures as of arrays that were uploaded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from PIL import Image
+
+from risorius import render
+from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
+from risorius.app.refining.presets import Refinement
+from risorius.app.scenes import FaceScene
+from risorius.refine_gl import KahlerGl
+from tests.app.command_line import risorius
+
+SIZE = (200, 240)
+PLAIN = render.Style(textured=False, bumps=0.0)
+STYLES = {
+    "skin": render.Style(bumps=0.0),
+    "wrinkles": render.Style(),
+    "flat": replace(PLAIN, shading=render.Shading.FLAT),
+    "wireframe": replace(PLAIN, wireframe=True),
+    "splits": replace(PLAIN, colour_by=render.ColourBy.SPLITS),
+    "translucent": replace(PLAIN, opacity=0.6),
+}
+
+
+@pytest.fixture(scope="module")
+def scene() -> FaceScene:
+    """A face that laughs."""
+    scene = FaceScene()
+    scene.pose({"joy": 1.0})
+    for _ in range(30):
+        scene.step(1 / 30)
+    return scene
+
+
+@pytest.fixture(params=[0, 4])
+def pipeline(request: pytest.FixtureRequest, scene: FaceScene) -> Iterator[Pipeline]:
+    """It on a surface, of one sample per pixel, and of four."""
+    with render.open_offscreen(SIZE, samples=request.param) as surface:
+        yield Pipeline(scene, render.Renderer(surface))
+
+
+def image(pipeline: Pipeline, drawn: DrawnMesh, style: render.Style) -> npt.NDArray[np.uint8]:
+    """What is seen of it."""
+    surface = pipeline.renderer.surface
+    camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="three-quarter")
+    surface.begin()
+    pipeline.draw(camera, style, [Viewport(drawn, (0, 0, *surface.size))])
+    surface.end()
+    return surface.read()
+
+
+def both(pipeline: Pipeline) -> tuple[DrawnMesh, DrawnMesh]:
+    """Made by the processor, and on the card."""
+    drawn = [pipeline.bind(Refinement("paper", name)) for name in ("kahler", "kahler-gl")]
+    assert isinstance(drawn[1].refiner, KahlerGl)
+    assert isinstance(drawn[1].stream, render.GpuStream)
+    return drawn[0], drawn[1]
+
+
+@pytest.mark.parametrize("is_hardware", [False, True], ids=["software", "hardware"])
+@pytest.mark.parametrize("style", STYLES)
+def test_pictures_are_the_same(
+    pipeline: Pipeline, style: str, is_hardware: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No pixel differs, in any style, as software draws and as graphics cards do."""
+    if is_hardware:
+        monkeypatch.setattr(render.Surface, "is_software", property(lambda _: False))
+    processor, card = both(pipeline)
+    wanted, got = (image(pipeline, each, STYLES[style]) for each in (processor, card))
+    assert np.array_equal(wanted, got) and wanted.std() > 10.0
+    assert card.caption.endswith(f"\n{processor.triangle_count} triangles")
+
+
+def test_nothing_comes_back(scene: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where nobody asks for numbers, a graphics card draws a frame that only it knows."""
+    monkeypatch.setattr(render.Surface, "is_software", property(lambda _: False))
+    monkeypatch.setattr(scene, "fade", None)  # which the neck of the built-in head does
+    with render.open_offscreen(SIZE, samples=4) as surface:
+        pipeline = Pipeline(scene, render.Renderer(surface))
+        _, card = both(pipeline)
+        image(pipeline, card, PLAIN)
+        assert not {"_counts", "vertices", "triangles", "source"} & set(vars(card.mesh))
+        assert card.refiner._fetched_splits is None  # type: ignore[attr-defined]
+
+
+def test_numbers_of_each_pixel(pipeline: Pipeline) -> None:
+    """Depth, normals and triangles of pixels, as passes and data sets take them."""
+    camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="front")
+    found = []
+    for drawn in both(pipeline):
+        image(pipeline, drawn, PLAIN)
+        found.append(pipeline.renderer.draw_geometry(drawn.stream, [], {}, camera))
+    for ours, theirs in zip(*found, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+@pytest.mark.parametrize("options", [[], ["--compare", "none"]])
+def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
+    """`capture --refiner kahler-gl` draws what `--refiner kahler` draws."""
+    pictures = []
+    for name in ("kahler-gl", "kahler"):
+        path = tmp_path / f"{name}.png"
+        still = ("--set", "joy=1", "--size", "160x120", "--look", "paper")
+        result = risorius("capture", "-o", path, *still, "--refiner", name, *options)
+        assert result.exit_code == 0, result.output
+        pictures.append(np.asarray(Image.open(path)))
+    assert np.array_equal(*pictures)
+
+
+@pytest.mark.window
+def test_a_window_that_is_resized(scene: FaceScene) -> None:
+    """A window draws it in every size that it is given."""
+    with render.open_window((200, 150), "kahler-gl", samples=0) as window:
+        assert window.gl.version_code >= 430
+        pipeline = Pipeline(scene, render.Renderer(window))
+        processor, card = both(pipeline)
+        for size in ((200, 150), (320, 200), (100, 240)):
+            resize(window, size)
+            wanted, got = (image(pipeline, each, PLAIN) for each in (processor, card))
+            assert got.shape[:2] == size[::-1] and np.array_equal(wanted, got)
+
+
+def resize(window: render.WindowSurface, size: tuple[int, int]) -> None:
+    """Ask for a size, and wait until the screen has given it."""
+    window._glfw.set_window_size(window.handle, *size)
+    for _ in range(10_000):
+        window._glfw.poll_events()
+        if window.frame_size == size:
+            return
+    raise AssertionError(f"the window has {window.frame_size}")

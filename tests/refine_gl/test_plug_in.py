@@ -1,0 +1,215 @@
+"""How the refiner on the graphics card is bound, lent to and asked; and what is done without."""
+
+from __future__ import annotations
+
+import copy
+import logging
+import pickle
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from risorius import refine, render
+from risorius.refine_gl import GpuError, KahlerGl, context, refiner
+from risorius.refine_gl.frames import Frames
+from risorius.refine_gl.refined import GpuBuffers
+from tests import meshes
+from tests.app.command_line import refusal, risorius
+
+from .agreement import assert_same, bits, bound_twice
+
+MESH = meshes.irregular(1, columns=6, rows=5, holes=1)
+BENT = meshes.wrinkled(MESH, 3, 0.5)
+
+
+def bound() -> tuple[refine.Refiner, KahlerGl]:
+    """Both refiners of a small mesh."""
+    return bound_twice(MESH.faces, MESH.vertices)
+
+
+def test_it_joins_as_anybodys_would() -> None:
+    """By an entry point, with options of its own; others are refused as ever."""
+    assert "kahler-gl" in refine.available() and "kahler-gl" in refine.refiners.installed()
+    names = [each.name for each in refine.parameters("kahler-gl")]
+    assert {"threshold_once", "threshold_twice", "coherent"} <= set(names)
+    with pytest.raises(ValueError, match="unknown option 'sharpness' for refiner 'kahler-gl'"):
+        refine.create("kahler-gl", MESH.faces, MESH.vertices, sharpness=1)
+    with pytest.raises(ValueError, match="coherent must be True or False, got 'maybe'"):
+        refine.create("kahler-gl", MESH.faces, MESH.vertices, coherent="maybe")
+    with pytest.raises(ValueError, match="threshold_once and threshold_twice are drops"):
+        refine.create("kahler-gl", MESH.faces, MESH.vertices, threshold_once=1.0)
+
+
+def test_wrong_frames_are_refused() -> None:
+    """As `kahler` refuses them; the next good one is as ever."""
+    processor, card = bound()
+    for wrong, words in ((BENT[1:], "must be floats of shape"), (BENT * np.nan, "must be finite")):
+        with pytest.raises(ValueError, match=words):
+            card.refine(wrong)
+        with pytest.raises(ValueError, match=words):
+            card.refine(wrong, out=lent(card))
+    assert_same(processor, card, BENT)
+
+
+def lent(card: refine.Refiner) -> Any:
+    """Arrays with room for any frame."""
+    return SimpleNamespace(
+        vertices=np.zeros((card.vertex_capacity, card.vertex_columns), np.float32),
+        triangles=np.zeros((card.triangle_capacity, 3), np.uint32),
+        source=np.zeros(card.triangle_capacity, np.int32),
+    )
+
+
+def test_lent_arrays_are_filled() -> None:
+    """Whoever lends arrays gets the frame in them."""
+    processor, card = bound()
+    stream, wanted = lent(card), processor.refine(BENT)
+    mesh = card.refine(BENT, out=stream)
+    assert np.shares_memory(mesh.positions, stream.vertices)
+    np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
+    np.testing.assert_array_equal(mesh.triangles, wanted.triangles)
+    np.testing.assert_array_equal(mesh.source, wanted.source)
+    with pytest.raises(ValueError, match=re.escape("stream.triangles must be a writable")):
+        card.refine(BENT, out=SimpleNamespace(**{**vars(stream), "triangles": None}))
+
+
+def test_a_frame_can_be_kept() -> None:
+    """A copy, and what was pickled, stays as it was when the next frame overwrites the card."""
+    _, card = bound()
+    mesh = card.refine(BENT)
+    kept, sent = copy.copy(mesh), pickle.loads(pickle.dumps(mesh))
+    wanted = mesh.positions.copy()
+    card.refine(MESH.vertices)
+    for each in (kept, sent):
+        assert isinstance(each, refine.RefinedMesh)
+        np.testing.assert_array_equal(each.positions, wanted)
+
+
+@pytest.fixture
+def surface() -> Iterator[render.Surface]:
+    """An OpenGL context of somebody else, current in this thread."""
+    with render.open_offscreen((32, 32)) as opened:
+        yield opened
+
+
+def test_buffers_of_another_context(surface: render.Surface) -> None:
+    """A stream's context is used, and nothing is fetched until it is read."""
+    processor, card = bound()
+    room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
+    stream = GpuBuffers(surface.gl, *room)
+    mesh, wanted = card.refine(BENT, out=stream), processor.refine(BENT)
+    assert not {"vertices", "triangles", "source", "_counts"} & set(vars(mesh))
+    assert mesh.triangle_count == wanted.triangle_count
+    assert "vertices" not in vars(mesh)
+    np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
+    refine.check(card, mesh, BENT)
+    command = np.frombuffer(stream.command_buffer.read(), np.uint32)
+    assert command.tolist() == [
+        *(3 * wanted.triangle_count, 1, 0, 0, 0),
+        *(wanted.vertex_count, wanted.triangle_count),
+    ]
+
+
+def test_a_lost_context_is_made_anew() -> None:
+    """A window that is closed takes all buffers along; the next one gets the mesh again."""
+    processor, card = bound()
+    wanted = processor.refine(BENT)
+    room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
+    for size in ((32, 32), (64, 48)):
+        with render.open_offscreen(size) as surface:
+            mesh = card.refine(BENT, out=GpuBuffers(surface.gl, *room))
+            np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
+    assert_same(processor, card, BENT)
+
+
+def test_the_callers_context_stays_current(surface: render.Surface) -> None:
+    """Frames that bring no context do not touch the one that draws."""
+    _, card = bound()
+    surface.begin()
+    surface.gl.clear(1.0, 0.0, 0.0)
+    surface.end()
+    card.refine(BENT).positions.copy()
+    assert surface.read()[0, 0].tolist() == [255, 0, 0]
+
+
+@pytest.fixture
+def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
+    """OpenGL that is too old."""
+
+    def fails() -> None:
+        """What `own_context` does then."""
+        raise GpuError("no OpenGL 4.3 without a window (it has 4.1)")
+
+    refiner._tell.cache_clear()
+    monkeypatch.setattr(refiner, "own_context", fails)
+
+
+@pytest.mark.usefixtures("without_opengl")
+def test_without_opengl_the_processor_refines(caplog: pytest.LogCaptureFixture) -> None:
+    """One line says so, once, and what comes is what `kahler` makes."""
+    with caplog.at_level(logging.WARNING):
+        for _ in range(2):
+            other = refine.create("kahler-gl", MESH.faces, MESH.vertices, threshold_once=0.01)
+    assert caplog.messages == [
+        "kahler-gl: no OpenGL 4.3 without a window (it has 4.1); the processor refines instead "
+        "(kahler)"
+    ]
+    assert type(other) is refine.Kahler
+    wanted = refine.create("kahler", MESH.faces, MESH.vertices, threshold_once=0.01).refine(BENT)
+    np.testing.assert_array_equal(other.refine(BENT).triangles, wanted.triangles)
+
+
+def test_an_old_context_is_refused(surface: render.Surface) -> None:
+    """A context that has no compute shaders says which version it is."""
+    _, card = bound()
+    old = SimpleNamespace(version_code=410)
+    with pytest.raises(GpuError, match=re.escape("OpenGL 4.3 is needed, and this context has 4.1")):
+        Frames(old, card._tables, card.rest_positions, np.zeros(0, bool))  # type: ignore[arg-type]
+
+
+def test_meshes_beyond_the_drivers_buffers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mesh that the driver has no room for is refined by the processor."""
+    own = context.own_context()
+    refiner._tell.cache_clear()
+    small = {**own.gl.info, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE": 1 << 12}
+    monkeypatch.setattr(own, "gl", SimpleNamespace(info=small, gc=own.gl.gc))
+    assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
+
+
+def test_shaders_take_eight_buffers() -> None:
+    """OpenGL 4.3 promises no more storage buffers in all, nor a larger group of threads."""
+    from risorius.refine_gl import frames, tables
+
+    bindings = re.findall(r"std430, binding = (\d+)", frames._text("common"))
+    assert sorted(map(int, bindings)) == list(range(8))
+    assert tables.GROUP <= 1024
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"scheme": "detail"}, "scheme must be one of ('loop', 'cubic') in kahler-gl"),
+        ({"blend": True}, 'blend=True needs scheme="cubic" in kahler-gl'),
+        ({"blend": True, "scheme": "cubic", "coherent": True}, "and coherent=False"),
+        ({"criterion": "displacement"}, 'criterion "displacement" needs scheme="cubic"'),
+        ({"criterion": refine.Criterion()}, "takes criteria that measure, and Criterion has no"),
+    ],
+)
+def test_what_the_card_has_not(options: dict[str, Any], words: str) -> None:
+    """Options that only `kahler` has are refused in words."""
+    with pytest.raises(ValueError, match=re.escape(words)):
+        refine.create("kahler-gl", MESH.faces, MESH.vertices, **options)
+
+
+def test_a_look_that_the_card_has_not(tmp_path: Path) -> None:
+    """On the command line that is one line, and nothing is written."""
+    picture = tmp_path / "joy.png"
+    told = "--refiner", "kahler-gl", "--option", "scheme=round"
+    result = risorius("capture", "-o", picture, "--set", "joy=1", *told)
+    assert "risorius: refiner kahler-gl: scheme must be one of" in refusal(result)
+    assert not picture.exists()
