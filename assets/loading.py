@@ -84,7 +84,7 @@ def _read_layers() -> tuple[Layer, ...]:
 
 
 def read_words() -> Mapping[str, Any]:
-    """Plain words for controls: the tables `names`, `filters`, `pads` and `synonyms`.
+    """Plain words for controls: the tables `names`, `filters` and `synonyms`.
 
     Raises AssetError when the file is not TOML.
     """

@@ -210,7 +210,8 @@ def open_window(
 
     performance: None for the face's own, which is read while the window shows a picture already.
     """
-    from ..viewer.window.splash_screen import SplashScreen, settings_path
+    from ..viewer.settings import settings_path
+    from ..viewer.window.splash_screen import SplashScreen
 
     def load() -> tuple[Script, FittedHead | None]:
         """All that takes long."""
@@ -230,9 +231,7 @@ def open_window(
     if mesh is None:
         drawing.check_head()
     path = settings_path()
-    is_face = performance is None or performance.scene == "face"
-    is_own = not is_face or drawing.head is not None or drawing.person is not None
-    with SplashScreen(size, path, is_own=is_own) as splash:
+    with SplashScreen(size, path) as splash:
         script, head = splash.during(load)
         from ..viewer import Viewer
         from ..viewer.settings import display_of

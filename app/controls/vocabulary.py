@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from risorius.assets.loading import read_words
 
@@ -15,21 +15,6 @@ from .mirror import parted
 
 VISEME = "viseme_"
 ENDINGS, LEAST_STEM = ("ing", "ed", "s"), 3  # of a word that is looked for; letters before them
-
-
-class Pad(NamedTuple):
-    """A field in which two controls are moved at once.
-
-    across: above 0 to the subject's left, which is right in the picture; along: what it is at the
-    `top` and at the `bottom`.
-    """
-
-    title: str
-    meaning: str
-    across: str
-    along: str
-    top: float
-    bottom: float
 
 
 def readable(name: str) -> str:
@@ -70,12 +55,6 @@ def _synonyms() -> tuple[tuple[str, frozenset[str]], ...]:
 def filters() -> Mapping[str, tuple[str, ...]]:
     """Groups of controls that are shown together, by what a button calls them."""
     return {title: tuple(groups) for title, groups in _table("filters").items()}
-
-
-@cache
-def pads() -> tuple[Pad, ...]:
-    """All fields, from left to right."""
-    return tuple(Pad(title, **row) for title, row in _table("pads").items())
 
 
 def title_of(name: str, action: str = "") -> tuple[str, str]:

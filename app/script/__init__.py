@@ -48,7 +48,7 @@ from .model import (
 )
 from .reader import load_script, parse_script, preface_of
 from .thinning import TOLERANCE, thinned
-from .writer import POSE_SECONDS, is_pose, pose_script, prepare_text, save_script, script_text
+from .writer import POSE_SECONDS, is_pose, pose_script, save_script, script_text
 
 __all__ = [
     "DECIMALS",
@@ -68,7 +68,6 @@ __all__ = [
     "parse_script",
     "pose_script",
     "preface_of",
-    "prepare_text",
     "rounded",
     "save_script",
     "script_text",

@@ -89,15 +89,6 @@ def without(script: Script, places: Places) -> Script:
     return left
 
 
-def renamed(script: Script, time: float, name: str) -> Script:
-    """The script with another name for the pose at this time; "" for none."""
-    poses = [
-        replace(pose, name=name.strip() or None) if pose.time == time else pose
-        for pose in script.poses
-    ]
-    return _reaching(replace(script, poses=tuple(poses)), time)
-
-
 def eased(script: Script, places: Places, easing: str) -> Script:
     """The script with these keys approached in another way."""
     changed = {}

@@ -124,11 +124,6 @@ class Channel:
             [f"{t!r} {v!r}{names[e]}" for t, v, e in zip(times, values, easings, strict=True)]
         )
 
-    @property
-    def has_lines(self) -> bool:
-        """Whether `lines` are made already."""
-        return "lines" in self.__dict__
-
     def continued(self, further: Channel) -> Channel:
         """This channel and the keys of another one, whose first key is the last one of this."""
         joined = Channel(

@@ -53,14 +53,6 @@ def script_text(script: Script, folder: Path | None = None) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def prepare_text(script: Script) -> bool:
-    """Do a part of what `script_text` has to do for a long script; False if all is done."""
-    for channel in script.tracks.values():
-        if len(channel) > MOST_TABLES and not channel.has_lines:
-            return bool(channel.lines)
-    return False
-
-
 def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Script:
     """A script that is nothing but one pose; what is 0 is left out."""
     pose = Pose(0.0, {name: rounded(value) for name, value in values.items() if rounded(value)})

@@ -61,16 +61,6 @@ def _tension_of(scene: Any) -> refine.Tension:
     return refine.Tension(scene.faces, scene.rest_positions)
 
 
-def edge_strains(scene: Scene, edges: npt.NDArray[np.int32]) -> FloatArray:
-    """Length of each edge over its length at rest, less 1."""
-    now, rest = (
-        np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
-        for points in (scene.positions, scene.rest_positions)
-    )
-    strain: FloatArray = now / np.maximum(rest, 1e-9) - 1.0
-    return strain
-
-
 def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:
     dots: FloatArray = (normals[edges[:, 0]] * normals[edges[:, 1]]).sum(axis=1)
     return dots

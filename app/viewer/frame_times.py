@@ -1,4 +1,4 @@
-"""How long the parts of a frame take, for the plot in the window and for `risorius bench`."""
+"""How long the parts of a frame take, for the window and for `risorius bench`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 PHASES = ("simulation", "refinement", "upload", "draw")
-PLOTTED_FRAMES = 180  # in the plot
+KEPT_FRAMES = 60
 SMOOTHING = 0.9  # of the frame rate, from frame to frame
 
 
@@ -16,7 +16,7 @@ class FrameTimes:
     """Milliseconds by phase of the paper's Figure 1 and by frame, and the rate of frames."""
 
     def __init__(self) -> None:
-        self.milliseconds = {name: deque([0.0] * PLOTTED_FRAMES, PLOTTED_FRAMES) for name in PHASES}
+        self.milliseconds = {name: deque([0.0] * KEPT_FRAMES, KEPT_FRAMES) for name in PHASES}
         self.frames_per_second = 0.0
 
     @contextmanager
@@ -27,7 +27,7 @@ class FrameTimes:
         self.milliseconds[phase][-1] += 1e3 * (time.perf_counter() - start)
 
     def next_frame(self) -> None:
-        """Start new columns in the plot."""
+        """Begin with the next frame."""
         for column in self.milliseconds.values():
             column.append(0.0)
 

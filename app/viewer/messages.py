@@ -17,7 +17,7 @@ Task = Callable[[], Message]  # what a user asks for; it may raise UserError or 
 
 @dataclass
 class Messages:
-    """One line at a time, at the foot of the picture; an error stays until it is clicked.
+    """One line at a time, over the picture; an error stays until it is clicked.
 
     Keys stand in it as in hints, see `Gui.with_keys`: by the labels of commands, in brackets.
     """
@@ -25,12 +25,10 @@ class Messages:
     text: str = ""
     is_error: bool = False
     seconds_left: float = 0.0
-    _pose: object = None  # that it is about; ... where that is the next to be seen
 
     def say(self, text: str, *, error: bool = False) -> None:
         """Show a line in place of the one before."""
         self.text, self.is_error, self.seconds_left = sentence(text), error, SECONDS
-        self._pose = ...
 
     def attempt(self, task: Task) -> None:
         """Do something, and show what it has to say or what the user may have to mend."""
@@ -42,17 +40,10 @@ class Messages:
         if line:
             self.say(line)
 
-    def age(self, seconds: float, pose: object) -> None:
-        """Time has passed since the last frame: a line that is no error goes away.
-
-        pose: as it was set last; with another one a line goes at once.
-        """
-        if self._pose is ...:
-            self._pose = pose
+    def age(self, seconds: float) -> None:
+        """Time has passed since the last frame: a line that is no error goes away."""
         if not self.is_error:
             self.seconds_left -= min(seconds, LONGEST_FRAME)
-            if pose != self._pose:
-                self.seconds_left = 0.0
         if self.seconds_left <= 0.0:
             self.text = ""
 

@@ -1,36 +1,60 @@
-"""What the window remembers: its size, how things are shown, where the camera stood.
+"""What the window remembers, each value with what is allowed: its size, how things are shown.
 
 One JSON file in the user's configuration folder, replaced whole or not at all. Every value stands
 for itself: one that is of no use gives way to what it is at first, the others stay, and the window
-names it in one line. The file as it was is kept beside it then.
+names it in one line.
 """
 
 from __future__ import annotations
 
-import contextlib
 import json
-import reprlib
-import time
-from collections.abc import Iterator
+import os
+import sys
 from dataclasses import asdict, dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 from risorius import refine, render
-from risorius.schema import Flag, OneOf, Record, Within, read_what_fits
+from risorius.schema import (
+    Flag,
+    MadeFrom,
+    OneOf,
+    Record,
+    Within,
+    parsed_json,
+    quoted,
+    read_what_fits,
+)
 
 from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
 from ..capture.encoder import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
-from ..files import NoSuchFileError, save_text
-from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement, named
-from ..refining.refiners import refiner_for
-from ..scenes import Scene
-from . import setting_rules as rules
+from ..files import NoSuchFileError, read_text, save_text
+from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement
+from ..scenes import FaceScene, Scene
 from .colours import COLOURS
-from .overlays import OVERLAYS, overlays_of
+from .interface.gui import THEMES
+
+LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
+SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
+SIDES_EXPORTED = 16, 8192  # [pixels] of what is exported
+FURTHEST = 1e6  # of any number that says where a camera is
+ZOOMS = 0.6, 3.0  # least and most of the size of words
+COMPARISONS = ("off", "wipe", "side by side")
+SKINS = {  # whether it is textured, and its colour
+    "textured": (True, render.SKIN),
+    "plain": (False, render.SKIN),
+    "clay": (False, render.CLAY),
+}
+OF_RENDER = ("light", "dark", "white", "black")
+BACKGROUNDS = {"theme": None, **{name: getattr(render, name.upper()) for name in OF_RENDER}}
+# Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
+TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
+TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
+TABS = ("Face", "Mechanism", "Live")
+MOST_RECENT = 10  # files that are remembered
+MOST_TOLD = 4  # of values that are of no use; a line has room for no more
 
 
 @dataclass
@@ -48,7 +72,7 @@ class PanelState:
 
 
 FRAMES, SHEET = "frames", "sheet"  # pictures in a folder, and a contact sheet
-SOURCES = {"script": "The whole script", "part": "A part of it", "pose": "The face as it is"}
+SOURCES = {"script": "The script", "pose": "The face as it is"}
 
 
 class Kind(NamedTuple):
@@ -71,21 +95,27 @@ for _each in MOTION:
     _end = (*_each.suffixes, "")[0]
     KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)
 
-MOST_RECENT = 10  # files that are remembered
-MOST_TOLD = 4  # of values that are of no use; a line has room for no more
+
+def _option(value: Any) -> Any:
+    is_number = isinstance(value, int | float)
+    if is_number and abs(value) <= sys.float_info.max:
+        return value
+    if is_number or not isinstance(value, str | None):
+        raise ValueError(f"was {quoted(value)}, must be a number, a text, true or false")
+    return value
 
 
-class Refiners:
-    """Some names, and those of all refiners that do something and are there when somebody asks."""
-
-    def __init__(self, *others: str | None) -> None:
-        self._others = others
-
-    def __iter__(self) -> Iterator[str | None]:
-        yield from (*self._others, *(name for name in refine.available() if name != STATIC))
+def _refiners() -> list[str | None]:
+    """All that do something and are there when somebody asks; None: that of the look."""
+    return [None, *(name for name in refine.available() if name != STATIC)]
 
 
-Side = Annotated[str, OneOf(Refiners(rules.CHOSEN, STATIC, *PRESETS), "a look or a refiner")]
+_Pair = Annotated[tuple[int, int], Within(*SIDES_SHOWN)]
+_Place = Annotated[tuple[float, float, float, float, float, float], Within(-FURTHEST, FURTHEST)]
+Size = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
+Camera = Annotated[list[float], MadeFrom(_Place, list)]  # yaw, pitch, distance, target
+Share = Annotated[float, Within(0.0, 1.0)]
+Option = Annotated[Any, MadeFrom(Any, _option)]  # of a refiner, which knows more about it
 
 
 @dataclass
@@ -93,29 +123,25 @@ class Display(Record):
     """How the scene is shown; the names are those that panels show."""
 
     look: Annotated[str, OneOf(PRESETS)] = FIRST_PRESET
-    # None: that of the look.
-    refiner: Annotated[str | None, OneOf(Refiners(None), "a refiner")] = None
+    refiner: Annotated[str | None, OneOf(_refiners, "a refiner")] = None  # None: the look's
     # What refiners are told over the look, by their names.
-    options: dict[str, dict[str, rules.Option]] = field(default_factory=dict)
+    options: dict[str, dict[str, Option]] = field(default_factory=dict)
     is_refined: Flag = True
-    compare: Annotated[str, OneOf(rules.COMPARISONS)] = "off"
-    # What is compared, at the left and at the right.
-    a: Side = STATIC
-    b: Side = rules.CHOSEN
-    divider: rules.Share = 0.5  # of a wipe, of the picture's width
+    compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # the mesh as it is, and refined
+    divider: Share = 0.5  # of a wipe, of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
     colours: Annotated[str, OneOf(COLOURS)] = "none"
-    skin: Annotated[str, OneOf(rules.SKINS)] = "textured"
+    skin: Annotated[str, OneOf(SKINS)] = "textured"
     occlusion: Flag = True  # less light in folds; of textured skin
-    wrinkles: rules.Share = 1.0  # how deep they are where skin is compressed
+    wrinkles: Share = 1.0  # how deep they are where skin is compressed
     light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
-    background: Annotated[str, OneOf(rules.BACKGROUNDS)] = "theme"
-    tone: Annotated[str, OneOf(rules.TONES)] = "own"  # of textured skin
+    background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
+    tone: Annotated[str, OneOf(TONES)] = "own"  # of textured skin
     is_orthographic: Flag = False  # the camera
-    overlays: list[Annotated[str, OneOf(OVERLAYS)]] = field(default_factory=list)
+    overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
     # Of the skin over muscles and skull, and on which side of the face it lets them show.
-    skin_opacity: rules.Share = OPACITY
+    skin_opacity: Share = OPACITY
     dissect: Annotated[str, OneOf(SIDES)] = "both"
 
     @property
@@ -146,11 +172,6 @@ class Display(Record):
         options = self.options.get(self.refiner_on(scene), {})
         return Refinement(self.look, self.refiner, dict(options))
 
-    def side_on(self, scene: Scene, side: str) -> Refinement:
-        """How this scene is refined on a side of a comparison, "a" or "b"."""
-        name = getattr(self, side)
-        return self.refinement_on(scene) if name == rules.CHOSEN else named(name, self.look)
-
     @property
     def share(self) -> float:
         """Of the picture's width, what is at the left of the line in a comparison."""
@@ -166,15 +187,9 @@ class Display(Record):
         order = [shading.value for shading in render.Shading]
         self.shading = order[(order.index(self.shading) + 1) % len(order)]
 
-    def remove_unknown_refiners(self) -> None:
-        """Tell nothing to refiners that are not installed any more."""
-        self.options = {
-            name: self.options[name] for name in refine.available() if name in self.options
-        }
-
     def remove_missing_overlays(self, scene: Scene) -> None:
         """Show none that this scene has no data for."""
-        self.overlays = [name for name in self.overlays if name in overlays_of(scene)]
+        self.overlays = self.overlays if isinstance(scene, FaceScene) else []
 
 
 @dataclass
@@ -184,31 +199,29 @@ class ExportChoices(Record):
     kind: Annotated[str, OneOf(KINDS)] = "mp4"
     source: Annotated[str, OneOf(SOURCES)] = "script"
     seconds: Annotated[float, Within(0.1, 600.0)] = 4.0  # of a face as it is
-    size: Annotated[tuple[int, int], Within(*rules.SIDES_EXPORTED)] = (1280, 720)
+    size: Annotated[tuple[int, int], Within(*SIDES_EXPORTED)] = (1280, 720)
     rate: Annotated[float, Within(1.0, 240.0)] = 30.0  # [frames/s]
     is_transparent: Flag = False
-    has_captions: Flag = True
     is_turntable: Flag = False
-    folder: rules.Folder = ""  # "" for the present one
 
 
 @dataclass
-class Settings(rules.WindowSettings):
+class Settings(Record):
     """Everything that is remembered."""
 
+    size: Size = None  # of the window [screen units]
+    theme: Annotated[str, OneOf(THEMES)] = "light"
+    zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # of all words and sliders
     is_linked: Flag = True  # sliders of both sides
     is_alive: Flag = True  # the face, where nobody moves it
-    tab: Annotated[str, OneOf(rules.TABS)] = "Face"
+    tab: Annotated[str, OneOf(TABS)] = "Face"
     # [letters' heights]; layout.py has the limits of a screen.
     panel_width: Annotated[float, Within(0.0, 1000.0)] = 22.5
     shows_curves: Flag = False  # of keys, instead of rows
-    counts_frames: Flag = False  # instead of seconds
-    timeline_height: Annotated[float, Within(0.0, 1000.0)] = 0.0  # [letters']; 0: as needed
     folds: dict[str, Flag] = field(default_factory=dict)  # which headings are open, by title
-    cameras: dict[str, rules.Camera] = field(default_factory=dict)  # by scene
+    cameras: dict[str, Camera] = field(default_factory=dict)  # by scene
     recent: list[str] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
-    knows_first_steps: Flag = False
     export: ExportChoices = field(default_factory=ExportChoices)
 
     def note_recent(self, *paths: Path) -> None:
@@ -218,7 +231,7 @@ class Settings(rules.WindowSettings):
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""
-        least, most = rules.ZOOMS
+        least, most = ZOOMS
         self.zoom = min(max(self.zoom * factor, least), most)
 
 
@@ -253,71 +266,36 @@ def display_of(
     return display
 
 
+def settings_path() -> Path:
+    """Where this system keeps a user's settings."""
+    home = Path.home()
+    if sys.platform == "win32":
+        folder = Path(os.environ.get("APPDATA", home / "AppData" / "Roaming"))
+    elif sys.platform == "darwin":
+        folder = home / "Library" / "Application Support"
+    else:
+        folder = Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config")
+    return folder / "risorius" / "viewer.json"
+
+
 def load_settings(path: Path) -> tuple[Settings, str]:
     """What is remembered, and a line that names what is in the file and of no use, "" for nothing.
 
-    In that case the file is set aside, and what is of use of it written anew.
+    The file is written anew on closing.
     """
     try:
-        stored = rules.stored_settings(path)
+        stored = parsed_json(read_text(path, what="file of settings", longest=LONGEST_FILE))
     except NoSuchFileError:
         return Settings(), ""
     except UserError as error:
-        return Settings(), f"{error}; all is as at first; {rename_unusable(path)}"
+        return Settings(), f"{error}; all is as at first"
     except ValueError as error:
-        return Settings(), f"{path}: {error}; all is as at first; {rename_unusable(path)}"
+        return Settings(), f"{path}: {error}; all is as at first"
     settings, refused = read_what_fits(Settings, stored)
-    settings.display.remove_unknown_refiners()
     if not refused:
         return settings, ""
-    renamed = rename_unusable(path)
-    with contextlib.suppress(UserError):  # of a full disk others speak
-        save_settings(path, settings)
     told = refused[:MOST_TOLD] + [f"{len(refused) - MOST_TOLD} more"] * (len(refused) > MOST_TOLD)
-    return settings, in_one_line(f"{path}: as at first: {'; '.join(told)}; {renamed}")
-
-
-def rename_unusable(path: Path) -> str:
-    """Give a file of no use another name, and say which; it is written anew on closing."""
-    unusable = path.with_name(f"{path.stem}-{time.strftime('%Y%m%d-%H%M%S')}.unusable{path.suffix}")
-    try:
-        path.rename(unusable)
-    except OSError as error:
-        return f"it cannot be set aside ({error.strerror}), and is written anew on closing"
-    return f"the file is kept as {unusable.name}"
-
-
-def remove_refused_options(display: Display, scene: Scene) -> str:
-    """Take out of `display` what refiners refuse for this scene; a line names it, "" for none."""
-    refused = []
-    suits, look = partial(_suits, scene), display.look
-    for refiner, options in display.options.items():
-        if not options or suits(Refinement(look, refiner, options)):
-            continue
-        accepted: dict[str, Any] = {}
-        for name, value in options.items():
-            if suits(Refinement(look, refiner, {**accepted, name: value})):
-                accepted[name] = value
-            else:
-                refused.append(f"{refiner} {name} = {reprlib.repr(value)}")
-        display.options[refiner] = accepted
-    if display.refiner is not None and not suits(Refinement(look, display.refiner)):
-        refused.append(display.refiner)
-        display.refiner = None
-    for side in ("a", "b"):
-        if not suits(display.side_on(scene, side)):
-            refused.append(getattr(display, side))
-            setattr(display, side, getattr(Display(), side))
-    line = f"of no use and as at first: refiner {', '.join(refused)}"
-    return in_one_line(line) if refused else ""
-
-
-def _suits(scene: Scene, refinement: Refinement) -> bool:
-    try:
-        refiner_for(scene, refinement)
-    except UserError:
-        return False
-    return True
+    return settings, in_one_line(f"{path}: as at first: {'; '.join(told)}")
 
 
 def save_settings(path: Path, settings: Settings) -> None:

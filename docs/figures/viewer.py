@@ -62,7 +62,7 @@ def wipe(viewer: Viewer) -> None:
 
 def show_refinement(viewer: Viewer) -> None:
     """Of the panel Mechanism show what says how the mesh is refined, and its colours."""
-    viewer.settings.folds |= dict.fromkeys(("Overlays", "Light and person", "Milliseconds"), False)
+    viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
 
 
 def timeline(viewer: Viewer) -> None:

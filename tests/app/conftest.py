@@ -20,9 +20,7 @@ from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display
 
-from .driving import SIZE, replace_state, settle, xdotool
-
-HELLO = Path(__file__).parents[2] / "docs" / "hello.toml"
+from .driving import HELLO, SIZE, replace_state, settle, xdotool
 
 
 @pytest.fixture(scope="session")
@@ -36,6 +34,14 @@ def face(scene: FaceScene) -> FaceScene:
     """The same face, at rest."""
     scene.reset()
     return scene
+
+
+@pytest.fixture
+def session(face: FaceScene, tmp_path: Path) -> Session:
+    """A session with a script of the user's own: poses and a blink."""
+    path = tmp_path / "own.toml"
+    path.write_text(HELLO.read_text(encoding="utf-8"))
+    return Session(face, load_script(path))
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +78,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     path.write_text(HELLO.read_text(encoding="utf-8"))
     viewer.session.open(load_script(path))
     viewer.selection.places = NOWHERE
-    viewer.settings.shows_curves, viewer.settings.timeline_height = False, 0.0
+    viewer.settings.shows_curves = False
     viewer.time_axis.show_whole()
     settle(viewer)
     return path

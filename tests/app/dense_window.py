@@ -37,7 +37,7 @@ def main() -> None:
     if sys.argv[1:2] == ["first"]:
         with _screen_of(int(sys.argv[2])), Viewer(script_for(None, "plane")) as viewer:
             settle(viewer)
-            found = {"window": viewer.placement._place()[2:], "panel": viewer.view.area[0]}
+            found = {"window": viewer.gui.window_size, "panel": viewer.view.area[0]}
             print(json.dumps(found))
         return
     with _screen_of(DOTS_PER_INCH), Viewer(script_for(None, "face"), SIZE) as viewer:
@@ -78,7 +78,7 @@ def _findings(viewer: Viewer) -> dict[str, object]:
         "button": (right - left, bottom - top),
         "line": viewer.surface.pixel_scale,
         "frame": viewer.surface.size,
-        "window": viewer.placement._place()[2:],
+        "window": viewer.gui.window_size,
         "slid": slid,
         "dragged": dragged,
     }

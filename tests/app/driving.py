@@ -17,6 +17,8 @@ from imgui_bundle import imgui
 
 from risorius.app.script.places import KeyPlace
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.session.physics import STEP
+from risorius.app.viewer.session.session import Session
 
 import glfw  # isort: skip - after imgui_bundle, which the viewer imports
 
@@ -27,6 +29,7 @@ NEEDS_A_SCREEN = [
         reason="needs a display and xdotool; `make test` brings both",
     ),
 ]
+HELLO = Path(__file__).parents[2] / "docs" / "hello.toml"
 SIZE = (900, 600)  # of the window that tests share
 DEADLINE = 60.0  # [s] for what takes a blink on a quiet machine
 STEADY = 3  # frames alike, after which no panel moves by itself
@@ -70,6 +73,12 @@ def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEAD
         if condition():
             return True
     return False
+
+
+def run(session: Session, steps: int) -> None:
+    """Let so many steps of time pass, without a window."""
+    for _ in range(steps):
+        session.advance(STEP)
 
 
 def wait_for(condition: Callable[[], object]) -> None:

@@ -6,7 +6,6 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
 from copy import deepcopy
 from pathlib import Path
 
@@ -15,8 +14,7 @@ import pytest
 from PIL import Image
 
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.overlays import pointed_lines
-from risorius.app.viewer.panels.help import COLUMNS, NARROW_COLUMNS
+from risorius.app.viewer.picture.stage import pointed_lines
 from risorius.app.viewer.settings import Display, Settings, load_settings
 
 from .driving import (
@@ -138,22 +136,8 @@ def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
     assert not viewer.session.unsaved
 
 
-def test_pointing_at_a_slider_shows_its_fibres(viewer: Viewer) -> None:
-    """The mouse on a muscle's slider draws its fibres over the face."""
-    show_controls(viewer, "zygom maj")
-    assert until(viewer, lambda: viewer.is_idle)
-    left = round(viewer.view.area[0])
-    before = viewer.surface.read_scene()[:, left:].astype(int)
-    xdotool(viewer, "mousemove", *middle(viewer, "zygomaticus_major_left"))
-    assert "zygomaticus_major_left" in viewer.view.pointed
-    assert until(viewer, lambda: viewer.painter.is_complete)
-    changed = np.abs(viewer.surface.read_scene()[:, left:].astype(int) - before).max(axis=2)
-    assert (changed > 40).sum() > 30
-    clear_search(viewer)
-
-
 def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
-    """A kiss lights the lips and no forehead; a clicked muscle is seen while it is named."""
+    """A kiss lights the lips and no forehead."""
     xdotool(viewer, "mousemove", *middle(viewer, "show kiss"))
     assert until(viewer, lambda: "orbicularis_oris_sphincter" in viewer.view.pointed)
     scene, shares = viewer.session.scene, viewer.view.pointed
@@ -164,11 +148,6 @@ def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
     assert max(lines.opacity for lines in drawn) > 0.8 > min(lines.opacity for lines in drawn)
     xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
     assert until(viewer, lambda: not viewer.view.pointed)
-    x, y = nose(viewer)
-    xdotool(viewer, "mousemove", x + 40, y, "click", 1)
-    assert until(viewer, lambda: bool(viewer.muscle_note.name))
-    assert until(viewer, lambda: viewer.muscle_note.name in viewer.view.pointed)
-    xdotool(viewer, "key", "Escape")
 
 
 @pytest.mark.slow
@@ -181,9 +160,9 @@ def test_every_colour_overlay_and_refiner_can_be_drawn(viewer: Viewer) -> None:
         click(viewer, f"Colours: {name}")
         assert viewer.settings.display.colours == name
     click(viewer, "Style")  # folded, there is room for what is below it
-    for name in ("Muscles", "Springs", "Skull", "Landmarks"):
+    for name in ("Muscles", "Skull"):
         click(viewer, name)
-    assert viewer.settings.display.overlays == ["muscles", "springs", "skull", "landmarks"]
+    assert viewer.settings.display.overlays == ["muscles", "skull"]
     viewer.settings.display.choose_preset("paper")
     assert until(viewer, lambda: viewer.is_idle)
     few = viewer.stage.refined.triangle_count
@@ -226,21 +205,6 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     assert not viewer.messages.is_error
 
 
-def test_wrinkles_have_a_slider(viewer: Viewer) -> None:
-    """Dragged to the left they are gone from the picture; a right click brings them back."""
-    viewer.session.toggle_alone("surprise")
-    click(viewer, "tab Mechanism")
-    assert until(viewer, lambda: viewer.is_idle)
-    assert viewer.settings.display.wrinkles == 1.0 and viewer.stage.refined.stream.has_bumps
-    drag_and_release(viewer, middle(viewer, "wrinkles"), (-400, 0))
-    assert viewer.settings.display.wrinkles == 0.0 and not viewer.stage.refined.stream.has_bumps
-    xdotool(viewer, "click", 3)
-    xdotool(viewer, "mousemove", *middle(viewer, "wrinkles"))
-    xdotool(viewer, "click", 3)
-    assert viewer.settings.display.wrinkles == 1.0
-    assert until(viewer, lambda: viewer.stage.refined.stream.has_bumps)
-
-
 def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
     """Closing with a pose made by hand asks; going back keeps it, going on closes."""
     viewer.session.set("jaw_open", 0.5)
@@ -260,13 +224,6 @@ def test_screenshot(viewer: Viewer, tmp_path: Path) -> None:
     xdotool(viewer, "key", "F12")
     shots = list(tmp_path.glob("*.png"))
     assert len(shots) == 1 and Image.open(shots[0]).size == (width, height)
-
-
-@pytest.mark.parametrize("columns", [COLUMNS, NARROW_COLUMNS])
-def test_help_has_every_key(viewer: Viewer, columns: Sequence[Sequence[str]]) -> None:
-    """No menu that has keys is left out of the overview, in wide windows and in narrow ones."""
-    shown = {title for titles in columns for title in titles}
-    assert {command.menu for command in viewer.commands if command.key} <= shown
 
 
 def test_help_and_themes(viewer: Viewer) -> None:

@@ -24,7 +24,7 @@ from Xlib.protocol import event
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import load_settings
-from risorius.app.viewer.window.placement import FIRST_SIZE
+from risorius.app.viewer.window.splash_screen import FIRST_SIZE
 
 from .driving import (
     DEADLINE,
@@ -32,6 +32,7 @@ from .driving import (
     SIZE,
     click,
     nose,
+    on_screen,
     settle,
     show_controls,
     until,
@@ -88,26 +89,6 @@ def screen_size() -> tuple[int, int]:
     return screen.width_in_pixels, screen.height_in_pixels
 
 
-def place_of(viewer: Viewer) -> tuple[int, int, int, int]:
-    """Where the window is, as the window itself knows it."""
-    settle(viewer)
-    return viewer.placement._place()
-
-
-def test_full_screen_and_back(viewer: Viewer) -> None:
-    """All of the screen is the window; left again, it is as large and where it was."""
-    before = place_of(viewer)
-    xdotool(viewer, "mousemove", *nose(viewer))
-    xdotool(viewer, "key", "F11")
-    assert until(viewer, lambda: place_of(viewer) == (0, 0, *screen_size()))
-    assert viewer.placement.is_full
-    assert viewer.surface.read().shape[1::-1] == screen_size()
-    assert viewer.placement.size == SIZE  # which is what is remembered
-    xdotool(viewer, "key", "alt+Return")
-    assert until(viewer, lambda: place_of(viewer) == before)
-    assert not viewer.placement.is_full
-
-
 def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     """H leaves the picture alone; menus come up at its edge; they bring all back."""
     around = viewer.view.area
@@ -119,7 +100,7 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     assert (np.ptp(image[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
     assert "menu View" not in viewer.gui.places
     x = nose(viewer)[0]
-    xdotool(viewer, "mousemove", x, viewer.placement._place()[1] + 5)
+    xdotool(viewer, "mousemove", x, on_screen(viewer, 0, 5)[1])
     assert "menu View" in viewer.gui.places
     click(viewer, "menu View")
     click(viewer, "menu View: Hide panels")

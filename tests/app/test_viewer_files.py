@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 from importlib import resources
 from pathlib import Path
@@ -118,27 +117,6 @@ def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) 
     assert "jaw_open" in (tmp_path / "script.toml").read_text()
     assert viewer.surface.should_close
     viewer.surface.should_close = viewer.is_leaving = False
-
-
-@pytest.mark.slow
-def test_a_file_opened_while_recording(viewer: Viewer, tmp_path: Path) -> None:
-    """A pose becomes part of the recording; a script asks first, a bad file ends nothing."""
-    script, pose, bad = (tmp_path / name for name in ("smile.toml", "pose.toml", "bad.toml"))
-    script.write_text(SCRIPT)
-    pose.write_text(POSE)
-    bad.write_text("nonsense")
-    xdotool(viewer, "key", "ctrl+r")
-    drop(viewer, pose)
-    assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
-    drop(viewer, bad)
-    assert viewer.messages.is_error and viewer.session.is_recording
-    drop(viewer, script)
-    assert viewer.question.is_open and viewer.session.is_recording
-    xdotool(viewer, "key", "Escape")
-    assert not viewer.question.is_open and viewer.session.is_recording
-    drop(viewer, script)
-    click(viewer, "question: Open without saving")
-    assert viewer.session.script.duration == 2.0 and not viewer.session.is_recording
 
 
 def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -315,23 +293,3 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(
     saved = load_script(tmp_path / "take.toml")
     assert saved.at(0.5)["jawOpen"] == pytest.approx(viewer.session.script.at(0.5)["jawOpen"])
     assert take.read_bytes() == before
-
-
-@pytest.mark.slow
-def test_json_is_a_recording_or_landmarks_by_what_it_holds(viewer: Viewer, tmp_path: Path) -> None:
-    """Scores of a tracker are played, on a head that is dropped with them if there is one."""
-    scores = [{"categoryName": "jawOpen", "score": 0.5}, {"categoryName": "_neutral", "score": 0}]
-    picture = tmp_path / "scores.json"
-    picture.write_text(json.dumps(scores))
-    drop(viewer, picture)
-    assert "one frame" in viewer.messages.text and not viewer.messages.is_error
-    assert viewer.session.values["jawOpen"] == 0.5
-    before = viewer.session.scene
-    mesh, landmarks = stranger().write(tmp_path)
-    try:
-        drop(viewer, landmarks, picture, mesh)
-        assert until(viewer, lambda: viewer.session.scene is not before)
-        assert "with stranger" in viewer.messages.text
-        assert viewer.session.values["jawOpen"] == 0.5
-    finally:
-        viewer.show_scene(before)

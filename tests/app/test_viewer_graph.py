@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from risorius.app.script import parse_script, script_text
-from risorius.app.script.keyframes import FRAME, POSES, on_frame
+from risorius.app.script.keyframes import POSES, on_frame
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.settings import load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, click, drag, middle, on_screen, settle, xdotool
+from .driving import NEEDS_A_SCREEN, click, drag, on_screen, settle, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "curves")]
 
@@ -21,7 +20,7 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "curves")]
 @pytest.fixture
 def curves(viewer: Viewer, own: Path) -> None:
     """Values in place of the rows."""
-    viewer.settings.shows_curves, viewer.settings.counts_frames = True, False
+    viewer.settings.shows_curves = True
     settle(viewer)
 
 
@@ -92,22 +91,6 @@ def test_a_box_selects_by_value(viewer: Viewer) -> None:
     assert values(viewer, "joy")[1] == 1.0 and viewer.selection.places == chosen
 
 
-def test_keys_snap_and_ctrl_lets_go(viewer: Viewer) -> None:
-    """A dragged key stops at the time of another track's key, with Ctrl anywhere."""
-    blink = viewer.session.script.tracks["blink"].times[0]
-    width = viewer.time_axis.x(float(blink)) - viewer.time_axis.x(1.0)
-    drag(viewer, at(viewer, 1.0, 1.0), (round(width) - 30, 0))
-    xdotool(viewer, "mousemove_relative", "--", 33, 0)
-    assert viewer.session.script.poses[1].time == 2.0
-    assert values(viewer, "joy")[1] == 1.0
-    xdotool(viewer, "keydown", "ctrl")
-    xdotool(viewer, "mousemove_relative", "--", 1, 7)
-    pose = viewer.session.script.poses[1]
-    xdotool(viewer, "keyup", "ctrl")
-    xdotool(viewer, "mouseup", 1)
-    assert pose.time != on_frame(pose.time) and pose.values["joy"] != 1.0
-
-
 def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
     """A right click on a key chooses how it is approached, and the curve is what is played."""
     xdotool(viewer, "mousemove", *at(viewer, 3.0, 0.6))
@@ -152,30 +135,3 @@ def test_handles_set_slopes(viewer: Viewer) -> None:
     xdotool(viewer, "key", "Escape")
     xdotool(viewer, "mouseup", 1)
     assert viewer.session.script == before
-
-
-def test_the_timeline_is_dragged_taller(viewer: Viewer, tmp_path: Path) -> None:
-    """Its upper edge goes where it is dragged, and is remembered."""
-    height = viewer.timeline.height()
-    drag(viewer, middle(viewer, "timeline's edge"), (0, -40))
-    move(viewer, 0, -40)
-    assert viewer.timeline.height() == pytest.approx(height + 80.0, abs=6.0)
-    save_settings(tmp_path / "viewer.json", viewer.settings)
-    kept, complaint = load_settings(tmp_path / "viewer.json")
-    assert not complaint and kept.timeline_height == viewer.settings.timeline_height > 0.0
-    drag(viewer, middle(viewer, "timeline's edge"), (0, 200))
-    move(viewer, 0, 200)
-    assert 0.0 < viewer.settings.timeline_height < 8.0
-
-
-def test_frames_are_counted(viewer: Viewer) -> None:
-    """A click on the time turns seconds into frames, and back."""
-    viewer.session.seek(2.0)
-    settle(viewer)
-    click(viewer, "time shown")
-    axis = viewer.time_axis
-    assert viewer.settings.counts_frames and axis.told(2.0) == "frame 60"
-    labelled = [tick.time / FRAME for tick in axis.ticks(60.0) if tick.has_label]
-    assert len(labelled) > 3 and labelled == pytest.approx(np.round(labelled))
-    click(viewer, "time shown")
-    assert axis.told(2.0) == "2.00 s"

@@ -23,10 +23,11 @@ from risorius.app.script import (
 from risorius.app.script.keyframes import FRAME, POSES
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.timeline.keys import all_tracks, described
 from risorius.app.viewer.timeline.time_axis import LEAST_SPAN, TimeAxis
-from risorius.app.viewer.timeline.tracks import all_tracks, described
 
-HELLO = Path("docs/hello.toml")
+from .driving import HELLO
+
 JOY = KeyPlace(POSES, 1.0)
 
 
@@ -34,15 +35,6 @@ JOY = KeyPlace(POSES, 1.0)
 def hello() -> Script:
     """Four poses, of which one has a name, and a blink."""
     return load_script(HELLO)
-
-
-@pytest.fixture
-def session(scene: FaceScene, tmp_path: Path) -> Session:
-    """A session with a script of the user's own."""
-    scene.reset()
-    own = tmp_path / "own.toml"
-    own.write_text(HELLO.read_text(encoding="utf-8"))
-    return Session(scene, load_script(own))
 
 
 def pose_times(script: Script) -> list[float]:
@@ -72,16 +64,12 @@ def test_moving_there_and_back_changes_nothing(hello: Script) -> None:
     assert replace(script, duration=hello.duration) == hello
 
 
-def test_names_easings_and_the_end(hello: Script) -> None:
-    """A name can come and go; an easing is that of the chosen keys; named poses are kept in."""
-    named = keyframes.renamed(hello, 3.0, "  rest ")
-    assert [pose.name for pose in named.key_poses] == ["joy", "rest"]
-    assert keyframes.renamed(named, 3.0, "") == hello
+def test_easings_and_the_end(hello: Script) -> None:
+    """An easing is that of the chosen keys; the end may come earlier."""
     eased = keyframes.eased(hello, Places.of(JOY, KeyPlace("blink", 2.0)), "hold")
     assert eased.poses[1].easing == "hold" == eased.tracks["blink"].keys[0].easing
     assert eased.poses[2].easing == "smooth"
     assert keyframes.lasting(hello, 2.0).duration == 2.0
-    assert keyframes.lasting(named, 2.0).duration == 3.0
     assert keyframes.lasting(replace(hello, poses=()), -5.0).duration == pytest.approx(FRAME)
 
 
@@ -101,14 +89,6 @@ def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene)
     again = keyframes.keyed(hello, 1.0, {**zero, "jaw_open": 0.7}, limits)
     assert again.poses[1].name == "joy" and again.poses[1].easing == "ease-out"
     assert again.poses[1].values == {"jaw_open": 0.7}
-
-
-def test_a_key_of_an_unchanged_face_is_what_was_there(hello: Script, scene: FaceScene) -> None:
-    """Where poses and tracks add up to more than a control can, neither is changed by a key."""
-    more = "[[pose]]\ntime=0\nblink=0.8\n[[pose]]\ntime=1\n[tracks]\nblink=[{time=0,value=0.9}]"
-    script = parse_script(more, source="more.toml")
-    shown = {**dict.fromkeys(scene.limits, 0.0), "blink": 1.0}
-    assert keyframes.keyed(script, 0.0, shown, scene.limits) == script
 
 
 def test_a_key_in_a_recording(scene: FaceScene) -> None:
@@ -135,9 +115,7 @@ def test_edited_scripts_survive_a_file(session: Session, tmp_path: Path) -> None
     session.set_key()
     script, _ = keyframes.moved(session.script, Places.of(JOY, KeyPlace("blink", 2.0)), 0.07)
     script, _ = keyframes.copied(script, keyframes.places_of(script), 1.0 / 3.0)
-    script = keyframes.eased(
-        keyframes.renamed(script, 3.0, 'a "name"\t\x7f'), Places.of(KeyPlace(POSES, 3.0)), "hold"
-    )
+    script = keyframes.eased(script, Places.of(KeyPlace(POSES, 3.0)), "hold")
     session.edit(script)
     target = tmp_path / "edited.toml"
     session.save_script(target)
@@ -226,15 +204,6 @@ def test_raised_keys_stay_within_limits(amount: float, choice: list[bool]) -> No
             assert new.easing == old.easing
     assert [pose.values.get("jaw_open") for pose in script.poses] == [None, 0.1, None, None]
     assert keyframes.raised(hello, places, 0.0, limits, {"joy"}) == hello
-
-
-def test_what_is_added_to_poses_may_be_negative(hello: Script) -> None:
-    """A track beside poses takes from them; one that stands alone keeps to its control's limits."""
-    limits = {"joy": (0.0, 1.0), "blink": (0.0, 1.0), "jaw_open": (0.0, 1.0)}
-    beside = replace(hello, tracks={"joy": hello.tracks["blink"], "blink": hello.tracks["blink"]})
-    script = keyframes.raised(beside, keyframes.places_of(beside), -2.0, limits, ())
-    assert script.tracks["joy"].values.tolist() == [-1.0] * 4 and script.poses == hello.poses
-    assert script.tracks["blink"].values.tolist() == [0.0] * 4
 
 
 @pytest.mark.parametrize("end", [0.1, 4.0, 61.0, 5000.0, 86_400.0])

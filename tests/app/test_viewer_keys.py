@@ -71,7 +71,7 @@ def test_chords_keep_their_modifier(viewer: Viewer) -> None:
 
 
 def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
-    """Menus, lists, the menu of the timeline, a line to type in, dialogs, the overview of keys."""
+    """Menus, lists, the menu of the timeline, dialogs, the overview of keys."""
     click(viewer, "tab Mechanism")
     x, y = middle(viewer, "keys")
     places, context = viewer.gui.places, imgui.get_current_context()
@@ -80,7 +80,6 @@ def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
         (lambda: click(viewer, "Refiner"), "Refiner: loop"),
         (lambda: click(viewer, "speed"), "speed: 2 x"),
         (lambda: xdotool(viewer, "mousemove", x, y, "click", 3), "menu Keys: Set key"),
-        (lambda: xdotool(viewer, "key", "ctrl+k"), "pose name"),
         (lambda: xdotool(viewer, "key", "ctrl+o"), "path"),
     ):
         opens()

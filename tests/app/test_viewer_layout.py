@@ -10,8 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.performances import script_for
-from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.window.window import REFRESH
 
@@ -64,7 +62,7 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
         xdotool(viewer, "key", "F1")
         left, _, width, height = viewer.view.area
         assert width > 0.5 * SIZE[0] and height > 0.4 * SIZE[1]
-        for name in ("Random", "Link sides", "search", "show joy", "show blink"):
+        for name in ("Mirror", "Link sides", "search", "show joy", "show blink"):
             assert viewer.gui.places[name][2] <= left, name
         for name in ("play", "record", "loop", "speed", "time"):
             assert viewer.gui.places[name][0] >= left, name
@@ -74,15 +72,6 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
     finally:
         viewer.settings.zoom, viewer.panel_state.is_help_open = 1.0, False
         settle(viewer)
-
-
-def test_keys_go_from_key_to_key(viewer: Viewer) -> None:
-    """Right goes to the script's next key, Left back, Home to the start."""
-    viewer.session.open(script_for(None, "face"))
-    times = sorted({place.time for place in places_of(viewer.session.script)})
-    for key, place in (("Right", 1), ("Right", 2), ("Left", 1), ("Home", 0)):
-        xdotool(viewer, "key", key)
-        assert viewer.session.time == pytest.approx(times[place]), key
 
 
 def test_any_size_can_be_drawn(viewer: Viewer) -> None:

@@ -7,18 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from risorius.app.motion.life import LID
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.session.physics import ASLEEP_AFTER, STEP
+from risorius.app.viewer.session.physics import ASLEEP_AFTER
 
 from .driving import (
     NEEDS_A_SCREEN,
-    clear_search,
-    drag,
-    middle,
     moved,
     settle,
-    show_controls,
     until,
     xdotool,
 )
@@ -33,20 +28,6 @@ def alive(viewer: Viewer, calm: None) -> Iterator[None]:
     viewer.life.note_input()
     yield
     viewer.settings.is_alive = False
-
-
-def lids(viewer: Viewer) -> float:
-    """How far the lids' muscle is asked to shut the left eye."""
-    return viewer.session.scene.values[f"{LID}_left"]
-
-
-def drawn_lids(viewer: Viewer, frames: int = 900) -> float:
-    """The most of it in so many steps of the simulation."""
-    most = 0.0
-    for _ in range(frames):
-        viewer.session.advance(STEP, viewer.life.after(STEP, is_held=False))
-        most = max(most, lids(viewer))
-    return most
 
 
 def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer: Viewer) -> None:
@@ -71,33 +52,6 @@ def test_a_key_switches_it_off_and_on(viewer: Viewer) -> None:
     xdotool(viewer, "key", "a")
     assert viewer.settings.is_alive and not viewer.is_idle
     assert until(viewer, lambda: moved(viewer) > 0.1)
-
-
-@pytest.mark.slow
-def test_what_is_set_by_hand_stays(viewer: Viewer) -> None:
-    """Eyes that the user turned stay turned, and blink; a lid that he lowered stays."""
-    viewer.session.set("gaze_horizontal", 0.5)
-    assert drawn_lids(viewer) == 1.0
-    values = viewer.session.scene.values
-    assert values["gaze_horizontal"] == 0.5 and values["gaze_vertical_left"] == 0.0
-    viewer.session.set(f"{LID}_right", 0.3)
-    assert drawn_lids(viewer) == 0.0
-    assert viewer.session.scene.values[f"{LID}_right"] == 0.3
-
-
-@pytest.mark.slow
-def test_a_face_that_somebody_holds_does_not_twitch(viewer: Viewer) -> None:
-    """While a slider is dragged the face looks at the user, and that is all."""
-    show_controls(viewer, "jaw open")
-    drag(viewer, middle(viewer, "jaw_open"), (40, 0))
-    try:
-        settle(viewer)
-        active = {name for name, value in viewer.session.scene.values.items() if value}
-    finally:
-        xdotool(viewer, "mouseup", 1)
-        clear_search(viewer)
-    assert "jaw_open" in active
-    assert all(name.startswith(("jaw_open", "gaze", "head")) for name in active), active
 
 
 def test_a_script_moves_the_face_alone(viewer: Viewer) -> None:

@@ -1,4 +1,4 @@
-"""Real mouse events on the skin: pull to pose, the clicked muscle's slider, its lines."""
+"""Real mouse events on the skin: pull to pose, the clicked muscle, its lines."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import pytest
 from PIL import Image
 
 from risorius.app.viewer import Viewer
-from tests.heads import stranger
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -17,7 +16,6 @@ from .driving import (
     drag,
     middle,
     moved,
-    nose,
     on_screen,
     show_controls,
     until,
@@ -92,10 +90,7 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.physics.is_at_rest)
     assert moved(viewer) > 4.0
     assert viewer.session.values == solved
-    viewer.messages.seconds_left = 1e6
-    xdotool(viewer, "key", "n")
-    assert until(viewer, lambda: not viewer.messages.text), "this pose is there no more"
-    xdotool(viewer, "key", "ctrl+z", "ctrl+z")
+    xdotool(viewer, "key", "ctrl+z")
     assert not any(viewer.session.values.values())
     assert until(viewer, lambda: moved(viewer) < 0.3)
 
@@ -112,33 +107,10 @@ def test_linked_sides_are_pulled_together(viewer: Viewer) -> None:
     assert viewer.messages.text.startswith("Smile muscle, both sides 0.")
 
 
-def test_a_click_shows_the_slider_beside_the_mouse(viewer: Viewer) -> None:
-    """It moves the muscle and shows its fibres; Escape or a click elsewhere takes it away."""
+def test_a_click_shows_the_muscle_in_the_panel(viewer: Viewer) -> None:
+    """Its group opens, and its slider is scrolled to."""
+    viewer.panel_state.wanted_tab = "Live"
     x, y = landmark(viewer, 54)
     xdotool(viewer, "mousemove", x + 15, y - 15, "click", 1)
-    assert until(viewer, lambda: "note" in viewer.gui.places)
-    name = viewer.muscle_note.name
-    near = np.subtract(middle(viewer, "note"), (x, y))
-    assert np.abs(near).max() < 220
-    drag(viewer, middle(viewer, "note"), (30, 0))
-    assert until(viewer, lambda: viewer.session.values[name] > 0.2)
-    xdotool(viewer, "mouseup", 1)
-    assert until(viewer, lambda: viewer.session.can_undo)
-    xdotool(viewer, "key", "Escape")
-    assert until(viewer, lambda: "note" not in viewer.gui.places)
-    xdotool(viewer, "mousemove", x + 15, y - 15, "click", 1)
-    assert until(viewer, lambda: "note" in viewer.gui.places)
-    xdotool(viewer, "mousemove", *on_screen(viewer, 880, 150), "click", 1)
-    assert until(viewer, lambda: "note" not in viewer.gui.places)
-
-
-def test_skin_is_let_go_where_marking_begins(viewer: Viewer, tmp_path: Path) -> None:
-    """A finger that is on the skin as the face goes away does not hold it for ever."""
-    mesh = stranger().write(tmp_path)[0]
-    drag(viewer, nose(viewer), (30, 0))
-    assert until(viewer, lambda: moved(viewer) > 4.0)
-    viewer.mark(mesh)
-    xdotool(viewer, "mouseup", 1)
-    viewer.leave_marking()
-    viewer.session.neutral()
-    assert until(viewer, lambda: moved(viewer) < 0.3)
+    assert until(viewer, lambda: viewer.settings.folds.get("Upper lip and cheek", False))
+    assert until(viewer, lambda: "search" in viewer.gui.places)

@@ -14,38 +14,24 @@ import pytest
 
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
-from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import load_script
+from risorius.app.scenes import PlaneScene
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import STEP
-from risorius.app.viewer.session.recovery import LONGEST, QUIET, Recovery
+from risorius.app.viewer.session.recovery import INTERVAL, Recovery, Work
 from risorius.app.viewer.session.session import Session
-from risorius.app.viewer.session.unsaved import Work
-from risorius.assets.staging import PREFIX
 
-from .driving import DEADLINE, NEEDS_A_SCREEN, SIZE, click, settle, wait_for, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, click, run, settle, wait_for, xdotool
 
 ROOT = Path(__file__).parents[2]
-SCRIPT = "# mine\nduration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
 
 
 class Clock:
     """Time that passes when it is told to."""
 
-    def __init__(self) -> None:
-        self.now = 0.0
+    now = 0.0
 
     def __call__(self) -> float:
         return self.now
-
-
-@pytest.fixture
-def session(scene: FaceScene, tmp_path: Path) -> Session:
-    """A script of the user's own, opened from a file."""
-    scene.reset()
-    path = tmp_path / "smile.toml"
-    path.write_text(SCRIPT)
-    return Session(scene, load_script(path))
 
 
 @pytest.fixture
@@ -55,218 +41,161 @@ def clock() -> Clock:
 
 
 @pytest.fixture
-def recovery(tmp_path: Path, clock: Clock) -> Iterator[Recovery]:
+def recovery(session: Session, tmp_path: Path, clock: Clock) -> Iterator[Recovery]:
     """Of a window that lives."""
-    made = Recovery(tmp_path / "unsaved", clock)
+    made = Recovery(tmp_path, session, clock)
     yield made
     made.close()
 
 
-def stored_work(folder: Path) -> dict[str, str]:
-    """The texts that are kept there, by kind."""
-    return {file.name.split(".")[1]: file.read_text() for file in folder.glob("unsaved/*.toml")}
+def watch(recovery: Recovery, clock: Clock) -> None:
+    """Let the time pass in which a change is written."""
+    recovery.watch()
+    clock.now += INTERVAL
+    recovery.watch()
+
+
+def stored(folder: Path) -> list[str]:
+    """The files with unsaved work."""
+    return [path.name for path in folder.glob("unsaved*.json")]
 
 
 def found_by_next(folder: Path, session: Session) -> Work | None:
     """What a window that opens now would offer."""
-    other = Recovery(folder / "unsaved")
-    other.find(session)
-    found = other.found
+    other = Recovery(folder, session)
     other.close()
-    return found
+    return other.found
 
 
-def test_work_is_written_after_a_pause(
+def leave(folder: Path, session: Session) -> None:
+    """Work that a window has which then ends."""
+    recovery = Recovery(folder, session)
+    recovery.save()
+    recovery.close()
+
+
+def test_work_is_written_soon_and_goes_when_it_is_undone(
     session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
 ) -> None:
-    """Nothing at first; a pose when it was left alone for a while; nothing again when undone."""
-    recovery.watch(session)
-    assert recovery.due_in() == float("inf") and not (tmp_path / "unsaved").exists()
-    session.set("jaw_open", 0.4)
-    recovery.watch(session)
-    assert stored_work(tmp_path) == {} and recovery.due_in() == pytest.approx(QUIET)
-    clock.now += 0.9 * QUIET
-    recovery.watch(session)
-    assert stored_work(tmp_path) == {}
-    clock.now += 0.2 * QUIET
-    recovery.watch(session)
-    assert "jaw_open = 0.4" in stored_work(tmp_path)["pose"] and recovery.due_in() == float("inf")
+    """Nothing at first; a pose a moment later, though it is dragged on; nothing when undone."""
+    recovery.watch()
+    assert recovery.due_in() == float("inf") and not stored(tmp_path)
+    for step in range(round(1.5 * INTERVAL / STEP)):
+        session.set("jaw_open", 0.2 + 0.001 * (step % 100))
+        recovery.watch()
+        clock.now += STEP
+    recovery.close()
+    found = found_by_next(tmp_path, session)
+    assert found is not None and 0.2 <= found.pose["jaw_open"] < 0.3
     session.note()
     session.undo()
-    recovery.watch(session)
-    assert list((tmp_path / "unsaved").iterdir()) == []
-
-
-def test_work_without_a_pause_is_written_too(
-    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
-) -> None:
-    """Whoever drags a slider to and fro for long loses a few seconds at most."""
-    recovery.watch(session)
-    for step in range(round(1.5 * LONGEST / STEP)):
-        session.set("jaw_open", 0.2 + 0.001 * (step % 100))
-        recovery.watch(session)
-        clock.now += STEP
-    written = load_script(next((tmp_path / "unsaved").glob("*.pose.toml"))).at(0.0)["jaw_open"]
-    assert 0.2 <= written < 0.3
-
-
-@pytest.mark.slow
-def test_a_recording_is_kept_while_it_goes_on(
-    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
-) -> None:
-    """What was recorded some seconds ago is in the file, near to what stopping would give."""
-    session.toggle_recording()
-    for step in range(round(4.0 * LONGEST / STEP)):
-        session.set("jaw_open", 0.5 - 0.5 / (1.0 + 0.02 * step))
-        session.advance(STEP)
-        clock.now += STEP
-        recovery.watch(session)
-    draft = load_script(next((tmp_path / "unsaved").glob("*.recording.toml")))
-    assert session.recorded_seconds - LONGEST - 0.1 < draft.duration < session.recorded_seconds
-    session.toggle_recording()
-    for moment in (0.3, 1.0, 5.0, draft.duration):
-        wanted = session.script.at(moment)["jaw_open"]
-        assert draft.at(moment)["jaw_open"] == pytest.approx(wanted, abs=5e-3)
-    whole = len(session.script.tracks["jaw_open"].keys)
-    assert len(draft.tracks["jaw_open"].keys) < whole + 10
+    recovery.watch()
+    assert not stored(tmp_path)
 
 
 def test_saved_work_is_kept_no_more(
     session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
 ) -> None:
-    """The script goes from the folder when it is in its own file, the pose stays until it is."""
+    """The script goes when it is in its own file, the pose stays until it is."""
     session.set("jaw_open", 0.4)
-    session.edit(replace(session.script, duration=3.0))
-    recovery.watch(session)
-    clock.now += QUIET
-    recovery.watch(session)
-    assert set(stored_work(tmp_path)) == {"script", "pose"}
-    session.save_script(tmp_path / "smile.toml")
-    recovery.watch(session)
-    clock.now += QUIET
-    recovery.watch(session)
-    assert set(stored_work(tmp_path)) == {"pose"}
+    session.edit(replace(session.script, duration=5.0))
+    watch(recovery, clock)
+    session.save_script(tmp_path / "own.toml")
+    watch(recovery, clock)
+    recovery.close()
+    found = found_by_next(tmp_path, session)
+    assert found is not None and found.pose == {"jaw_open": 0.4} and not found.script
     session.save_pose(tmp_path / "pose.toml")
-    recovery.watch(session)
-    assert list((tmp_path / "unsaved").iterdir()) == []
+    recovery.watch()
+    assert not stored(tmp_path)
 
 
 def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Path) -> None:
-    """Script and recording to each digit; the script knows its file, comments and all."""
+    """A script with what is being recorded, to each digit; it knows its file, comments and all."""
     session.set("jaw_open", 0.25)
     session.set_key()
-    edited = session.script
     session.set("jaw_open", 1.0 / 3.0)
     session.toggle_recording()
     session.set("jaw_open", 0.5)
-    for _ in range(20):
-        session.advance(STEP)
-    recovery.save(session)
+    run(session, 20)
+    recovery.save()
     assert found_by_next(tmp_path, session) is None  # its window still lives
     recovery.close()
     after = Session(session.scene, script_for(None, "face"))
-    next_one = Recovery(tmp_path / "unsaved")
-    next_one.find(after)
-    assert next_one.found is not None
-    assert next_one.found.summary == "the script smile.toml and a recording"
-    next_one.accept_found(after)
+    next_one = Recovery(tmp_path, after)
+    assert next_one.found is not None and next_one.found.summary == "the script own.toml"
+    next_one.accept_found()
     assert next_one.found is None and after.unsaved == "the script"
-    assert after.script.at(0.2)["jaw_open"] == pytest.approx(0.5, abs=0.002)
-    assert after.script.poses == edited.poses and after.file.path == tmp_path / "smile.toml"
-    after.undo()  # the recording
-    assert after.script == edited and after.script.preface == "# mine"
-    assert after.file.path == tmp_path / "smile.toml" and after.file.objection == ""
-    next_one.save(after)
+    session.toggle_recording()
+    assert after.script == session.script and after.script.preface.startswith("# A smile")
+    assert after.file.path == tmp_path / "own.toml" and after.file.objection == ""
     next_one.close()
-    assert found_by_next(tmp_path, session) == Work(edited, tmp_path / "smile.toml")
-
-
-def test_what_is_thrown_away_is_gone(session: Session, tmp_path: Path) -> None:
-    """The latest is offered first, then the one before; damaged files are passed by."""
-    folder = tmp_path / "unsaved"
-    for value in (0.1, 0.2):
-        one = Recovery(folder)
-        session.set("jaw_open", value)
-        one.save(session)
-        one.close()
-        new = [file for file in folder.iterdir() if not file.name.startswith("2020010")]
-        for file in new:  # begun in one second, names are by chance
-            file.rename(folder / f"2020010{round(10 * value)}{file.name[8:]}")
-    (folder / "20270101-000000-abc.pose.toml").write_text("nonsense")
-    (folder / "20270101-000000-abd.pose.toml").write_bytes(bytes(range(256)))
-    next_one = Recovery(folder)
-    next_one.find(session)
-    assert next_one.found is not None and next_one.found.pose is not None
-    assert next_one.found.pose.at(0.0)["jaw_open"] == 0.2
-    next_one.discard_found(session)
-    assert next_one.found is not None and next_one.found.pose is not None
-    assert next_one.found.pose.at(0.0)["jaw_open"] == 0.1
-    next_one.discard_found(session)
-    assert next_one.found is None
-    assert {file.name[:8] for file in folder.glob("*.toml")} == {"20270101"}
-
-
-def test_only_what_fits_the_scene_is_offered(
-    session: Session, recovery: Recovery, tmp_path: Path
-) -> None:
-    """A window with the plane leaves a face's pose to the next window with a face."""
-    session.set("jaw_open", 0.4)
-    recovery.save(session)
-    recovery.close()
-    plane = Session(PlaneScene(), script_for(None, "plane"))
-    assert found_by_next(tmp_path, plane) is None
     assert found_by_next(tmp_path, session) is not None
+
+
+def test_an_offer_that_nobody_answers_is_made_again(session: Session, tmp_path: Path) -> None:
+    """Whatever is done, saved or given up meanwhile; thrown away, it is gone."""
+    session.set("jaw_open", 0.4)
+    leave(tmp_path, session)
+    session.neutral()
+    recovery = Recovery(tmp_path, session)
+    with recovery.guarding():
+        recovery.watch()
+        session.set("jaw_open", 0.1)
+        recovery.save()
+    recovery.close()
+    recovery = Recovery(tmp_path, session)
+    assert recovery.found is not None and recovery.found.pose == {"jaw_open": 0.4}
+    recovery.discard()
+    assert not stored(tmp_path)
+    recovery.close()
+
+
+@pytest.mark.parametrize("damaged", [b"nonsense", bytes(range(256)), b'{"when": 1.0}'])
+def test_only_what_is_of_use_is_offered(session: Session, tmp_path: Path, damaged: bytes) -> None:
+    """No damaged file; and a window with the plane leaves a face's pose to one with a face."""
+    session.set("jaw_open", 0.4)
+    leave(tmp_path, session)
+    assert found_by_next(tmp_path, Session(PlaneScene(), script_for(None, "plane"))) is None
+    assert found_by_next(tmp_path, session) is not None
+    (tmp_path / "unsaved-face.json").write_bytes(damaged)
+    assert found_by_next(tmp_path, session) is None
 
 
 def test_a_folder_that_takes_nothing_is_told_once(session: Session, clock: Clock) -> None:
     """The user is told that work is not safe, and works on."""
-    recovery = Recovery(Path("/proc/none/unsaved"), clock)
-    for value, words in ((0.4, "not kept safe: .*/proc/none"), (0.5, "")):
-        session.set("jaw_open", value)
-        recovery.watch(session)
-        clock.now += QUIET
-        if words:
-            with pytest.raises(UserError, match=words):
-                recovery.watch(session)
-        else:
-            recovery.watch(session)
+    recovery = Recovery(Path("/proc/none"), session, clock)
+    session.set("jaw_open", 0.4)
+    with pytest.raises(UserError, match=r"not kept safe: .*/proc/none"):
+        watch(recovery, clock)
+    session.set("jaw_open", 0.5)
+    watch(recovery, clock)
     recovery.close()
 
 
 # Real windows, real signals
 
 
-def windows_process(folder: Path) -> subprocess.Popen[str]:
-    """`risorius view`, with settings of its own; its window has been drawn."""
+@pytest.fixture
+def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """`risorius view`, with settings of its own, in which somebody has made a face just now."""
     process = subprocess.Popen(
         [sys.executable, "-m", "risorius", "view", "--size", "700x500"],
         cwd=ROOT, stderr=subprocess.PIPE, text=True,
-        env={**os.environ, "XDG_CONFIG_HOME": str(folder)}, start_new_session=True,
+        env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}, start_new_session=True,
         # Tests that run behind an `&` or `nohup` have signals ignored, and pass that on.
         preexec_fn=lambda: [signal.signal(n, signal.SIG_DFL) for n in (1, 2, 15)],
     )  # fmt: skip
-    search = ["xdotool", "search", "--sync", "--onlyvisible", "--name", "^Risorius: Expressions$"]
-    subprocess.run(search, check=True, capture_output=True, timeout=60)
-    return process
+    search = ["xdotool", "search", "--onlyvisible", "--name"]
 
+    def is_posed() -> bool:
+        subprocess.run(["xdotool", "mousemove", "450", "200", "key", "n", "1", "m"], check=True)
+        title = [*search, r"^Risorius: Expressions \*$"]
+        return bool(subprocess.run(title, capture_output=True, check=False).stdout)
 
-def press(*keys: str) -> None:
-    """Keys, for the window under the mouse."""
-    for key in keys:
-        subprocess.run(["xdotool", "mousemove", "450", "200", "key", key], check=True)
-
-
-@pytest.fixture
-def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
-    """A window in which somebody has made a face by chance just now."""
-    process = windows_process(tmp_path)
     try:
-        title = ["xdotool", "search", "--onlyvisible", "--name", r"^Risorius: Expressions \*$"]
-
-        def is_posed() -> bool:
-            press("x")
-            return bool(subprocess.run(title, capture_output=True, check=False).stdout)
-
+        shown = [*search[:2], "--sync", *search[2:], "^Risorius: Expressions$"]
+        subprocess.run(shown, check=True, capture_output=True, timeout=60)
         wait_for(is_posed)
         yield process
     finally:
@@ -274,69 +203,38 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
         process.wait()
 
 
-@pytest.mark.slow
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
-def test_a_window_that_is_told_to_stop_loses_nothing(
-    at_work: subprocess.Popen[str], tmp_path: Path
+@pytest.mark.parametrize("how", [signal.SIGHUP, signal.SIGKILL])
+def test_a_window_that_ended_is_recovered(
+    at_work: subprocess.Popen[str], tmp_path: Path, how: signal.Signals
 ) -> None:
-    """What was done this moment is written before the end."""
-    at_work.send_signal(signal.SIGHUP)
-    assert at_work.wait(DEADLINE) == -signal.SIGHUP
-    assert at_work.stderr is not None and at_work.stderr.read() == ""
-    [pose] = [load_script(file) for file in tmp_path.glob("risorius/unsaved/*.pose.toml")]
-    assert any(pose.at(0.0).values())
-
-
-@pytest.mark.window
-@NEEDS_A_SCREEN[1]
-def test_a_window_that_crashed_is_recovered(at_work: subprocess.Popen[str], tmp_path: Path) -> None:
-    """Killed some seconds after the last change; the next windows offer it until it is answered."""
+    """Told to stop, or killed some seconds after the last change; it is offered until answered."""
     folder = tmp_path / "risorius"
-    wait_for(lambda: stored_work(folder))
-    at_work.kill()
-    at_work.wait()
-    [pose] = [load_script(file) for file in folder.glob("unsaved/*.pose.toml")]
+    if how == signal.SIGKILL:
+        wait_for(lambda: stored(folder))
+    at_work.send_signal(how)
+    assert at_work.wait(60.0) == -how
     script = script_for(None, "face")
     for answer in ("Recover", "Throw away"):
         with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
             settle(viewer)
-            assert not viewer.session.unsaved
+            assert not viewer.session.unsaved and viewer.recovery.found is not None
+            assert viewer.recovery.found.pose == {"joy": 1.0}
             click(viewer, f"offer: {answer}")
             assert "offer: Recover" not in viewer.gui.places
             if answer == "Recover":
-                assert viewer.session.unsaved == "the pose" and stored_work(folder)
-                values = viewer.session.values
-                assert all(values[name] == value for name, value in pose.at(0.0).items())
-    # The kill may have met a file on its way; its staging folder is swept by who writes there.
-    left = [file for file in (folder / "unsaved").iterdir() if not file.name.startswith(PREFIX)]
-    assert left == []
+                assert viewer.session.unsaved == "the pose"
+                assert viewer.session.is_alone("joy")
+    assert not stored(folder)
 
 
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
-def test_work_that_is_given_up_is_not_offered(tmp_path: Path) -> None:
-    """Closed without saving, after the question: nothing is left."""
-    with Viewer(script_for(None, "face"), SIZE, settings_path=tmp_path / "viewer.json") as viewer:
-        settle(viewer)
-        viewer.session.set("jaw_open", 0.4)
-        viewer.recovery.save(viewer.session)
-        assert stored_work(tmp_path)
-        xdotool(viewer, "key", "ctrl+q")
-        click(viewer, "question: Close without saving")
-        viewer.run()
-    assert list((tmp_path / "unsaved").iterdir()) == []
-
-
-@pytest.mark.slow
-@pytest.mark.window
-@NEEDS_A_SCREEN[1]
-def test_recovering_asks_before_other_work_is_lost(session: Session, tmp_path: Path) -> None:
-    """With something unsaved of its own, the window asks; going back keeps both."""
-    recovery = Recovery(tmp_path / "unsaved")
+def test_other_work_is_asked_for_and_can_be_given_up(session: Session, tmp_path: Path) -> None:
+    """Going back keeps both; what is closed without saving is not offered again."""
     session.set("jaw_open", 0.4)
-    recovery.save(session)
-    recovery.close()
+    leave(tmp_path, session)
     script = script_for(None, "face")
     with Viewer(script, SIZE, settings_path=tmp_path / "viewer.json") as viewer:
         settle(viewer)
@@ -346,6 +244,8 @@ def test_recovering_asks_before_other_work_is_lost(session: Session, tmp_path: P
         assert viewer.session.values["AU12"] == 0.7 and viewer.recovery.found is not None
         click(viewer, "offer: Recover")
         click(viewer, "question: Recover without saving")
-        assert viewer.session.values["AU12"] == 0.0
-        assert viewer.session.values["jaw_open"] == 0.4
-    assert found_by_next(tmp_path, session) is not None  # it was not closed, but cut off
+        assert viewer.session.values["AU12"] == 0.0 and viewer.session.values["jaw_open"] == 0.4
+        xdotool(viewer, "key", "ctrl+q")
+        click(viewer, "question: Close without saving")
+        viewer.run()
+    assert not stored(tmp_path)

@@ -1,4 +1,4 @@
-"""The first seconds: a picture at once, a window that answers while it loads, three first steps."""
+"""The first seconds: a line at once, in a window that answers while it loads."""
 
 from __future__ import annotations
 
@@ -17,24 +17,12 @@ from Xlib import X, display
 from Xlib.error import XError
 from Xlib.protocol.event import ClientMessage
 
-from risorius.app.performances import script_for
-from risorius.app.viewer import Viewer
 from risorius.app.viewer.interface.gui import THEMES
-from risorius.app.viewer.settings import Settings, load_settings, save_settings
 from risorius.app.viewer.window.splash_screen import COMPILING, LOADING, picture
 
 from .driving import (
     DEADLINE,
     NEEDS_A_SCREEN,
-    SIZE,
-    click,
-    drag,
-    drag_and_release,
-    nose,
-    on_screen,
-    settle,
-    until,
-    xdotool,
 )
 
 pytestmark = NEEDS_A_SCREEN
@@ -92,13 +80,13 @@ def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
         process.wait()
 
 
-def test_a_face_is_seen_before_anything_is_compiled(
+def test_a_line_is_seen_before_anything_is_compiled(
     start: Callable[[], subprocess.Popen[bytes]], tmp_path: Path
 ) -> None:
-    """The first start shows a picture of the face, says what goes on, and closes when asked."""
+    """The first start says what goes on, and closes when asked."""
     process = start()
     wanted = [
-        picture((640, 400), 15.0, THEMES["light"], text, is_own=False).astype(int)
+        picture((640, 400), 15.0, THEMES["light"], text).astype(int)
         for text in (LOADING, COMPILING)
     ]
     is_like = [False, False]
@@ -112,54 +100,3 @@ def test_a_face_is_seen_before_anything_is_compiled(
     assert all(is_like)
     close_window(process)
     assert process.wait(DEADLINE) == 0
-
-
-def test_the_steps_come_once(tmp_path: Path) -> None:
-    """Who has seen them does not see them again."""
-    path = tmp_path / "viewer.json"
-    save_settings(path, Settings(knows_first_steps=True, size=SIZE))
-    with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
-        assert viewer.first_steps.done == []
-    assert load_settings(path)[0].knows_first_steps
-
-
-@pytest.fixture(scope="module")
-def viewer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
-    """A window that was never open before."""
-    path = tmp_path_factory.mktemp("settings") / "viewer.json"
-    with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
-        opened.settings.is_alive = False
-        settle(opened)
-        yield opened
-
-
-@pytest.mark.slow
-def test_the_steps_tick_themselves_off(viewer: Viewer) -> None:
-    """Pulling the skin, dragging the line and playing end the guide; Help brings it back."""
-    steps = viewer.first_steps
-    assert steps.done == [False, False, False]
-    x, y = nose(viewer)
-    drag(viewer, (x, y), (92, 0))
-    assert until(viewer, lambda: viewer.mouse.is_dragging_skin)
-    xdotool(viewer, "mouseup", 1)
-    assert until(viewer, lambda: viewer.messages.text.startswith("No muscle draws"))
-    assert not steps.done[0], "it swings back"
-    drag_and_release(viewer, (x + 40, y), (65, -65))  # a cheek
-    assert until(viewer, lambda: steps.done == [True, False, False])
-    assert "short of the mouse" in viewer.messages.text
-    xdotool(viewer, "key", "d")
-    left, top, width, height = viewer.view.area
-    xdotool(viewer, "mousemove", *on_screen(viewer, left + 0.5 * width, top + 0.1 * height))
-    xdotool(viewer, "mousedown", 1)
-    assert not steps.done[1]
-    xdotool(viewer, "mousemove_relative", "--", -40, 0)
-    assert until(viewer, lambda: steps.done == [True, True, False])
-    xdotool(viewer, "mouseup", 1, "key", "space")
-    assert until(viewer, lambda: all(steps.done))
-    xdotool(viewer, "key", "space")
-    assert until(viewer, lambda: not steps.done)
-    click(viewer, "menu Help")
-    click(viewer, "menu Help: First steps")
-    assert steps.done == [False, False, False]
-    click(viewer, "first steps: Skip")
-    assert steps.done == []

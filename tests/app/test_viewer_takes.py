@@ -1,8 +1,9 @@
-"""What hands do to a script, without a window: letting go, auto-key, punching in, the undo list."""
+"""What is recorded into a script while it plays, without a window."""
 
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,33 +11,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from risorius.app.controls.vocabulary import readable
 from risorius.app.errors import UserError
-from risorius.app.scenes import FaceScene
 from risorius.app.script import Channel, Key, Pose, Script, load_script
-from risorius.app.script.keyframes import POSES, places_of
-from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.recorder import Recorder
 from risorius.app.viewer.session.physics import STEP
-from risorius.app.viewer.session.scene_controls import change_of
 from risorius.app.viewer.session.session import Session
-from risorius.app.viewer.settings import PanelState
-from risorius.app.viewer.timeline.key_selection import KeySelection
 
-HELLO = Path("docs/hello.toml")
+from .driving import run
 
-
-@pytest.fixture
-def session(scene: FaceScene) -> Session:
-    """A session that plays a script of poses and a blink."""
-    scene.reset()
-    return Session(scene, load_script(HELLO))
-
-
-def run(session: Session, steps: int) -> None:
-    """Let so many steps of time pass."""
-    for _ in range(steps):
-        session.advance(STEP)
+MAJOR = "zygomaticus_major_left"
 
 
 def set_by_hand(session: Session, **values: float) -> None:
@@ -44,44 +27,6 @@ def set_by_hand(session: Session, **values: float) -> None:
     for name, value in values.items():
         session.set(name, value)
     session.note()
-
-
-# Letting go
-
-
-@pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
-def test_a_pose_that_is_let_go_is_told_and_comes_back(session: Session, how: str) -> None:
-    """Whatever takes it away says so in a line; one undo brings it back to where it was made."""
-    session.seek(2.0)
-    set_by_hand(session, jaw_open=0.6)
-    assert session.differing == {"jaw_open"}
-    does = {
-        "seek": lambda: session.seek(3.5),
-        "key": lambda: session.seek_key(1),
-        "play": session.toggle_playing,
-        "button": session.let_go,
-    }
-    line = does[how]()
-    assert line is not None and "Jaw open" in line and "[Undo]" in line
-    run(session, 10)
-    assert not session.differing and session.values["jaw_open"] < 0.6
-    session.undo()
-    assert session.values["jaw_open"] == 0.6 and session.time == 2.0 and session.has_unsaved_pose
-    session.redo()
-    assert session.values["jaw_open"] < 0.6
-
-
-def test_what_is_keyed_or_was_never_moved_is_let_go_in_silence(session: Session) -> None:
-    """No word and no step where nothing is lost; scrubbing on is silent, too."""
-    assert session.seek(1.0) is None and not session.can_undo
-    set_by_hand(session, jaw_open=0.6)
-    session.set_key()
-    assert session.seek(2.0) is None and session.history.labels[-1] == "Key at 1.00 s"
-    set_by_hand(session, jaw_open=0.7)
-    assert session.seek(2.5) and session.seek(3.0) is None
-
-
-# Punching in
 
 
 def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -> None:
@@ -137,21 +82,6 @@ def test_a_recording_makes_the_script_longer(session: Session) -> None:
     assert session.time == 0.0 and session.script.at(4.8)["jaw_open"] == pytest.approx(
         0.7, abs=2e-3
     )
-
-
-def test_a_loop_is_recorded_once(session: Session) -> None:
-    """Begun at the script's end it goes on at the start, and the second time round is not taken."""
-    session.seek(4.0)
-    session.is_looping = True
-    session.toggle_recording()
-    session.set("jaw_open", 0.7)
-    run(session, 245)
-    session.set("jaw_open", 0.1)
-    run(session, 10)
-    session.toggle_recording()
-    assert session.script.duration == 4.0
-    for time in (0.0, 1.0, 3.9):
-        assert session.script.at(time)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
 
 
 LIMITS = dict.fromkeys(("a", "b", "c"), (0.0, 1.0))
@@ -237,104 +167,116 @@ def played_at(script: Script, time: float, name: str) -> float:
     return min(max(script.at(time).get(name, 0.0), 0.0), 1.0)
 
 
-# Undo
+def paused(session: Session) -> None:
+    """Begin to record at 1 s, move the jaw, and pause at 2 s."""
+    session.seek(1.0)
+    session.toggle_recording()
+    run(session, 30)
+    session.set("jaw_open", 0.5)
+    run(session, 30)
+    session.toggle_playing()
+    run(session, 30)
 
 
-COMMANDS = {
-    "slide": lambda s, x: set_by_hand(s, jaw_open=x),
-    "link": lambda s, x: (s.set("AU12_left", x, linked=True), s.note()),
-    "joy": lambda s, x: s.toggle_alone("joy"),
-    "mirror": lambda s, x: s.mirror(),
-    "neutral": lambda s, x: s.neutral(),
-    "seek": lambda s, x: s.seek(4.0 * x),
-    "next": lambda s, x: s.seek_key(1),
-    "key": lambda s, x: s.set_key(),
-    "whole": lambda s, x: s.set_key(is_whole=True),
-    "let go": lambda s, x: s.let_go(),
-    "auto": lambda s, x: setattr(s, "is_keying", x > 0.5),
-    "new": lambda s, x: s.begin_script(),
-    "undo": lambda s, x: s.undo(),
-    "redo": lambda s, x: s.redo(),
-}
+def test_moves_in_a_pause_are_recorded_when_it_goes_on(session: Session) -> None:
+    """They begin where it was paused."""
+    paused(session)
+    session.set("AU4", 0.8)
+    run(session, 30)
+    session.toggle_playing()
+    run(session, 30)
+    session.toggle_recording()
+    assert session.is_following and session.script.at(1.95).get("AU4", 0.0) == 0.0
+    assert session.script.at(2.05)["AU4"] == session.script.at(2.35)["AU4"] == 0.8
 
 
-class Still(FaceScene):
-    """A face that takes no time."""
-
-    def step(self, seconds: float) -> None:
-        """Stay."""
-
-
-@given(st.lists(st.tuples(st.sampled_from(sorted(COMMANDS)), SHARES), max_size=12))
-@settings(max_examples=60, deadline=None)
-def test_undo_gives_the_state_before(steps: list[tuple[str, float]]) -> None:
-    """After any commands: back through all that was, and forward again to where it ended."""
-    session = Session(SHARED, load_script(HELLO))
-
-    def state() -> tuple[object, ...]:
-        by_hand = None if session.is_following else dict(session.values)
-        return session.script, session.file, by_hand
-
-    for command, share in steps:
-        before, place = state(), session.history.place
-        COMMANDS[command](session, share)
-        after = state()
-        if session.history.place == place + 1 and command != "redo":
-            session.undo()
-            assert state() == before
-            session.redo()
-            assert state() == after
-    states = [state()]
-    while session.history.can_undo:
-        session.undo()
-        states.append(state())
-    for earlier in states[-2::-1]:
-        session.redo()
-        assert state() == earlier
-
-
-SHARED = Still()
-
-
-def test_the_undo_list_has_names(session: Session) -> None:
-    """Each state is called as what led to it, and can be gone to at once."""
-    session.seek(1.2)
-    set_by_hand(session, AU12_left=0.6)
-    session.mirror()
-    session.set("AU12_left", 0.3, linked=True)
-    session.note()
-    session.set_key()
-    selection = KeySelection(session, PanelState())
-    selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace(POSES, 3.0))
-    selection.nudge(1)
-    selection.delete()
-    assert session.history.labels == [
-        "Beginning", "Set AU12 left to 0.60", "Mirror", "Set AU12 to 0.30", "Key at 1.20 s",
-        "Move 2 keys", "Delete 2 keys",
-    ]  # fmt: skip
-    session.go_to(2)
-    assert session.values["AU12_right"] == 0.6 and session.script_is_unsaved is False
-    session.go_to(6)
-    assert [pose.time for pose in session.script.poses] == [0.0, 1.2, 4.0]
-    assert change_of({}, {"jaw_open": 0.1, "joy": 0.2}) == "Set 2 controls"
-    assert readable("AU12_left") == "AU12 left"
-
-
-# Copies
-
-
-def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -> None:
-    """What was copied stays as it was, whatever became of its script; it comes at the playhead."""
-    selection = KeySelection(session, PanelState())
-    assert not selection.copied
-    selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12))
-    assert "2 keys copied" in str(selection.copy())
-    selection.delete()
-    session.begin_script()
-    session.seek(0.5)
-    assert selection.copied and selection.paste() == "2 keys copied to 0.50 s"
-    assert selection.places == {KeyPlace(POSES, 0.5), KeyPlace("blink", 1.62)}
-    assert places_of(session.script) == selection.places | {KeyPlace(POSES, 0.0)}
-    assert session.script.poses[1].name == "joy"
+def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
+    """They are no part of the recording, which is told, and still there to be keyed."""
+    paused(session)
+    session.set("AU4", 0.8)
+    session.set("jaw_open", 0.1)
+    line = session.toggle_recording()
+    assert line is not None and "1 control recorded" in line and "2 controls" in line
+    assert "not keyed" in line
+    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
+    assert session.differing == {"AU4", "jaw_open"} and session.has_unsaved_pose
+    assert session.script.at(1.8)["jaw_open"] == pytest.approx(0.5, abs=0.002)
+    assert "AU4" not in session.script.tracks
+    assert "[Undo]" in (session.seek(0.0) or "")
     session.undo()
-    assert places_of(session.script) == {KeyPlace(POSES, 0.0)}
+    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
+
+
+def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path: Path) -> None:
+    """Record, save, load, replay: every vertex ends where it was, to a hundredth of a mm."""
+    session.begin_script()
+    session.edit(replace(session.script, duration=1.0))
+    session.toggle_recording()
+    run(session, 30)
+    for step in range(60):
+        session.set("jaw_open", step / 60.0)
+        session.advance(STEP)
+    session.set(MAJOR, 0.8)
+    run(session, 60)
+    wanted = session.scene.positions.copy()
+    assert np.abs(wanted - session.scene.rest_positions).max() > 10.0
+    session.toggle_recording()
+    assert "the script" in session.unsaved
+    session.save_script(tmp_path / "take.toml")
+    assert not session.unsaved
+    session.neutral()
+    run(session, 90)
+    session.open(load_script(tmp_path / "take.toml"))
+    session.toggle_playing()
+    while session.is_playing:
+        session.advance(STEP)
+    assert np.abs(session.scene.positions - wanted).max() < 0.01
+
+
+@pytest.mark.slow
+def test_a_recording_beside_a_sound_is_in_step_with_it(session: Session, tmp_path: Path) -> None:
+    """The script plays meanwhile, and what is heard at a time was recorded at that time."""
+    played = replace(session.script, sound=tmp_path / "sound.wav")
+    session.edit(played)
+    session.seek(0.5)
+    session.toggle_recording()
+    assert session.is_playing
+    run(session, 30)  # to 1 s
+    session.toggle_playing()
+    run(session, 30)  # paused
+    session.toggle_playing()
+    session.set("jaw_open", 0.8)
+    run(session, 30)  # to 1.5 s
+    at, session.is_looping = session.time, True
+    while session.time >= at:
+        session.advance(STEP)
+    session.set("jaw_open", 0.1)
+    run(session, 30)  # heard before
+    whole = session.script.duration
+    session.toggle_recording()
+    script = session.script
+    assert script.sound == tmp_path / "sound.wav"
+    assert script.duration == pytest.approx(whole, abs=0.02)
+    for time in (0.6, 0.97):
+        heard = {**dict.fromkeys(script.tracks, 0.0), **played.at(time)}
+        assert any(heard.values()) and script.at(time) == pytest.approx(heard, abs=0.05)
+    assert script.at(1.05)["jaw_open"] == pytest.approx(0.8, abs=2e-3)
+
+
+def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
+    session: Session, tmp_path: Path
+) -> None:
+    """They take what is seen, not what sliders say beneath it."""
+    session.live_override.take({"jaw_open": 0.5}, 1.0)
+    session.save_pose(tmp_path / "pose.toml")
+    assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5
+    session.begin_script()
+    session.set_key()
+    assert session.script.at(0.0)["jaw_open"] == 0.5
+    session.neutral()
+    session.toggle_recording()
+    for step in range(30):
+        session.live_override.take({"jaw_open": step / 30.0}, 1.0)
+        session.advance(STEP)
+    session.toggle_recording()
+    assert session.script.at(0.25)["jaw_open"] == pytest.approx(0.5, abs=0.05)

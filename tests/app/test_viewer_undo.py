@@ -1,169 +1,149 @@
-"""What undo keeps, and what a recording keeps of moves while it waits, without a window."""
+"""What hands do to a script, without a window: letting go, the undo list, copies."""
 
 from __future__ import annotations
 
-from copy import deepcopy
-from pathlib import Path
-
-import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from risorius.app.errors import UserError
+from risorius.app.controls.vocabulary import readable
 from risorius.app.scenes import FaceScene
-from risorius.app.script import load_script, parse_script
-from risorius.app.viewer.picture.skin_drag import SkinDrag
-from risorius.app.viewer.session.physics import STEP
+from risorius.app.script import load_script
+from risorius.app.script.keyframes import POSES, places_of
+from risorius.app.script.places import KeyPlace, Places
+from risorius.app.viewer.session.scene_controls import change_of
 from risorius.app.viewer.session.session import Session
-from risorius.app.viewer.settings import Display, Settings
+from risorius.app.viewer.timeline.keys import KeySelection
 
-HELLO = Path("docs/hello.toml")
-AHEAD = np.array([0.0, 0.0, -1.0])
-BROW = 24  # another landmark
-MAJOR = "zygomaticus_major_left"
-SMILE = f"duration = 4\n[tracks]\n{MAJOR} = [{{time = 0, value = 0}}, {{time = 4, value = 1}}]"
+from .driving import HELLO, run
+
+SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
 
-@pytest.fixture
-def session(scene: FaceScene) -> Session:
-    """A session that shows a script of poses and a blink."""
-    scene.reset()
-    session = Session(scene, load_script(HELLO))
-    session.show(Display())
-    return session
-
-
-def run(session: Session, steps: int) -> None:
-    """Let so many steps of time pass."""
-    for _ in range(steps):
-        session.advance(STEP)
-
-
-def look(session: Session, **fields: object) -> None:
-    """Draw the scene in another way."""
-    display = deepcopy(session.display)
-    vars(display).update(fields)
-    session.show(display)
-
-
-def key(session: Session, time: float, **values: float) -> None:
-    """Move sliders at a time, let them go, and make a key of it."""
-    session.seek(time)
+def set_by_hand(session: Session, **values: float) -> None:
+    """Move sliders, and let them go."""
     for name, value in values.items():
         session.set(name, value)
     session.note()
-    session.set_key()
 
 
-def test_looking_differently_keeps_what_can_be_done_again(session: Session) -> None:
-    """Edits that were undone come back after a change of the view, and leave the view alone."""
-    before = session.script
-    key(session, 1.5, jaw_open=0.7)
-    look(session, wireframe=True)
-    key(session, 2.5, jaw_open=0.2)
-    edited = session.script
-    for _ in range(5):
-        session.undo()
-    assert session.script == before and session.display == Display()
-    look(session, light="side")
-    look(session, colours="splits")
-    assert session.history.labels[1:3] == ["View: light", "View: colours"]
-    while session.history.can_redo:
-        session.redo()
-    assert session.script == edited
-    assert session.display == Display(light="side", colours="splits", wireframe=True)
+@pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
+def test_a_pose_that_is_let_go_is_told_and_comes_back(session: Session, how: str) -> None:
+    """Whatever takes it away says so in a line; one undo brings it back to where it was made."""
+    session.seek(2.0)
+    set_by_hand(session, jaw_open=0.6)
+    assert session.differing == {"jaw_open"}
+    does = {
+        "seek": lambda: session.seek(3.5),
+        "key": lambda: session.seek_key(1),
+        "play": session.toggle_playing,
+        "button": session.let_go,
+    }
+    line = does[how]()
+    assert line is not None and "Jaw open" in line and "[Undo]" in line
+    run(session, 10)
+    assert not session.differing and session.values["jaw_open"] < 0.6
+    session.undo()
+    assert session.values["jaw_open"] == 0.6 and session.time == 2.0 and session.has_unsaved_pose
+    session.redo()
+    assert session.values["jaw_open"] < 0.6
+
+
+COMMANDS = {
+    "slide": lambda s, x: set_by_hand(s, jaw_open=x),
+    "link": lambda s, x: (s.set("AU12_left", x, linked=True), s.note()),
+    "joy": lambda s, x: s.toggle_alone("joy"),
+    "mirror": lambda s, x: s.mirror(),
+    "neutral": lambda s, x: s.neutral(),
+    "seek": lambda s, x: s.seek(4.0 * x),
+    "next": lambda s, x: s.seek_key(1),
+    "key": lambda s, x: s.set_key(),
+    "whole": lambda s, x: s.set_key(is_whole=True),
+    "let go": lambda s, x: s.let_go(),
+    "auto": lambda s, x: setattr(s, "is_keying", x > 0.5),
+    "new": lambda s, x: s.begin_script(),
+    "undo": lambda s, x: s.undo(),
+    "redo": lambda s, x: s.redo(),
+}
+
+
+class Still(FaceScene):
+    """A face that takes no time."""
+
+    def step(self, seconds: float) -> None:
+        """Stay."""
+
+
+@given(st.lists(st.tuples(st.sampled_from(sorted(COMMANDS)), SHARES), max_size=12))
+@settings(max_examples=60, deadline=None)
+def test_undo_gives_the_state_before(steps: list[tuple[str, float]]) -> None:
+    """After any commands: back through all that was, and forward again to where it ended."""
+    session = Session(SHARED, load_script(HELLO))
+
+    def state() -> tuple[object, ...]:
+        by_hand = None if session.is_following else dict(session.values)
+        return session.script, session.file, by_hand
+
+    for command, share in steps:
+        before, place = state(), session.history.place
+        COMMANDS[command](session, share)
+        after = state()
+        if session.history.place == place + 1 and command != "redo":
+            session.undo()
+            assert state() == before
+            session.redo()
+            assert state() == after
+    states = [state()]
     while session.history.can_undo:
         session.undo()
-    assert session.script == before and session.display == Display()
+        states.append(state())
+    for earlier in states[-2::-1]:
+        session.redo()
+        assert state() == earlier
 
 
-def test_scrubbing_keeps_what_can_be_done_again(session: Session) -> None:
-    """A pose that is let go on the way to another time costs no redo of the script."""
-    key(session, 1.5, jaw_open=0.7)
-    edited = session.script
+SHARED = Still()
+
+
+def test_the_undo_list_has_names(session: Session) -> None:
+    """Each state is called as what led to it, and can be gone to at once."""
+    session.seek(1.2)
+    set_by_hand(session, AU12_left=0.6)
+    session.mirror()
+    session.set("AU12_left", 0.3, linked=True)
+    session.note()
+    session.set_key()
+    selection = KeySelection(session)
+    selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace(POSES, 3.0))
+    selection.nudge(1)
+    selection.delete()
+    assert session.history.labels == [
+        "Beginning", "Set AU12 left to 0.60", "Mirror", "Set AU12 to 0.30", "Key at 1.20 s",
+        "Move 2 keys", "Delete 2 keys",
+    ]  # fmt: skip
+    session.go_to(2)
+    assert session.values["AU12_right"] == 0.6 and session.script_is_unsaved is False
+    session.go_to(6)
+    assert [pose.time for pose in session.script.poses] == [0.0, 1.2, 4.0]
+    assert change_of({}, {"jaw_open": 0.1, "joy": 0.2}) == "Set 2 controls"
+    assert readable("AU12_left") == "AU12 left"
+
+
+# Copies
+
+
+def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -> None:
+    """What was copied stays as it was, whatever became of its script; it comes at the playhead."""
+    selection = KeySelection(session)
+    assert not selection.copied
+    selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12))
+    assert "2 keys copied" in str(selection.copy())
+    selection.delete()
+    session.begin_script()
+    session.seek(0.5)
+    assert selection.copied and selection.paste() == "2 keys copied to 0.50 s"
+    assert selection.places == {KeyPlace(POSES, 0.5), KeyPlace("blink", 1.62)}
+    assert places_of(session.script) == selection.places | {KeyPlace(POSES, 0.0)}
+    assert session.script.poses[1].name == "joy"
     session.undo()
-    assert session.values["jaw_open"] == 0.7 and session.seek(3.0)
-    session.redo()
-    assert session.script == edited
-    session.undo()
-    session.undo()
-    assert session.values["jaw_open"] == 0.7 and session.time == 1.5
-    session.neutral()
-    assert not session.history.can_redo
-
-
-def paused(session: Session) -> None:
-    """Begin to record at 1 s, move the jaw, and pause at 2 s."""
-    session.seek(1.0)
-    session.toggle_recording()
-    run(session, 30)
-    session.set("jaw_open", 0.5)
-    run(session, 30)
-    session.toggle_playing()
-    run(session, 30)
-
-
-def test_moves_in_a_pause_are_recorded_when_it_goes_on(session: Session) -> None:
-    """They begin where it was paused."""
-    paused(session)
-    session.set("AU4", 0.8)
-    run(session, 30)
-    session.toggle_playing()
-    run(session, 30)
-    session.toggle_recording()
-    assert session.is_following and session.script.at(1.95).get("AU4", 0.0) == 0.0
-    assert session.script.at(2.05)["AU4"] == session.script.at(2.35)["AU4"] == 0.8
-
-
-def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
-    """They are no part of the recording, which is told, and still there to be keyed."""
-    paused(session)
-    session.set("AU4", 0.8)
-    session.set("jaw_open", 0.1)
-    line = session.toggle_recording()
-    assert line is not None and "1 control recorded" in line and "2 controls" in line
-    assert "not keyed" in line
-    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
-    assert session.differing == {"AU4", "jaw_open"} and session.has_unsaved_pose
-    assert session.script.at(1.8)["jaw_open"] == pytest.approx(0.5, abs=0.002)
-    assert "AU4" not in session.script.tracks
-    assert "[Undo]" in (session.seek(0.0) or "")
-    session.undo()
-    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
-
-
-@pytest.fixture
-def smiling(scene: FaceScene) -> Session:
-    """A smile that comes slowly on one side."""
-    scene.reset()
-    return Session(scene, parse_script(SMILE, source="smile.toml"))
-
-
-def test_a_pull_that_is_recorded_leaves_other_muscles_to_the_script(smiling: Session) -> None:
-    """Only what holds the pulled brow is recorded; the smile goes on as the script has it."""
-    smiling.toggle_recording()
-    run(smiling, 10)
-    brow = smiling.scene.positions[smiling.scene.head.landmarks[BROW]].copy()
-    finger = SkinDrag(smiling, Settings(), brow, AHEAD, poses=True)
-    before = smiling.script
-    for up in np.linspace(1.0, 6.0, 6):
-        finger.to(brow + up * np.eye(3)[1])
-        smiling.advance(STEP)
-    finger.let_go()
-    run(smiling, 60)
-    smiling.toggle_recording()
-    assert any(name.startswith("frontalis") for name in smiling.script.tracks)
-    assert smiling.script.tracks[MAJOR] is before.tracks[MAJOR]
-
-
-def test_a_pose_survives_a_recording_of_nothing(smiling: Session) -> None:
-    """Where no time passed, the pose is by hand again: unsaved, told when it goes, undone."""
-    smiling.seek(1.0)
-    smiling.set("jaw_open", 0.6)
-    smiling.note()
-    smiling.toggle_recording()
-    with pytest.raises(UserError, match="nothing was recorded"):
-        smiling.toggle_recording()
-    assert smiling.values["jaw_open"] == 0.6 and smiling.has_unsaved_pose
-    assert "[Undo]" in (smiling.seek(2.0) or "")
-    smiling.undo()
-    assert smiling.values["jaw_open"] == 0.6
+    assert places_of(session.script) == {KeyPlace(POSES, 0.0)}

@@ -15,8 +15,7 @@ from typing import Any
 
 import pytest
 
-from risorius.app.viewer.settings import Settings, load_settings, save_settings
-from risorius.app.viewer.window.splash_screen import settings_path
+from risorius.app.viewer.settings import Settings, load_settings, save_settings, settings_path
 
 from .sandbox import LONGEST, bounded, check_end, check_line, contents
 from .sandbox import Ended as End

@@ -5,45 +5,44 @@ An export goes on in a process of its own, with script and view as they were; th
 
 from __future__ import annotations
 
-import contextlib
 import time
 from collections.abc import Callable, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from imgui_bundle import imgui
 
 from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ...capture import CaptureOptions, capture
-from ...errors import UserError
 from ...export.formats import Request, check_request, export, format_for
 from ...files import Image, check_file, save_png
 from ...scenes import FaceScene, Scene
 from ...script import Script, pose_script
 from ...workers import Task
 from ..frame_times import FrameTimes
-from ..interface.gui import wake_up
+from ..interface.gui import NOTE_FLAGS, Gui, em, wake_up
+from ..interface.widgets import button, choose, dialog, muted, shortened
 from ..messages import Message
 from ..picture.stage import Stage, style_of
 from ..picture.view import View
 from ..session.session import Session
-from ..settings import FRAMES, KINDS, SHEET, Display, ExportChoices, Kind, Settings
-
-
-def free_name(folder: Path, stem: str, suffix: str) -> Path:
-    """A name in a folder that no file has yet."""
-    names = (f"{stem}{extra}{suffix}" for extra in ("", *(f"-{n}" for n in range(2, 1000))))
-    return next((folder / each for each in names if not is_there(folder / each)), folder / stem)
-
-
-def is_there(path: Path) -> bool:
-    """Whether something would be replaced; what cannot be written is told when that is tried."""
-    with contextlib.suppress(OSError):  # its name is too long, or nobody may look
-        return path.exists()
-    return False
+from ..settings import (
+    FRAMES,
+    KINDS,
+    SHEET,
+    SIDES_EXPORTED,
+    SOURCES,
+    Display,
+    ExportChoices,
+    Kind,
+    Settings,
+)
+from .file_dialogs import FileDialogs
 
 
 @dataclass
@@ -53,7 +52,6 @@ class StagePicture:
     display: Display
     background: render.Background | None
     viewport: render.Rectangle
-    has_captions: bool
     letter: float  # [pixels] of captions, at least
     camera: Any = None
     pointed: Mapping[str, float] = field(default_factory=dict)
@@ -71,7 +69,7 @@ class StagePicture:
     def draw_image(self, camera: render.OrbitCamera) -> Image:
         """The picture; premultiplied, where it is transparent."""
         self.camera = camera
-        image: Image = self.stage.draw_image(self, has_captions=self.has_captions)
+        image: Image = self.stage.draw_image(self)
         return image
 
 
@@ -81,7 +79,6 @@ class ExportJob:
 
     target: Path
     task: Task
-    began: tuple[float, float] = (0.0, 0.0)  # [s] when the first of it was done, and how much
     told: float = 0.0  # how much of it was done when the user was told
 
 
@@ -92,8 +89,6 @@ class Exporter:
         self._session, self._settings, self._stage, self._view = session, settings, stage, view
         self.job: ExportJob | None = None
         self.is_asking = False  # the dialog is open
-        self.name, self._proposed = "", ("", "")  # what was asked for, what was proposed
-        self.span = (0.0, 0.0)  # [s] that is exported of a script in part
 
     @property
     def choices(self) -> ExportChoices:
@@ -101,22 +96,20 @@ class Exporter:
         return self._settings.export
 
     @property
+    def stem(self) -> str:
+        """What the file is called, unless the user says otherwise."""
+        return Path(self._session.name).stem
+
+    @property
     def kind(self) -> Kind:
         """The kind of file."""
         return KINDS[self.choices.kind]
 
-    @property
-    def target(self) -> Path:
-        """The file, or folder of frames."""
-        name, suffix = self.name, self.kind.suffix
-        folder = Path(self.choices.folder or ".")
-        with contextlib.suppress(RuntimeError):  # "~" and the beginning of a name, as it is typed
-            folder = folder.expanduser()
-        return folder / f"{name.removesuffix(suffix)}{suffix}"
-
     def screenshot(self) -> Message:
         """Write the picture without panels, in full detail."""
-        target = free_name(Path.cwd(), time.strftime("risorius-%Y%m%d-%H%M%S"), ".png")
+        stem = Path.cwd() / time.strftime("risorius-%Y%m%d-%H%M%S")
+        names = (f"{stem}{extra}.png" for extra in ("", *(f"-{n}" for n in range(2, 1000))))
+        target = next(path for path in map(Path, names) if not path.exists())
         save_png(target, self._stage.draw_image(self._view))
         return f"Written to {target}"
 
@@ -125,28 +118,17 @@ class Exporter:
         script = self._session.script
         if not (script.posed_names or script.tracks):
             self.choices.source = "pose"
-        self.choices.folder = self.choices.folder or str(Path.cwd())
-        self.span, self.name = (0.0, script.duration), Path(self._session.name).stem
-        self.propose()
         self.is_asking = True
 
-    def propose(self) -> None:
-        """Take a name that no file of this kind has: the one that was written, if that is free."""
-        suffix, (stem, proposed) = self.kind.suffix, self._proposed
-        stem = stem if self.name == proposed else self.name
-        self.name = free_name(self.target.parent, stem, suffix).name.removesuffix(suffix)
-        self._proposed = stem, self.name
-
-    def played(self) -> tuple[Script, tuple[float, float]]:
-        """The script, or the face as it is, and from when to when that is exported [s]."""
+    def played(self) -> Script:
+        """The script, or the face as it is, which is exported."""
         session, choices = self._session, self.choices
-        if choices.source == "pose" and choices.kind != SHEET:
-            pose = pose_script(session.current, title="pose", scene=session.script.scene)
-            return replace(pose, duration=choices.seconds), (0.0, choices.seconds)
-        is_part = choices.source == "part" and choices.kind != SHEET
-        return session.script, self.span if is_part else (0.0, session.script.duration)
+        if choices.source == "script" or choices.kind == SHEET:
+            return session.script
+        pose = pose_script(session.current, title="pose", scene=session.script.scene)
+        return replace(pose, duration=choices.seconds)
 
-    def _options(self, head: FittedHead | None, span: tuple[float, float]) -> CaptureOptions:
+    def _options(self, head: FittedHead | None) -> CaptureOptions:
         """How `capture` is told to draw what the window shows."""
         choices, view, is_sheet = self.choices, self._view, self.choices.kind == SHEET
         is_clear = choices.is_transparent and self.kind.can_be_transparent
@@ -158,36 +140,36 @@ class Exporter:
             choices.rate,
             camera=view.camera.copy(),
             is_turntable=choices.is_turntable and not is_sheet,
-            span=None if is_sheet else span,
-            picture=StagePicture(display, background, area, choices.has_captions, letter).on,
+            picture=StagePicture(display, background, area, letter).on,
             style=style_of(display, background),
             head=head,
             is_alive=self._settings.is_alive,
         )
 
-    def start(self) -> None:
-        """Check what can be checked, and begin; UserError where it cannot be."""
-        if not self.name:
-            raise UserError("give the file a name")
-        choices, target, (script, span) = self.choices, self.target, self.played()
+    def start(self, target: Path) -> Message:
+        """Write a file, or a folder of frames: check what can be checked, and begin.
+
+        UserError where it cannot be.
+        """
+        choices, script = self.choices, self.played()
         scene = self._session.scene
         head = scene.head if isinstance(scene, FaceScene) else None
         head = head if isinstance(head, FittedHead) else None
         work: Callable[[], object]
         if self.kind.is_drawn:
             check_file(target / "frame.png" if choices.kind == FRAMES else target)
-            draw = partial(capture, script, self._options(head, span), overwrite=True)
+            draw = partial(capture, script, self._options(head), overwrite=True)
             name = "sheet" if choices.kind == SHEET else "output"
             work = partial(draw, progress=False, **{name: target})
         else:
             chosen = format_for(target, choices.kind)
             request = Request(overwrite=target.exists(), progress=False)
             check_request(target, chosen, request)
-            rate = choices.rate
-            write = partial(export, head=head, frames_per_second=rate, span=span)
+            write = partial(export, head=head, frames_per_second=choices.rate)
             work = partial(write, script, target, chosen, request)
-        task = Task(work, round(span[1] * choices.rate) + 1, wake_up)
-        self.job, self.is_asking = ExportJob(target, task), False
+        task = Task(work, round(script.duration * choices.rate) + 1, wake_up)
+        self.job = ExportJob(target, task)
+        return None
 
     @property
     def has_news(self) -> bool:
@@ -195,8 +177,6 @@ class Exporter:
         job = self.job
         if job is None or (job.told == job.task.share and not job.task.is_done):
             return False
-        if not job.told:  # to start the process is no measure of how fast it is
-            job.began = time.monotonic(), job.task.share
         job.told = job.task.share
         return True
 
@@ -217,3 +197,127 @@ class Exporter:
         job, self.job = self.job, None
         if job is not None:
             job.task.stop(waits=True)
+
+
+TITLE = "Export"
+LABELS, WIDTH, BUTTON = 7.5, 31.0, 6.5  # [em] of words at the left, the dialog, a button
+PICTURES = {
+    **{(640, 480): "VGA", (1280, 720): "HD", (1920, 1080): "Full HD", (3840, 2160): "4K"},
+    **{(1080, 1080): "Square", (1080, 1920): "Upright"},
+}
+RATES = (12, 15, 24, 25, 30, 48, 50, 60, 120)
+SWITCHES = {  # fields of the choices
+    "is_transparent": "Transparent background",
+    "is_turntable": "Turntable: the camera goes round once",
+}
+Value = TypeVar("Value")
+
+
+class ExportDialog:
+    """Draws both, and carries out what is done with them."""
+
+    def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: View) -> None:
+        self._gui, self._exporter, self._files, self._view = gui, exporter, files, view
+        self._was_focused = False  # in the frame before: no list was open over it
+
+    def draw(self) -> Message:
+        """Draw what there is to be seen."""
+        exporter = self._exporter
+        self._draw_progress()
+        if not exporter.is_asking or self._files.is_waiting:
+            return exporter.poll()
+        with dialog(TITLE, WIDTH) as is_open:
+            if is_open:
+                try:
+                    self._draw_motion(exporter.choices)
+                    self._draw_end(exporter.choices)
+                finally:
+                    if not exporter.is_asking:
+                        imgui.close_current_popup()
+        return None
+
+    def _row(self, label: str, width: float = -1.0) -> str:
+        """Words at the left, and room for what follows, whose own name is returned."""
+        imgui.align_text_to_frame_padding()
+        muted(self._gui, label)
+        imgui.same_line(em(LABELS))
+        imgui.set_next_item_width(width)
+        return f"##{label}"
+
+    def _pick(self, label: str, now: Value, choices: Mapping[Value, str]) -> Value:
+        """A list to choose from; what is chosen."""
+        self._row(label)
+        values = {text: value for value, text in choices.items()}
+        chosen = choose(self._gui, label, choices[now], values)
+        return now if chosen is None else values[chosen]
+
+    def _draw_motion(self, choices: ExportChoices) -> None:
+        """What is exported, from when to when, how large and how often."""
+        titles = {name: kind.title for name, kind in KINDS.items()}
+        choices.kind = self._pick("Write", choices.kind, titles)
+        kind, is_sheet = self._exporter.kind, choices.kind == SHEET
+        if not is_sheet:
+            choices.source = self._pick("What", choices.source, SOURCES)
+        if choices.source == "pose" and not is_sheet:
+            name, most, always = self._row("Length"), 600.0, imgui.SliderFlags_.always_clamp
+            _, choices.seconds = imgui.drag_float(
+                name, choices.seconds, 0.05, 0.1, most, "%.2f s", always
+            )
+        if kind.is_drawn:
+            sizes = {choices.size: "Typed", self._view.viewport[2:]: "As in the window", **PICTURES}
+            words = {size: f"{name}: {size[0]} x {size[1]}" for size, name in sizes.items()}
+            choices.size = self._pick("Size", choices.size, words)
+            _, sides = imgui.input_int2(self._row("", em(11.0)), [*choices.size])
+            self._gui.remember("export: sides")
+            width, height = (min(max(side, SIDES_EXPORTED[0]), SIDES_EXPORTED[1]) for side in sides)
+            choices.size = width, height
+        choices.rate = min(choices.rate, kind.fastest)
+        rates = [choices.rate, *(float(rate) for rate in RATES if rate <= kind.fastest)]
+        shown = {rate: f"{rate:g}" for rate in sorted(rates)}
+        choices.rate = self._pick("Frames a second", choices.rate, shown)
+        can = kind.can_be_transparent, kind.is_drawn and not is_sheet
+        for (switch, label), is_possible in zip(SWITCHES.items(), can, strict=True):
+            if is_possible:
+                self._row("")
+                setattr(choices, switch, imgui.checkbox(label, getattr(choices, switch))[1])
+                self._gui.remember(f"export: {label}")
+
+    def _draw_end(self, choices: ExportChoices) -> None:
+        """How much will be written; and the buttons, the first of which asks for a name."""
+        exporter, duration = self._exporter, self._exporter.played().duration
+        imgui.separator()
+        imgui.align_text_to_frame_padding()
+        left = imgui.get_content_region_avail().x - em(2.0 * BUTTON)
+        muted(self._gui, f"{duration:.2f} s, {round(duration * choices.rate) + 1} frames")
+        imgui.same_line(left)
+        is_begun = button(self._gui, "Export ...", name="export: begin", width=em(BUTTON))
+        imgui.same_line()
+        is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(BUTTON))
+        was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
+        # Enter is for the widget that Tab has come to, unless that is a line of text.
+        io, is_enter = imgui.get_io(), imgui.is_key_pressed(imgui.Key.enter)
+        is_enter = is_enter and (io.want_text_input or not io.nav_visible)
+        if is_over or (was_focused and imgui.is_key_pressed(imgui.Key.escape)):
+            exporter.is_asking = False
+        elif is_begun or (was_focused and is_enter):
+            exporter.is_asking, suffix = False, exporter.kind.suffix
+            ask = partial(self._files.ask, TITLE, exporter.start, saving=True, suffixes=(suffix,))
+            ask(proposed=f"{exporter.stem}{suffix}")
+
+    def _draw_progress(self) -> None:
+        """How far it is."""
+        job = self._exporter.job
+        if job is None:
+            return
+        left, top, width, height = self._view.area
+        share = job.task.share
+        imgui.set_next_window_pos((left + width - em(0.8), top + height - em(0.8)), 0, (1.0, 1.0))
+        imgui.begin("##export", None, NOTE_FLAGS)
+        imgui.text_unformatted(shortened(job.target.name, em(18)))
+        imgui.progress_bar(share, (em(12.0), 0.0), f"{share:.0%}" if share else "One moment ...")
+        imgui.same_line()
+        imgui.begin_disabled(job.task.is_stopped)
+        if button(self._gui, "Cancel", name="export: stop", width=em(BUTTON)):
+            job.task.stop(waits=False)
+        imgui.end_disabled()
+        imgui.end()

@@ -157,12 +157,3 @@ class FileDrop:
             return self.open([str(path) for path in (mesh, landmarks) if path is not None])
 
         self._files.ask("Open head", go_on, saving=False, suffixes=MESHES)
-
-    def ask_mesh(self) -> None:
-        """Ask for a mesh without landmarks, and have them marked."""
-        self._files.ask(
-            "Mark a head",
-            lambda mesh: self.open([str(mesh)]),
-            saving=False,
-            suffixes=MESHES,
-        )

@@ -1,17 +1,25 @@
-"""What menus and questions do with scripts: begin, open, record, save."""
+"""What menus do with scripts: begin, open, record, save; and what is asked before work is lost."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Protocol
+
+from imgui_bundle import imgui
 
 from ...errors import UserError
 from ...performances import read_performance
 from ...script import Script, is_pose
 from ...sound import with_sound
+from ..interface.gui import NOTE_FLAGS, Gui, em
+from ..interface.widgets import button, dialog
 from ..messages import Message, Task
+from ..picture.view import View
+from ..session.recovery import Recovery
 from ..session.session import Session
 from .file_dialogs import SUFFIX, FileDialogs
 
@@ -194,3 +202,63 @@ class ScriptCommands:
         """End the recording, and save it."""
         line = self.toggle_recording()
         return self.save(then) or line
+
+
+UNSAVED = "Unsaved work"
+
+
+def draw_question(
+    gui: Gui, question: Question, session: Session, scripts: ScriptCommands
+) -> Message:
+    """Draw the question, if there is one, and go on with what was answered."""
+    task, verb, other = question.task, question.verb, question.other
+    if task is None:
+        return None
+    again = partial(question.before, verb, task, other)  # there may be more to save
+    choices: dict[str, Task] = {}
+    if other is not None:
+        choices["Save landmarks"] = partial(other.save, again)
+    elif session.is_recording:
+        choices["Save recording ..."] = partial(scripts.save_recording, again)
+    elif session.script_is_unsaved:
+        label = "Save script" if session.file.path else "Save script ..."
+        choices[label] = partial(scripts.save, again)
+    if other is None and session.has_unsaved_pose:
+        choices["Save pose ..."] = partial(scripts.save_pose, again)
+    choices |= {f"{verb} without saving": task, "Back": lambda: None}
+    answer: Task | None = None
+    with dialog(UNSAVED) as is_open:
+        if not is_open:
+            return None
+        imgui.text(f"Not saved: {question.unsaved or 'nothing any more'}.")
+        for label, run in choices.items():
+            is_clicked = button(gui, label, name=f"question: {label}")
+            imgui.same_line()
+            if is_clicked or (label == "Back" and imgui.is_key_pressed(imgui.Key.escape)):
+                answer = run
+        if answer is None:
+            return None
+        imgui.close_current_popup()
+    question.task = None
+    return answer()
+
+
+def draw_recovery(gui: Gui, recovery: Recovery, question: Question, view: View) -> Message:
+    """Offer what was left behind, until it is taken or thrown away."""
+    if recovery.found is None:
+        return None
+    when = time.strftime("%Y-%m-%d %H:%M", time.localtime(recovery.found.when))
+    left, top, width, height = view.area
+    imgui.set_next_window_pos((left + 0.5 * width, top + height - em(0.8)), 0, (0.5, 1.0))
+    imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), em(7)), em(20)))
+    imgui.begin("##offer", None, NOTE_FLAGS)
+    imgui.text_wrapped(f"Unsaved work of {when}: {recovery.found.summary}")
+    is_accepted = button(gui, "Recover", name="offer: Recover")
+    imgui.same_line()
+    is_discarded = button(gui, "Throw away", name="offer: Throw away")
+    imgui.end()
+    if is_accepted:  # unless work of this window would be lost
+        return question.before("Recover", recovery.accept_found)
+    if is_discarded:
+        recovery.discard()
+    return None

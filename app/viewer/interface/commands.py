@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from ..messages import Messages, Task
-from .gui import Gui
-from .widgets import muted
+from .gui import Gui, colour
+from .widgets import button, muted
 
 _MODIFIERS = {"Ctrl": imgui.Key.mod_ctrl, "Shift": imgui.Key.mod_shift, "Alt": imgui.Key.mod_alt}
 _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
@@ -33,7 +33,6 @@ class Command:
     other_key: str = ""
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
     reads: Callable[[], str] | None = None  # its label now, where that changes
-    by_key: Task | None = None  # what its key does, where that is not the same
 
     @property
     def displayed_keys(self) -> str:
@@ -64,7 +63,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
             if command.menu in _CHANGING and imgui.is_any_mouse_down():
                 gui.let_go_before(_KEYS[key.rpartition("+")[2]])
             elif command.can_run():
-                messages.attempt(command.by_key or command.run)
+                messages.attempt(command.run)
 
 
 def chord(key: str) -> int:
@@ -120,3 +119,34 @@ class MenuBar:
                 self._messages.attempt(command.run)
         if imgui.is_key_pressed(imgui.Key.escape):  # the mouse may be on what opens a submenu again
             imgui.close_current_popup()
+
+
+def command_button(
+    gui: Gui,
+    messages: Messages,
+    command: Command,
+    label: str = "",
+    *,
+    name: str = "",
+    width: float = 0.0,
+    meaning: str = "",
+    is_wanted: bool = False,
+) -> None:
+    """Draw a button that carries out a command, and is lit while that is on, or wanted.
+
+    label, meaning: what it reads, and a hint, where that is not the command's label and keys.
+    name, width: see `button`.
+    """
+    is_on = is_wanted or (command.is_on is not None and command.is_on())
+    ink = colour(gui.theme.accent, 0.6) if is_on else None
+    imgui.begin_disabled(not command.can_run())
+    if button(
+        gui,
+        label or command.label,
+        name=name,
+        width=width,
+        meaning=meaning or command.displayed_keys,
+        highlight=ink,
+    ):
+        messages.attempt(command.run)
+    imgui.end_disabled()

@@ -3,7 +3,7 @@
 imgui-bundle brings GLFW of its own and must be imported before `glfw` is, so that both speak to
 the same library; this module is therefore imported before a window is opened. It was chosen among
 the bindings because its own C++ backends draw in the window that moderngl draws in, without
-PyOpenGL; it also brings native file dialogs.
+PyOpenGL.
 """
 
 from __future__ import annotations
@@ -26,8 +26,6 @@ from risorius import render
 import glfw  # isort: skip - after imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
-ICONS = FONT.parents[1] / "Font_Awesome_6_Free-Solid-900.otf"
-BACK, TICK = "\uf2ea", "\uf00c"  # of the icons; the first is an arrow that turns to the left
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
 BUTTON = -1  # in place of a key: one of the mouse was pressed
@@ -87,7 +85,7 @@ class Gui:
     """The Dear ImGui context of one window; `places` says where each item is, for who drives it."""
 
     def __init__(self, window: Any) -> None:
-        self._window = window
+        self._window, self._title = window, ""
         self._context = imgui.create_context()
         self.double_click_time = 0.3  # [s] in which the second press comes
         self.has_popup = False  # a menu, a list or a dialog, as the turn began
@@ -105,9 +103,6 @@ class Gui:
         io.set_ini_filename("")  # settings.py remembers what is worth it
         if FONT.exists():
             io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
-            merged = imgui.ImFontConfig()
-            merged.merge_mode = True
-            io.fonts.add_font_from_file_ttf(str(ICONS), 0.8 * FONT_SIZE, merged)
         address = ctypes.cast(window, ctypes.c_void_p).value
         if address is None:
             raise RuntimeError("the window is closed already")
@@ -138,6 +133,28 @@ class Gui:
         return max(
             max(glfw.get_window_content_scale(self._window)) / max(pixels_per_unit, 1.0), 1.0
         )
+
+    def set_title(self, title: str) -> None:
+        """Give the window a title, if it has another one."""
+        if title != self._title:
+            self._title = title
+            glfw.set_window_title(self._window, title)
+
+    @property
+    def window_size(self) -> tuple[int, int]:
+        """Of the window [screen units]."""
+        width, height = glfw.get_window_size(self._window)
+        return int(width), int(height)
+
+    @property
+    def is_minimised(self) -> bool:
+        """Whether nothing of the window is to be seen."""
+        return bool(glfw.get_window_attrib(self._window, glfw.ICONIFIED))
+
+    def restore(self) -> None:
+        """Show a window that was minimised."""
+        if self.is_minimised:
+            glfw.restore_window(self._window)
 
     def look(self, seconds: float = 0.0) -> bool:
         """Take in what the user does, and wait so long for something; whether there is any."""

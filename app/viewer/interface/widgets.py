@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import contextlib
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from imgui_bundle import imgui
 
 from ...controls.vocabulary import readable, sentence
-from .gui import BACK, LEFT, RIGHT, Gui, colour, em, ink_of
+from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
 
 # Knob and number of imgui's own sliders; bars have others.
 HIDDEN = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text)
@@ -82,8 +83,8 @@ def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, di
 
 # Headings that are open as long as nobody has folded them.
 FIRST_OPEN = frozenset(
-    {"Expressions", "Wave", "Cloth", "Ball", "Refinement", "Style", "Overlays", "Milliseconds"}
-    | {"Strength", "What comes", "Light and person"}
+    {"Expressions", "Wave", "Cloth", "Ball", "Refinement", "Style", "Anatomy", "Milliseconds"}
+    | {"Light and person"}
 )
 
 
@@ -129,6 +130,29 @@ def button(
     return bool(is_clicked)
 
 
+@contextlib.contextmanager
+def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool]:
+    """A dialog in the middle of the window, for the block to draw into, if it is there yet.
+
+    The block ends it by `imgui.close_current_popup`. width, height: [em], 0 for as needed.
+    """
+    display = imgui.get_io().display_size
+    if not imgui.is_popup_open(title):
+        imgui.open_popup(title)
+    imgui.set_next_window_pos((0.5 * display.x, 0.5 * display.y), 0, (0.5, 0.5))
+    flags = imgui.WindowFlags_.always_auto_resize
+    if width:
+        size = min(em(width), display.x), min(em(height), display.y)
+        imgui.set_next_window_size(size)
+        flags = imgui.WindowFlags_.no_resize
+    is_open = bool(imgui.begin_popup_modal(title, None, flags)[0])
+    try:
+        yield is_open
+    finally:
+        if is_open:
+            imgui.end_popup()
+
+
 def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
     """Draw a list to choose from, as wide as was asked for; what was chosen in it now."""
     chosen = None
@@ -150,7 +174,6 @@ class LabelledRows:
     def __init__(self, gui: Gui, share: float, hints: Mapping[str, str]) -> None:
         """share: of the panel, that labels take. hints: by label."""
         self._gui, self._share, self._hints = gui, share, hints
-        self.resets: Mapping[str, Callable[[], object]] = {}  # of rows not as at first, by label
 
     @property
     def second(self) -> float:
@@ -161,24 +184,13 @@ class LabelledRows:
         """Draw a label; what comes next takes the rest of the row."""
         imgui.align_text_to_frame_padding()
         imgui.text(readable(label))
-        self.end(label, self.second - em(1.5))
+        self.end(label)
         imgui.same_line(self.second)
         imgui.set_next_item_width(-1.0)
 
-    def end(self, label: str, place: float = 0.0) -> None:
-        """The hint of what was drawn last, and the mark that sets it back, if there is one."""
+    def end(self, label: str) -> None:
+        """The hint of what was drawn last."""
         hint(self._gui.with_keys(self._hints.get(label, "")))
-        if label not in self.resets:
-            return
-        imgui.same_line(place)
-        imgui.push_style_color(imgui.Col_.text, colour(self._gui.theme.accent))
-        imgui.push_style_color(imgui.Col_.button, colour(self._gui.theme.panel, 0.0))
-        is_clicked = imgui.small_button(f"{BACK}##{label}")
-        imgui.pop_style_color(2)
-        self._gui.remember(f"reset {label}")
-        hint("changed; a click sets it back")
-        if is_clicked:
-            self.resets[label]()
 
     def choose(self, label: str, present: str, choices: Iterable[str]) -> str | None:
         """Draw a row with a list; what was chosen in it now."""
@@ -206,12 +218,9 @@ def button_width(label: str) -> float:
     return float(imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x)
 
 
-def hint(text: str, *, is_above: bool = False) -> None:
-    """Tell more about the item drawn last while the mouse is on it; beside the mouse, or above."""
+def hint(text: str) -> None:
+    """Tell more about the item drawn last while the mouse is on it."""
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
-        if is_above:
-            left, top = imgui.get_item_rect_min()
-            imgui.set_next_window_pos((left, top - em(0.3)), 0, (0.0, 1.0))
         imgui.begin_tooltip()
         imgui.push_text_wrap_pos(em(24))
         imgui.text_unformatted(sentence(text))

@@ -1,4 +1,4 @@
-"""A mesh whose landmarks are being marked: what is done to the marks, undo, its file.
+"""A mesh whose landmarks are being marked: where they are so far, undo, its file.
 
 Knows nothing of windows. Places are those of the mesh's own coordinates; `placing` takes them to
 the space that is seen: upright and in millimetres as soon as all marks are there.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -16,20 +17,19 @@ import numpy.typing as npt
 import scipy
 
 from risorius.assets.errors import AssetError
-from risorius.assets.fitting.guess import guess, placing, skin_around, upright
+from risorius.assets.fitting.guess import FIRST, guess, placing, upright
 from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
 from risorius.assets.fitting.mesh_validation import check_manifold
-from risorius.assets.fitting.warp import Similarity, nearest_on
+from risorius.assets.fitting.warp import Similarity
 from risorius.assets.meshes import read_mesh
 from risorius.geometry.normals import vertex_normals
-from risorius.sim.landmarks import MIRRORED
+from risorius.sim.landmarks import LANDMARK_COUNT
 
 from ...errors import UserError
 from ...files import save_text
 from ..documents.file_dialogs import FileDialogs
 from ..messages import Message, Task
-from ..session.history import History
-from .marks import GROUP_OF, ORDER, Marks, Place, name_of
+from ..session.document import History
 
 SEEN_RADIUS = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
 SUFFIX = ".json"
@@ -37,6 +37,74 @@ INNER_LIPS = range(60, 68)
 FORWARD = np.array([0.0, 0.0, 1.0])  # out of a face that is upright
 
 FloatArray = npt.NDArray[np.float64]
+Place = tuple[float, float, float]  # in the mesh's own coordinates
+Colour = tuple[float, float, float]  # sRGB
+
+
+@dataclass(frozen=True)
+class Group:
+    """Landmarks that follow each other.
+
+    lines: of numbers, as they are joined.
+    """
+
+    title: str
+    colour: Colour
+    lines: tuple[tuple[int, ...], ...]
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Its landmarks, each once, in the order of marking."""
+        return tuple(dict.fromkeys(number for line in self.lines for number in line))
+
+
+def _row(first: int, last: int, *more: int) -> tuple[int, ...]:
+    return (*range(first, last + 1), *more)
+
+
+GROUPS = (  # in the order of marking
+    Group("eyes", (0.96, 0.55, 0.08), (_row(36, 41, 36), _row(42, 47, 42))),
+    Group("outer lips", (0.86, 0.18, 0.26), (_row(48, 59, 48),)),
+    Group("inner lips", (0.93, 0.76, 0.20), (_row(60, 67, 60),)),
+    Group("nose", (0.10, 0.62, 0.42), (_row(27, 30), _row(31, 35))),
+    Group("brows", (0.58, 0.36, 0.84), (_row(17, 21), _row(22, 26))),
+    Group("jaw line", (0.16, 0.48, 0.88), (_row(0, 16),)),
+)
+GROUP_OF = {number: group for group in GROUPS for number in group.numbers}
+ORDER = tuple(GROUP_OF)
+
+
+@dataclass(frozen=True)
+class Marks:
+    """Where landmarks are, as far as they are placed; `guessed` are those that nobody moved."""
+
+    places: Mapping[int, Place]
+    guessed: frozenset[int] = frozenset()
+
+    def placed(self, number: int, place: npt.ArrayLike) -> Marks:
+        """The same with one that was placed by hand."""
+        x, y, z = np.asarray(place, np.float64).tolist()
+        return Marks({**self.places, number: (x, y, z)}, self.guessed - {number})
+
+    def with_guessed(self, found: FloatArray) -> Marks:
+        """The same with all 68 (68, 3) where they were guessed, but those placed by hand."""
+        guessed = {n: (x, y, z) for n, (x, y, z) in enumerate(found.tolist())}
+        return Marks({**guessed, **self.by_hand}, frozenset(guessed.keys() - self.by_hand.keys()))
+
+    @property
+    def by_hand(self) -> dict[int, Place]:
+        """Those that were not guessed."""
+        return {n: place for n, place in self.places.items() if n not in self.guessed}
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all 68 are there."""
+        return len(self.places) == LANDMARK_COUNT
+
+    @property
+    def asked(self) -> int | None:
+        """The first point that must be marked next; None where the rest can be guessed."""
+        return next((number for number in FIRST if number not in self.places), None)
 
 
 class Marking:
@@ -51,8 +119,8 @@ class Marking:
             check_manifold(mesh.faces)
         self.file: Path | None = None  # in which the marks are kept
         self.marks = self._saved = Marks({})
-        self.history = History(self.marks, lambda _, after: len(after.places))
-        self.current = ORDER[0]
+        self.history = History(self.marks)
+        self.current = FIRST[0]
         self.is_upright = False
         self.faces = mesh.faces
         self._place(upright(mesh.vertices, SEEN_RADIUS))
@@ -68,11 +136,6 @@ class Marking:
             self.faces = np.ascontiguousarray(self.faces[:, ::-1])
             self._normals = -self._normals
         self._nearest = scipy.spatial.cKDTree(self.positions)
-
-    def turn(self, rotation: FloatArray) -> None:
-        """Turn what is seen, (3, 3), as long as the marks do not tell how it stands."""
-        now = self.placing
-        self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
         """The first time: upright, looking ahead, as large as a head; AssetError for no face's."""
@@ -123,27 +186,6 @@ class Marking:
         """To the next landmark in the order of marking, or with -1 to the one before."""
         self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
-    def mirror(self) -> Message:
-        """Take the other side of the current point's group from its own side; all must be there."""
-        right = [number for number in ORDER if "right" in name_of(number)]
-        is_right = self.current in right
-        group = GROUP_OF[self.current].numbers
-        numbers = [n for n in group if MIRRORED[n] != n and (n in right) == is_right]
-        if MIRRORED[self.current] == self.current:
-            return "Choose a point of the side that is right: this one is in the middle"
-        points, normals = self.seen(numbers)
-        all_seen, _ = self.seen(range(len(MIRRORED)))
-        across = (all_seen[MIRRORED] - all_seen)[right].sum(axis=0)
-        across /= max(float(np.linalg.norm(across)), 1e-12)
-        mirror = np.eye(3) - 2.0 * np.outer(across, across)
-        middle = all_seen.mean(axis=0)
-        skin = skin_around(self.positions, self.faces, all_seen)
-        wanted = middle + (points - middle) @ mirror
-        feet = nearest_on(wanted, normals @ mirror, self.positions, skin)
-        for number, point in zip(numbers, feet.interpolate(self.positions), strict=True):
-            self.put(int(MIRRORED[number]), point)
-        return self.note()
-
     def undo(self) -> None:
         """Back to before the last change."""
         self._show(self.history.go(self.history.place - 1))
@@ -182,13 +224,9 @@ class Marking:
         if self.file is not None:
             return self._write(then, self.file)
         proposed = str(self.path.with_suffix(SUFFIX).absolute())
-        self._files.ask(
-            "Save landmarks",
-            partial(self._write, then),
-            saving=True,
-            proposed=proposed,
-            suffixes=(SUFFIX,),
-        )
+        write = partial(self._write, then)
+        ask = partial(self._files.ask, "Save landmarks", write, saving=True)
+        ask(proposed=proposed, suffixes=(SUFFIX,))
         return None
 
     def _write(self, then: Task, path: Path) -> Message:

@@ -1,7 +1,7 @@
 """Where everything stands: menus above, controls at the left, time below, the picture in the rest.
 
 Hidden, all of it makes room for the picture; menus come up with the mouse at its upper edge. What
-the window has to say stands in a line at the foot of the picture.
+the window has to say stands in a line at the upper edge of the picture.
 """
 
 from __future__ import annotations
@@ -22,9 +22,8 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     """Draw the line, if there is one; a click or Escape takes it away."""
     if not messages.text:
         return
-    left, top, width, height = view.area
-    foot = top + height - view.foot - em(0.8)
-    imgui.set_next_window_pos((left + em(0.8), foot), 0, (0.0, 1.0))
+    left, top, width, _ = view.area
+    imgui.set_next_window_pos((left + em(0.8), top + em(0.8)))  # captions are at the foot
     imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), 50.0), em(20)))
     imgui.begin("##message", None, NOTE_FLAGS | imgui.WindowFlags_.no_nav_focus)
     imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))

@@ -13,20 +13,17 @@ from imgui_bundle import imgui
 from risorius import refine, render
 from risorius.assets.identities import NAMED, person_in_words
 
-from ...anatomy import OPACITY, SIDES
+from ...anatomy import OPACITY, SIDES, STRUCTURES
 from ...controls.vocabulary import readable
-from ...refining.presets import FIRST_PRESET, PRESETS, STATIC, THRESHOLDS, named, words_of_presets
+from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
 from ...refining.refiners import DETAIL, can_detail
-from ...scenes import BUILT_IN, OWN
+from ...scenes import BUILT_IN, OWN, FaceScene
 from ..colours import COLOURS
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..frame_times import PHASES
-from ..interface.gui import em
 from ..interface.widgets import LabelledRows, button, heading, muted
-from ..overlays import overlays_of
-from ..setting_rules import BACKGROUNDS, CHOSEN, COMPARISONS, SKINS, TONES
-from ..settings import Display, switch
+from ..settings import BACKGROUNDS, COMPARISONS, SKINS, TONES, Display, switch
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -34,9 +31,8 @@ HINTS = {
     "Look": "smooth: what looks best; paper: the paper's own rule ([Paper's look]). A look sets "
     "the refiner and all that it is told",
     "Refiner": "any that is registered",
-    "Compare": "two meshes under one camera: wipe ([Compare: wipe]), side by side ([Compare: side "
-    "by side]), or A and B in turn, in all of the picture ([Compare: A or B alone])",
-    "A": "what is at the left, B at the right: the simulated mesh (static), a look, a refiner ...",
+    "Compare": "the simulated mesh at the left, refined at the right, under one camera: wipe "
+    "([Compare: wipe]) or side by side ([Compare: side by side])",
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
@@ -59,11 +55,9 @@ HINTS = {
     "Skin tone": "by its typology angle; own: as this person has it",
     "Person": "another head, on which script and pose go on (--person takes any number)",
     "Muscles": "under translucent skin; they bulge and redden as they contract ([Muscles])",
-    "Springs": "the skin's: stretched red, compressed blue",
     "Skull": "under translucent skin, as far as the head tells it; the mandible moves with the jaw",
     "Skin opacity": "over muscles and skull; 0: no skin",
     "Dissect": "the side of the face whose skin is translucent",
-    "Landmarks": "the 68 points that the muscles are placed by",
 }
 # Rows of fields of the display, by their labels.
 FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
@@ -89,7 +83,6 @@ class MechanismPanel:
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         imgui.begin_child("mechanism", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
-        self._rows.resets = self._find_resets()
         imgui.begin_disabled(self._display == Display())
         if button(self._gui, "Reset all", meaning="all of this as at first, except the person"):
             self._settings.display = Display()
@@ -99,30 +92,17 @@ class MechanismPanel:
         for title, label, draw in (
             ("Refinement", "", self._draw_refinement),
             ("Style", "", self._draw_style),
-            ("Overlays", "", self._draw_overlays),
+            ("Anatomy", "", self._draw_anatomy),
             ("Light and person", "", self._draw_light_and_person),
             ("Milliseconds", times_label, self._draw_times),
         ):
+            if title == "Anatomy" and not isinstance(self._stage.scene, FaceScene):
+                continue
             if heading(self._gui, self._settings.folds, title, label):
                 draw()
         display = self._display
         display.options = {name: told for name, told in display.options.items() if told}
         imgui.end_child()
-
-    def _find_resets(self) -> Mapping[str, Callable[[], object]]:
-        """What sets each row back that is not as at first, by its label."""
-        display, first, scene = self._display, Display(), self._stage.scene
-        told, toggle = display.options.get(display.refiner_on(scene), {}), display.toggle_overlay
-        resets = {name.replace("_", " "): partial(told.pop, name) for name in told}
-        resets |= {each.capitalize(): partial(toggle, each) for each in display.overlays}
-        for label, name in FIELDS.items():
-            if getattr(display, name) != getattr(first, name):
-                resets[label] = partial(setattr, display, name, getattr(first, name))
-        if display.preset_as_changed(scene) != FIRST_PRESET:
-            resets["Look"] = partial(display.choose_preset, FIRST_PRESET)
-        if scene.called not in ("", BUILT_IN):
-            resets["Person"] = partial(self._show, None)
-        return resets
 
     def _draw_refinement(self) -> None:
         display, stage = self._display, self._stage
@@ -137,10 +117,6 @@ class MechanismPanel:
             if name not in THRESHOLDS or has_thresholds:
                 self._draw_option(name, default)
         self._pick("Compare", COMPARISONS)
-        if display.compare != "off":
-            labels = {name: named(name, display.look).label for name in (STATIC, *PRESETS, *names)}
-            self._pick("A", (STATIC, *PRESETS, *names, CHOSEN), labels)
-            self._pick("B", (STATIC, *PRESETS, *names, CHOSEN), labels)
         base = len(stage.scene.faces)
         for drawn, *_ in stage.viewports(display, self._view.viewport):
             count = drawn.triangle_count
@@ -210,10 +186,10 @@ class MechanismPanel:
     def _show(self, who: int | str | None) -> None:
         self._messages.attempt(partial(self._file_drop.show_person, who))
 
-    def _draw_overlays(self) -> None:
+    def _draw_anatomy(self) -> None:
         display = self._display
-        for index, name in enumerate(overlays_of(self._stage.scene)):
-            if index % 2:
+        for index, name in enumerate(STRUCTURES):
+            if index:
                 imgui.same_line(self._rows.second)
             is_on = name in display.overlays
             self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
@@ -224,24 +200,12 @@ class MechanismPanel:
             self._pick("Dissect", tuple(SIDES))
 
     def _draw_times(self) -> None:
-        """A scrolling plot for each phase of the paper's Figure 1, and the median of a second."""
-        spacing = imgui.get_style().item_spacing.x
-        width = 0.5 * (imgui.get_content_region_avail().x - spacing)
-        for index, name in enumerate(PHASES):
-            if index % 2:
-                imgui.same_line()
-            times = np.array(self._times.milliseconds[name], np.float32)
-            recent = times[-60:][times[-60:] > 0.0]
-            median = float(np.median(recent)) if len(recent) else 0.0
-            imgui.plot_lines(
-                f"##{name}",
-                times,
-                overlay_text=f"{readable(name)}  {median:.2f}",
-                scale_min=0.0,
-                scale_max=max(float(times.max()), 0.1) * 1.3,
-                graph_size=(width, em(2.2)),
-            )
-        self._gui.remember("plot")
+        """The median of each phase of the paper's Figure 1, of the frames in which it was done."""
+        for name in PHASES:
+            times = np.array(self._times.milliseconds[name])
+            imgui.text(readable(name))
+            imgui.same_line(self._rows.second)
+            imgui.text(f"{np.median(times[times > 0.0]) if times.any() else 0.0:.2f}")
 
     def _switch(self, label: str) -> None:
         """A checkbox for a field of the display."""
@@ -255,12 +219,11 @@ class MechanismPanel:
         if is_clicked:
             switch()
 
-    def _pick(self, label: str, choices: Sequence[str], words: Mapping[str, str] = {}) -> None:
-        """A row with a list for a field of the display; `words` say more than the values."""
-        name, values = FIELDS[label], {words.get(each, each): each for each in choices}
-        present = getattr(self._display, name)
+    def _pick(self, label: str, choices: Sequence[str]) -> None:
+        """A row with a list for a field of the display."""
+        name = FIELDS[label]
         put = partial(setattr, self._display, name)
-        self._choose(label, words.get(present, present), list(values), lambda w: put(values[w]))
+        self._choose(label, getattr(self._display, name), choices, put)
 
     def _choose(
         self, label: str, present: str, choices: Sequence[str], put: Callable[[str], None]

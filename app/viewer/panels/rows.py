@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from imgui_bundle import imgui
@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 from ...controls.mirror import OPPOSITE, parted, twin_of
 from ...controls.vocabulary import is_found, readable, title_of
 from ..context import ApplicationContext
-from ..interface.gui import colour, em, ink_of
-from ..interface.widgets import button, hint, slider
+from ..interface.gui import em, ink_of
+from ..interface.widgets import hint, slider
 
 
 @dataclass(frozen=True)
@@ -19,14 +19,12 @@ class Row:
     """One line: what its controls are called alike, and those that it has bars for.
 
     names: of both sides at once before each side, the subject's right before the left. sides: what
-    can be linked, () for nothing; with is_linked the left one's bar moves both. whole: what stands
-    for both sides.
+    can be linked, () for nothing; with is_linked the left one's bar moves both.
     """
 
     label: str
     names: tuple[str, ...]
     sides: tuple[str, ...] = ()
-    whole: str = ""
     is_linked: bool = False
 
     @classmethod
@@ -38,21 +36,21 @@ class Row:
         values: Mapping[str, float],
         linked: bool,
     ) -> Row:
-        """A row for both sides: one bar where they are linked and agree."""
+        """A row for both sides: one bar where they are linked and agree.
+
+        whole: the control that stands for both, "" for none; it has a bar, too, where it is in use.
+        """
         is_linked = linked and values[sides[0]] == values[sides[1]]
         apart = sides if not is_linked else sides[1:] if values[sides[1]] or not whole else ()
-        first = (whole,) if whole and not apart else ()
-        return cls(label, (*first, *apart), sides, whole, is_linked)
+        first = (whole,) if whole and (not apart or values[whole]) else ()
+        return cls(label, (*first, *apart), sides, is_linked)
 
 
-def rows_of(
-    names: Sequence[str], values: Mapping[str, float], *, linked: bool, apart: Collection[str] = ()
-) -> list[Row]:
+def rows_of(names: Sequence[str], values: Mapping[str, float], *, linked: bool) -> list[Row]:
     """The rows of a group.
 
-    linked: both sides share a bar as long as they agree, but for the rows called `apart`. A control
-    for both sides at once (AU12 beside AU12_left and AU12_right) stands for them, unless one of
-    them is in use.
+    linked: both sides share a bar as long as they agree. A control for both sides at once (AU12
+    beside AU12_left and AU12_right) stands for them, unless one of them is in use.
     """
     known = set(names)
     rows = []
@@ -66,14 +64,12 @@ def rows_of(
             elif not known.issuperset(sides):
                 rows.append(Row(name, (name,)))
             else:
-                joined = linked and name not in apart
-                rows.append(Row.of_sides(name, sides, name, values, joined))
+                rows.append(Row.of_sides(name, sides, name, values, linked))
         elif base in OPPOSITE or twin not in known:
             rows.append(Row(name, (name,)))
         elif base not in known and side in ("_left", "Left"):
-            whole = base if values.get(base) else ""  # of no group; by a pad or a script
-            joined = linked and base not in apart
-            rows.append(Row.of_sides(base, (twin, name), whole, values, joined))
+            whole = base if values.get(base) else ""  # of no group; by a script
+            rows.append(Row.of_sides(base, (twin, name), whole, values, linked))
     return rows
 
 
@@ -95,7 +91,6 @@ def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
 
 LABEL_SHARE, MOST_LABEL = 0.5, 15.0  # of a row, and [em]
 NARROW = 15.0  # [em] of room below which bars stand under their names
-SIDES = "R L"  # what the switch of a row reads whose sides can be moved apart
 
 
 class ControlRows:
@@ -104,14 +99,13 @@ class ControlRows:
     def __init__(self, app: ApplicationContext) -> None:
         self._gui, self._session = app.gui, app.session
         self._settings, self._view = app.settings, app.view
-        self._apart: set[str] = set()  # labels of rows whose sides were taken apart
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 
     def of(self, names: tuple[str, ...]) -> list[Row]:
         """The rows of these controls as they are now, or as they were when a drag began."""
         if names not in self._rows or not imgui.is_any_item_active():
             current, linked = self._session.current, self._settings.is_linked
-            self._rows[names] = rows_of(names, current, linked=linked, apart=self._apart)
+            self._rows[names] = rows_of(names, current, linked=linked)
         return self._rows[names]
 
     def draw(self, row: Row, *, number: int = 0, is_marked: bool = False) -> None:
@@ -131,17 +125,15 @@ class ControlRows:
         else:
             imgui.same_line(left + label_room)
         width = (imgui.get_content_region_avail().x + spacing.x) / len(names) - spacing.x
-        shared = self._shared(row)
         for index, name in enumerate(names):
             if index:
                 imgui.same_line()
             limits, side = session.controls.limits[name], parted(name)[1].strip("_")[:1].upper()
-            mark = (side or "L") if len(names) > 1 else ""
-            value = min(max(current[name] + shared, limits[0]), limits[1])
-            slid = slider(self._gui, name, value, limits, width=width, mark=mark)
+            is_of_both = not side and len(row.sides) > 0
+            mark = "" if is_of_both or len(names) == 1 else side or "L"
+            slid = slider(self._gui, name, current[name], limits, width=width, mark=mark)
             pointed = (name,) if slid.is_hovered else pointed
             if slid.is_changed:
-                self._part(row, shared)
                 session.set(name, slid.value, linked=row.is_linked and name in row.sides)
             if slid.is_done:
                 session.note()
@@ -154,10 +146,9 @@ class ControlRows:
             }
 
     def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
-        """Code, name and the switch of its sides; whether the mouse is on it."""
+        """Code and name; whether the mouse is on it."""
         theme, session, padding = self._gui.theme, self._session, imgui.get_style().frame_padding
-        has_switch = bool(row.sides) and self._settings.is_linked
-        room -= imgui.calc_text_size(SIDES).x + em(0.6) if has_switch else em(0.3)
+        room -= em(0.3)
         action = session.scene.actions.get(row.names[-1], "")
         code, name = title_of(row.label, action)
         is_whole_face = row.label in session.scene.expressions
@@ -181,41 +172,4 @@ class ControlRows:
             imgui.get_window_draw_list().add_text(
                 imgui.get_font(), imgui.get_font_size(), where, ink, text, wrap_width=wrapped
             )
-        if has_switch:
-            imgui.same_line(0.0, 0.0)
-            self._draw_switch(row)
         return is_pointed
-
-    def _shared(self, row: Row) -> float:
-        """What a control for both sides adds to the bar of each, where it has none itself."""
-        return self._session.current[row.whole] if row.whole not in ("", *row.names) else 0.0
-
-    def _part(self, row: Row, shared: float) -> None:
-        """Give both sides what they share, so that one of them can go on alone."""
-        if shared:
-            for name in row.sides:
-                self._session.set(name, self._session.current[name] + shared)
-            self._session.set(row.whole, 0.0)
-
-    def _draw_switch(self, row: Row) -> None:
-        """From one bar for both sides to one for each, while the face stays as it is, and back."""
-        session, current = self._session, self._session.current
-        is_apart = not row.is_linked
-        theme, label = self._gui.theme, f"{SIDES}##{row.label}"
-        imgui.push_style_color(imgui.Col_.text, colour(theme.accent if is_apart else theme.muted))
-        is_clicked = button(
-            self._gui, label, name=f"sides {row.label}", highlight=colour(theme.panel, 0.0)
-        )
-        imgui.pop_style_color()
-        hint("one bar for both sides" if is_apart else "a bar for each side: right, left")
-        if is_clicked:
-            share = current[row.whole] if row.whole else 0.0
-            values = {name: current[name] + share for name in row.sides}
-            rest = 0.0
-            if is_apart:
-                most = max(values.values(), key=abs)
-                values, rest = dict.fromkeys(row.sides, 0.0 if row.whole else most), most
-            for name, value in {**values, **({row.whole: rest} if row.whole else {})}.items():
-                session.set(name, value)
-            (self._apart.discard if is_apart else self._apart.add)(row.label)
-            session.note()

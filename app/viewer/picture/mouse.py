@@ -16,8 +16,7 @@ from risorius import render
 from ...scenes import FaceScene
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
-from .picking import Ray, skin_under
-from .skin_drag import SkinDrag
+from .skin import Ray, SkinDrag, skin_under
 from .stage import Stage
 from .view import View
 
@@ -106,7 +105,6 @@ class Mouse(CameraMouse):
     """The mouse on a face: it drags the skin, and the line between two halves."""
 
     skin_drag: SkinDrag | None = None
-    _was_pulled = False  # a moment ago: muscles hold the skin where it was let go
 
     def __init__(
         self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
@@ -126,16 +124,6 @@ class Mouse(CameraMouse):
     def is_dragging_skin(self) -> bool:
         """Whether the skin is being dragged."""
         return self.skin_drag is not None and bool(self.skin_drag.offset.any())
-
-    @property
-    def gestures(self) -> tuple[bool, bool]:
-        """Whether skin was pulled that stays, and whether the line between halves is dragged."""
-        is_line = self._doing == "divider" and self._has_moved(imgui.get_io())
-        return self._was_pulled, is_line
-
-    def follow(self) -> None:
-        self._was_pulled = False
-        super().follow()
 
     def _hover(self, io: Any) -> None:
         if self._is_at_divider(io.mouse_pos.x):
@@ -166,7 +154,6 @@ class Mouse(CameraMouse):
     def _release(self, io: Any) -> None:
         if self.skin_drag is not None:
             self._messages.attempt(self.skin_drag.let_go)
-            self._was_pulled = self.skin_drag.is_held
             if not self.is_dragging_skin and not self._has_moved(io):
                 name = self.skin_drag.muscle()
                 if name is not None:

@@ -7,16 +7,13 @@ new motion begins, if there was ample time left. So it never swings to and fro.
 
 from __future__ import annotations
 
-from typing import Protocol
-
 from risorius import render
 
 from ..messages import Messages
 from ..session.physics import CALM
-from ..settings import Display
+from .stage import FULL, Stage
 from .view import View
 
-FULL = render.Detail(samples=4, scale=1.0)
 # One sample, outlines smoothed by fringes (render/outline.py); then a little blurred, too.
 # Two samples would not help: software draws four. Processor time of a whole frame at 1280 x 720,
 # as parts of the first: 1, 0.53, 0.47, 0.39 (measured 2026-11-21); with four samples at 0.75: 0.8.
@@ -65,22 +62,10 @@ class LevelOfDetail:
             self._slow = 0
 
 
-class Drawable(Protocol):
-    """What can be drawn into the window: a `Stage`, or else."""
-
-    surface: render.WindowSurface
-
-    def bind(self, display: Display) -> None:
-        """Get ready for what the user wants to see; UserError where that cannot be."""
-
-    def draw(self, view: View) -> None:
-        """Draw it as it is now; the surface's `detail` says how finely."""
-
-
 class Painter:
     """Keeps the picture of the scene up to date, as finely as the machine can."""
 
-    def __init__(self, stage: Drawable, view: View, messages: Messages) -> None:
+    def __init__(self, stage: Stage, view: View, messages: Messages) -> None:
         self._stage, self._view, self._messages = stage, view, messages
         self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
         self._calm_for = 0.0  # [s] that the picture has not changed
@@ -102,7 +87,7 @@ class Painter:
         only lives, and will move again in a moment: finer pictures in between would flicker.
         """
         surface = self._stage.surface
-        surface.area = self._view.drawn
+        surface.area = self._view.viewport
         surface.rules = self._view.divider()
         state = self._view.state
         painted, detail = self._painted

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from copy import deepcopy
 from dataclasses import asdict
 
 import numpy as np
@@ -14,8 +13,7 @@ from risorius import render
 from ...capture.cameras import whole_scene
 from ..interface.gui import THEMES, em
 from ..session.session import Session
-from ..setting_rules import BACKGROUNDS
-from ..settings import Display, Settings
+from ..settings import BACKGROUNDS, Display, Settings
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -35,7 +33,6 @@ class View:
         self._session, self._settings, self._surface = session, settings, surface
         self.area = (0.0, 0.0, 1.0, 1.0)
         self.pointed = {}
-        self._noted: object = None  # the display as the session had it last
         self.fit_scene()
         place = settings.cameras.get(session.scene.name)
         if place is not None:  # as it stood when this scene's window was closed
@@ -53,16 +50,6 @@ class View:
         """Turn the camera to one of `render.VIEWS`, about what it looks at."""
         self.camera.yaw, self.camera.pitch = render.VIEWS[label.lower().replace(" ", "-")]
 
-    def follow_history(self, *, is_held: bool) -> None:
-        """Show what undo brought back, or let a change be undone that the user is done with."""
-        session, settings = self._session, self._settings
-        if isinstance(session.display, Display) and session.display is not self._noted:
-            settings.display = deepcopy(session.display)
-        elif not is_held and session.display != settings.display:
-            session.show(deepcopy(settings.display))
-        self._noted = session.display
-        self.camera.is_orthographic = settings.display.is_orthographic
-
     @property
     def display(self) -> Display:
         """How the scene is drawn."""
@@ -77,11 +64,6 @@ class View:
     def viewport(self) -> render.Rectangle:
         """Its part of the framebuffer."""
         return self.pixels(self.area)
-
-    @property
-    def drawn(self) -> render.Rectangle | None:
-        """What is drawn of the framebuffer, panels apart; None for all of it."""
-        return self.viewport
 
     def pixels(self, area: tuple[float, float, float, float]) -> render.Rectangle:
         """A part of the window, as one of the framebuffer."""
@@ -98,17 +80,6 @@ class View:
         return self.pixels((0.0, 0.0, em(), 1.0))[2]
 
     @property
-    def foot(self) -> float:
-        """How far captions reach above the left foot of the picture [window units]."""
-        left, bottom, width, height = self.viewport
-        tops = [
-            y - bottom + len(image)
-            for x, y, image in self._surface.labels
-            if x < left + 0.5 * width and y < bottom + height / 3.0
-        ]
-        return max(tops, default=0) * self.area[3] / height
-
-    @property
     def camera_place(self) -> list[float]:
         """Yaw, pitch, distance and target of the camera, to be remembered."""
         camera = self.camera
@@ -123,7 +94,7 @@ class View:
 
     def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
         """The line between the two halves of a comparison, and what to drag it by."""
-        if self.display.compare not in ("wipe", "side by side"):
+        if self.display.compare == "off":
             return []
         left, bottom, width, height = self.viewport
         unit = max(round(em(0.13) * width / max(self.area[2], 1.0)), 2)

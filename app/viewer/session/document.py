@@ -1,13 +1,13 @@
-"""What can be undone and saved: one state of it, and the file that a script is kept in."""
+"""What can be undone and saved: states of it, and the file that a script is kept in."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from ...script import Script, preface_of, save_script
 
@@ -81,27 +81,53 @@ class Document:
     values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
     script: Script
     file: ScriptFile  # in which the script is kept
-    display: object = None  # how the scene is drawn: never changed, compared by what it says
     time: float = field(default=0.0, compare=False)  # [s] at which the pose was made
 
-    def differs_in_view(self, other: Document) -> bool:
-        """Whether it is drawn in another way than the other, and else the same."""
-        return self != other and replace(self, display=other.display) == other
 
-    def view_change(self, display: object) -> str:
-        """What another way to draw the scene changes, in words."""
-        before, after = vars(self.display), vars(display)
-        names = [name.removeprefix("is_") for name in after if after[name] != before[name]]
-        return f"View: {', '.join(names).replace('_', ' ')}"
+State = TypeVar("State")
+MOST = 100  # states
 
-    def redrawn(self, before: object, after: object) -> Document:
-        """The same, drawn as it was changed from one way to draw the scene to another."""
-        own, old, new = map(vars, (self.display, before, after))
-        display = copy(self.display)
-        vars(display).update({name: new[name] for name in own if own[name] == old[name]})
-        return replace(self, display=display)
 
-    def new_keys(self, before: Document) -> int:
-        """How many keys of tracks it has that the state before does not share with it."""
-        known = {id(track) for track in before.script.tracks.values()}
-        return sum(len(track) for track in self.script.tracks.values() if id(track) not in known)
+class History(Generic[State]):
+    """The states that there were; the last one noted is the present."""
+
+    def __init__(self, present: State) -> None:
+        self._states = [present]
+        self.labels = ["Beginning"]  # what was done to come to each state
+        self.place = 0  # of the present among them
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is something before the present."""
+        return self.place > 0
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether something was undone."""
+        return self.place < len(self._states) - 1
+
+    @property
+    def present(self) -> State:
+        """The state noted last, or come back to."""
+        return self._states[self.place]
+
+    def note(self, state: State, label: str = "") -> None:
+        """Something was done; what was undone before is forgotten. Equal states count once.
+
+        label: what was done, as "Mirror".
+        """
+        if state == self.present:
+            return
+        end = self.place + 1
+        self._states[end:], self.labels[end:] = [state], [label]
+        del self._states[:-MOST], self.labels[:-MOST]
+        self.place = len(self._states) - 1
+
+    def amend(self, state: State) -> None:
+        """The present is this now, which nobody would call a step."""
+        self._states[self.place] = state
+
+    def go(self, place: int) -> State:
+        """To the state of this number, or as near as there is one."""
+        self.place = min(max(place, 0), len(self._states) - 1)
+        return self.present

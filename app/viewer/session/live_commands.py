@@ -6,11 +6,9 @@ It wins over sliders and script; controls that it does not name stay as these ha
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from ...errors import UserError
 from ...live import LOST_AFTER, Listening, LiveFace, State, own_address
-from ...recordings.calibration import Calibration
 from ..messages import Message
 from .session import Session
 
@@ -45,7 +43,6 @@ class LiveCommands:
         self.own_address = ""
         self.has_changed = False  # what can be said of who sends, in the last `advance`
         self._told: object = None
-        self._kept: tuple[str, Calibration] | None = None  # of whom, when `stop` ended it
 
     # Commands
 
@@ -71,20 +68,16 @@ class LiveCommands:
     def stop(self) -> None:
         """Listen no longer; the face is where sliders or script have it."""
         if self.face is not None:
-            self._kept = self.face.listening.kind, self.face.calibration
             self.face.close()
         self.face = None
         self._session.live_override.take({}, 0.0)
 
     def toggle(self) -> Message:
-        """Begin, with neutral face and gains as they were left for this protocol, or end."""
-        if self.is_on:
-            self.stop()
-            return None
-        line = self.start(self.wanted)
-        if self.face is not None and self._kept is not None and self._kept[0] == self.wanted.kind:
-            self.face.calibration = self._kept[1]
-        return line
+        """Begin, or end."""
+        if not self.is_on:
+            return self.start(self.wanted)
+        self.stop()
+        return None
 
     @property
     def can_calibrate(self) -> bool:
@@ -96,17 +89,6 @@ class LiveCommands:
         if self.face is not None:
             self.face.calibrate()
         return "Hold a neutral face, eyes on the camera ..."
-
-    @property
-    def is_mirrored(self) -> bool:
-        """Whether left and right change places."""
-        return self.face is not None and self.face.calibration.mirror
-
-    def toggle_mirror(self) -> None:
-        """Exchange left and right, or no longer."""
-        if self.face is not None:
-            calibration = self.face.calibration
-            self.face.calibration = replace(calibration, mirror=not calibration.mirror)
 
     # What the window asks
 

@@ -1,166 +1,174 @@
 """Unsaved work survives what ends the window: a signal, a crash, a closed terminal.
 
-It is written to files of its own (unsaved.py) after a pause in the work, at intervals where there
-is none, and when the process is told to stop. The files go when the work is saved or given up;
-what another window left behind is offered.
+It is kept in one file beside the settings, written some seconds after a change, and when the
+process is told to stop. The file goes when the work is saved or given up; what is there at the next
+start is offered. Of several windows with the same scene the first has the file, by a lock that the
+system lets go of however a process ends.
 """
 
 from __future__ import annotations
 
 import contextlib
+import json
+import math
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import IO, Any
+
+from risorius.assets.staging import locked
+from risorius.schema import Number, Record, parsed_json, read
 
 from ...errors import UserError
-from ...script import pose_script, prepare_text
+from ...files import read_text, save_text
+from ...script import LONGEST_FILE, Script, parse_script, script_text
 from ...stopping import cleaned_up_if_stopped
 from .session import Session
-from .unsaved import Work, WorkFiles, left_behind
 
-QUIET = 1.0  # [s] without a change after which it is written
-LONGEST = 3.0  # [s] for which changes without a pause are not written
+INTERVAL = 2.0  # [s] after a change, in which further ones may come
 LEAST_SHARE = 30.0  # ... or so many times what writing took, lest a long recording stutters
-POSE_TITLE = "Unsaved pose"
+
+
+@dataclass(frozen=True)
+class Work(Record):
+    """What is not saved."""
+
+    when: float  # [s since 1970]
+    script: str = ""  # the text of it, with what is being recorded; "" where its file has it
+    file: str = ""  # that the script was opened from or saved to; "" for none
+    pose: dict[str, Number] = field(default_factory=dict)  # by hand, and no key
+
+    @classmethod
+    def of(cls, session: Session) -> Work:
+        """What a session has that no file has."""
+        script = session.script if session.script_is_unsaved else None
+        if session.recorder is not None:
+            script = session.recorder.script() or script
+        file = str(session.file.path.absolute()) if session.file.path else ""
+        pose = {name: value for name, value in session.values.items() if value}
+        text = "" if script is None else script_text(script)
+        return cls(time.time(), text, file, pose if _has_pose(session) else {})
+
+    def parsed(self) -> Script | None:
+        """The script, None where there is none; UserError where it is damaged."""
+        return parse_script(self.script, source=self.file or "Untitled") if self.script else None
+
+    @property
+    def summary(self) -> str:
+        """What there is of it."""
+        parts = [f"the script {Path(self.file).name}".rstrip()] if self.script else []
+        return " and ".join(parts + ["a pose"] * bool(self.pose))
 
 
 class Recovery:
     """Keeps a session's unsaved work safe in a folder; without one it does nothing."""
 
-    def __init__(self, folder: Path | None, clock: Callable[[], float] = time.monotonic) -> None:
-        self._folder, self._clock = folder, clock
-        self._own: WorkFiles | None = None
-        self._found: WorkFiles | None = None
-        self._seen: object = None  # the state of the session, and when it became so
-        self._changed_at = 0.0
-        self._safe: object = None  # the state that the files have, and since when they may lag
-        self._lags_since = 0.0
-        self._writing_took = 0.0
+    found: Work | None = None  # what a window left behind that ended, to be offered
+
+    def __init__(
+        self,
+        folder: Path | None,
+        session: Session,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._clock, self._session = clock, session
+        self._path = folder and folder / f"unsaved-{session.scene.name}.json"
+        self._lock: IO[Any] | None = None
+        self._safe: object = None  # the state that the file has
+        self._due = math.inf  # when it is to be written
+        self._writing_took = 0.0  # [s]
         self._is_failing = False
+        if self._path is not None:
+            with contextlib.suppress(OSError):
+                self._path.parent.mkdir(parents=True, exist_ok=True)
+                self._lock = locked(self._path.with_suffix(".lock"))
+                if self._lock is None:  # another window has it
+                    self._path = None
+        if self._path is not None:
+            self.found = _read(self._path, session)
 
-    def find(self, session: Session) -> None:
-        """Find what was left behind and fits the session's scene."""
-        self._leave_found()
-        if self._folder is None:
-            return
-        for files in left_behind(self._folder):
-            if files.work.fits(session.script.scene, session.controls.limits):
-                self._found = files
-                return
-            files.leave()
-
-    @property
-    def found(self) -> Work | None:
-        """What a window left behind that ended, to be offered; None where there is nothing."""
-        return self._found.work if self._found is not None else None
-
-    @property
-    def found_at(self) -> float:
-        """When what was found was written [s since 1970]."""
-        return self._found.time if self._found is not None else 0.0
-
-    def accept_found(self, session: Session) -> None:
+    def accept_found(self) -> None:
         """What was found is the session's work now, in place of what it had."""
-        if self._found is None:
-            return
-        session.recover(self._found.work, self.found_at)
-        self.discard()
-        self._own, self._found = self._found, None
-        self._seen = self._safe = _state(session)
+        found, self.found = self.found, None
+        if found is not None:
+            path = Path(found.file) if found.file else None
+            self._session.recover(found.parsed(), path, found.pose, found.when)
 
-    def discard_found(self, session: Session) -> None:
-        """What was found is given up; there may be more."""
-        if self._found is not None:
-            self._found.remove()
-            self._found = None
-        self.find(session)
-
-    def watch(self, session: Session) -> None:
+    def watch(self) -> None:
         """To be called all the time; UserError, once, where nothing can be written."""
-        if self._folder is None:
+        if self._path is None:
             return
-        now, state = self._clock(), _state(session)
-        if state != self._seen:
-            if self._seen == self._safe:
-                self._lags_since = now
-            self._seen, self._changed_at = state, now
-        if not session.unsaved:
-            self.discard()
-            self._safe = state
-        elif self.due_in() <= 0.0:
-            # A long script is made into text in many calls, lest the window stands still; where
-            # it changes all the time, at once.
-            is_urgent = self.due_in() < -LONGEST
-            if is_urgent or not (session.script_is_unsaved and prepare_text(session.script)):
-                self.save(session)
+        if not self._session.unsaved:
+            if self.found is None and self._safe is not None:
+                self.discard()
+            self._safe, self._due = None, math.inf
+        elif self._due < math.inf:
+            if self.due_in() <= 0.0:
+                self.save()
+        elif _state(self._session) != self._safe:
+            self._due = self._clock() + max(INTERVAL, LEAST_SHARE * self._writing_took)
 
     def due_in(self) -> float:
         """How long until something is to be written [s]; infinite if nothing is."""
-        if self._seen == self._safe:
-            return float("inf")
-        longest = max(LONGEST, LEAST_SHARE * self._writing_took)
-        due = min(self._changed_at + QUIET, self._lags_since + longest)
-        return due - self._clock()
+        return self._due - self._clock()
 
-    def save(self, session: Session) -> None:
+    def save(self) -> None:
         """Write what is unsaved; UserError, once, where that cannot be."""
-        state = _state(session)
-        if self._folder is None or state == self._safe:
+        state = _state(self._session)
+        if self._path is None or state == self._safe or not self._session.unsaved:
             return
         begin = time.perf_counter()
         try:
-            if self._own is None:
-                self._own = WorkFiles.new(self._folder)
-            self._own.write(work_of(session))
+            save_text(self._path, json.dumps(asdict(Work.of(self._session)), indent=1))
             self._is_failing = False
         except UserError as error:
             is_told, self._is_failing = self._is_failing, True
             if not is_told:
                 raise UserError(f"unsaved work is not kept safe: {error}") from None
         finally:  # if it failed, it is tried again after the next change
-            self._seen = self._safe = state
+            self._safe, self._due = state, math.inf
             self._writing_took = time.perf_counter() - begin
 
     def discard(self) -> None:
         """All is saved, or knowingly thrown away."""
-        if self._own is not None:
-            self._own.remove()
-        self._own = None
+        self.found = None
+        if self._path is not None:
+            with contextlib.suppress(OSError):
+                self._path.unlink(missing_ok=True)
 
     @contextlib.contextmanager
-    def guarding(self, session: Session) -> Iterator[None]:
+    def guarding(self) -> Iterator[None]:
         """Keep what is unsaved if the block is stopped or fails; where it just ends, discard it."""
         try:
-            with cleaned_up_if_stopped(lambda: self.save(session)):
+            with cleaned_up_if_stopped(self.save):
                 yield
         except BaseException:
             with contextlib.suppress(UserError):
-                self.save(session)
+                self.save()
             raise
+        found = self.found
         self.discard()
+        if found is not None and self._path is not None:  # nobody has answered yet
+            save_text(self._path, json.dumps(asdict(found), indent=1))
 
     def close(self) -> None:
         """Leave what is still there to the next window."""
-        self._leave_found()
-        if self._own is not None:
-            self._own.leave()
-
-    def _leave_found(self) -> None:
-        if self._found is not None:
-            self._found.leave()
-        self._found = None
+        if self._lock is not None:
+            self._lock.close()
 
 
-def work_of(session: Session) -> Work:
-    """What a session has that no file has."""
-    is_unsaved = session.script_is_unsaved
-    pose = pose_script(session.values, title=POSE_TITLE, scene=session.script.scene)
-    return Work(
-        script=session.script if is_unsaved else None,
-        path=session.file.path if is_unsaved else None,
-        recording=session.recorder.script() if session.recorder is not None else None,
-        pose=pose if _has_pose(session) else None,
-    )
+def _read(path: Path, session: Session) -> Work | None:
+    """The work in a file; None where there is none, or none for this scene."""
+    with contextlib.suppress(UserError, ValueError):
+        text = read_text(path, what="file of unsaved work", longest=LONGEST_FILE)
+        work = read(Work, parsed_json(text), str(path))
+        script, limits = work.parsed(), session.controls.limits
+        if script is not None:
+            script.check(limits)
+        if work.pose.keys() <= limits.keys() and work.summary:
+            return work
+    return None
 
 
 def _has_pose(session: Session) -> bool:
@@ -170,7 +178,7 @@ def _has_pose(session: Session) -> bool:
 
 
 def _state(session: Session) -> object:
-    """What tells whether `work_of` would give something else; quickly made and compared."""
+    """What tells whether there is other work to be kept; quickly made and compared."""
     return (
         session.script if session.script_is_unsaved else None,
         dict(session.values) if _has_pose(session) else None,

@@ -5,17 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import chain
 
-import numpy as np
-
 from risorius.sim.layers import BOTH_SIDES
 
-from ...controls.mirror import parted, twin_of
+from ...controls.mirror import parted
 from ...controls.vocabulary import filters
 from ...errors import counted
 from ...scenes import FaceScene, Scene, clamped
-
-RANDOM_SHARE = 0.25  # of the muscles that a random pose moves
-RANDOM_STRENGTH = 0.8  # most of their range
 
 
 class SceneControls:
@@ -45,17 +40,6 @@ class SceneControls:
     def alone(self, name: str) -> dict[str, float]:
         """This control at its most, and no other."""
         return self.pose({name: self.limits[name][1]})
-
-    def random(self, generator: np.random.Generator) -> dict[str, float]:
-        """A few muscles of each group by chance, both sides alike; layers stay at zero."""
-        pose = self.pose({})
-        for names in self._scene.groups.values():
-            for name in names:
-                is_muscle = name in self.muscles and self.limits[name][0] == 0.0
-                if is_muscle and twin_of(name) <= name and generator.random() < RANDOM_SHARE:
-                    value = RANDOM_STRENGTH * generator.random() * self.limits[name][1]
-                    pose[name] = pose[twin_of(name)] = value
-        return pose
 
     def moved_by(self, values: Mapping[str, float]) -> frozenset[str]:
         """The lowest controls that a pose moves."""

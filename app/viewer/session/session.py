@@ -6,10 +6,7 @@ Knows the scene, which adds up all of `values`, and nothing of windows.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
 
 from ...controls.mirror import copied, mirrored, twin_of
 from ...controls.vocabulary import readable
@@ -19,10 +16,8 @@ from ...scenes import Scene
 from ...script import Pose, Script, is_pose, keyframes, pose_script, rounded, save_script
 from ...script.recorder import Recorder
 from ..messages import Message
-from .document import Document, ScriptFile
-from .history import History
+from .document import Document, History, ScriptFile
 from .scene_controls import LiveOverride, SceneControls, change_of
-from .unsaved import Work
 
 NEW_SECONDS = 4.0  # that a script begun from nothing lasts
 
@@ -43,8 +38,7 @@ class Session:
         self._is_touched = False  # by hand, since something was noted
         self.recorder: Recorder | None = None  # of what is being recorded
         self.live_override = LiveOverride()  # leaves no trace in what can be undone
-        self.display: object = None  # how the scene is drawn, see `show`
-        self.history = History(self._document(), lambda before, after: after.new_keys(before))
+        self.history = History(self._document())
 
     def move_to(self, scene: Scene) -> None:
         """Go on with another scene, all else as it is; UserError if it has other controls."""
@@ -67,13 +61,6 @@ class Session:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = self._is_touched = True
 
-    def blend(self, first: Mapping[str, float], last: Mapping[str, float], share: float) -> None:
-        """Be this share of the way from a pose to another, both with a value for each control."""
-        for name in first:
-            value = first[name] + share * (last[name] - first[name])
-            if value != self.values[name]:
-                self.set(name, value)
-
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
@@ -91,10 +78,6 @@ class Session:
         """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
         pose = copied(self.values, source) if source else mirrored(self.values)
         self._set_pose(pose, f"Mirror {source}".rstrip())
-
-    def randomise(self, generator: np.random.Generator | None = None) -> None:
-        """A few muscles of each group by chance, both sides alike; layers stay at zero."""
-        self._set_pose(self.controls.random(generator or np.random.default_rng()), "Random")
 
     def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
         if self.recorder is not None:
@@ -122,18 +105,7 @@ class Session:
 
     def _document(self) -> Document:
         values = None if self.is_following else {n: v for n, v in self.values.items() if v}
-        return Document(values, self.script, self.file, self.display, self.time)
-
-    def show(self, display: object) -> None:
-        """Draw the scene in another way: what nobody changes any more, and equals its like."""
-        present = self.history.present  # the script may move the rest
-        state = replace(present, display=display)
-        if self.display is None:
-            self.history.amend(state)
-        else:
-            label = present.view_change(display)
-            self.history.note(state, label, lambda each: each.redrawn(present.display, display))
-        self.display = display
+        return Document(values, self.script, self.file, self.time)
 
     def note(self, label: str = "") -> None:
         """A change is complete (a slider let go, a button pressed): it can be undone.
@@ -157,10 +129,7 @@ class Session:
 
     def undo(self) -> None:
         """Back to before the last change, or to it, if the face has changed since."""
-        present, place = self.history.present, self.history.place
-        is_view = self.history.go(place - 1).differs_in_view(present)
-        self.history.go(place)
-        self.go_to(place - (is_view or self._document() == present))
+        self.go_to(self.history.place - (self._document() == self.history.present))
 
     def redo(self) -> None:
         """Forward again."""
@@ -169,10 +138,7 @@ class Session:
     def go_to(self, place: int) -> None:
         """To the state of this number in the history."""
         self._refuse_while_recording()
-        present, document = self.history.present, self.history.go(place)
-        self.display = document.display
-        if document.differs_in_view(present):
-            return
+        document = self.history.go(place)
         self.is_playing = self._is_touched = False
         self.script, self.file = document.script, document.file
         if document.values is None:
@@ -225,7 +191,7 @@ class Session:
             self.history.amend(self._document())
             return None
         what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
-        self.history.note(self._document(), f"Let go of {what}", lambda later: later)
+        self.history.note(self._document(), f"Let go of {what}")
         return f"{what} not keyed, so let go; [Undo] brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
@@ -348,12 +314,17 @@ class Session:
         self._go_to(0.0)
         self.note(label)
 
-    def recover(self, work: Work, when: float) -> None:
-        """Go on with unsaved work of another session, as it was at a time [s since 1970]."""
-        for script in filter(None, (work.script, work.recording)):
-            self._replace_script(script, ScriptFile.recovered(work.path, when), "Recover")
-        if work.pose is not None:
-            self._set_pose(self.controls.pose(work.pose.at(0.0)), "Recover the pose")
+    def recover(
+        self, script: Script | None, path: Path | None, pose: Mapping[str, float], when: float
+    ) -> None:
+        """Go on with unsaved work of another session.
+
+        path: the script's own file. pose: {} for none. when: it was so [s since 1970].
+        """
+        if script is not None:
+            self._replace_script(script, ScriptFile.recovered(path, when), "Recover")
+        if pose:
+            self._set_pose(self.controls.pose(pose), "Recover the pose")
 
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""

@@ -12,7 +12,6 @@ import itertools
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from imgui_bundle import imgui
 
 from ...errors import counted
@@ -25,10 +24,9 @@ from ..interface.widgets import shortened
 from ..messages import Message, Task
 from . import key_marks
 from .graph import Graph
-from .key_selection import KeySelection, PoseNameLine
+from .key_marks import Waveform
+from .keys import KeySelection, Track, all_tracks, described
 from .time_axis import TimeAxis
-from .tracks import Track, all_tracks, described
-from .waveform import Waveform
 
 ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
 GUTTER, GUTTER_SHARE = 9.5, 0.2  # [em] for the rows' names, and of the width at most
@@ -40,7 +38,6 @@ SCROLL_PER_NOTCH = 0.12  # of the visible time
 GRAPH = 14.0  # [em] of its height, as long as nobody changes that
 MOST_CURVES = 24  # that are displayed at once, unless somebody wants more
 VALUES = 2.2  # [em] for the labels of values
-SNAP = 0.4  # [em] beside a key of another track that draws a dragged one there
 
 
 @dataclass
@@ -70,7 +67,6 @@ class DopeSheet:
         self.selection, self.axis, self._waveform = selection, axis, waveform
         self.graph = Graph(app.gui, selection, axis)
         self._drag: Drag | None = None
-        self._number: float | None = None  # the time [s] whose number was pressed on in the ruler
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
         self._all: tuple[Track, ...] = ()
         self.rows: tuple[Track, ...] = ()  # of these the ones that are not folded away
@@ -79,7 +75,6 @@ class DopeSheet:
         self._bottom = 0.0  # of all of it [window units]
         self._tops = [0.0]  # of each row, and of what would come below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
-        self._name_line = PoseNameLine(app, selection)
         self._wants_menu = False
 
     def _is_open(self, name: str) -> bool:
@@ -98,7 +93,6 @@ class DopeSheet:
     def _refresh(self) -> None:
         """Bring rows and selection up to date with script and settings."""
         script = self._session.script
-        self.axis.counts_frames = self.settings.counts_frames
         if self._known is not script:
             self._known = script
             self._all = all_tracks(script, self._session.controls.groups)
@@ -143,7 +137,6 @@ class DopeSheet:
         if imgui.begin_popup("key menu"):
             self._menus.draw_menu("Keys")
             imgui.end_popup()
-        self._name_line.draw()
 
     def _draw_rows(self, io: Any) -> None:
         """The rows, or of curves their names alone."""
@@ -248,9 +241,7 @@ class DopeSheet:
 
     def _press(self, io: Any, under: Places, *, is_dense: bool) -> None:
         selection = self.selection
-        if under and imgui.is_mouse_double_clicked(LEFT) and selection.can_rename:
-            selection.rename()
-        elif not under or (is_dense and not under <= selection.places):
+        if not under or (is_dense and not under <= selection.places):
             self._grabbed = under
             self._begin("box", io, selection.places if io.key_shift else NOWHERE)
         else:
@@ -271,18 +262,14 @@ class DopeSheet:
                 imgui.set_tooltip("drag the script's end")
         if self._drag is None and imgui.is_mouse_clicked(LEFT):
             self._begin("end" if is_at_end else "scrub", io)
-            is_above = io.mouse_pos.y < imgui.get_item_rect_min().y + em()
-            self._number = key_marks.number_at(self.axis, io.mouse_pos.x) if is_above else None
 
     def _turn_wheel(self, io: Any) -> None:
-        """Zoom about the mouse; Shift, or a sideways wheel: scroll; Ctrl: values; middle: pan."""
+        """Zoom about the mouse; Shift, or a sideways wheel: scroll; middle button: pan."""
         if self._drag is None and imgui.is_mouse_clicked(MIDDLE):
             self._begin("pan", io)
         sideways = io.mouse_wheel_h or (io.mouse_wheel if io.key_shift else 0.0)
         if sideways:
             self.axis.scroll(-SCROLL_PER_NOTCH * self.axis.span * sideways)
-        elif io.mouse_wheel and io.key_ctrl and self.settings.shows_curves:
-            self.graph.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.y)
         elif io.mouse_wheel:
             self.axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
 
@@ -291,17 +278,14 @@ class DopeSheet:
         (x, y), axis, session = io.mouse_pos, self.axis, self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
         drag.has_moved = drag.has_moved or distance > CLICK
-        number = None if drag.has_moved else self._number
         act: dict[str, Task] = {
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
-            "scrub": lambda: session.seek(
-                self._snapped(axis.time(x), io) if number is None else number
-            ),
+            "scrub": lambda: session.seek(self._snapped(axis.time(x), io)),
             "end": lambda: session.edit(
                 keyframes.lasting(drag.script, axis.time(x)), is_done=False
             ),
-            "pan": lambda: self.graph.scroll(*io.mouse_delta),
+            "pan": lambda: axis.scroll(-axis.seconds(io.mouse_delta.x)),
             "slope": lambda: self._bend(y, drag),
         }
         if drag.has_moved or drag.doing in ("scrub", "pan"):
@@ -325,14 +309,9 @@ class DopeSheet:
         time = self._grabbed.first
         target = time + self.axis.seconds(right)
         target = min(max(target, 0.0), self.axis.end)  # further right it would not be seen
-        magnets = keyframes.places_of(drag.script).times | {"now": np.array([self._session.time])}
-        for name in drag.selected.times:  # where a key would be replaced
-            del magnets[name]
-        near = Places(magnets).near(target, self.axis.seconds(em(SNAP)))
-        snapped = near.first if near and not io.key_ctrl else self._snapped(target, io)
-        offset = snapped - time if right else 0.0
+        offset = self._snapped(target, io) - time if right else 0.0
         script, places = keyframes.moved(drag.script, drag.selected, offset)
-        line, held = self.axis.told(time + offset), self.graph.held
+        line, held = f"{time + offset:.2f} s", self.graph.held
         if held is not None:
             amount = down / self.graph.slope
             if amount and not io.key_ctrl:

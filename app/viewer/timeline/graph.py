@@ -19,9 +19,8 @@ from ...script.keyframes import SAME
 from ...script.places import NOWHERE, KeyPlace, Places, among
 from ..interface.gui import Gui, em, ink_of
 from .key_marks import Point, draw_line
-from .key_selection import KeySelection
+from .keys import KeySelection, Track
 from .time_axis import TimeAxis
-from .tracks import Track
 
 PADDING = 0.8  # [em] between the highest value and the edge
 LABEL_ROOM = 1.6  # [em] between two labels of values
@@ -78,20 +77,6 @@ class Graph:
     def y(self, value: Any) -> Any:
         """Where a value is, or each of an array of values [window units]."""
         return self._bottom + self.slope * (value - self._low)
-
-    def zoom(self, factor: float, y: float) -> None:
-        """Show `factor` times as many values; what is at `y` stays there."""
-        fixed = self._low + (y - self._bottom) / self.slope
-        low, high = (fixed + factor * (end - fixed) for end in (self._low, self._high))
-        if 0.02 < high - low < 100.0:
-            self._axis.values = low, high
-
-    def scroll(self, right: float, down: float) -> None:
-        """Move the curves [window units]; up and down once they are zoomed."""
-        self._axis.scroll(-self._axis.seconds(right))
-        if self._axis.values is not None:
-            low, high = self._axis.values
-            self._axis.values = low - down / self.slope, high - down / self.slope
 
     # What is where
 
@@ -193,7 +178,7 @@ class Graph:
     def _fit(self, edges: Point) -> None:
         """Let the axis of values reach from edge to edge: all of them, unless it was zoomed."""
         ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
-        self._low, self._high = self._axis.values or (min(ends), max(ends))
+        self._low, self._high = min(ends), max(ends)
         self._bottom = edges[1] - em(PADDING)
         height = max(self._bottom - edges[0] - em(PADDING), 1.0)
         self.slope = -height / (self._high - self._low)

@@ -8,12 +8,13 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...script import Floats
-from ...script.keyframes import FRAME
 from ...script.places import Places
-from ..interface.gui import Theme, em, ink_of
+from ...sound.peaks import Peaks
+from ..interface.gui import Gui, Theme, em, ink_of
 from ..interface.widgets import shortened
+from ..session.soundtrack import Soundtrack
+from .keys import Track
 from .time_axis import TimeAxis
-from .tracks import Track
 
 LABEL_ROOM = 4.2  # [em] between two labels of the ruler
 FLAG = 0.7  # [em] of the handle at the script's end
@@ -39,7 +40,7 @@ def draw_ruler(
         height = em(0.45) if tick.has_label else em(0.22)
         lines.add_line((x, bottom - height), (x, bottom), ink)
         if tick.has_label:
-            label = number_of(axis, tick.time)
+            label = number_of(tick.time)
             lines.add_text((x - 0.5 * imgui.calc_text_size(label).x, top), ink, label)
     end = axis.x(duration)
     if end <= axis.x(axis.end):
@@ -51,17 +52,8 @@ def draw_ruler(
         lines.add_triangle_filled(left, right, (x, bottom), ink_of(theme.accent))
 
 
-def number_at(axis: TimeAxis, x: float) -> float | None:
-    """The time [s] whose number in the ruler is there [window units], if there is one."""
-    told = (time for time, has_label in axis.ticks(em(LABEL_ROOM)) if has_label)
-    widths = {time: imgui.calc_text_size(number_of(axis, time)).x for time in told}
-    return next((t for t, width in widths.items() if abs(axis.x(t) - x) <= 0.5 * width), None)
-
-
-def number_of(axis: TimeAxis, time: float) -> str:
-    """Seconds as short as they can be told, minutes where there are some; or frames."""
-    if axis.counts_frames:
-        return f"{time / FRAME:.0f}"
+def number_of(time: float) -> str:
+    """Seconds as short as they can be told, minutes where there are some."""
     if time < 60.0:
         return f"{time:.3g} s" if time == 0.0 else f"{time:.3g}"
     minutes, seconds = divmod(round(time, 2), 60.0)
@@ -110,7 +102,7 @@ class TrackPainter:
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
     def draw(self, track: Track, top: float, unit: float) -> bool:
-        """A row of `unit` times its height: its ground, where nothing moves, keys, names.
+        """A row of `unit` times its height: its ground, keys, names.
 
         Returns whether the keys that are visible are too dense to be drawn one by one.
         """
@@ -120,10 +112,6 @@ class TrackPainter:
         first, last = (low, top + 1.0), (high, bottom - 1.0)
         lines.add_rect_filled(first, last, ink_of(theme.field, 0.45), em(0.2))
         lines.add_rect_filled(first, (self._script_end, last[1]), ink_of(theme.field), em(0.2))
-        for begin, finish in track.held:
-            if finish > axis.start and begin < axis.end:
-                ends = (max(axis.x(begin), low), middle), (min(axis.x(finish), high), middle)
-                lines.add_line(*ends, ink_of(theme.muted, 0.45), em(0.22))
         if len(track.channel):
             edges, (least, most) = self._edges, track.channel.ends
             times, values = track.channel.outline(edges[0], edges[-1], len(edges))
@@ -193,3 +181,57 @@ def draw_box(theme: Theme, first: Point, last: Point) -> None:
     lines = imgui.get_window_draw_list()
     lines.add_rect_filled(first, last, ink_of(theme.accent, 0.15))
     lines.add_rect(first, last, ink_of(theme.accent, 0.8))
+
+
+HEIGHT = 2.6  # [em]
+LEAST = 0.5  # [window units] from the middle: silence is a thin line
+
+
+class Waveform:
+    """Draws the sound of the script; of no height where there is none."""
+
+    def __init__(self, gui: Gui, soundtrack: Soundtrack, axis: TimeAxis) -> None:
+        self._gui, self._soundtrack, self._axis = gui, soundtrack, axis
+        self._known: tuple[object, Peaks | None] = None, None
+
+    @property
+    def height(self) -> float:
+        """Of the row [window units]."""
+        return em(HEIGHT) if self._soundtrack.sound is not None else 0.0
+
+    @property
+    def duration(self) -> float:
+        """Of the sound [s]."""
+        sound = self._soundtrack.sound
+        return sound.duration if sound is not None else 0.0
+
+    def draw(self, time: float, duration: float, corner: Point) -> None:
+        """Draw it from its upper left corner on; what comes after the script's end is faint.
+
+        time, duration: that is shown, and of the script [s].
+        """
+        peaks, axis, theme = self._peaks(), self._axis, self._gui.theme
+        if peaks is None:
+            return
+        lines, (left, top) = imgui.get_window_draw_list(), corner
+        bottom = top + self.height - 1.0
+        first, last = round(axis.x(axis.start)), round(axis.x(axis.end))
+        lines.add_rect_filled(
+            (first - em(0.5), top + 1.0), (last + em(0.5), bottom), ink_of(theme.field), em(0.2)
+        )
+        draw_label("Sound", (left, top + 0.5 * (self.height - em())), ink_of(theme.muted))
+        low, high = peaks.between(axis.time(first), axis.time(last), max(last - first, 1))
+        middle, reach = 0.5 * (top + bottom), 0.5 * (bottom - top) - em(0.2)
+        inside, outside = ink_of(theme.muted), ink_of(theme.muted, 0.35)
+        ends = axis.x(duration)
+        uppers = (middle - LEAST - reach * high).tolist()
+        lowers = (middle + LEAST - reach * low).tolist()
+        for x, (upper, lower) in enumerate(zip(uppers, lowers, strict=True), start=first):
+            lines.add_rect_filled((x, upper), (x + 1.0, lower), inside if x < ends else outside)
+        draw_playhead(theme, axis, time, (top, bottom + 1.0))
+
+    def _peaks(self) -> Peaks | None:
+        sound = self._soundtrack.sound
+        if self._known[0] is not sound:
+            self._known = sound, Peaks(sound) if sound is not None else None
+        return self._known[1]

@@ -10,7 +10,6 @@ from ...script.keyframes import FRAME
 MARGIN = 1.06  # of the script: room behind its end, to drag keys there
 LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
 CLOSEST_TICKS = 0.12  # of the room for a label
-COUNTS = 1, 5, 15, 30, 60, 150, 300, 900, 1800, 18_000, 108_000  # frames between labels
 STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
 
 Number = TypeVar("Number", float, Floats)
@@ -26,9 +25,6 @@ class Tick(NamedTuple):
 class TimeAxis:
     """From `start` on, `span` seconds; the whole script as long as nobody zooms in."""
 
-    counts_frames = False  # instead of seconds
-    values: tuple[float, float] | None = None  # the lowest and the highest of curves; None: all
-
     def __init__(self) -> None:
         self.start = 0.0
         self.span = 1.0
@@ -36,8 +32,8 @@ class TimeAxis:
         self._left, self._width = 0.0, 1.0
 
     def show_whole(self) -> None:
-        """All of the script, however long it is, and all values."""
-        self.is_whole, self.values = True, None
+        """All of the script, however long it is."""
+        self.is_whole = True
 
     def place(self, left: float, width: float) -> None:
         """Where it is drawn [window units]."""
@@ -84,16 +80,11 @@ class TimeAxis:
         if not self.start <= time <= self.end:
             self.start = time - 0.1 * self.span
 
-    def told(self, time: float) -> str:
-        """A time as the ruler has it."""
-        return f"frame {time / FRAME:.0f}" if self.counts_frames else f"{time:.2f} s"
-
     def ticks(self, label_width: float) -> list[Tick]:
         """The marks of the visible part, with labels no closer than their width."""
-        steps = tuple(FRAME * count for count in COUNTS) if self.counts_frames else STEPS
-        labelled = next((s for s in steps[1:] if s >= self.seconds(label_width)), steps[-1])
+        labelled = next((s for s in STEPS[1:] if s >= self.seconds(label_width)), STEPS[-1])
         least = self.seconds(CLOSEST_TICKS * label_width)
-        parts = ((s, labelled / s) for s in steps if least <= s < labelled)
+        parts = ((s, labelled / s) for s in STEPS if least <= s < labelled)
         finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # none is left over
         marked = finer[0] if finer else labelled
         count = round(labelled / marked)

@@ -8,17 +8,14 @@ from imgui_bundle import imgui
 
 from ...errors import counted
 from ..context import ApplicationContext
-from ..interface.commands import Command
-from ..interface.gui import LEFT, MIDDLE, RIGHT, colour, em
-from ..interface.widgets import button, choose, hint, shortened, stay_in_line
-from ..settings import switch
+from ..interface.commands import Command, command_button
+from ..interface.gui import colour, em
+from ..interface.widgets import choose, hint, shortened, stay_in_line
 from .dope_sheet import DopeSheet
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
-MOST_HEIGHT, MOST_DRAGGED = 0.4, 0.7  # of the window
-LEAST = 7.0  # [em] of its height
-EDGE = 6.0  # [window units] that can be dragged
+MOST_HEIGHT = 0.4  # of the window
 # By the label of the command: what the button reads while that is on, and a hint.
 BUTTONS = {
     "Play": ("Pause", "play the script ([Play])"),
@@ -46,26 +43,13 @@ class Timeline:
     def height(self) -> float:
         """Of the timeline [window units]; where words are too large for the window, it scrolls."""
         display = imgui.get_io().display_size.y
-        most, dragged = MOST_HEIGHT * display, em(self.dope_sheet.settings.timeline_height)
+        most = MOST_HEIGHT * display
         buttons = self._rows * imgui.get_frame_height_with_spacing()
         buttons += 2.0 * imgui.get_style().window_padding.y
-        wanted = min(buttons + self.dope_sheet.height(most - buttons), most)
-        return float(min(dragged or wanted, MOST_DRAGGED * display))
-
-    def _draw_edge(self) -> None:
-        """The upper one, which can be dragged."""
-        (left, top), (width, height) = imgui.get_window_pos(), imgui.get_window_size()
-        self._gui.places["timeline's edge"] = left, top, left + width, top + EDGE
-        edge, name = imgui.internal.ImRect(left, top, left + width, top + 2.0), imgui.get_id("edge")
-        is_dragged, _, wanted = imgui.internal.splitter_behavior(
-            edge, name, imgui.internal.Axis.y, top, height, 0.0, em(LEAST), EDGE
-        )
-        if is_dragged and wanted != height:
-            self.dope_sheet.settings.timeline_height = wanted / em()
+        return float(min(buttons + self.dope_sheet.height(most - buttons), most))
 
     def draw(self) -> None:
         """Draw everything, inside its window: buttons at its lower edge, which stays put."""
-        self._draw_edge()
         left, top = imgui.get_cursor_pos()
         height = self._rows * imgui.get_frame_height_with_spacing()
         height = max(imgui.get_content_region_avail().y - height, self.dope_sheet.height(0.0))
@@ -82,26 +66,23 @@ class Timeline:
         self._draw_button("Curves")
         self._draw_status(len(differing))
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
-        if any(map(imgui.is_mouse_clicked, (LEFT, MIDDLE, RIGHT))):
-            flags = imgui.HoveredFlags_.child_windows
-            flags |= imgui.HoveredFlags_.allow_when_blocked_by_active_item
-            self.dope_sheet.selection.is_touched = imgui.is_window_hovered(flags)
-        elif imgui.get_io().want_text_input and not imgui.is_any_mouse_down():
-            self.dope_sheet.selection.is_touched = False
 
     def _draw_button(self, label: str, *, is_wanted: bool = False) -> None:
         command, (label_on, meaning) = self._commands[label], BUTTONS[label]
         is_on = command.is_on is not None and command.is_on()
-        name, width, highlight = label.lower(), em(BUTTON_WIDTH), None
+        text, width = label_on if is_on else label, em(BUTTON_WIDTH)
         if label != "Play":
             stay_in_line(width)
-            highlight = colour(self._gui.theme.accent, 0.6) if is_on or is_wanted else None
-        text = label_on if is_on else label
-        imgui.begin_disabled(not command.can_run())
-        if button(self._gui, text, name=name, width=width, highlight=highlight):
-            self._messages.attempt(command.run)
-        imgui.end_disabled()
-        hint(self._gui.with_keys(meaning * (text == label)), is_above=True)
+        command_button(
+            self._gui,
+            self._messages,
+            command,
+            text,
+            name=label.lower(),
+            width=width,
+            meaning=meaning,
+            is_wanted=is_wanted,
+        )
 
     def _draw_speed(self) -> None:
         stay_in_line(em(SPEED_WIDTH))
@@ -123,14 +104,10 @@ class Timeline:
         if session.is_recording:
             status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
             status += "" if session.is_playing else ", paused"
-        told = self.dope_sheet.axis.told
-        time = f"{told(session.time)} of {told(session.script.duration).removeprefix('frame ')}"
+        time = f"{session.time:.2f} of {session.script.duration:.2f} s"
         stay_in_line(imgui.calc_text_size(time).x)
         imgui.text(shortened(time, imgui.get_content_region_avail().x))
-        self._gui.remember("time shown")
-        if imgui.is_item_clicked():
-            switch(self.dope_sheet.settings, "counts_frames")
-        hint("the time shown, and the script's length, whose end is in the ruler; a click: frames")
+        hint("the time shown, and the script's length, whose end is in the ruler")
         imgui.same_line(0.0, em(1.2))
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))
         where = session.file.path or "not kept in a file yet"

@@ -16,40 +16,30 @@ from ...refining.refiners import refiner_for
 from ...scenes import BUILT_IN, Scene, build_scene
 from ...script import Script
 from ..context import ApplicationContext
-from ..documents.export_dialog import ExportDialog
-from ..documents.file_dialogs import FileChooser
+from ..documents.export import ExportDialog
 from ..documents.file_drop import FileDrop
 from ..interface.commands import Command, MenuBar
 from ..marking import Marking, Room
 from ..messages import Message
-from ..panels.face import FacePanel, MuscleNote
-from ..panels.help import FirstSteps, Help
+from ..panels.face import FacePanel
+from ..panels.help import Help
 from ..panels.layout import Layout
 from ..panels.live import LivePanel
 from ..panels.mechanism import MechanismPanel
-from ..panels.pose_grid import PoseGrid
 from ..picture.mouse import Mouse
 from ..picture.painter import Painter
-from ..picture.skin_drag import SkinDrag
+from ..picture.skin import SkinDrag
 from ..session.physics import IdleLife, Physics
 from ..session.recovery import Recovery
 from ..session.session import Session
 from ..session.soundtrack import Soundtrack
-from ..settings import (
-    Display,
-    Settings,
-    load_settings,
-    remove_refused_options,
-    rename_unusable,
-    save_settings,
-)
+from ..settings import Display, save_settings
 from ..timeline.dope_sheet import DopeSheet
-from ..timeline.key_selection import KeySelection
+from ..timeline.key_marks import Waveform
+from ..timeline.keys import KeySelection
 from ..timeline.time_axis import TimeAxis
 from ..timeline.timeline import Timeline
-from ..timeline.waveform import Waveform
 from . import menus
-from .placement import Placement
 from .splash_screen import SplashScreen
 
 LOG = logging.getLogger("risorius.viewer")  # what is told where there is no window any more
@@ -76,40 +66,34 @@ class Application(ApplicationContext):
         Raises UserError for a script that names what the scene has not.
         """
         self._settings_path = settings_path
-        settings, complaint = Settings(), ""
-        if settings_path is not None:
-            settings, complaint = load_settings(settings_path)
-        is_own = script.scene != "face" or head is not None
-        splash = splash or SplashScreen(size, settings_path, is_own=is_own)
-        shown = display or settings.display
-        scene = splash.during(partial(_ready_scene, script, head, shown))
-        if display is None:
-            refused = remove_refused_options(settings.display, scene)
-            if refused and settings_path is not None and not complaint:
-                refused = f"{settings_path}: {refused}; {rename_unusable(settings_path)}"
-            complaint = "; ".join(filter(None, (complaint, refused)))
-        else:
+        splash = splash or SplashScreen(size, settings_path)
+        settings, complaint = splash.settings, splash.complaint
+        scene = splash.during(partial(_ready_scene, script, head, display or settings.display))
+        if display is not None:
             settings.display = display
+        else:
+            complaint = complaint or _without_refused_options(settings.display, scene)
         settings.display.remove_missing_overlays(scene)
         with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
             stack.push(splash)
             super().__init__(Session(scene, script), settings, splash.surface)
             stack.push(self.opened)
             self._resources = stack.pop_all()
-        self.recovery = Recovery(settings_path and settings_path.parent / "unsaved")
-        self.recovery.find(self.session)
+        self.recovery = Recovery(settings_path and settings_path.parent, self.session)
         self.soundtrack = Soundtrack(self.session)
         self._join_commands()
         self._join_panels()
         self.is_leaving = False
         if complaint:
             self.messages.say(complaint, error=True)
+        elif settings_path is not None and not settings_path.exists():
+            self.messages.say("Drag the skin, or press [Play]; [Keys and mouse] shows every key")
 
     def _join_commands(self) -> None:
         """What can be done, each with what it needs for that."""
         session, settings = self.session, self.settings
-        self.placement, self.time_axis = Placement(self.surface.handle), TimeAxis()
-        self.selection = KeySelection(session, self.panel_state)
+        self.time_axis = TimeAxis()
+        self.selection = KeySelection(session)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
         self.file_drop.has_other_head = session.scene.called not in ("", BUILT_IN)
@@ -120,10 +104,10 @@ class Application(ApplicationContext):
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
             *menus.keys_menu(session, self.selection),
-            *menus.view_menu(settings, self.view, self.placement, self.panel_state),
+            *menus.view_menu(settings, self.view, self.panel_state),
             *menus.expression_menu(session),
             *menus.live_menu(self.live),
-            *menus.help_menu(self.panel_state, lambda: self.first_steps.begin()),
+            *menus.help_menu(self.panel_state),
         )
         self.gui.keys = {each.label: each.displayed_keys for each in self.commands}
         self.life = IdleLife(session, lambda: settings.is_alive, lambda: self.view.camera.eye)
@@ -132,30 +116,21 @@ class Application(ApplicationContext):
 
     def _join_panels(self) -> None:
         """What is around the picture, and the mouse in it."""
-        session, settings, path = self.session, self.settings, self._settings_path
+        session = self.session
         bar = MenuBar(self.gui, self.messages, self.commands, lambda: session.unsaved)
         waveform = Waveform(self.gui, self.soundtrack, self.time_axis)
         dope_sheet = DopeSheet(self, self.selection, self.time_axis, bar, waveform)
         self.timeline = Timeline(self, self.commands, dope_sheet)
-        self.poses = PoseGrid(self, path and path.parent / "poses")
-        self.face_panel = FacePanel(self, self.poses)
+        self.face_panel = FacePanel(self)
         mechanism = MechanismPanel(self, self.file_drop)
-        record = next(each for each in self.commands if each.label == "Record")
-        live = LivePanel(self, record)
+        live = LivePanel(self, {each.label: each for each in self.commands})
         first = "Face" if session.scene.name == "face" else f"{readable(session.scene.name)}###Face"
         tabs = {first: self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(self, bar, tabs, self.timeline)
-        self.chooser = FileChooser(self.gui, self.files)
         self.help = Help(self)
         self.export_dialog = ExportDialog(self.gui, self.exporter, self.files, self.view)
-        self.muscle_note = MuscleNote(self)
-        grab = partial(SkinDrag, session, settings)
+        grab = partial(SkinDrag, session, self.settings)
         self.mouse = Mouse(self.view, self.stage, self.messages, grab, self.select_muscle)
-        self.first_steps = FirstSteps(self, lambda: (*self.mouse.gestures, session.is_playing))
-        if self._settings_path is not None and session.scene.name == "face":
-            if not settings.knows_first_steps:
-                self.first_steps.begin()
-            settings.knows_first_steps = True
 
     def close(self) -> None:
         """Remember the settings, and let go of everything."""
@@ -168,14 +143,13 @@ class Application(ApplicationContext):
         self.leave_marking()
         self.soundtrack.close()
         self.recovery.close()
-        self.poses.close()
         self._resources.close()
 
     def remember(self) -> None:
         """Write the settings as they are now; UserError where that cannot be."""
         if self._settings_path is not None:
             self.settings.cameras[self.session.scene.name] = self.view.camera_place
-            self.settings.size = self.placement.size
+            self.settings.size = self.gui.window_size
             save_settings(self._settings_path, self.settings)
 
     # What is done to the window as a whole
@@ -186,7 +160,7 @@ class Application(ApplicationContext):
         self.leave_marking()
         display = self.settings.display
         display.remove_missing_overlays(scene)
-        refused = remove_refused_options(display, scene)
+        refused = _without_refused_options(display, scene)
         self.stage.set_scene(scene, display)
         self.view.fit_scene()
         self.mouse.forget()
@@ -216,10 +190,9 @@ class Application(ApplicationContext):
             self.painter.forget()
 
     def select_muscle(self, name: str) -> None:
-        """Show a muscle's slider, in the panel and beside the mouse."""
+        """Show a muscle's slider in the panel."""
         self.panel_state.wanted_tab = "Face"
         self.face_panel.select(name)
-        self.muscle_note.name = name
 
     def ask_to_close(self) -> str | None:
         """Close the window, unless work would be lost: then ask first."""
@@ -235,6 +208,16 @@ class Application(ApplicationContext):
     def _close(self) -> str | None:
         self.is_leaving = self.surface.should_close = True
         return None
+
+
+def _without_refused_options(display: Display, scene: Scene) -> str:
+    """Refine by the look alone where a refiner refuses the scene; a line says why, "" for none."""
+    try:
+        refiner_for(scene, display.refinement_on(scene))
+    except UserError as error:
+        display.choose_preset(display.look)
+        return f"{error}; as at first"
+    return ""
 
 
 def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:

@@ -22,9 +22,8 @@ from ..picture.view import View
 from ..session.live_commands import LiveCommands
 from ..session.session import Session
 from ..settings import PanelState, Settings, switch
-from ..timeline.key_selection import KeySelection
+from ..timeline.keys import KeySelection
 from ..timeline.time_axis import TimeAxis
-from .placement import Placement
 
 Menu = tuple[Command, ...]
 VIEW_KEYS = {
@@ -57,7 +56,6 @@ def file_menu(
         command("Open script or recording ...", "Ctrl+O", scripts.ask_open),
         command("Recent", "", lambda: None, submenu=recent),
         command("Open head ...", "Ctrl+H", file_drop.ask_head),
-        command("Mark a head ...", "Ctrl+Shift+H", file_drop.ask_mesh),
         other("Built-in head", "", partial(file_drop.show_person, None)),
         command("Open sound ...", "Ctrl+U", scripts.ask_sound),
         command("Remove sound", "", scripts.remove_sound, can_run=lambda: scripts.has_sound),
@@ -74,14 +72,6 @@ def edit_menu(session: Session) -> Menu:
     """Undo, and whole faces."""
     command = partial(Command, "Edit")
 
-    def states() -> Menu:
-        """What was done, the latest first, and the way there."""
-        now, rows = session.history.place, list(enumerate(session.history.labels))[::-1]
-        return tuple(
-            command(f"{label}##{i}", "", partial(session.go_to, i), partial(now.__eq__, i))
-            for i, label in rows
-        )
-
     def named(verb: str, further: int) -> str:
         """The command, with what it takes back or does again."""
         place = session.history.place + further
@@ -95,12 +85,10 @@ def edit_menu(session: Session) -> Menu:
         redo(
             "Redo", "Ctrl+Y", session.redo, None, lambda: session.history.can_redo, "Ctrl+Shift+Z"
         ),
-        command("History", "", lambda: None, submenu=states),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
         command("Left to right", "Shift+M", partial(session.mirror, "left")),
         command("Right to left", "Ctrl+M", partial(session.mirror, "right")),
-        command("Random", "X", session.randomise),
     )
 
 
@@ -142,18 +130,15 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     command = partial(Command, "Keys")
     edit = partial(command, can_run=lambda: selection.can_edit)
     change = partial(command, can_run=lambda: selection.can_change)
-    name = partial(command, can_run=lambda: selection.can_rename)
     ease, is_eased = selection.ease, selection.is_eased
     return (
         edit("Set key", "K", selection.set_key),
         edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
         command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
         switch_of(lambda: session, "Keys", "Auto-key", "", "is_keying"),
-        name("Name of the pose ...", "Ctrl+K", selection.rename),
         change("Copy", "Ctrl+C", selection.copy),
         command("Paste", "Ctrl+V", selection.paste, can_run=lambda: bool(selection.copied)),
-        change("Duplicate", "Ctrl+D", selection.duplicate),
-        change("Delete", "Delete", selection.delete, by_key=selection.delete_if_meant),
+        change("Delete", "Delete", selection.delete),
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
@@ -161,7 +146,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     )
 
 
-def view_menu(settings: Settings, view: View, placement: Placement, panels: PanelState) -> Menu:
+def view_menu(settings: Settings, view: View, panels: PanelState) -> Menu:
     """How the scene is drawn, and what is around it."""
     command = partial(Command, "View")
     display_switch = partial(switch_of, lambda: settings.display, "View")
@@ -173,23 +158,16 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         display.choose_preset(FIRST_PRESET if display.look == PAPERS_PRESET else PAPERS_PRESET)
         return f"Look: {display.look}"
 
-    def toggle_full() -> Message:
-        """Fill the screen, or go back."""
-        placement.toggle_full()
-        return "[Full screen] leaves the full screen" if placement.is_full else None
-
     muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
     views = (  # Alt: where there is no number pad
         command(name, key, partial(view.look_from, name), other_key=key.replace("Keypad", "Alt+"))
         for name, key in VIEW_KEYS.items()
     )
-    full = partial(command, is_on=lambda: placement.is_full, other_key="Alt+Enter")
     return (
         display_switch("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_PRESET),
         display_switch("Compare: wipe", "D", "compare", "wipe", "off"),
         display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
-        display_switch("Compare: A or B alone", "B", "compare", "B alone", "A alone"),
         display_switch("Wireframe", "W", "wireframe"),
         display_switch("Colour by splits", "C", "colours", "splits", "none"),
         command("Next shading", "S", lambda: settings.display.next_shading()),
@@ -197,12 +175,10 @@ def view_menu(settings: Settings, view: View, placement: Placement, panels: Pane
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         setting("Idle life", "A", "is_alive"),
         setting("Curves", "G", "shows_curves"),
-        setting("Frame numbers", "", "counts_frames"),
         command("Frame the face", "F", view.fit_scene),
         *views,
         replace(display_switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
         command("Hide panels", "H", panels.toggle_hidden, lambda: panels.are_hidden),
-        full("Full screen", "F11", toggle_full),
         setting("Dark theme", "F2", "theme", "dark", "light"),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
@@ -222,17 +198,12 @@ def expression_menu(session: Session) -> Menu:
 def live_menu(live: LiveCommands) -> Menu:
     """A face that is sent while it moves."""
     command = partial(Command, "Live")
-    mirrored = partial(getattr, live, "is_mirrored")
     return (
         command("Listen", "Ctrl+L", live.toggle, lambda: live.is_on),
         command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.can_calibrate),
-        command("Mirrored", "", live.toggle_mirror, mirrored, lambda: live.is_on),
     )
 
 
-def help_menu(panels: PanelState, begin_steps: Task) -> Menu:
-    """The overview of keys, and how to begin."""
-    return (
-        Command("Help", "First steps", "", begin_steps),
-        switch_of(lambda: panels, "Help", "Keys and mouse", "F1", "is_help_open"),
-    )
+def help_menu(panels: PanelState) -> Menu:
+    """The overview of keys."""
+    return (switch_of(lambda: panels, "Help", "Keys and mouse", "F1", "is_help_open"),)

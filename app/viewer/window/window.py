@@ -17,9 +17,10 @@ from imgui_bundle import imgui
 
 from ...stopping import cleaned_up_if_stopped
 from ..documents.file_drop import LANDMARKS
-from ..documents.questions import draw_question, draw_recovery
+from ..documents.scripts import draw_question, draw_recovery
 from ..interface.commands import run_pressed
 from ..interface.gui import on_drop
+from ..panels.help import MOUSE
 from ..panels.layout import draw_message
 from ..picture.painter import Painter
 from ..session.live_commands import PACING
@@ -57,19 +58,19 @@ class Viewer(Application):
             self.session.toggle_playing()
         self._last = time.perf_counter()
         stopping = cleaned_up_if_stopped(self.exporter.close)  # when the work is safe
-        with stopping, self.recovery.guarding(self.session), cleaned_up_if_stopped(self.remember):
+        with stopping, self.recovery.guarding(), cleaned_up_if_stopped(self.remember):
             while True:
-                if self.placement.is_minimised:  # time stands still, and nothing is drawn
+                if self.gui.is_minimised:  # time stands still, and nothing is drawn
                     self._wait()
                 else:
                     self.frame()
-                self.messages.attempt(partial(self.recovery.watch, self.session))
+                self.messages.attempt(self.recovery.watch)
                 if self.surface.should_close:
                     self.surface.should_close = False
                     self.ask_to_close()
                     if self.surface.should_close:
                         break
-                    self.placement.restore()  # to be asked
+                    self.gui.restore()  # to be asked
                 is_over = playing and not self.session.is_playing
                 if once and is_over and not self.session.unsaved:
                     break
@@ -97,7 +98,7 @@ class Viewer(Application):
         room = self.room
         name = self.session.name if room is None else room.marking.path.name
         is_unsaved = self.session.unsaved if room is None else room.marking.unsaved
-        self.placement.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
+        self.gui.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
         is_moving = self._move_face(elapsed) if room is None else room.paint(elapsed)
         is_calm = self.physics.is_at_rest or self.physics.is_left_alone
         self.times.note_frame(elapsed if is_moving or not is_calm else 0.0)
@@ -204,15 +205,14 @@ class Viewer(Application):
         if is_moving and not (has_input or is_stale or self._is_scene_covered):
             return
         self.surface.resolve()
-        if self.room is not None:
-            self.surface.fill(self.room.view.panel, self.gui.theme.panel)
-        elif not self.panel_state.are_hidden:
-            left, bottom, width, _ = self.view.viewport
+        view = self.view if self.room is None else self.room.view
+        if self.room is not None or not self.panel_state.are_hidden:
+            left, bottom, width, _ = view.viewport
             self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
             self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_visible=True)
         self._panels_age, self._panels_size = 0.0, size
-        self._is_scene_covered = self.gui.covers(self.view.area)
+        self._is_scene_covered = self.gui.covers(view.area)
 
     def _draw_gui(self, *, is_visible: bool) -> None:
         """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
@@ -224,24 +224,21 @@ class Viewer(Application):
             gui.set_theme(self.settings.theme, self.settings.zoom)
             if room is None:
                 self.layout.draw(view)
-                self.first_steps.draw()
-                self.muscle_note.draw()
             else:
                 room.panel.draw(room.view)
-            messages.age(imgui.get_io().delta_time, self.session.history.present.values)
+            messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, view)
             if imgui.is_any_mouse_down():
                 view.pointed = {}
-            dialogs = self.chooser.draw, self.export_dialog.draw
+            dialogs = partial(self.files.draw, gui), self.export_dialog.draw
             for draw in (
-                partial(draw_recovery, gui, self.recovery, self.session, self.question, view),
+                partial(draw_recovery, gui, self.recovery, self.question, view),
                 *(() if self.question.is_open else dialogs),  # which wait for the answer
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
-            self.help.draw(commands)
-            if room is None:  # before a key undoes anything
-                view.follow_history(is_held=self.mouse.is_dragging or imgui.is_any_item_active())
+            self.help.draw(commands, MOUSE if room is None else ())
+            self.view.camera.is_orthographic = self.settings.display.is_orthographic
             if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
                 run_pressed(commands, messages, gui)
                 (self if room is None else room).mouse.follow()

@@ -1,8 +1,7 @@
-"""The rows of the timeline, a track each: which keys each has, and which of them are meant."""
+"""The keys of a script: in rows, a track each, and those that are selected."""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -10,9 +9,12 @@ from functools import partial
 import numpy as np
 
 from ...controls.vocabulary import readable
-from ...script import EASING_NAMES, Channel, Pose, Script
+from ...errors import counted
+from ...script import EASING_NAMES, Channel, Script, keyframes
 from ...script.keyframes import POSES, places_of
-from ...script.places import Places
+from ...script.places import NOWHERE, Places
+from ..messages import Message
+from ..session.session import Session
 
 TRACKS, ALL = "Tracks", "Whole poses"  # names of rows
 MOST_LINES = 7  # of a key's values that are told
@@ -30,7 +32,6 @@ class Track:
     track: str = ""  # that its keys are in
     parents: tuple[str, ...] = ()  # the names of the rows that it is folded into
     names: tuple[tuple[float, str], ...] = ()  # of poses, by time [s]
-    held: tuple[tuple[float, float], ...] = ()  # from, to [s]: two poses in a row are the same
     is_whole: bool = False  # poses, which are keys of all controls
     is_sum: bool = False  # of the rows below it, which may be folded
     number: int = 0  # among all rows
@@ -47,7 +48,7 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
         poses = Places({POSES: times.pop(POSES, np.empty(0))})
-        whole = Track(ALL, "Poses", poses, names=names, held=_held(script.poses), is_whole=True)
+        whole = Track(ALL, "Poses", poses, names=names, is_whole=True)
         rows.append(replace(whole, is_sum=bool(script.posed_names)))
         for name in script.posed_names:
             channel = script.posed_channel(name)
@@ -66,12 +67,6 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
             alone, channel = Places({name: times[name]}), script.tracks[name]
             rows.append(Track(f"track {name}", readable(name), alone, channel, name, name, parents))
     return tuple(replace(row, number=number) for number, row in enumerate(rows))
-
-
-def _held(poses: Sequence[Pose]) -> tuple[tuple[float, float], ...]:
-    """Where two poses in a row are the same."""
-    pairs = itertools.pairwise(poses)
-    return tuple((one.time, other.time) for one, other in pairs if one.values == other.values)
 
 
 def described(script: Script, places: Places) -> str:
@@ -95,3 +90,73 @@ def described(script: Script, places: Places) -> str:
 
 def _value(name: str, value: float) -> str:
     return f"{readable(name)} {value:.2f}"
+
+
+class KeySelection:
+    """Some keys of a session's script; menus, the keyboard and the timeline share it."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self.places = NOWHERE
+        self.copied: tuple[Script, Places] | None = None  # which can be pasted
+
+    @property
+    def can_edit(self) -> bool:
+        """Whether the script may be changed now."""
+        return not self._session.is_recording
+
+    @property
+    def can_change(self) -> bool:
+        """Whether there are keys that something could be done with."""
+        return bool(self.places) and self.can_edit
+
+    def set_key(self, *, is_whole: bool = False) -> Message:
+        """The face as it is becomes a key at the time shown; is_whole: of every track."""
+        time = self._session.set_key(is_whole=is_whole)
+        script = self._session.script
+        there = keyframes.places_of(script).near(time, keyframes.SAME)
+        self.places = Places({POSES: there.times[POSES]}) if POSES in there.times else there
+        return f"Key set at {time:.2f} s"
+
+    def delete(self) -> Message:
+        """Take the selected keys away."""
+        what = counted(len(self.places), "key")
+        self._session.edit(keyframes.without(self._session.script, self.places), f"Delete {what}")
+        return f"{what} deleted; [Undo] brings back"
+
+    def copy(self) -> Message:
+        """Keep the selected keys, to be pasted elsewhere."""
+        self.copied = self._session.script, self.places
+        return f"{counted(len(self.places), 'key')} copied; [Paste] pastes at the time shown"
+
+    def paste(self) -> Message:
+        """The keys that were copied, from the time shown on; also those of another script."""
+        assert self.copied is not None
+        source, places = self.copied
+        offset = keyframes.key_time(self._session.script, self._session.time) - places.first
+        script, self.places = keyframes.copied(self._session.script, places, offset, source)
+        what = counted(len(places), "key")
+        self._session.edit(script, f"Copy {what}")
+        return f"{what} copied to {places.first + offset:.2f} s"
+
+    def nudge(self, frames: int) -> None:
+        """Move the selected keys by so many frames."""
+        first = self.places.first
+        offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
+        script, places = keyframes.moved(self._session.script, self.places, offset)
+        self._session.edit(script, f"Move {counted(len(places), 'key')}")
+        self.places = places
+
+    def select_all(self) -> None:
+        """All keys of the script."""
+        self.places = keyframes.places_of(self._session.script)
+
+    def ease(self, easing: str) -> None:
+        """How the selected keys are approached."""
+        eased = keyframes.eased(self._session.script, self.places, easing)
+        self._session.edit(eased, f"Easing: {easing}")
+
+    def is_eased(self, easing: str) -> bool:
+        """Whether all selected keys are approached so."""
+        script = self._session.script
+        return bool(self.places) and keyframes.eased(script, self.places, easing) == script

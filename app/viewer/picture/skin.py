@@ -1,4 +1,4 @@
-"""A finger on the skin: it pulls, and the muscles that hold the skin there are solved meanwhile.
+"""The skin under the mouse: where that is, which muscle is there, and a finger that pulls it.
 
 Dragged skin hangs on springs between the vertices under the mouse and where it drags. Muscles and
 jaw follow (sim.Pull), and hold it when the springs go.
@@ -6,12 +6,15 @@ jaw follow (sim.Pull), and hold it when the springs go.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from risorius import sim
+from risorius import render, sim
+from risorius.sim.landmarks import polyline_distance
 
 from ...controls.mirror import OPPOSITE, TURNED, parted, twin_of
 from ...controls.vocabulary import called
@@ -19,7 +22,84 @@ from ...errors import counted
 from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings
-from .picking import muscle_at
+
+FloatArray = npt.NDArray[np.float64]
+MUSCLE_REACH = 14.0  # [mm] from a fibre within which a click on the skin means its muscle
+# A ray that meets an edge must not slip between its two triangles by the last bit.
+ROUNDING = 1e-9  # of a triangle; [mm] too
+
+
+@dataclass(frozen=True)
+class Ray:
+    """What the camera sees in one pixel."""
+
+    origin: FloatArray
+    direction: FloatArray
+
+    @classmethod
+    def through(
+        cls, camera: render.OrbitCamera, viewport: render.Rectangle, place: tuple[float, float]
+    ) -> Ray:
+        """The ray of `place` [pixels from the lower left corner of the surface]."""
+        left, bottom, width, height = viewport
+        to_clip = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
+        x = 2.0 * (place[0] - left) / width - 1.0
+        y = 2.0 * (place[1] - bottom) / height - 1.0
+        ends = np.array([[x, y, -1.0, 1.0], [x, y, 1.0, 1.0]]) @ np.linalg.inv(to_clip)
+        near, far = ends[:, :3] / ends[:, 3:]
+        return cls(near, (far - near) / np.linalg.norm(far - near))
+
+    def at_depth_of(self, point: FloatArray, axis: FloatArray) -> FloatArray:
+        """Where the ray meets the plane through `point` across `axis` (the line of sight)."""
+        along = float((point - self.origin) @ axis) / float(self.direction @ axis)
+        met: FloatArray = self.origin + along * self.direction
+        return met
+
+
+def skin_under(
+    ray: Ray, positions: FloatArray, faces: npt.NDArray[Any], *, from_outside: bool = True
+) -> FloatArray | None:
+    """The nearest point of the mesh that the ray meets, or None; `from_outside` or either side.
+
+    Möller and Trumbore 1997, for all triangles at once whose corners lie around the ray.
+    """
+    axes = np.linalg.svd(ray.direction[None])[2][1:]  # across the ray
+    for aside in ((positions - ray.origin) @ axis for axis in axes):
+        corners = aside[faces]
+        faces = faces[(corners.min(axis=1) < ROUNDING) & (corners.max(axis=1) > -ROUNDING)]
+    a, b, c = (positions[faces[:, corner]] for corner in range(3))
+    ab, ac = b - a, c - a
+    across = np.cross(ray.direction, ac)
+    volume = (ab * across).sum(axis=1)
+    met = (volume if from_outside else np.abs(volume)) > 1e-12
+    volume = np.where(met, volume, 1.0)
+    from_a = ray.origin - a
+    u = (from_a * across).sum(axis=1) / volume
+    turned = np.cross(from_a, ab)
+    v = (turned @ ray.direction) / volume
+    distance = (ac * turned).sum(axis=1) / volume
+    inside = (u >= -ROUNDING) & (v >= -ROUNDING) & (u + v <= 1.0 + ROUNDING)
+    hit = met & inside & (distance > 0.0)
+    if not hit.any():
+        return None
+    point: FloatArray = ray.origin + distance[hit].min() * ray.direction
+    return point
+
+
+def muscle_at(point: FloatArray, fibres: Mapping[str, Sequence[FloatArray]]) -> str | None:
+    """The muscle whose fibres come nearest to a point of the skin, or None if all are far."""
+    nearest = {  # its end once more: a fibre may be a single point
+        name: min(
+            float(polyline_distance(point[None], np.vstack([line, line[-1:]]))[0]) for line in lines
+        )
+        for name, lines in fibres.items()
+        if lines
+    }
+    if not nearest:
+        return None
+    name = min(nearest, key=lambda each: nearest[each])
+    return name if nearest[name] <= MUSCLE_REACH else None
+
 
 FINGER = 16.0  # [mm] the finger's radius
 FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
@@ -47,7 +127,6 @@ class SkinDrag:
         near = np.minimum(distance[self._vertices] / FINGER, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
         self.offset = np.zeros(3)
-        self.is_held = False  # by muscles, since it was let go
         poses = poses and not session.live_override.is_on  # which leads where it wants
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
@@ -85,7 +164,6 @@ class SkinDrag:
             return None
         pull.solve()
         self._obey(pull)
-        self.is_held = bool(pull.changes)
         names = [name for names in pull.changes for name in names]
         muscles = sum(not name.startswith("jaw_") for name in names)
         parts = counted(muscles, "muscle") if muscles else "", "jaw" * (muscles < len(names))
