@@ -193,17 +193,11 @@ def _numbers(other: Stranger, **places: int) -> list[int]:
     ("text", "message"),
     [
         ("{", "stranger.json: not valid JSON"),
-        ("{}", "stranger.json: holds no list"),
-        ("68", "stranger.json: holds no list"),
-        ("[" * 100_000, "stranger.json: not valid JSON"),
         ("[1, 2, 3]", "stranger.json: 3 landmarks; it must be the 68 iBug points"),
         (
             json.dumps([0] * 67 + [10**7]),
             r"'landmark 67': was 10000000, must be a whole number from 0 to",
         ),
-        (json.dumps([-1] * 68), "'landmark 0': was -1"),
-        (json.dumps([0] * 67 + [[1.0, 2.0, 3.0]]), "every landmark must be a vertex number, or"),
-        (json.dumps([[1, 2]] * 68), "every landmark must be a vertex number, or"),
         (json.dumps([[9.0, 9.0, float(n)] for n in range(68)]), "units off the mesh"),
         (json.dumps([5] * 68), "all landmarks are one point"),
     ],
@@ -216,15 +210,6 @@ def test_broken_landmark_files_are_named(
     numbers.write_text(text)
     with pytest.raises(AssetError, match=message):
         fit_head(mesh, numbers)
-
-
-def test_missing_landmark_file(other: Stranger, tmp_path: Path) -> None:
-    """A path that leads nowhere, or to no end, is one line."""
-    mesh, _ = other.write(tmp_path)
-    with pytest.raises(AssetError, match=r"/dev/zero: is a device"):
-        fit_head(mesh, "/dev/zero")
-    with pytest.raises(AssetError, match=r"nowhere.json: no such landmark file"):
-        fit_head(mesh, tmp_path / "nowhere.json")
 
 
 @pytest.mark.parametrize(("off", "is_allowed"), [(0.04, True), (0.07, False)])

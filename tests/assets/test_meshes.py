@@ -97,11 +97,7 @@ def test_corners_of_stl_become_vertices(tmp_path: Path) -> None:
     [
         ("absent.obj", None, r"absent\.obj: no such mesh file"),
         ("mesh.doc", "hello", r"its name must end in \.obj, \.ply, \.stl"),
-        ("points.obj", "v 0 0 0\nv 1 1 1\n", "holds no triangles"),
-        ("mesh.ply", "ply\nformat nonsense\n", "broken, or not what its name says"),
         ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", r"vertex 1 .* at \[nan, 0"),
-        ("far.obj", "v 0 0 0\nv 1e300 0 0\nv 0 1 0\nf 1 2 3\n", "must be finite numbers up to 1e"),
-        ("flat.obj", "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n", "line 1: a vertex has 2 coordinates"),
     ],
 )
 def test_mistakes_are_told(tmp_path: Path, name: str, content: str | None, message: str) -> None:

@@ -10,7 +10,7 @@ import os
 import struct
 from collections.abc import Callable
 from enum import Enum
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -161,7 +161,6 @@ def _mesh(name: str, content: bytes | str, folder: Path) -> Brought:
     return Brought(path)
 
 
-@cache
 def _obj(where: Any = 0, to: Any = None, scale: float = 1.0, shift: float = 0.0) -> bytes:
     """The built-in head as an OBJ file, with some vertices elsewhere."""
     vertices = HEAD.vertices * scale + shift

@@ -64,15 +64,6 @@ def test_broken_recordings(name: str, tmp_path: Path) -> None:
     assert REFUSED[name][1] in str(refusal.value)
 
 
-@pytest.mark.parametrize("name", ["pipe.toml", "zeros.toml", "loop.toml", "folder", "nowhere"])
-def test_no_files(name: str, sandbox: Path) -> None:
-    """What is no file, or not there, is told at once."""
-    with bounded(), pytest.raises(UserError) as refusal:
-        assert not is_recording(sandbox / name)
-        read_take(sandbox / name)
-    check_line(str(refusal.value))
-
-
 def damaged(chance: random.Random) -> bytes:
     """A good recording with a few places changed, more often near its beginning."""
     content = bytearray(GOOD[chance.choice(sorted(GOOD))])

@@ -64,16 +64,6 @@ def test_wrong_scripts(name: str, tmp_path: Path, scenes: dict[str, Scene]) -> N
     assert REFUSED[name][1] in str(refusal.value)
 
 
-@pytest.mark.parametrize(
-    "name", ["pipe.toml", "zeros.toml", "loop.toml", "folder", "nowhere.toml", "notes.txt/x"]
-)
-def test_no_files(name: str, sandbox: Path, scenes: dict[str, Scene]) -> None:
-    """What is no file, or not there, is told at once."""
-    with pytest.raises(UserError) as refusal:
-        opened(sandbox / name, scenes)
-    check_line(str(refusal.value))
-
-
 def damaged(chance: random.Random) -> bytes:
     """A good script with a few places changed."""
     content = bytearray(chance.choice(GOOD))
