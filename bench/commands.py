@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ import click
 from risorius.app.cli.parameters import FiniteRange, Size
 from risorius.app.errors import UserError, in_one_line
 
-from .report import conclude, json_writer, say_progress
+from .report import conclude, say_progress
 
 PATH = click.Path(path_type=Path)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
@@ -22,7 +21,6 @@ MESHES = ("face", "2k", "20k", "200k", "1M")
 needed_reference = click.option(
     "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
 )
-json_option = click.option("--json", "json_file", type=PATH, help="Figures for programs.")
 size_option = click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
 
 
@@ -62,18 +60,12 @@ def bench() -> None:
     show_default=True,
     help="kahler-gl: on the graphics card, beside kahler.",
 )
-@json_option
-def bench_refine(
-    sizes: tuple[str, ...], seconds: float, refiner: str, json_file: Path | None
-) -> None:
+def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str) -> None:
     """Time refinement on the face and on meshes of up to a million triangles."""
     from . import refine, refine_gl
 
-    save = json_writer(json_file)
-    room = refine_gl if refiner == "kahler-gl" else refine
-    found: Any = room.measure(sizes or refine.SIZES, seconds, say_progress)
-    click.echo(room.report(found))
-    save(asdict(found))
+    room: Any = refine_gl if refiner == "kahler-gl" else refine
+    click.echo(room.report(room.measure(sizes or refine.SIZES, seconds, say_progress)))
 
 
 @bench.command("quality")

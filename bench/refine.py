@@ -18,7 +18,7 @@ from __future__ import annotations
 import gc
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
@@ -89,14 +89,6 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Report:
-    """All that one run found."""
-
-    processor: str
-    rows: list[Row] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
 class _Case:
     """A method and the mean number of its triangles."""
 
@@ -109,15 +101,15 @@ def measure(
     sizes: Sequence[str] = SIZES,
     seconds: float = 7.0,
     progress: Callable[[str], object] = lambda _: None,
-) -> Report:
+) -> list[Row]:
     """Measure each of `sizes`, "face" or a key of TRIANGLE_COUNTS, for about `seconds` each."""
-    report = Report(processor())
+    rows = []
     for size in sizes:
         progress(size)
         load = load_of(size)
         cases = _face_cases(load) if size == "face" else _waving_cases(load)
-        report.rows.extend(_timed(load, cases, seconds))
-    return report
+        rows += _timed(load, cases, seconds)
+    return rows
 
 
 def load_of(size: str) -> Load:
@@ -262,15 +254,15 @@ def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> npt.NDArr
     return seconds
 
 
-def report(found: Report) -> str:
+def report(found: Sequence[Row]) -> str:
     """The text to print."""
     lines = [
-        f"Refinement, serial, one core of {found.processor}: medians of interleaved rounds;",
+        f"Refinement, serial, one core of {processor()}: medians of interleaved rounds;",
         "positions in, filled render buffers out (normals, criterion, points, table, output).",
         "Compare rows of one mesh only. Uniform ones make 4 or 16 of every triangle.",
     ]
     columns = "method:<27|out:9.0f|ms:9.4f|best:9.4f|ns/tri:7.1f"
-    for mesh, group in groupby(found.rows, key=lambda row: row.mesh):
+    for mesh, group in groupby(found, key=lambda row: row.mesh):
         rows = list(group)
         cells = [
             (

@@ -1,18 +1,15 @@
-"""What all commands of `risorius bench` print and write: tables, targets, figures for programs."""
+"""What all commands of `risorius bench` print: tables, targets, and what machine it was."""
 
 from __future__ import annotations
 
-import json
 import platform
 import re
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import click
-
-from risorius.app.errors import in_one_line
 
 
 def table(
@@ -62,20 +59,6 @@ def conclude(text: str, targets: Iterable[Target]) -> None:
     click.echo("\n".join([text, "", *map(str, targets)]).rstrip())
     if not all(target.is_met for target in targets):
         sys.exit(1)
-
-
-def json_writer(target: Path | None) -> Callable[[object], None]:
-    """What writes figures for programs into `target`, if it was given; checked before any work."""
-    from risorius.app.files import check_file, save_text
-
-    def save(figures: object) -> None:
-        if target is not None:
-            save_text(target, json.dumps(figures, indent=1) + "\n")
-            click.echo(f"{in_one_line(target)}: written", err=True)
-
-    if target is not None:
-        check_file(target)
-    return save
 
 
 def say_progress(name: str) -> None:

@@ -131,21 +131,6 @@ class OneOf:
 
 
 @dataclass(frozen=True)
-class Rows:
-    """Of a table: every key is one of these names, every value of one type."""
-
-    names: Iterable[str] | Callable[[], Iterable[str]]
-    value: Any
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        """A table with keys and values of these kinds."""
-        names = OneOf(self.names).__get_pydantic_core_schema__(str, handler)
-        return core_schema.dict_schema(names, handler.generate_schema(self.value))
-
-
-@dataclass(frozen=True)
 class MadeFrom:
     """Of any type: made by a function, which may raise ValueError, from what files have for it."""
 

@@ -16,7 +16,7 @@ from risorius import assets
 from risorius.assets.eyeballs import IRISES
 from risorius.assets.identities import DARKEST, LIGHTEST
 from risorius.render import LIGHTS
-from risorius.schema import REST, MadeFrom, OneOf, Record, Rows, Within, called, parsed_toml, read
+from risorius.schema import REST, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
 
 from ..errors import UserError
 from ..files import NoSuchFileError, read_text
@@ -59,20 +59,20 @@ def _between(low: float, high: float) -> MadeFrom:
 
 def _drawn_from(names: Iterable[str] | Callable[[], Iterable[str]]) -> MadeFrom:
     """Of shares: a table of these names and weights."""
-    return MadeFrom(Annotated[Shares, Rows(names, Weight)], _drawn)
+    return MadeFrom(dict[Annotated[str, OneOf(names)], Weight], _drawn)
 
 
 Weight = Annotated[float, Within(0.0, 1e6)]
 Share = Annotated[float, Within(0.0, 1.0)]
 Degrees = Annotated[float, Within(0.0, 15.0)]
-Pairs = list[list[Annotated[str, OneOf(_units)]]]
+Unit = Annotated[str, OneOf(_units)]
 
 
 @dataclass(frozen=True)
 class Expression(Record):
     """How often it comes, how often on one side alone, and how often each unit is in it."""
 
-    units: Annotated[Shares, called(REST), Rows(_units, Share)]
+    units: Annotated[dict[Unit, Share], called(REST)]
     share: Weight = 0.0
     one_sided: Share = 0.0
 
@@ -99,7 +99,7 @@ def _pairs(pairs: list[list[str]]) -> tuple[frozenset[str], ...]:
 class Excluded(Record):
     """Units that are not there together."""
 
-    pairs: Annotated[tuple[frozenset[str], ...], MadeFrom(Pairs, _pairs)]
+    pairs: Annotated[tuple[frozenset[str], ...], MadeFrom(list[list[Unit]], _pairs)]
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class SampleTable(Record):
     letters: Annotated[Shares, _drawn_from(LETTERS)]
     expressions: Annotated[Mapping[str, Expression], MadeFrom(dict[str, Expression], _expressions)]
     units: Annotated[Shares, _drawn_from(_units)]
-    together: Annotated[Mapping[str, Shares], Rows(_units, Annotated[Shares, Rows(_units, Share)])]
+    together: dict[Unit, dict[Unit, Share]]
     excluded: Excluded
     speech: Annotated[Shares, _drawn_from(lambda: _layer("Visemes"))]
     sides: Sides

@@ -15,7 +15,6 @@ WRITERS = {
     "picture": ("capture", "--set", "joy", "-o", "x.png"),
     "sheet": ("capture", "--sheet", "x.png"),
     "figure": ("reproduce", "figure9", "-o", "x.png"),
-    "table": ("bench", "refine", "--json", "x.json"),
 }
 
 
@@ -29,7 +28,6 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in (
         "risorius.app.capture.Capture.play",
         "risorius.bench.reproduce.figure_9.outcome",
-        "risorius.bench.refine.measure",
     ):
         monkeypatch.setattr(name, work)
     monkeypatch.chdir(tmp_path)
