@@ -135,6 +135,7 @@ class Pipeline:
 
     def refine(self, camera: render.OrbitCamera, viewports: Sequence[Viewport]) -> None:
         """Refine each mesh; a frame that nobody draws, too: the next one may remember it."""
+        self.renderer.surface.make_current()  # where streams of the graphics card are
         for drawn, area, _ in viewports:
             drawn.refine(self.scene.positions, camera, area)
 

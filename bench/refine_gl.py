@@ -19,6 +19,7 @@ import numpy.typing as npt
 from risorius import refine
 from risorius.app.errors import UserError
 from risorius.refine_gl import KahlerGl
+from risorius.refine_gl.context import own_context
 from risorius.refine_gl.tables import GROUP
 from risorius.render.surface import is_software
 
@@ -76,7 +77,6 @@ def measure(
     Raises UserError without OpenGL 4.3.
     """
     found: list[Row] = []
-    card = None
     for size in sizes:
         progress(size)
         load = load_of(size)
@@ -86,10 +86,10 @@ def measure(
                 raise UserError(
                     "--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` tells more"
                 )
-            card = bound
             found.append(_row(load, method, options, bound, seconds / len(METHODS)))
-    assert card is not None
-    return Report(processor(), card.driver, is_software(card.driver), found)
+    own = own_context()
+    driver = str(own.run(own.gl.info.__getitem__, "GL_RENDERER"))
+    return Report(processor(), driver, is_software(driver), found)
 
 
 def _row(
@@ -97,14 +97,13 @@ def _row(
 ) -> Row:
     """Time a method on all frames of a mesh."""
     serial = refine.create("kahler", load.faces, load.rest, **options)
-    first = [card.cost_of(frame) for frame in load.frames]  # compiles
     counts = [serial.refine(frame) for frame in load.frames]
     sizes = [(mesh.vertex_count, mesh.triangle_count) for mesh in counts]
-    moved = [sum(traffic(card, frame).values()) for frame in load.frames]
+    moved = [sum(traffic(card, frame).values()) for frame in load.frames]  # compiles
     times: list[float] = []
 
     def on_card() -> None:
-        times.extend(card.cost_of(frame).milliseconds for frame in load.frames)
+        times.extend(card.time(frame) for frame in load.frames)
 
     def on_processor() -> None:
         for frame in load.frames:
@@ -122,11 +121,11 @@ def _row(
         triangles_out=float(np.mean([triangles for _, triangles in sizes])),
         processor_milliseconds=1e3 * float(np.median(seconds_of)),
         card_milliseconds=float(np.median(times)),
-        dispatches=first[0].dispatches,
-        upload_bytes=first[0].upload_bytes,
+        dispatches=len(card.passes),
+        upload_bytes=load.rest.nbytes,
         arrays_bytes=float(np.mean(arrays)),
         traffic_bytes=float(np.mean(moved)),
-        room_bytes=first[0].room_bytes,
+        room_bytes=card.room_bytes,
     )
 
 
@@ -142,7 +141,7 @@ def traffic(card: KahlerGl, positions: npt.NDArray[np.float64]) -> dict[str, int
     once, twice = int((splits > 0).sum()), int((splits > 1).sum())
     centres = n - w - int((splits + (splits >> 1)).sum())
     values = 4 * (card.vertex_columns - 6)
-    is_curved = card.scheme == "cubic"
+    is_curved = "place_curves" in card.passes
     found = {
         "normals": v * (8 + 24 + 32) + 3 * f * (4 + 12 + 72) + is_curved * (32 * v + 12 * f),
         "mark": r * (4 + 16 + 8) + (e * (3 * 16 + 12) if is_curved else r * (32 + 12)),

@@ -8,7 +8,7 @@ context, and fetches nothing. Handed arrays, or nothing, it uses a context of it
 import functools
 import logging
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, NamedTuple, Unpack, cast
+from typing import Any, Literal, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -89,18 +89,6 @@ def create_kahler_gl(
 @functools.cache
 def _tell(text: str) -> None:
     log.warning(text)
-
-
-class FrameCost(NamedTuple):
-    """What a frame took on the card."""
-
-    milliseconds: float
-    """By the card's own clock, from the first pass to the last [ms]."""
-    dispatches: int
-    upload_bytes: int
-    """What was handed over for it."""
-    room_bytes: int
-    """All buffers."""
 
 
 class KahlerGl(BaseRefiner):
@@ -198,26 +186,23 @@ class KahlerGl(BaseRefiner):
         out.source[:triangle_count] = mesh.source
         return vertex_count, triangle_count
 
-    def cost_of(self, positions: npt.NDArray[np.floating]) -> FrameCost:
-        """Refine a frame in a context of our own, and once more against the clock; this waits."""
-        self.take(positions, None)
-        self._refine_own(None)
-        frames, buffers, metric = self._frames, self._own_buffers, self._measured(None)
+    @property
+    def passes(self) -> list[str]:
+        """The dispatches of a frame, by name, in their order."""
+        return self._rules.passes
+
+    def time(self, positions: npt.NDArray[np.floating]) -> float:
+        """Refine a frame in a context of our own, and once more by the card's clock [ms]; waits."""
+        self.refine(positions)
+        frames, buffers = self._frames, self._own_buffers
         assert frames is not None and buffers is not None
-        milliseconds = self._run(frames.timed, self.positions, metric, buffers)
-        upload = self.positions.nbytes + (0 if metric is None else metric.nbytes)
-        room = frames.room_bytes + buffers.room_bytes
-        return FrameCost(milliseconds, len(self._rules.passes), upload, room)
+        milliseconds: float = self._run(frames.timed, self.positions, self._measured(None), buffers)
+        return milliseconds
 
     @property
-    def scheme(self) -> str:
-        """Where its points go: "loop" or "cubic"."""
-        return self._rules.scheme
-
-    @property
-    def driver(self) -> str:
-        """What OpenGL calls the card that frames without a context go to."""
-        return str(self._own_context.run(self._own_context.gl.info.__getitem__, "GL_RENDERER"))
+    def room_bytes(self) -> int:
+        """Of all buffers on the card: none before the first frame."""
+        return sum(each.room_bytes for each in (self._frames, self._own_buffers) if each)
 
     def _refine_own(self, view: View | None) -> GpuMesh:
         own = self._own_context

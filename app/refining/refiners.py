@@ -28,7 +28,8 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
     try:
         if refinement.options:
             _check(name, refinement.options)
-        if options.get("scheme") == DETAIL and "detail" not in options:
+        takes_detail = any(each.name == DETAIL for each in refine.parameters(name))
+        if options.get("scheme") == DETAIL and "detail" not in options and takes_detail:
             options["detail"] = finer_mesh(scene)
             if options["detail"] is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")

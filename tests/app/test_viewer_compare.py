@@ -79,6 +79,21 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer: Viewer, tmp_path: Pa
     assert not viewer.surface.labels
 
 
+def test_the_refiner_on_the_card_is_one_of_the_list(viewer: Viewer) -> None:
+    """Chosen by the mouse it draws from the card, and the picture is as it was; set back, too."""
+    only_open(viewer, "Refinement")
+    pictures = [viewer.stage.draw_image(viewer.view)]
+    in_panel(viewer, ("Refiner", "kahler-gl"))
+    assert isinstance(viewer.stage.refined.stream, render.GpuStream)
+    pictures.append(viewer.stage.draw_image(viewer.view))
+    assert viewer.stage.refined.label == "kahler-gl" and not viewer.messages.text
+    assert np.array_equal(*pictures)
+    in_panel(viewer, ("scheme", "detail"))
+    assert "scheme must be one of ('loop', 'cubic')" in viewer.messages.text
+    click(viewer, "Reset all")
+    assert isinstance(viewer.stage.refined.stream, render.Stream)
+
+
 def test_the_number_pad_looks_from_all_sides(viewer: Viewer) -> None:
     """Exactly, and about the same point from as far; Alt does where there is no number pad."""
     camera = viewer.view.camera

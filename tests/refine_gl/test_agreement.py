@@ -213,11 +213,12 @@ def test_a_thousand_random_meshes() -> None:
     assert_random_meshes_same(range(40, 1040))
 
 
+@both_rules
 @pytest.mark.parametrize("frames", [60, pytest.param(500, marks=pytest.mark.slow)])
-def test_coherent_frames(frames: int, head: Head) -> None:
+def test_coherent_frames(frames: int, rules: str, head: Head) -> None:
     """A face that moves: what triangles remember stays on the card, and is the same."""
     face = sim.create(head)
-    processor, card = bound_twice(head.faces, head.vertices, coherent=True)
+    processor, card = bound_twice(head.faces, head.vertices, coherent=True, **RULES[rules])
     for frame in range(frames):
         for place, name in enumerate(("joy", "anger", "yawn")):
             face.set(name, float(frame // 20 % 3 == place))

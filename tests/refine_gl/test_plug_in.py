@@ -209,7 +209,7 @@ def test_what_the_card_has_not(options: dict[str, Any], words: str) -> None:
 def test_a_look_that_the_card_has_not(tmp_path: Path) -> None:
     """On the command line that is one line, and nothing is written."""
     picture = tmp_path / "joy.png"
-    told = "--refiner", "kahler-gl", "--option", "scheme=round"
+    told = "--refiner", "kahler-gl", "--option", "scheme=detail"
     result = risorius("capture", "-o", picture, "--set", "joy=1", *told)
     assert "risorius: refiner kahler-gl: scheme must be one of" in refusal(result)
     assert not picture.exists()
