@@ -28,8 +28,8 @@ from .motion import tally
 from .stopping import cleaned_up_if_stopped, handle_signals
 
 Send = Callable[[object], None]  # hands something over to whoever started the work
-LIBRARIES = ("LP_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""Who takes as many threads as there are cores, in each process: software OpenGL, and BLAS."""
+LIBRARIES = [f"{name}_NUM_THREADS" for name in ("LP", "OMP", "OPENBLAS", "MKL", "NUMBA")]
+"""Who takes as many threads as there are cores, in each process: OpenGL, BLAS and refinement."""
 ATTEMPTS = 3  # at work whose process dies
 AHEAD = 4  # messages that wait while nobody takes them
 GRACE = 5.0  # [s] for a process to clean up, until it is killed

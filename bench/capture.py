@@ -1,9 +1,10 @@
 """What `risorius bench capture` prints: frames a second of a film, and where its time goes.
 
-The film is the face's script, as the mesh is and refined, side by side. It is made by one process
-and by as many as `capture` takes here, in turn: on a shared machine only cases of one run can be
-compared. Stages are those of one process that waits for OpenGL after each of them, in frames that
-are drawn: where the face is still, a film shows its last picture again.
+The film is the face's script, as the mesh is and refined, side by side; of a head of one's own
+refined alone. It is made by one process and by as many as `capture` takes here, in turn: on a
+shared machine only cases of one run can be compared. Stages are those of one process that waits for
+OpenGL after each of them, in frames that are drawn: where the face is still, a film shows its last
+picture again.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from risorius.app.motion import scene_of
 from risorius.app.performances import script_for
 from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.script import Script
+from risorius.assets.fitting import FittedHead
 
 from .report import processor, table
 
@@ -36,40 +38,31 @@ REST, WITHIN = "read back, captions", ("refinement", "upload", "draw")
 STAGES = ("simulate", *WITHIN, REST, "encode")
 
 
-def report(size: tuple[int, int], seconds: float) -> str:
-    """Make films of so many seconds of the script; the text to print."""
+def report(size: tuple[int, int], seconds: float, head: FittedHead | None = None) -> str:
+    """Make films of so many seconds of the script, of a head; the text to print."""
     whole = script_for(None, "face")
     script = replace(whole, duration=min(seconds, whole.duration), poses=whole.poses)
-    options = CaptureOptions(size=size, beside=(Refinement(refiner=STATIC),), camera=script.camera)
+    beside = (Refinement(refiner=STATIC),) if head is None else ()
+    options = CaptureOptions(size=size, beside=beside, camera=script.camera, head=head)
     frame_count = round(script.duration * options.frames_per_second) + 1
     usual = processes.worthwhile(options, frame_count)
     counts = sorted({1, usual})
-    walls: dict[int, list[float]] = {count: [] for count in counts}
-    used: dict[int, list[float]] = {count: [] for count in counts}
+    taken: dict[int, list[tuple[float, float]]] = {count: [] for count in counts}
     milliseconds: dict[str, list[float]] = {stage: [] for stage in STAGES}
     with tempfile.TemporaryDirectory() as folder:
         film = Path(folder) / "film.mp4"
         for turn in range(ROUNDS):
             for count in counts if turn % 2 == 0 else reversed(counts):
                 with mock.patch.object(processes, "worthwhile", lambda *_, n=count: n):
-                    wall, processor_time = _timed(script, options, film)
-                walls[count].append(wall)
-                used[count].append(processor_time)
+                    taken[count].append(_timed(script, options, film))
         name, drawn_count = _time_stages(script, options, film, milliseconds)
     width, height = size
-    rows = [
-        (
-            f"{count} process" + ("es" if count > 1 else ""),
-            frame_count / float(np.median(walls[count])),
-            float(np.median(walls[count])),
-            float(np.median(used[count])),
-        )
-        for count in counts
-    ]
+    medians = {count: np.median(each, axis=0) for count, each in taken.items()}
+    rows = [(f"{n} process(es)", frame_count / each[0], *each) for n, each in medians.items()]
     stages = [(stage, float(np.median(each))) for stage, each in milliseconds.items()]
     return "\n".join(
         [
-            f"A film of {frame_count} frames of two heads, {width}x{height}, 4 samples,",
+            f"A film of {frame_count} frames of {1 + len(beside)}, {width}x{height}, 4 samples,",
             f"{drawn_count} of them drawn, the others still, on",
             f"{name}, {os.cpu_count()} cores of {processor()};",
             f"{ROUNDS} interleaved rounds, medians; processor time with that of the encoder.",
@@ -109,7 +102,7 @@ def _time_stages(
         spent[stage] += 1e3 * (time.perf_counter() - begin)
 
     with (
-        Capture(scene_of(script), options) as studio,
+        Capture(scene_of(script, options.head), options) as studio,
         outputs.film(film, options.size, options.frames_per_second) as add,
     ):
         pipeline, gl = studio.pipeline, studio.surface.gl

@@ -23,7 +23,7 @@ def main() -> list[trimesh.Trimesh]:
     """Twist a capsule in eight frames; the refined frames as meshes of trimesh."""
     mesh = trimesh.creation.capsule(height=4.0, radius=1.0, count=[10, 10])
     mesh.apply_scale([1.0, 0.5, 1.0])  # flat, so that a twist bends it
-    refiner = refine.from_trimesh(mesh, scheme="loop", criterion="normal")  # the paper's rule
+    refiner = refine.TrimeshRefiner(mesh, scheme="loop", criterion="normal")  # the paper's rule
     return [refiner.as_trimesh(twisted(mesh, angle)) for angle in np.linspace(0.0, np.pi, 8)]
 
 

@@ -15,7 +15,7 @@ refined mesh breaks.
 `kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
 turns, `attributes` what rides along. Schemes, criteria and refiners of somebody else join by name:
-`register_scheme`, `register_criterion`, `register`, or an entry point; `Scheme`, `Criterion` and
+`schemes.register`, `criteria.register`, `register`, or an entry point; `Scheme`, `Criterion` and
 `BaseRefiner` are to derive from.
 
 One room for each subject; each may import from those above it, and from jit.py, which compiles it
@@ -38,16 +38,15 @@ from .beyond.cubic import CubicScheme
 from .beyond.curvature import Curvature, RestCurvature
 from .beyond.detail import DetailScheme
 from .beyond.displacement import Displacement
-from .beyond.measuring import Maximum
+from .beyond.measuring import Maximum, Silhouette
 from .beyond.options import create_kahler
-from .beyond.view_dependent import ScreenEdge, Silhouette
 from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
 from .border.corner_values import Values
 from .border.plugin import GpuStream, Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, available, create, parameters, refiners, register
 from .border.stream import StreamArrays
-from .hosts import TrimeshRefiner, WeldedRefiner, from_trimesh
+from .hosts import TrimeshRefiner, WeldedRefiner
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
     THRESHOLD_ONCE,
@@ -55,13 +54,11 @@ from .kahler.criterion import (
     Criterion,
     NormalDrop,
     criteria,
-    register_criterion,
 )
 from .kahler.frame import FrameBuffers
 from .kahler.refiner import Kahler
-from .kahler.smoothing import LoopScheme, Scheme, register_scheme, schemes
+from .kahler.smoothing import LoopScheme, Scheme, schemes
 from .mesh.connectivity import Connectivity, connect
-from .mesh.reorder import Order, reorder
 from .mesh.seams import weld
 from .others import Loop, PassThrough
 from .strain import Shortening, Tension, TensionMap
@@ -84,7 +81,6 @@ __all__ = [
     "Loop",
     "Maximum",
     "NormalDrop",
-    "Order",
     "Origins",
     "PassThrough",
     "RefinedMesh",
@@ -92,7 +88,6 @@ __all__ = [
     "Registry",
     "RestCurvature",
     "Scheme",
-    "ScreenEdge",
     "Shortening",
     "Silhouette",
     "Stream",
@@ -109,13 +104,9 @@ __all__ = [
     "create",
     "create_kahler",
     "criteria",
-    "from_trimesh",
     "parameters",
     "refiners",
     "register",
-    "register_criterion",
-    "register_scheme",
-    "reorder",
     "schemes",
     "weld",
 ]
@@ -123,13 +114,12 @@ __all__ = [
 register("kahler", create_kahler)
 register("loop", Loop)
 register("none", PassThrough)
-register_criterion("normal", NormalDrop)
-register_criterion("curvature", Curvature)
-register_criterion("rest", RestCurvature)
-register_criterion("border", BorderTurn)
-register_criterion("displacement", Displacement)
-register_criterion("silhouette", Silhouette)
-register_criterion("screen", ScreenEdge)
-register_scheme("loop", LoopScheme)
-register_scheme("cubic", CubicScheme)
-register_scheme("detail", DetailScheme)
+criteria.register("normal", NormalDrop)
+criteria.register("curvature", Curvature)
+criteria.register("rest", RestCurvature)
+criteria.register("border", BorderTurn)
+criteria.register("displacement", Displacement)
+criteria.register("silhouette", Silhouette)
+schemes.register("loop", LoopScheme)
+schemes.register("cubic", CubicScheme)
+schemes.register("detail", DetailScheme)

@@ -123,10 +123,21 @@ class WeldedRefiner:
 
 
 class TrimeshRefiner(WeldedRefiner):
-    """Refines a `trimesh.Trimesh` in motion; `from_trimesh` makes it."""
+    """Refines a `trimesh.Trimesh` in motion, textured or not.
+
+        refiner = refine.TrimeshRefiner(mesh)
+        for vertices in motion:
+            frame = refiner.as_trimesh(vertices)      # or refiner.refine(vertices): arrays alone
+
+    trimesh has vertices twice where texture coordinates or normals differ. They are welded, and
+    part again where the mesh carries data.
+    """
 
     def __init__(self, mesh: Any, *, weld: bool = True, **options: Any) -> None:
-        """Bind to a mesh at rest; see `from_trimesh`."""
+        """Bind to a mesh at rest, as `WeldedRefiner` does.
+
+        Raises ValueError for anything else than a mesh of trimesh, and for what cannot be bound.
+        """
         bases: list[Any] = [base for base in type(mesh).__mro__ if base.__name__ == "Trimesh"]
         if not bases:
             raise ValueError(
@@ -135,7 +146,8 @@ class TrimeshRefiner(WeldedRefiner):
             )
         self._type = bases[0]  # a primitive is one, too, but cannot be made of triangles
         self._rest = mesh.copy()
-        super().__init__(mesh.vertices, mesh.faces, weld=weld, seams=_has_data(mesh), **options)
+        has_data = mesh.visual.kind in ("texture", "vertex") or bool(mesh.vertex_attributes)
+        super().__init__(mesh.vertices, mesh.faces, weld=weld, seams=has_data, **options)
 
     def as_trimesh(self, frame: Any, view: View | None = None) -> Any:
         """Refine one frame; return it as a `trimesh.Trimesh` of its own.
@@ -170,26 +182,3 @@ class TrimeshRefiner(WeldedRefiner):
         if kind == "face":
             return type(visual)(face_colors=visual.face_colors[source])
         return None
-
-
-def from_trimesh(mesh: Any, *, weld: bool = True, **options: Any) -> TrimeshRefiner:
-    """Bind a refiner to a `trimesh.Trimesh` at rest, textured or not.
-
-        refiner = refine.from_trimesh(mesh)
-        for vertices in motion:
-            frame = refiner.as_trimesh(vertices)      # or refiner.refine(vertices): arrays alone
-
-    trimesh has vertices twice where texture coordinates or normals differ. They are welded, so that
-    no crack opens, and part again where the mesh carries data. `weld=False` leaves vertices at
-    equal places apart, for lips that touch at rest. `options`: what `create_kahler` takes; unless
-    told otherwise `scheme="cubic", criterion="displacement+rest"`, which rounds a mesh at rest,
-    too.
-
-    Raises ValueError for anything else than a mesh of trimesh, and for what cannot be bound.
-    """
-    return TrimeshRefiner(mesh, weld=weld, **options)
-
-
-def _has_data(mesh: Any) -> bool:
-    """Whether vertices of a mesh carry anything that may differ at one place."""
-    return mesh.visual.kind in ("texture", "vertex") or bool(mesh.vertex_attributes)

@@ -30,7 +30,7 @@ import numpy.typing as npt
 from .border.base import BaseRefiner
 from .border.corner_values import Values
 from .border.plugin import Origins, Stream, View
-from .border.rows import GEOMETRY_COLUMNS, place_unmoved, wedge_values, write_wedges
+from .border.rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
 from .kahler.frame import buffers_for, split_everywhere
 from .kahler.smoothing import place_middles, place_vertices
 from .mesh.arrays import Floats, Indices
@@ -226,7 +226,8 @@ class PassThrough(BaseRefiner):
         vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
         vertices, triangles, source = self.reserve(stream, vertex_count, triangle_count)
         self.find_normals()
-        place_unmoved(self.points, self.normals, vertices)
+        rows = vertices[: len(self.points)]
+        rows[:, 0:3], rows[:, 3:GEOMETRY_COLUMNS] = self.points, self.normals
         self.write_wedges(vertices)
         triangles[:triangle_count] = self.connectivity.corners
         source[:triangle_count] = self._source

@@ -47,7 +47,7 @@ class PolyDataRefiner:
             The mesh of the frame, with the cells of the mesh at rest, whose data go along; or its
             points alone, shape `(n_points, 3)`, which carry the data of the mesh at rest.
         view : risorius.refine.View, optional
-            Where it is looked at from, for the criteria `silhouette` and `screen`.
+            Where it is looked at from, for the criterion `silhouette`.
 
         Returns
         -------

@@ -11,7 +11,6 @@ cloth.py lets a sheet fall over a ball, by the same springs.
 
 from typing import Any
 
-from . import checked
 from .anatomy import build_anatomy
 from .cloth import Cloth
 from .face import Simulation, SimulationUnstable
@@ -22,12 +21,10 @@ __all__ = ["Cloth", "Pull", "Rig", "Simulation", "SimulationUnstable"]
 __all__ += ["create", "read_rig"]
 
 
-def create(head: Any, *, gravity: bool = False, inertia: bool = False) -> Simulation:
+def create(head: Any) -> Simulation:
     """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
 
     Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze,
-    see anatomy.py. gravity: soft tissue hangs when the head is tilted; inertia: it follows when the
-    head moves, see weight.py. Raises ValueError naming what is wrong with the head or its rig.
+    see anatomy.py. Raises ValueError naming what is wrong with the head or its rig.
     """
-    weighs, follows = checked.flag("gravity", gravity), checked.flag("inertia", inertia)
-    return Simulation(build_anatomy(head), gravity=weighs, inertia=follows)
+    return Simulation(build_anatomy(head))

@@ -17,14 +17,14 @@ Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landm
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..schema import quoted
 from . import checked
-from .contact import Grip, LipPairs, pair_lips, watch_eyeballs
+from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .coordinates import FaceSpace
 from .integrator import LONGEST_SUBSTEP, ROUNDING
@@ -43,11 +43,11 @@ from .lip_lid_sides import lip_side
 from .muscle_forces import MuscleForces, build_muscle_forces
 from .muscles import place_muscles, sides_of
 from .rig import Rig, read_rig
-from .skin_model import SkinModel
 from .skull import (
     HEAD_CONTROLS,
     HEAD_RATE,
     Eyeball,
+    RigidMotion,
     Skull,
     condyles_from_landmarks,
     eyeballs_from_landmarks,
@@ -55,7 +55,7 @@ from .skull import (
 )
 from .springs import EdgeSprings
 from .surface import Surface, build_surface
-from .teeth import watch_teeth
+from .teeth import Teeth, watch_teeth
 from .tissue import TissueSprings, masses_for_step
 from .tongue import Tongue, place_tongue
 
@@ -67,6 +67,27 @@ LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
 LARGEST = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
+
+
+class SkinModel(NamedTuple):
+    """Point masses, springs and contacts of one face; none of it changes while it is simulated."""
+
+    rest: Array  # (V, 3) mm, positions of the undeformed mesh
+    mass: Array  # (V,)
+    tissue: TissueSprings
+    edges: EdgeSprings
+    lips: LipPairs
+    eyes: EyeContact
+    teeth: Teeth
+
+
+class Tick(NamedTuple):
+    """What holds during one tick."""
+
+    substeps: int
+    h: float  # s, length of each
+    grip: Grip  # how firmly the lips hold each other
+    mandible: RigidMotion
 
 
 @dataclass(frozen=True)

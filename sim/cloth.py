@@ -34,8 +34,8 @@ from .state import State
 from .substep import accelerate, damp, edge_forces, move, tissue_forces
 from .surface import Surface, build_surface
 from .tissue import AREAL_MASS, TissueSprings, masses_for_step, tissue_energy
-from .weight import GRAVITY
 
+GRAVITY = np.array([0.0, -9810.0, 0.0])  # mm/s2
 LONGEST_SUBSTEP = 1.0 / 1200.0  # s: shorter than skin's, because cloth hardly stretches
 STRETCH = 1.6e8 * AREAL_MASS  # mm2: what hangs from one metre of itself is 6 % longer at the top
 BEND = 0.15  # x STRETCH; chosen by eye: folds are some triangles wide

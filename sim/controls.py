@@ -52,9 +52,20 @@ class Controls:
     The first C of all N controls are the lowest; only they have a wanted sum and an activation.
     """
 
+    controls: tuple[str, ...]
+    """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
+    layers: Mapping[str, tuple[str, ...]]
+    """Names of the controls above, by the title of their layer, from the bottom up."""
+    limits: Mapping[str, tuple[float, float]]
+    """Least and greatest value of each control, those of the layers included."""
+    groups: Mapping[str, tuple[str, ...]]
+    """Control names by the title under which a panel may list them, layers last."""
+    actions: Mapping[str, str]
+    """What each control does, in words; "" where its file does not say."""
+
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
-        self.lowest = tuple(control.name for control in controls)
-        self.names = (*self.lowest, *layers.shares)
+        self.controls = tuple(control.name for control in controls)
+        self.names = (*self.controls, *layers.shares)
         self.limits = MappingProxyType(_limits(controls, layers))
         groups: dict[str, tuple[str, ...]] = {}
         for control in controls:
@@ -90,14 +101,23 @@ class Controls:
             raise ValueError(f"there is no control called {quoted(name)}; {hint}")
         return self._index[name]
 
-    def value(self, name: str) -> float:
-        """The value last asked for, of this control alone."""
-        return float(self._values[self.index(name)])
+    @property
+    def values(self) -> dict[str, float]:
+        """The value last set of each control, those of the layers included.
+
+        The face follows within some 0.1 s.
+        """
+        return dict(zip(self.names, self._values.tolist(), strict=True))
+
+    @property
+    def sums(self) -> dict[str, float]:
+        """What each lowest control adds up to: its own value and those of the layers above it."""
+        return dict(zip(self.controls, self.wanted.tolist(), strict=True))
 
     def now(self, name: str) -> float:
         """The activation of a lowest control; 0 for one that this face does not have."""
-        place = self._index.get(name, len(self.lowest))
-        return float(self.activation[place]) if place < len(self.lowest) else 0.0
+        place = self._index.get(name, len(self.controls))
+        return float(self.activation[place]) if place < len(self.controls) else 0.0
 
     def checked(self, name: str, value: float, *, cut_off: bool = False) -> tuple[int, float]:
         """Place and value of a setting, if need be cut off; ValueError if it cannot be used."""
@@ -110,10 +130,21 @@ class Controls:
             )
         return index, min(max(number, low), high)
 
-    def set_all(
-        self, values: Mapping[str, float], *, others_to_zero: bool = False, cut_off: bool = False
-    ) -> None:
-        """Set several values at once; nothing is changed if one is refused."""
+    def set(self, name: str, value: float) -> None:
+        """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
+        self.index(name)  # what is no name may not even be a key
+        self.set_all({name: value})
+
+    def set_all(self, values: Mapping[str, float]) -> None:
+        """Set several controls; if one is refused (see `set`), none is set."""
+        self._set_all(values, others_to_zero=False, cut_off=False)
+
+    def pose(self, values: Mapping[str, float], *, cut_off: bool = False) -> None:
+        """Set several controls, all others to zero; none if one is refused, or cut off instead."""
+        flag("cut_off", cut_off)
+        self._set_all(values, others_to_zero=True, cut_off=cut_off)
+
+    def _set_all(self, values: Mapping[str, float], *, others_to_zero: bool, cut_off: bool) -> None:
         if not isinstance(values, Mapping):
             raise ValueError(f"values: was {quoted(values)}, must be a mapping of name to number")
         checked = [self.checked(*each, cut_off=cut_off) for each in values.items()]
@@ -121,7 +152,7 @@ class Controls:
             self._values[:] = 0.0
         for index, value in checked:
             self._values[index] = value
-        count = len(self.lowest)
+        count = len(self.controls)
         self.wanted[:] = self._values[:count]
         if len(self._shares):
             counted = self._values.copy()
@@ -140,7 +171,7 @@ class Controls:
         """Let activations be where their values are, at once."""
         self.activation[:], self._speed[:] = self.wanted, 0.0
 
-    def copy_from(self, other: Controls) -> None:
+    def copy_controls(self, other: Controls) -> None:
         """Take on values and activations of controls of the same face."""
         self._values[:], self.wanted[:] = other._values, other.wanted
         self.activation[:], self._speed[:] = other.activation, other._speed
@@ -149,65 +180,6 @@ class Controls:
         """All values and activations to zero at once."""
         for array in (self._values, self.wanted, self.activation, self._speed):
             array[:] = 0.0
-
-
-class Controllable:
-    """What follows named controls: how they are set, and what they are."""
-
-    def __init__(self, controls: Controls) -> None:
-        self._controls = controls
-
-    @property
-    def controls(self) -> tuple[str, ...]:
-        """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
-        return self._controls.lowest
-
-    @property
-    def layers(self) -> Mapping[str, tuple[str, ...]]:
-        """Names of the controls above, by the title of their layer, from the bottom up."""
-        return self._controls.layers
-
-    @property
-    def limits(self) -> Mapping[str, tuple[float, float]]:
-        """Least and greatest value of each control, those of the layers included."""
-        return self._controls.limits
-
-    @property
-    def groups(self) -> Mapping[str, tuple[str, ...]]:
-        """Control names by the title under which a panel may list them, layers last."""
-        return self._controls.groups
-
-    @property
-    def actions(self) -> Mapping[str, str]:
-        """What each control does, in words; "" where its file does not say."""
-        return self._controls.actions
-
-    @property
-    def values(self) -> dict[str, float]:
-        """The value last set of each control, those of the layers included.
-
-        The face follows within some 0.1 s.
-        """
-        return {name: self._controls.value(name) for name in self._controls.names}
-
-    @property
-    def sums(self) -> dict[str, float]:
-        """What each lowest control adds up to: its own value and those of the layers above it."""
-        return dict(zip(self.controls, self._controls.wanted.tolist(), strict=True))
-
-    def set(self, name: str, value: float) -> None:
-        """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
-        self._controls.index(name)  # what is no name may not even be a key
-        self._controls.set_all({name: value})
-
-    def set_all(self, values: Mapping[str, float]) -> None:
-        """Set several controls; if one is refused (see `set`), none is set."""
-        self._controls.set_all(values)
-
-    def pose(self, values: Mapping[str, float], *, cut_off: bool = False) -> None:
-        """Set several controls, all others to zero; none if one is refused, or cut off instead."""
-        flag("cut_off", cut_off)
-        self._controls.set_all(values, others_to_zero=True, cut_off=cut_off)
 
 
 class MuscleDrive:

@@ -2,12 +2,10 @@
 
     controls  ->  activations                                            controls.py
                       |
-    jaw, gaze  ->  bones and lids carry the tissue springs' far ends     bones.py, lids.py
+    jaw, gaze  ->  bones and lids carry the tissue springs' far ends     skull.py, lids.py
     muscles    ->  one anchor per skin vertex                            muscles.py, fibres.py
                       |
     tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, springs.py
-    gravity, inertia (optional)                                          weight.py
-                      |
     lips and eyeballs keep skin out                                      contact.py, substep.py
 
 Built once from a mesh (anatomy.py), then `step` moves it. Everything inside runs in the standard
@@ -29,41 +27,59 @@ import numpy.typing as npt
 
 from ..schema import quoted
 from . import checked, integrator
-from .anatomy import Anatomy
-from .bones import Bones
+from .anatomy import Anatomy, Tick
 from .contact import SEALED
-from .controls import Controllable, Controls, MuscleDrive
+from .controls import Controls, MuscleDrive
 from .coordinates import to_posed_head
-from .finger import RATE, Finger, checked_drag
 from .landmarks import Array
 from .layers import Layers
 from .lids import turn_lids
-from .skin_model import Tick
+from .skull import Bones
 from .state import State
 from .substep import advance
 from .tissue import carry, tissue_energy
-from .weight import Weight
+
+FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
 
 
 class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole project uses
     """A position is no longer a finite number: the input was broken, or the model has an error."""
 
 
-class Simulation(Controllable):
+class Finger:
+    """Draws at the skin of one simulation: springs from vertices, or none, to where they go."""
+
+    def __init__(self) -> None:
+        self.let_go()
+
+    def hold(self, vertices: npt.NDArray[np.int64], to: Array, stiffness: Array) -> None:
+        """Draw vertices, by their numbers (n,), to places (n, 3) of the standard space."""
+        self._vertices, self._to, self._stiffness = vertices, to, stiffness
+
+    def let_go(self) -> None:
+        """Hold nothing."""
+        self.hold(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros(0))
+
+    def add(self, state: State) -> None:
+        """Add the springs to what holds and pulls the skin."""
+        if len(self._vertices):
+            drawn = self._to - state.carried[self._vertices]
+            state.hold[self._vertices] += self._stiffness
+            state.pull[self._vertices] += self._stiffness[:, None] * drawn
+
+
+class Simulation(Controls):
     """A face that follows its controls; made by `sim.create`."""
 
-    def __init__(self, anatomy: Anatomy, *, gravity: bool = False, inertia: bool = False) -> None:
+    def __init__(self, anatomy: Anatomy) -> None:
         self._anatomy = anatomy
-        super().__init__(Controls(anatomy.controls, anatomy.layers))
+        super().__init__(anatomy.controls, anatomy.layers)
         surface = anatomy.surface
         self._state = State.at_rest(surface)
         self._grip = SEALED
         self._bones, self._finger = Bones(anatomy.skull, anatomy.space), Finger()
         self._axes = anatomy.space.axes * anatomy.space.scale
-        heaviness = anatomy.rig.tissue.heaviness
-        self._weight = Weight(surface.areas, heaviness, gravity=gravity, inertia=inertia)
-        self._weighs = gravity or inertia
-        self._drive = MuscleDrive(anatomy.rig, anatomy.muscles.names, self._controls)
+        self._drive = MuscleDrive(anatomy.rig, anatomy.muscles.names, self)
         self._rest = anatomy.vertices.copy()
         self._positions = anatomy.vertices.copy()
         self._rest.flags.writeable = False
@@ -112,17 +128,16 @@ class Simulation(Controllable):
 
     def reset(self) -> None:
         """Relax everything and put the face back to rest at once."""
-        self._controls.reset()
+        super().reset()
         self._state.x[:] = self._anatomy.surface.positions
         self._state.v[:] = 0.0
         self._positions[:] = self._rest
         self._finger.let_go()
         self._place_targets()
-        self._weight.forget()
 
     def clone(self) -> Simulation:
         """Another simulation of this face as it is now, of which no finger has hold."""
-        clone = Simulation(self._anatomy, gravity=self._weight.gravity)
+        clone = Simulation(self._anatomy)
         clone.copy_from(self)
         return clone
 
@@ -130,14 +145,14 @@ class Simulation(Controllable):
         """Take on controls, positions and velocities of a clone; ValueError for any other."""
         if not isinstance(other, Simulation) or other._anatomy is not self._anatomy:
             raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
-        self._controls.copy_from(other._controls)
+        self.copy_controls(other)
         self._state.x[:], self._state.v[:] = other._state.x, other._state.v
         self._positions[:] = other._positions
 
     def jump(self, values: Mapping[str, float]) -> None:
         """Set several controls, and let all muscles and bones obey at once; the skin follows."""
-        self._controls.set_all(values)
-        self._controls.arrive()
+        self.set_all(values)
+        self.arrive()
         self._state.v[:] = 0.0
 
     def kick(self, velocities: npt.ArrayLike) -> None:
@@ -161,7 +176,7 @@ class Simulation(Controllable):
         numbers, points, share = checked_drag(vertices, targets, firmness, len(self._rest))
         away = self._anatomy.space.vectors_to_standard(points - self._positions[numbers])
         to = self._state.x[numbers] + away @ self._bones.head.rotation
-        self._finger.hold(numbers, to, share * self._anatomy.skin.mass[numbers] * RATE**2)
+        self._finger.hold(numbers, to, share * self._anatomy.skin.mass[numbers] * FINGER_RATE**2)
 
     def end_drag(self) -> None:
         """End every `drag`; the skin swings back."""
@@ -183,12 +198,10 @@ class Simulation(Controllable):
         tick = dt / ticks
         count = integrator.substeps_in(tick)
         for _ in range(ticks):
-            self._controls.advance(tick / 2.0)
+            self.advance(tick / 2.0)
             self._place_targets()
-            if self._weighs:
-                self._weight.add(bones.head, tick, state.x, state.pull)
             advance(state, anatomy.skin, Tick(count, tick / count, self._grip, bones.mandible))
-            self._controls.advance(tick / 2.0)
+            self.advance(tick / 2.0)
         broken = to_posed_head(
             state.x, anatomy.surface.positions, self._axes, self._rest, bones.turn, anatomy.turns,
             self._positions,
@@ -201,7 +214,7 @@ class Simulation(Controllable):
 
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
-        anatomy, now, bones = self._anatomy, self._controls.now, self._bones
+        anatomy, now, bones = self._anatomy, self.now, self._bones
         state, surface, muscles = self._state, anatomy.surface, anatomy.muscles
         bones.follow(now)
         weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
@@ -211,7 +224,7 @@ class Simulation(Controllable):
         state.hold[:] = anatomy.passive_hold
         state.pull[:] = 0.0
         if anatomy.lids is not None:
-            drive = anatomy.lids.drive(self._controls.activation)
+            drive = anatomy.lids.drive(self.activation)
             angles = np.radians(anatomy.skull.eyes.gaze_deg) * bones.gaze(now)
             turn_lids(state, surface.positions, anatomy.lids.vertices, drive, angles)
         activation = self._drive.activation()
@@ -221,7 +234,7 @@ class Simulation(Controllable):
 
     def bone_transforms(self) -> dict[str, npt.NDArray[np.float64]]:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
-        return self._bones.transforms(self._controls.now)
+        return self._bones.transforms(self.now)
 
     def pivots(self) -> dict[str, npt.NDArray[np.float64]]:
         """What each bone turns about at rest, name of `bone_transforms` -> (3,) [head units]."""
@@ -233,7 +246,7 @@ class Simulation(Controllable):
         As the mandible's motion finds them: its bone's matrix has still to be applied. A tongue at
         rest is the same array each time.
         """
-        anatomy, now = self._anatomy, self._controls.now
+        anatomy, now = self._anatomy, self.now
         if anatomy.tongue is None:
             return None
         out, up = max(now("tongue_out"), 0.0), max(now("tongue_up"), 0.0)
@@ -276,3 +289,20 @@ class Simulation(Controllable):
         held = tissue_energy(state, skin.tissue)
         edges = skin.edges.energy(state.x, state.x - state.carried)
         return kinetic + held + edges + skin.lips.energy(state.x - skin.rest, self._grip)
+
+
+def checked_drag(
+    vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike, count: int
+) -> tuple[npt.NDArray[np.int64], Array, Array]:
+    """What a finger was told, of a mesh with `count` vertices; ValueError where it does not fit."""
+    wanted = "different vertex numbers, shape (n,)"
+    numbers = checked.vertex_numbers("vertices", vertices, (None,), count, wanted)
+    points = checked.numbers("targets", targets, (len(numbers), 3))
+    share = checked.numbers("firmness", firmness, (len(numbers),))
+    if not ((share >= 0.0) & (share <= 1.0)).all():
+        raise ValueError(
+            f"firmness: runs from {share.min():g} to {share.max():g}, must be from 0 to 1"
+        )
+    if len(np.unique(numbers)) < len(numbers):
+        raise ValueError(f"vertices: some are there twice, must be {wanted}")
+    return numbers, points, share

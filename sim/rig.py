@@ -106,7 +106,6 @@ class Tissue(Record):
     modiolus: Annotated[float, Within(0.0, 50.0)] = 0.0  # how much firmer skin is at mouth corners
     modiolus_shear: Annotated[float, Within(0.0, 50.0)] = 0.0  # the same, against turning
     passive: Annotated[float, Within(0.0, 1.0)] = 0.2  # share of a muscle's stiffness when relaxed
-    heaviness: Annotated[float, Within(0.0, 1.0)] = 0.1  # share of weight and inertia that is free
     lip_seal: Annotated[float, Within(0.0, 1000.0)] = 40.0  # springs that hold closed lips together
     drive_power: Annotated[float, Within(0.3, 1.5)] = 1.0  # pull = activation to this power
     stiffness_scale: Annotated[float, Within(1.0, 1e5)] = 600.0  # 1/s2

@@ -1,7 +1,7 @@
 """One substep of the face, compiled: all forces on the skin, Euler's step, all contacts.
 
 The physics is explained where its data is made: tissue.py, springs.py, contact.py, teeth.py. The
-arguments are the named tuples of state.py and skin_model.py. All kernels stand here, so that
+arguments are the named tuples of state.py and anatomy.py. All kernels stand here, so that
 a substep can be read from top to bottom.
 
 Source: Kähler et al. 2001, section 3 (mass-spring skin); semi-implicit Euler instead of Verlet.

@@ -157,7 +157,7 @@ finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
 detail = {"scheme": "detail", "detail": (finer.positions.copy(), finer.triangles.copy())}
 choices = [{}, {"scheme": "cubic"}, {"blend": True}, {"coherent": True}, detail,
            {**detail, "blend": False}, {"criterion": "curvature+rest"},
-           {"criterion": "silhouette+screen+border"},
+           {"criterion": "silhouette+border"},
            {"scheme": "cubic", "criterion": "displacement"}]
 found = {}
 def work(k):

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 CHOICES = (
     "blend=on", "scheme=cubic", "scheme=cubic criterion=displacement", "scheme=detail",
     "scheme=detail criterion=displacement", "coherent=on", "criterion=rest",
-    "criterion=curvature", "criterion=silhouette", "criterion=screen", "criterion=border",
+    "criterion=curvature", "criterion=silhouette", "criterion=border",
 )  # fmt: skip
 """Options of the paper's refiner that have kernels of their own."""
 
@@ -58,9 +58,6 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "the cloth", partial(cloth.step, 1 / 60)
     rest = face.rest_positions
     yield "strain", partial(refine.Tension(face.faces, rest).measure, rest)
-    assert face.wrinkles is not None
-    wrinkles = refine.Shortening(face.faces, rest, face.wrinkles.across)
-    yield "wrinkles", partial(wrinkles.measure, rest)
 
 
 def _simulate(face: FaceScene) -> None:

@@ -62,7 +62,7 @@ class Passes:
             raise ValueError("nothing was drawn yet; call Pipeline.draw first")
         values = None
         if "tension" in wanted:
-            stretch, compression, _ = self._tension.measure(scene.positions)
+            stretch, compression = self._tension.measure(scene.positions)
             values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
         bumps = None
         if pipeline.wrinkle_map is not None and drawn.has_uv:

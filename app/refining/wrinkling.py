@@ -99,6 +99,8 @@ class Relief:
 class FoldCriterion(refine.Criterion):
     """Splits edges over which the relief, as far as it shows, bends away from the straight line."""
 
+    uses_normals = False
+
     def __init__(self, scene: Scene) -> None:
         assert scene.wrinkles is not None and scene.uv is not None and scene.face_uv is not None
         self._compression, self._relief = Compression(scene), Relief(scene.wrinkles)

@@ -51,7 +51,7 @@ def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:
 def tensions(scene: Scene, refiner: refine.Refiner) -> Amounts:
     """How far each triangle is stretched, less how far it is compressed."""
     anything: Any = scene
-    stretch, compression, _ = _tension_of(anything).measure(scene.positions)
+    stretch, compression = _tension_of(anything).measure(scene.positions)
     tension = (stretch - compression)[scene.faces].mean(axis=1)
     return np.asarray(np.clip(128.0 + 127.0 * tension / MOST_STRAIN, 0.0, 255.0), np.uint8)
 

@@ -64,6 +64,7 @@ from ..kahler.table import (
 )
 from ..mesh.arrays import Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
+from ..mesh.threads import share
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -137,7 +138,7 @@ class Blended(Kahler):
     def _place(self, rows: Floats) -> None:
         """Write vertices and points on edges, then those in the middle of triangles."""
         super()._place(rows)
-        place_centres(self.connectivity, self._frame)
+        share(place_centres, self._frame.centre_count, self.connectivity, self._frame)
         self._scheme.place_centres(self._frame)
 
     def origins(self) -> Origins:
@@ -212,10 +213,10 @@ def mixed_corners(rows: Floats, corners: Unsigned, shares: Vector, first: int) -
 
 
 @njit
-def place_centres(mesh: Connectivity, frame: FrameBuffers) -> None:
+def place_centres(first: int, last: int, mesh: Connectivity, frame: FrameBuffers) -> None:
     """Write the rows of the points in the middle of triangles, attributes too."""
     rows = frame.rows
-    for k in range(frame.counts[CENTRES]):
+    for k in range(first, last):
         t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
         corners, edges = mesh.faces[t], mesh.triangle_edges[t]
         of_corners, of_edges = centre_shares(
@@ -224,16 +225,16 @@ def place_centres(mesh: Connectivity, frame: FrameBuffers) -> None:
             geomorph_of_split(frame.splits, frame.geomorph_once, edges[2]),
         )
         write_row(frame.centre_weights, k, of_corners)
-        for first in (0, 3):  # position, normal
-            centre = mixed_corners(rows, corners, of_corners, first)
+        for column in (0, 3):  # position, normal
+            centre = mixed_corners(rows, corners, of_corners, column)
             for i in range(3):
                 e, a, b = edges[i], corners[i], corners[(i + 1) % 3]
                 if frame.splits[e] > 0:
                     middle = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
-                    straight = plus(row_of(rows, a, first), row_of(rows, b, first))
-                    out = less(row_of(rows, middle, first), HALF, straight)
+                    straight = plus(row_of(rows, a, column), row_of(rows, b, column))
+                    out = less(row_of(rows, middle, column), HALF, straight)
                     centre = plus(centre, times(of_edges[i], out))
-            write_row(rows, row, centre, first)
+            write_row(rows, row, centre, column)
         write_row(rows, row, unit(row_of(rows, row, 3)), 3)
         a, b, c = mesh.corners[t, 0], mesh.corners[t, 1], mesh.corners[t, 2]
         of_a, of_b, of_c = of_corners

@@ -32,13 +32,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ...jit import njit
-from ..border.rows import place_unmoved
 from ..kahler.frame import ONCE, FrameBuffers
-from ..kahler.smoothing import Scheme, write_mean_normal
+from ..kahler.look_up import SIDE_BITS, SIDE_MASK
+from ..kahler.smoothing import Scheme
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.normals import cross_product, normalise
+from ..mesh.fans import fans_of
+from ..mesh.normals import cross_product
+from ..mesh.threads import share
 from ..mesh.vectors import (
     HALF,
     QUARTER,
@@ -46,7 +48,6 @@ from ..mesh.vectors import (
     TINY,
     ZERO,
     Vector,
-    add_to_row,
     between,
     cross,
     difference,
@@ -95,14 +96,16 @@ class CubicScheme(Scheme):
     """Edges are cubic curves across the normals at their ends."""
 
     interpolates = True
+    uses_normals = False
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Weigh the corners of the mesh at rest, and follow its borders."""
         mesh = self._mesh = connectivity
-        self._around = mesh.around
+        self._around, self._fans = mesh.around, fans_of(mesh)
         self._displacements = np.zeros((len(mesh.edges), 3, 3), dtype=np.float32)
+        self._crosses = np.zeros((len(mesh.faces), 3), dtype=np.float32)
         self._normals = np.zeros_like(rest_normals)
         valences = np.bincount(mesh.edges.ravel(), minlength=len(rest_normals))
         self._weights = np.zeros(mesh.faces.shape, dtype=np.float32)
@@ -120,7 +123,15 @@ class CubicScheme(Scheme):
 
     def place(self, frame: FrameBuffers) -> None:
         """Write vertices as they are, and the points of split edges on their curves."""
-        place_on_curves(self._around, frame, self._normals, self._displacements)
+        self.place_positions(frame)
+        count = len(frame.points) + int(frame.counts[ONCE])
+        share(place_mean_normals, count, self._around.points, frame, self._normals)
+
+    def place_positions(self, frame: FrameBuffers) -> None:
+        """Do the same but for normals."""
+        count = len(frame.points) + int(frame.counts[ONCE])
+        rows = self._displacements.reshape(-1, 3)
+        share(place_on_curves, count, self._around.points, frame, rows)
 
     def measure(self, displacements: Floats, turns: Floats) -> None:
         """Write how far the middle of every edge stands out if it is split once, shape (E,).
@@ -131,8 +142,14 @@ class CubicScheme(Scheme):
         turns[:] = ZERO
 
     def _displace(self, positions: Doubles) -> None:
-        weighted_normals(positions, self._mesh.faces, self._weights, self._normals)
-        displace_cubic(self._around, positions, self._tangents, self._displacements)
+        fans, tangents, crosses = self._fans, self._tangents, self._crosses
+        share(cross_products, len(crosses), positions, self._mesh.faces, crosses)
+        corners = fans.corner_starts, fans.corners
+        share(weighted_normals, len(positions), *corners, self._weights, crosses, self._normals)
+        neighbours = fans.neighbour_starts, fans.neighbours
+        share(steepen_normals, len(positions), *neighbours, *tangents[:3])
+        edge_count = len(self._displacements)
+        share(displace_cubic, edge_count, self._around, positions, tangents, self._displacements)
 
 
 @njit
@@ -159,28 +176,52 @@ def follow_borders(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
 
 
 @njit
-def weighted_normals(positions: Doubles, faces: Unsigned, weights: Floats, normals: Floats) -> None:
-    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3)."""
-    normals[:] = ZERO
-    for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        normal = cross_product(positions, a, b, c)
-        for i in range(3):
-            add_to_row(normals, faces[t, i], times(weights[t, i], normal))
-    normalise(normals)
+def cross_products(
+    first: int, last: int, positions: Doubles, faces: Unsigned, crosses: Floats
+) -> None:
+    """Write the normals of triangles times twice their areas, shape (F, 3)."""
+    for t in range(first, last):
+        write_row(crosses, t, cross_product(positions, faces[t, 0], faces[t, 1], faces[t, 2]))
 
 
 @njit
-def steepen_normals(around: Surroundings, tangents: Tangents) -> None:
-    """Write unit normals less those of their neighbours, `off` of each."""
-    normals, steeper = tangents.normals, tangents.steeper
-    steeper[:] = ZERO
-    for e in range(around.points.shape[0]):
-        a, b = around.points[e, 0], around.points[e, 1]
-        add_to_row(steeper, a, row_of(normals, b))
-        add_to_row(steeper, b, row_of(normals, a))
-    for v in range(normals.shape[0]):
-        write_row(steeper, v, unit(less(row_of(normals, v), tangents.off[v], row_of(steeper, v))))
+def weighted_normals(
+    first: int,
+    last: int,
+    starts: Unsigned,
+    corners: Unsigned,
+    weights: Floats,
+    crosses: Floats,
+    normals: Floats,
+) -> None:
+    """Write unit vertex normals, each corner weighted as at rest, shape (V, 3).
+
+    `starts`, `corners`: those at each vertex (mesh/fans.py).
+    """
+    for v in range(first, last):
+        total = ZERO, ZERO, ZERO
+        for k in range(starts[v], starts[v + 1]):
+            t, i = corners[k] >> SIDE_BITS, corners[k] & SIDE_MASK
+            total = plus(total, times(weights[t, i], row_of(crosses, t)))
+        write_row(normals, v, unit(total))
+
+
+@njit
+def steepen_normals(
+    first: int,
+    last: int,
+    starts: Unsigned,
+    neighbours: Unsigned,
+    normals: Floats,
+    steeper: Floats,
+    off: Floats,
+) -> None:
+    """Write unit normals less those of their neighbours, `off` of each, shape (V, 3)."""
+    for v in range(first, last):
+        total = ZERO, ZERO, ZERO
+        for k in range(starts[v], starts[v + 1]):
+            total = plus(total, row_of(normals, neighbours[k]))
+        write_row(steeper, v, unit(less(row_of(normals, v), off[v], total)))
 
 
 @njit
@@ -204,16 +245,19 @@ def write_cubic(
 
 @njit
 def displace_cubic(
-    around: Surroundings, positions: Doubles, tangents: Tangents, displacements: Floats
+    first: int,
+    last: int,
+    around: Surroundings,
+    positions: Doubles,
+    tangents: Tangents,
+    displacements: Floats,
 ) -> None:
-    """Write the displacements of all edges: those of the cubic with the tangents at both ends.
+    """Write the displacements of edges: those of the cubic with the tangents at both ends.
 
-    `displacements`: shape (E, 3, 3); with `tangents.normals` of this frame, the steeper ones
-    follow.
+    `displacements`: shape (E, 3, 3).
     """
-    steepen_normals(around, tangents)
     steeper = tangents.steeper
-    for e in range(displacements.shape[0]):
+    for e in range(first, last):
         a, b = around.points[e, 0], around.points[e, 1]
         d = between(positions, a, b)
         if around.is_interior[e]:
@@ -243,31 +287,50 @@ def displacement_sizes(displacements: Floats, sizes: Floats) -> None:
 
 @njit
 def place_on_curves(
-    around: Surroundings, frame: FrameBuffers, normals: Floats, displacements: Floats
+    first: int, last: int, ends: Unsigned, frame: FrameBuffers, displacements: Floats
 ) -> None:
-    """Write vertices as they are, and the one or three points of every split edge.
+    """Write positions: vertices as they are, and the one or three points of every split edge.
 
-    `normals`: unit normals of vertices, shape (V, 3); `displacements`: of edges, shape (E, 3, 3).
+    The loop is over vertices, and then over split edges. `ends`: of edges, in the first two columns
+    of (E, 4); `displacements`: three rows for each edge, shape (3 E, 3).
     """
-    points, vertices = frame.points, frame.rows
-    place_unmoved(points, normals, vertices)
-    for k in range(frame.counts[ONCE]):
+    points, rows = frame.points, frame.rows
+    vertex_count = points.shape[0]
+    for v in range(first, min(last, vertex_count)):
+        write_row(rows, v, row_of(points, v))
+    for k in range(max(first - vertex_count, 0), last - vertex_count):
         e = frame.split_once[k]
-        a, b = around.points[e, 0], around.points[e, 1]
         row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
-        near_a, near_b = np.uint32(row - 1), np.uint32(row + 1)
-        at_a, at_b, displacement = row_of(points, a), row_of(points, b), displacements[e]
-        out = times(frame.geomorph_once[e], row_of(displacement, MIDDLE))
+        at_a, at_b = row_of(points, ends[e, 0]), row_of(points, ends[e, 1])
+        out = times(frame.geomorph_once[e], row_of(displacements, np.uint32(3 * e + MIDDLE)))
         middle = plus(times(HALF, plus(at_a, at_b)), out)
-        write_row(vertices, row, middle)
-        write_mean_normal(vertices, a, b, row)
+        write_row(rows, row, middle)
         if frame.splits[e] == 2:
             full_a = plus(times(THREE_QUARTERS, at_a), times(QUARTER, at_b))
             full_b = plus(times(THREE_QUARTERS, at_b), times(QUARTER, at_a))
-            full_a = plus(full_a, row_of(displacement, NEAR_START))
-            full_b = plus(full_b, row_of(displacement, NEAR_END))
+            full_a = plus(full_a, row_of(displacements, np.uint32(3 * e + NEAR_START)))
+            full_b = plus(full_b, row_of(displacements, np.uint32(3 * e + NEAR_END)))
+            straight_a = times(HALF, plus(at_a, middle))
+            straight_b = times(HALF, plus(at_b, middle))
             geomorph = frame.geomorph_twice[e]
-            write_row(vertices, near_a, mix(times(HALF, plus(at_a, middle)), full_a, geomorph))
-            write_row(vertices, near_b, mix(times(HALF, plus(at_b, middle)), full_b, geomorph))
-            write_mean_normal(vertices, a, row, near_a)
-            write_mean_normal(vertices, b, row, near_b)
+            write_row(rows, np.uint32(row - 1), mix(straight_a, full_a, geomorph))
+            write_row(rows, np.uint32(row + 1), mix(straight_b, full_b, geomorph))
+
+
+@njit
+def place_mean_normals(
+    first: int, last: int, ends: Unsigned, frame: FrameBuffers, normals: Floats
+) -> None:
+    """Write normals: of vertices, shape (V, 3), and between them; loop and `ends` as above."""
+    rows, vertex_count = frame.rows, frame.points.shape[0]
+    for v in range(first, min(last, vertex_count)):
+        write_row(rows, v, row_of(normals, v), 3)
+    for k in range(max(first - vertex_count, 0), last - vertex_count):
+        e = frame.split_once[k]
+        row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
+        at_a, at_b = row_of(normals, ends[e, 0]), row_of(normals, ends[e, 1])
+        normal = unit(plus(at_a, at_b))
+        write_row(rows, row, normal, 3)
+        if frame.splits[e] == 2:
+            write_row(rows, np.uint32(row - 1), unit(plus(at_a, normal)), 3)
+            write_row(rows, np.uint32(row + 1), unit(plus(at_b, normal)), 3)

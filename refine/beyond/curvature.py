@@ -4,7 +4,7 @@ r"""Criteria that split what is curved: now (`curvature`), or at rest (`rest`).
 proposes in section 4.1. `RestCurvature` is for meshes that are too coarse for their own form.
 
 The paper's criterion counts what has been bent since rest, so an outline that is a polygon at rest
-stays one. `Curvature` without `relative` sees it, but splits come and go as the mesh moves.
+stays one. `RestCurvature` sees it.
 
     measure = height of the arc x cube root of (length / usual length)
 
@@ -28,14 +28,12 @@ USUAL = 1.0 / 40.0
 class Curvature(Measuring):
     """Discrete curvature along the edges (Taubin 1995), as the height of the arc over them."""
 
-    def __init__(self, once: float = 0.025, twice: float = 0.06, *, relative: bool = True) -> None:
+    def __init__(self, once: float = 0.025, twice: float = 0.06) -> None:
         """`once`, `twice`: heights in mean edge lengths of the mesh at rest.
 
-        `relative`: only what has been added to the height at rest counts, as in the paper; without
-        it a mesh that is coarse at rest is refined where it is curved.
+        Only what has been added to the height at rest counts, as in the paper.
         """
         super().__init__(once, twice, "heights in mean edge lengths")
-        self.relative = relative
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
@@ -43,10 +41,7 @@ class Curvature(Measuring):
         """Store the heights of the undeformed mesh."""
         super().bind(connectivity, rest_positions, rest_normals)
         self._rest = np.zeros(len(self._edges), dtype=np.float32)
-        heights = np.empty_like(self._rest)
-        arc_heights(rest_positions, rest_normals, self._edges, self._rest, heights)
-        if self.relative:
-            self._rest = heights
+        arc_heights(rest_positions, rest_normals, self._edges, self._rest, self._rest)
         self._unit = mean_length(connectivity, rest_positions)
 
     def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
@@ -60,6 +55,8 @@ class RestCurvature(Measuring):
 
     The same edges are split in every frame, wherever the eye is, so nothing can pop.
     """
+
+    uses_normals = False
 
     def __init__(self, once: float = 0.00077, twice: float = 0.0053) -> None:
         """`once`, `twice`: measures in sizes of the mesh, so a fine mesh is left as it is.

@@ -96,14 +96,14 @@ class DetailScheme(CubicScheme):
         middle_axes(self._around, frame.positions, self._normals, self._axes)
         add_offsets_once(self._offsets, self._axes, self._displacements)
 
-    def place(self, frame: FrameBuffers) -> None:
+    def place_positions(self, frame: FrameBuffers) -> None:
         """Write points with their detail; only once after `prepare` with edges split twice."""
         twice = frame.twice_split_edges
         quarter_axes(self._around, frame.positions, self._normals, twice, self._axes)
         add_offsets_twice(
             twice, frame.geomorph_twice, self._offsets, self._axes, self._displacements
         )
-        super().place(frame)
+        super().place_positions(frame)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Slide and move the points in the middle of triangles."""

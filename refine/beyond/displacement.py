@@ -27,6 +27,8 @@ class Displacement(Measuring):
     What is coarse at rest counts as well, unlike in the paper.
     """
 
+    uses_normals = False
+
     def __init__(self, once: float = 0.08, twice: float = 0.4, *, turning: float = 0.35) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 

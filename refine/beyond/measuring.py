@@ -10,7 +10,6 @@ edges. To achieve this, appropriate splitting criteria have to be developed").
     silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
                 an edge that is seen edge-on        line of sight grazes the edge, 0 a BAND away;
                                                     the turn counts up to where points have grown
-    screen      length of an edge as it is seen     L x focal / distance from the eye, in pixels
     border      angle by which the border turns     how an opened mouth differs from a shut one
                 otherwise than at rest
     displacement                                    for schemes that tell: those with curved edges,
@@ -21,15 +20,22 @@ Each has two thresholds, above which an edge is split once and twice, and says h
 needs a split, so that all of them can be blended (blending.py) and any of them combined.
 """
 
+import reprlib
 from collections.abc import Sequence
 
 import numpy as np
 
+from ...jit import njit
 from ..border.plugin import View
 from ..kahler.criterion import Criterion, Thresholds
 from ..kahler.smoothing import Scheme
-from ..mesh.arrays import Doubles, Floats, Small
+from ..mesh.arrays import Doubles, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
+from ..mesh.vectors import ONE
+from .blending import RAMP
+
+BAND = 0.3
+"""Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees away."""
 
 
 class Measuring(Criterion):
@@ -52,6 +58,7 @@ class Maximum(Criterion):
         if not criteria:
             raise ValueError("criterion: an empty list decides nothing; name at least one")
         self.parts = tuple(criteria)
+        self.uses_normals = any(part.uses_normals for part in criteria)
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
@@ -90,6 +97,73 @@ class Maximum(Criterion):
         for part in self.parts:
             part.measure(positions, normals, self._metric)
             np.maximum(metric, self._metric, out=metric)
+
+
+class Silhouette(Measuring):
+    """Edges along which the surface turns away from the eye.
+
+    An edge that turns by more than it takes to be grown twice on the outline itself counts no more:
+    on coarse meshes its points would pop out while the eye has hardly moved.
+    """
+
+    def __init__(self, once: float = 0.005, twice: float = 0.03) -> None:
+        """`once`, `twice`: 1 - the cosine between the normals at both ends."""
+        super().__init__(once, twice, "1 - the cosine between two normals")
+
+    def set_view(self, view: View | None) -> None:
+        """Take the view of this frame; raises ValueError if there is none, or no place for it."""
+        if view is None:
+            raise ValueError(
+                f"{type(self).__name__} needs to know where the eye is; pass "
+                "view=refine.View(eye, focal) to refine()"
+            )
+        try:
+            eye, focal = np.asarray(view.eye, dtype=np.float64), float(view.focal)
+        except (TypeError, ValueError, OverflowError):
+            eye, focal = np.zeros(0), 0.0
+        if eye.shape != (3,) or not np.isfinite(eye).all() or not 0.0 < focal < np.inf:
+            raise ValueError(
+                "view must have an eye of shape (3,) and a focal length in pixels above 0, all "
+                f"finite, got {reprlib.repr(view.eye)} and {reprlib.repr(view.focal)}"
+            )
+        self._eye = eye
+
+    def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
+        """Write the refinement metric of every edge, shape (E,)."""
+        limits = self.thresholds
+        most = limits.once + (ONE + RAMP) * limits.width
+        turns_at_silhouette(positions, normals, self._edges, self._eye, most, metric)
+        limits.scale(metric)
+
+
+@njit
+def turns_at_silhouette(
+    positions: Doubles,
+    normals: Floats,
+    edges: Unsigned,
+    eye: Doubles,
+    most: np.float32,
+    turns: Floats,
+) -> None:
+    """Write 1 - the cosine of the normals of every edge, faded out away from the silhouette.
+
+    What is above `most` counts as `most`.
+    """
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        cosine = seen_a = seen_b = length_a = length_b = 0.0
+        for i in range(3):
+            to_a, to_b = eye[i] - positions[a, i], eye[i] - positions[b, i]
+            cosine += normals[a, i] * normals[b, i]
+            seen_a += to_a * normals[a, i]
+            seen_b += to_b * normals[b, i]
+            length_a += to_a * to_a
+            length_b += to_b * to_b
+        seen_a /= np.sqrt(max(length_a, 1e-30))
+        seen_b /= np.sqrt(max(length_b, 1e-30))
+        away = 0.0 if seen_a * seen_b <= 0.0 else min(abs(seen_a), abs(seen_b))
+        turn = min(np.float32(1.0 - cosine), most)
+        turns[e] = turn * max(0.0, 1.0 - away / BAND)
 
 
 def mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:

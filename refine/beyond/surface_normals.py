@@ -25,19 +25,19 @@ Differs from the paper, whose rule is `normals="linear"`.
 import numpy as np
 
 from ...jit import njit
-from ..kahler.frame import CENTRES, ONCE, ROWS, FrameBuffers, buffers_for, split_everywhere
-from ..kahler.look_up import SIDE_BITS
-from ..kahler.smoothing import Scheme, write_mean_normal
-from ..mesh.arrays import Doubles, Floats
+from ..kahler.frame import ONCE, ROWS, FrameBuffers, buffers_for, split_everywhere
+from ..kahler.look_up import SIDE_BITS, SIDE_MASK
+from ..kahler.smoothing import Scheme
+from ..mesh.arrays import Doubles, Flags, Floats, Indices, Unsigned
 from ..mesh.connectivity import Connectivity
-from ..mesh.normals import normalise
+from ..mesh.fans import fans_of
+from ..mesh.threads import share
 from ..mesh.vectors import (
     HALF,
     ONE,
     THIRD,
     ZERO,
     Vector,
-    add_to_row,
     cross,
     difference,
     dot,
@@ -67,7 +67,7 @@ class WholeSurface:
 
     def __init__(self, mesh: Connectivity, rest_positions: Doubles) -> None:
         """Make room; `rest_positions`: shape (V, 3)."""
-        self._mesh = mesh
+        self._mesh, self._fans = mesh, fans_of(mesh)
         vertex_count, edge_count = mesh.vertex_count, len(mesh.edges)
         near, points = np.zeros_like(rest_positions), rest_positions.astype(np.float32)
         frame = buffers_for(mesh, near, points, np.zeros_like(points))
@@ -84,12 +84,20 @@ class WholeSurface:
         """The mesh of `frame`, as seen from vertex 0, every edge split once; to be placed."""
         if frame.normals is not self._frame.normals:
             self._frame = self._frame._replace(normals=frame.normals)
-        see_from_first(frame.positions, self._frame.positions, self._frame.points)
+        positions, (near, points) = frame.positions, self._frame[:2]
+        share(see_from_first, len(positions), positions, near, points)
         return self._frame
 
     def find_normals(self) -> None:
         """Work the normals out, when the rows have been placed."""
-        surface_normals(self._mesh, self.rows, self._centres, self.normals)
+        mesh, rows, centres, normals = self._mesh, self.rows, self._centres, self.normals
+        triangles = mesh.faces, mesh.triangle_edges
+        share(place_surface_centres, len(centres), mesh.vertex_count, *triangles, rows, centres)
+        fans = self._fans.corner_starts, self._fans.corners, mesh.triangle_edges
+        count = mesh.vertex_count
+        share(surface_normals_of_vertices, count, *fans, rows, centres, normals)
+        around = mesh.around.points, mesh.edge_sides, mesh.around.is_interior
+        share(surface_normals_of_edges, len(mesh.edges), *around, rows, centres, normals)
 
     def measure(self, displacements: Floats, turns: Floats) -> None:
         """Write how far middles stand out of their edges, and their normals turn; shape (E,) each.
@@ -97,7 +105,8 @@ class WholeSurface:
         Against the straight edge, and against the mean of the normals at its ends [rad], times the
         length of the edge.
         """
-        measure_edges(self._mesh, self.rows, self.normals, displacements, turns)
+        points = self._mesh.around.points
+        share(measure_edges, len(points), points, self.rows, self.normals, displacements, turns)
 
 
 class RefinedNormals(Scheme):
@@ -107,6 +116,7 @@ class RefinedNormals(Scheme):
         """`scheme`: says where points go."""
         self.parts = (scheme,)
         self.interpolates = scheme.interpolates
+        self.uses_normals = scheme.uses_normals
         self._scheme = scheme
 
     def bind(
@@ -120,18 +130,20 @@ class RefinedNormals(Scheme):
     def prepare(self, frame: FrameBuffers) -> None:
         """Find the surface of this frame where every edge is split once, and its normals."""
         self._scheme.prepare(frame)
-        self._scheme.place(self._surface.split(frame))
+        self._scheme.place_positions(self._surface.split(frame))
         self._surface.find_normals()
 
     def place(self, frame: FrameBuffers) -> None:
         """Write points where the scheme has them, with the normals of its surface."""
-        self._scheme.place(frame)
-        turn_normals(self._mesh, frame, self._surface.normals)
+        self._scheme.place_positions(frame)
+        count = len(frame.points) + int(frame.counts[ONCE])
+        share(turn_normals, count, self._mesh.around.points, frame, self._surface.normals)
 
     def place_centres(self, frame: FrameBuffers) -> None:
         """Let the scheme correct the middles of triangles, and turn their normals."""
         self._scheme.place_centres(frame)
-        turn_centres(self._mesh, frame, self._surface.rows)
+        triangles = self._mesh.faces, self._mesh.triangle_edges
+        share(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
 
     def measure(self, displacements: Floats, turns: Floats) -> None:
         """Write how far middles would stand out, and turn the normal, of every edge, (E,) each."""
@@ -139,9 +151,11 @@ class RefinedNormals(Scheme):
 
 
 @njit
-def see_from_first(positions: Doubles, near: Doubles, points: Floats) -> None:
-    """Write positions less the first, shape (V, 3), in double and in single precision."""
-    for v in range(positions.shape[0]):
+def see_from_first(
+    first: int, last: int, positions: Doubles, near: Doubles, points: Floats
+) -> None:
+    """Write positions less the first of all, shape (V, 3), in double and in single precision."""
+    for v in range(first, last):
         away = difference(positions, 0, v)
         write_row(near, v, away)
         write_row(points, v, away)
@@ -154,47 +168,82 @@ def between_rows(rows: Floats, a: np.uint32, b: np.uint32) -> Vector:
 
 
 @njit
-def place_surface_centres(mesh: Connectivity, rows: Floats, centres: Floats) -> None:
-    """Write the points in the middle of triangles with three split edges, shape (F, 3)."""
-    vertex_count = mesh.vertex_count
-    for t in range(centres.shape[0]):
-        for i in range(3):
-            corners = middles = ZERO
-            for k in range(3):
-                e = mesh.triangle_edges[t, k]
-                corners += rows[mesh.faces[t, k], i]
-                if e >= 0:
-                    middles += rows[vertex_count + e, i]
-            # The sum of displacements is the sum of the middles less that of the corners.
-            centres[t, i] = THIRD * corners + FULL_CENTRE * (middles - corners)
+def place_surface_centres(
+    first: int,
+    last: int,
+    vertex_count: int,
+    faces: Unsigned,
+    triangle_edges: Indices,
+    rows: Floats,
+    centres: Floats,
+) -> None:
+    """Write the points in the middle of triangles with three split edges, shape (F, 3).
+
+    `rows`: of vertices and of the middles of all edges, shape (V + E, 6).
+    """
+    for t in range(first, last):
+        corners = middles = ZERO, ZERO, ZERO
+        for k in range(3):
+            e = triangle_edges[t, k]
+            corners = plus(corners, row_of(rows, faces[t, k]))
+            if e >= 0:
+                middles = plus(middles, row_of(rows, np.uint32(vertex_count + e)))
+        # The sum of displacements is the sum of the middles less that of the corners.
+        out = times(FULL_CENTRE, less(middles, ONE, corners))
+        write_row(centres, t, plus(times(THIRD, corners), out))
 
 
 @njit
-def surface_normals(mesh: Connectivity, rows: Floats, centres: Floats, normals: Floats) -> None:
-    """Write unit normals of vertices and of the middles of all edges, shape (V + E, 3).
+def surface_normals_of_vertices(
+    first: int,
+    last: int,
+    starts: Unsigned,
+    corners: Unsigned,
+    triangle_edges: Indices,
+    rows: Floats,
+    centres: Floats,
+    normals: Floats,
+) -> None:
+    """Write unit normals of vertices, the first of `normals`, shape (V + E, 3).
 
-    `rows`: their positions, shape (V + E, 6). `centres`: scratch, shape (F, 3).
+    `starts`, `corners`: those at each vertex (mesh/fans.py). `rows`: positions, shape (V + E, 6).
     """
-    place_surface_centres(mesh, rows, centres)
-    vertex_count, face_count = mesh.vertex_count, centres.shape[0]
-    normals[:vertex_count] = ZERO
-    for t in range(face_count):
-        if mesh.triangle_edges[t, 0] < 0:
-            continue
-        centre = row_of(centres, t)
-        for i in range(3):
-            a = mesh.faces[t, i]
-            after = np.uint32(vertex_count + mesh.triangle_edges[t, i])
-            before = np.uint32(vertex_count + mesh.triangle_edges[t, i - 1])
-            out = less(centre, ONE, row_of(rows, a))
-            add_to_row(normals, a, cross(out, between_rows(rows, after, before)))
-    normalise(normals[:vertex_count])
-    for e in range(mesh.edges.shape[0]):
-        a, b = mesh.around.points[e, 0], mesh.around.points[e, 1]
+    vertex_count = starts.shape[0] - 1
+    for v in range(first, last):
+        here, total = row_of(rows, v), (ZERO, ZERO, ZERO)
+        for k in range(starts[v], starts[v + 1]):
+            t, i = corners[k] >> SIDE_BITS, corners[k] & SIDE_MASK
+            if triangle_edges[t, 0] < 0:
+                continue
+            after = np.uint32(vertex_count + triangle_edges[t, i])
+            before = np.uint32(vertex_count + triangle_edges[t, (i + 2) % 3])
+            out = less(row_of(centres, t), ONE, here)
+            total = plus(total, cross(out, between_rows(rows, after, before)))
+        write_row(normals, v, unit(total))
+
+
+@njit
+def surface_normals_of_edges(
+    first: int,
+    last: int,
+    points: Unsigned,
+    edge_sides: Unsigned,
+    is_interior: Flags,
+    rows: Floats,
+    centres: Floats,
+    normals: Floats,
+) -> None:
+    """Write unit normals of the middles of edges, the last of `normals`, shape (V + E, 3).
+
+    `points`: of edges, shape (E, 4). The vertices have theirs.
+    """
+    vertex_count, face_count = normals.shape[0] - points.shape[0], centres.shape[0]
+    for e in range(first, last):
+        a, b = points[e, 0], points[e, 1]
         row = np.uint32(vertex_count + e)
         mean = times(HALF, plus(row_of(normals, a), row_of(normals, b)))
-        side, beyond = mesh.edge_sides[e, 0] >> SIDE_BITS, mesh.edge_sides[e, 1] >> SIDE_BITS
-        if not mesh.around.is_interior[e] and beyond < face_count:
+        side, beyond = edge_sides[e, 0] >> SIDE_BITS, edge_sides[e, 1] >> SIDE_BITS
+        if not is_interior[e] and beyond < face_count:
             write_row(normals, row, unit(mean))  # sheets that meet have no normal in common
             continue
         along = between_rows(rows, a, b)
@@ -205,17 +254,20 @@ def surface_normals(mesh: Connectivity, rows: Floats, centres: Floats, normals: 
 
 
 @njit
-def turn_normals(mesh: Connectivity, frame: FrameBuffers, normals: Floats) -> None:
+def turn_normals(
+    first: int, last: int, points: Unsigned, frame: FrameBuffers, normals: Floats
+) -> None:
     """Write the normals of vertices and of the points of split edges, as far as they have grown.
 
+    The loop is over vertices, and then over split edges. `points`: of edges, shape (E, 4);
     `normals`: of vertices and middles, shape (V + E, 3).
     """
-    vertices, vertex_count = frame.rows, mesh.vertex_count
-    for v in range(vertex_count):
+    vertices, vertex_count = frame.rows, frame.points.shape[0]
+    for v in range(first, min(last, vertex_count)):
         write_row(vertices, v, row_of(normals, v), 3)
-    for k in range(frame.counts[ONCE]):
+    for k in range(max(first - vertex_count, 0), last - vertex_count):
         e = frame.split_once[k]
-        a, b = mesh.around.points[e, 0], mesh.around.points[e, 1]
+        a, b = points[e, 0], points[e, 1]
         row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
         geomorph = min(ONE, SOON * frame.geomorph_once[e])
         normal = row_of(normals, np.uint32(vertex_count + e))
@@ -224,27 +276,35 @@ def turn_normals(mesh: Connectivity, frame: FrameBuffers, normals: Floats) -> No
             normal = unit(mix(mean, normal, geomorph))
         write_row(vertices, row, normal, 3)
         if frame.splits[e] == 2:
-            write_mean_normal(vertices, a, row, np.uint32(row - 1))
-            write_mean_normal(vertices, b, row, np.uint32(row + 1))
+            near_a, near_b = np.uint32(row - 1), np.uint32(row + 1)
+            write_row(vertices, near_a, unit(plus(row_of(normals, a), normal)), 3)
+            write_row(vertices, near_b, unit(plus(row_of(normals, b), normal)), 3)
 
 
 @njit
-def turn_centres(mesh: Connectivity, frame: FrameBuffers, rows: Floats) -> None:
+def turn_centres(
+    first: int,
+    last: int,
+    faces: Unsigned,
+    triangle_edges: Indices,
+    frame: FrameBuffers,
+    rows: Floats,
+) -> None:
     """Turn the normals of points in the middle of triangles as the least grown edge allows.
 
     To the normal of the hexagon around, whose corners are in `rows`, shape (V + E, 6).
     """
-    vertices, vertex_count = frame.rows, mesh.vertex_count
-    for k in range(frame.counts[CENTRES]):
+    vertices, vertex_count = frame.rows, frame.points.shape[0]
+    for k in range(first, last):
         t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
         geomorph, hexagon = ONE, (ZERO, ZERO, ZERO)
-        origin = row_of(rows, mesh.faces[t, 0])
+        origin = row_of(rows, faces[t, 0])
         for i in range(3):
-            e, last = mesh.triangle_edges[t, i], mesh.triangle_edges[t, i - 1]
+            e, previous = triangle_edges[t, i], triangle_edges[t, i - 1]
             geomorph = min(geomorph, frame.geomorph_once[e] if frame.splits[e] > 0 else ZERO)
-            a = less(row_of(rows, mesh.faces[t, i]), ONE, origin)
+            a = less(row_of(rows, faces[t, i]), ONE, origin)
             after = np.uint32(vertex_count + e)
-            before = np.uint32(vertex_count + last)
+            before = np.uint32(vertex_count + previous)
             hexagon = plus(hexagon, cross(a, between_rows(rows, before, after)))
         if geomorph > ZERO:
             geomorph = min(ONE, SOON * geomorph)
@@ -254,12 +314,21 @@ def turn_centres(mesh: Connectivity, frame: FrameBuffers, rows: Floats) -> None:
 
 @njit
 def measure_edges(
-    mesh: Connectivity, rows: Floats, normals: Floats, displacements: Floats, turns: Floats
+    first: int,
+    last: int,
+    points: Unsigned,
+    rows: Floats,
+    normals: Floats,
+    displacements: Floats,
+    turns: Floats,
 ) -> None:
-    """Write the distance of each middle from its edge, and turn of its normal x length, (E,)."""
-    vertex_count = mesh.vertex_count
-    for e in range(displacements.shape[0]):
-        a, b = mesh.around.points[e, 0], mesh.around.points[e, 1]
+    """Write the distance of each middle from its edge, and turn of its normal x length, (E,).
+
+    `points`: of edges, shape (E, 4); `rows`, `normals`: of vertices and middles.
+    """
+    vertex_count = rows.shape[0] - points.shape[0]
+    for e in range(first, last):
+        a, b = points[e, 0], points[e, 1]
         row = np.uint32(vertex_count + e)
         ends = plus(row_of(rows, a), row_of(rows, b))
         out = less(row_of(rows, row), HALF, ends)

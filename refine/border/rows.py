@@ -9,18 +9,9 @@ import numpy as np
 from ...jit import njit
 from ..mesh.arrays import Floats, Unsigned
 from ..mesh.connectivity import Connectivity
-from ..mesh.vectors import row_of, write_row
 
 GEOMETRY_COLUMNS = 6
 """x y z, nx ny nz: columns of a row before attributes."""
-
-
-@njit
-def place_unmoved(points: Floats, normals: Floats, rows: Floats) -> None:
-    """Write vertices as they are."""
-    for v in range(points.shape[0]):
-        write_row(rows, v, row_of(points, v))
-        write_row(rows, v, row_of(normals, v), 3)
 
 
 @njit

@@ -16,7 +16,6 @@ one metre away, still far below the default thresholds.
 """
 
 import reprlib
-from collections.abc import Callable
 from numbers import Real
 
 import numpy as np
@@ -57,6 +56,8 @@ class Criterion:
 
     parts: tuple["Criterion", ...] = ()
     """Criteria that this one asks. Each of them, too, serves one refiner only."""
+    uses_normals = True
+    """Whether it reads the normals that it is handed, which are not found where nobody does."""
     _metric: Floats = np.zeros(0, dtype=np.float32)
     """What `mark` follows from, shape (E,)."""
 
@@ -92,17 +93,7 @@ class Criterion:
 
 
 criteria: Registry[Criterion] = Registry("criterion", "risorius.criteria")
-"""Criteria by name."""
-
-
-def register_criterion(name: str, factory: Callable[[], Criterion]) -> None:
-    """Make a criterion known by name; raises ValueError if the name is empty or taken.
-
-    `factory`: called without arguments, once for each refiner that asks for the name.
-
-    An installed package announces an entry point of group `risorius.criteria` instead.
-    """
-    criteria.register(name, factory)
+"""Criteria by name; a factory is called without arguments, once for each refiner that asks."""
 
 
 class Thresholds:

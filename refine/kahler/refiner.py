@@ -24,6 +24,7 @@ from ..border.plugin import Origins, Stream, View
 from ..border.stream import StreamArrays
 from ..mesh.arrays import Doubles, Floats, Indices, Small
 from ..mesh.connectivity import Connectivity
+from ..mesh.threads import beside
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
 from .frame import buffers_for
@@ -84,15 +85,19 @@ class Kahler(BaseRefiner):
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Write the frame: one line for each step above."""
-        self.find_normals()
+        if self._criterion.uses_normals or self._scheme.uses_normals:
+            self.find_normals()
         self._scheme.prepare(self._frame)
         self._mark(view)
         vertex_count, triangle_count = self._number()
         out = self.reserve(stream, vertex_count, triangle_count)
         if out is not self._out:
             self._write_to(out)
-        self._place(out.vertices)
-        self._look_up()
+        look_up = beside(self._look_up, triangle_count)
+        try:
+            self._place(out.vertices)
+        finally:
+            look_up()
         return vertex_count, triangle_count
 
     def _mark(self, view: View | None) -> None:

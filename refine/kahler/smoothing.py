@@ -44,7 +44,7 @@ Section 6: "it would be interesting to investigate the effects of other smoothin
 scheme is one small class, `Scheme`.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -94,6 +94,8 @@ class Scheme:
 
     interpolates = False
     """Whether the original vertices stay where they are."""
+    uses_normals = True
+    """Whether it reads the normals of frames, which are not found where nobody does."""
     parts: tuple["Scheme", ...] = ()
     """Schemes that this one asks. Each of them, too, serves one refiner only."""
 
@@ -113,6 +115,10 @@ class Scheme:
         """Write positions and normals of vertices and of points on split edges into the rows."""
         raise NotImplementedError(f"{type(self).__name__} must have a method place")
 
+    def place_positions(self, frame: FrameBuffers) -> None:
+        """Do the same for whoever writes the normals; as `place` does it, unless it is written."""
+        self.place(frame)
+
     def place_centres(self, frame: FrameBuffers) -> None:
         """Correct the points in the middle of triangles, when blending has written them."""
 
@@ -131,17 +137,7 @@ class Scheme:
 
 
 schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
-"""Schemes by name."""
-
-
-def register_scheme(name: str, factory: Callable[..., Scheme]) -> None:
-    """Make a scheme known by name; raises ValueError if the name is empty or taken.
-
-    `factory`: called without arguments, once for each refiner that asks for the name.
-
-    An installed package announces an entry point of group `risorius.schemes` instead.
-    """
-    schemes.register(name, factory)
+"""Schemes by name; a factory is called without arguments, once for each refiner that asks."""
 
 
 class FirstLevel(NamedTuple):

@@ -12,7 +12,7 @@ import pytest
 COMMANDS = (
     "capture --set joy",
     "capture --set joy --option scheme=detail --option criterion=displacement",
-    "capture --set joy --option criterion=silhouette+screen+curvature+border",
+    "capture --set joy --option criterion=silhouette+curvature+border",
     "capture --set joy --option coherent=on",
     "capture --set joy --option blend=on --option criterion=normal",
     "capture --set joy --refiner loop --option levels=2",

@@ -69,7 +69,7 @@ def merged(mesh: Any) -> Any:
 def test_textured_sphere(process: bool) -> None:
     """From GLB, squeezed: no crack at the seam, whose two sides keep their own texture."""
     mesh = textured_sphere(process=process)
-    refiner = refine.from_trimesh(mesh)
+    refiner = refine.TrimeshRefiner(mesh)
     frame = refiner.as_trimesh(mesh.vertices * [1.0, 1.0, 0.5])
     assert len(frame.faces) > 2 * len(mesh.faces)
     assert merged(frame).is_watertight
@@ -90,7 +90,7 @@ def test_textured_cube(process: bool, tmp_path: Path) -> None:
     """From OBJ: doubled at every edge, closed nonetheless; each side shows its whole texture."""
     mesh = textured_cube(tmp_path, process=process)
     assert len(mesh.vertices) > 8
-    frame = refine.from_trimesh(mesh).as_trimesh(mesh.vertices * [1.0, 2.0, 1.0])
+    frame = refine.TrimeshRefiner(mesh).as_trimesh(mesh.vertices * [1.0, 2.0, 1.0])
     assert len(frame.faces) > 12
     assert merged(frame).is_watertight
     assert set(map(tuple, np.unique(mesh.visual.uv, axis=0).tolist())) <= set(
@@ -103,7 +103,7 @@ def test_without_data_it_is_closed() -> None:
     corners = trimesh.creation.box().triangles.reshape(-1, 3)
     soup = trimesh.Trimesh(corners, np.arange(36).reshape(12, 3), process=False)
     assert not soup.is_watertight
-    frame = refine.from_trimesh(soup).as_trimesh(soup.vertices * [1.0, 1.0, 2.0])
+    frame = refine.TrimeshRefiner(soup).as_trimesh(soup.vertices * [1.0, 1.0, 2.0])
     assert frame.is_watertight
     np.testing.assert_allclose(np.linalg.norm(frame.vertex_normals, axis=1), 1.0, atol=1e-5)
 
@@ -114,7 +114,7 @@ def test_colours_and_attributes() -> None:
     mesh.visual.face_colors = np.arange(len(mesh.faces) * 4).reshape(-1, 4) % 256
     mesh.face_attributes["number"] = np.arange(len(mesh.faces))
     mesh.metadata["name"] = "ball"
-    frame = refine.from_trimesh(mesh).as_trimesh(mesh.vertices)
+    frame = refine.TrimeshRefiner(mesh).as_trimesh(mesh.vertices)
     assert len(frame.faces) > len(mesh.faces)
     assert frame.metadata["name"] == "ball"
     number = frame.face_attributes["number"]
@@ -127,7 +127,7 @@ def test_colours_and_attributes() -> None:
     painted.visual = trimesh.visual.ColorVisuals(
         painted, vertex_colors=np.column_stack([shades, shades, shades])
     )
-    frame = refine.from_trimesh(mesh).as_trimesh(painted)  # the frame brings its own
+    frame = refine.TrimeshRefiner(mesh).as_trimesh(painted)  # the frame brings its own
     assert frame.visual.kind == "vertex"
     colours = frame.visual.vertex_colors[:, 0].astype(float)
     assert np.abs(colours - 127.5 * (frame.vertices[:, 0] + 1.0)).max() < 25.0
@@ -136,8 +136,8 @@ def test_colours_and_attributes() -> None:
 def test_primitives_and_scenes() -> None:
     """A primitive is refined as the triangles that it shows; of a scene one mesh is asked for."""
     ball = trimesh.primitives.Sphere(subdivisions=1)
-    frame = refine.from_trimesh(ball).as_trimesh(ball.vertices)
+    frame = refine.TrimeshRefiner(ball).as_trimesh(ball.vertices)
     assert type(frame) is trimesh.Trimesh
     assert frame.is_watertight
     with pytest.raises(ValueError, match=r"must be a trimesh\.Trimesh, got Scene; of a scene take"):
-        refine.from_trimesh(trimesh.Scene(ball))
+        refine.TrimeshRefiner(trimesh.Scene(ball))

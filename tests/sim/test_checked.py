@@ -197,14 +197,6 @@ def test_what_is_no_head_is_told(head: object) -> None:
         sim.create(head)
 
 
-@pytest.mark.parametrize("name", ["gravity", "inertia"])
-@pytest.mark.parametrize("value", [None, "no", 0, 1.0, [], NAN])
-def test_switches_are_true_or_false(name: str, value: Any) -> None:
-    """The word "no" does not switch gravity on."""
-    with pytest.raises(ValueError, match=f"{name}: was .*, must be True or False"):
-        sim.create(grid(), **{name: value})
-
-
 @pytest.mark.parametrize("document", [*TABLES, {"format": 2}, {"muscle": {"a": HUGE}}])
 def test_what_is_no_rig_is_told(document: Any) -> None:
     """`read_rig` on its own."""

@@ -117,7 +117,7 @@ def test_a_share_follows_the_whole_that_is_set_later() -> None:
     assert not subject.wanted.any()
     subject.set_all({"whole": 0.6})
     assert subject.wanted.tolist() == pytest.approx([0.25, 0.25, 0.4, 0.6])
-    assert subject.value("part") == 0.3
+    assert subject.values["part"] == 0.3
 
 
 def test_what_rows_make_sure_of_does_not_add() -> None:
@@ -152,7 +152,7 @@ def test_sums_are_cut_off_once_and_in_any_order() -> None:
     sums = dict(zip(LOWEST, subject.wanted.tolist(), strict=True))
     assert sums["puller_left"] == 1.0  # 0.5 + 0.72 + 0.4
     assert sums["slide"] == pytest.approx(1.0 - 0.4 + 0.25)
-    assert subject.value("puller_left") == 0.5, "a layer does not change what was set below it"
+    assert subject.values["puller_left"] == 0.5, "a layer does not change what was set below it"
 
 
 @pytest.mark.parametrize(

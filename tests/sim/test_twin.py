@@ -10,11 +10,11 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
+from risorius.sim.anatomy import Tick
 from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from risorius.sim.integrator import substeps_in
 from risorius.sim.lids import turn_lids
-from risorius.sim.skin_model import Tick
 from risorius.sim.skull import REST
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
 from risorius.sim.tissue import carry, tissue_energy
@@ -257,7 +257,7 @@ def test_a_step_is_its_substeps(head: Head) -> None:
     fast.set_all(values)
     plain.set_all(values)
     fast.step(FRAME)
-    plain._controls.advance(FRAME / 2.0)
+    plain.advance(FRAME / 2.0)
     plain._place_targets()
     for _ in range(substeps_in(FRAME)):
         _plain_substep(plain, FRAME / substeps_in(FRAME))

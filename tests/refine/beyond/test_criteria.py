@@ -67,11 +67,10 @@ def test_rest_is_grown_at_once() -> None:
     assert points[0] < points[1]  # and the points in the middle of triangles
 
 
-@pytest.mark.parametrize("name", ["silhouette", "screen"])
-def test_view_is_needed(name: str) -> None:
-    """Criteria that depend on the eye say so."""
+def test_view_is_needed() -> None:
+    """A criterion that depends on the eye says so."""
     mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=name)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion="silhouette")
     with pytest.raises(ValueError, match=r"needs to know where the eye is; pass view=refine.View"):
         refiner.refine(mesh.vertices)
     for view in (
@@ -88,14 +87,14 @@ def test_maximum() -> None:
     mesh = meshes.irregular(1)
     deformed = meshes.wrinkled(mesh, 2)
     view = refine.View([0.0, 0.0, 50.0], 800.0)
-    names = ["normal", "curvature", "silhouette", refine.ScreenEdge(14, 18)]
+    names = ["normal", "curvature", "silhouette"]
     single = [splits_of(mesh, deformed, name, view=view)[0] for name in names]
     together, _ = splits_of(mesh, deformed, names, view=view)
     assert (together == np.max(single, axis=0)).all()
-    assert len({s.tobytes() for s in single}) == 4
+    assert len({s.tobytes() for s in single}) == 3
     assert len(set(together.tolist())) == 3
-    joined, _ = splits_of(mesh, deformed, "normal+curvature+silhouette", view=view)
-    assert (joined == np.max(single[:3], axis=0)).all()
+    joined, _ = splits_of(mesh, deformed, "+".join(names), view=view)
+    assert (joined == together).all()
 
 
 @pytest.mark.parametrize("criterion", ["normal", "curvature"])
@@ -144,9 +143,6 @@ def plain_measure(
             values.append(-cosine)
         elif kind is refine.Curvature:
             values.append(abs(d @ normals[b] - d @ normals[a]) / 8 / unit)
-        elif kind is refine.ScreenEdge:
-            distance = np.linalg.norm(EYE - (positions[a] + positions[b]) / 2)
-            values.append(500.0 * np.linalg.norm(d) / distance)
         else:
             to_eye = [(EYE - positions[v]) / np.linalg.norm(EYE - positions[v]) for v in (a, b)]
             facing = [float(normals[v] @ s) for v, s in zip((a, b), to_eye, strict=True)]
@@ -162,7 +158,6 @@ def plain_measure(
         (refine.NormalDrop, 0.02, 0.08),
         (refine.Curvature, 0.025, 0.06),
         (refine.Silhouette, 0.005, 0.03),
-        (refine.ScreenEdge, 80.0, 120.0),
     ],
 )
 def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> None:

@@ -340,6 +340,6 @@ def test_an_object_knows_one_mesh(name: str) -> None:
 @pytest.mark.parametrize("view", [refine.View((0, 0, 5), "x"), refine.View("eye"), refine.View(5)])
 def test_views_of_another_kind(view: refine.View) -> None:
     """An eye is a point, and a focal length a number."""
-    refiner = refine.create("kahler", FINE.faces, FINE.vertices, criterion="screen")
+    refiner = refine.create("kahler", FINE.faces, FINE.vertices, criterion="silhouette")
     with pytest.raises(ValueError, match="view must have an eye of shape"):
         refiner.refine(FINE.vertices, view=view)

@@ -1,0 +1,44 @@
+"""What lies around each vertex, sorted once, for loops that threads share (threads.py).
+
+A loop over triangles that adds to their corners cannot be shared: two of them meet at a vertex. One
+over vertices can, and where each takes what is around it in the order in which the loop over
+triangles, or over edges, would have come to it, its sums have the same bits.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .arrays import Unsigned
+from .connectivity import Connectivity
+
+
+class Fans(NamedTuple):
+    """What lies around each vertex of a mesh with V vertices, F triangles and E edges."""
+
+    corner_starts: Unsigned
+    """Those of vertex v are `corners[corner_starts[v]:corner_starts[v + 1]]`, shape (V + 1,)."""
+    corners: Unsigned
+    """Corners that lie there, 4 x triangle + i, triangles in their order, shape (3 F,)."""
+    neighbour_starts: Unsigned
+    """The same for neighbours, shape (V + 1,)."""
+    neighbours: Unsigned
+    """The other ends of the edges there, edges in their order, shape (2 E,)."""
+
+
+def fans_of(mesh: Connectivity) -> Fans:
+    """Sort the corners of triangles and the ends of edges by the vertices that they lie at."""
+    corner_starts, order = _by_vertex(mesh.faces, mesh.vertex_count)
+    corners = (order // 3 * 4 + order % 3).astype(np.uint32)
+    neighbour_starts, order = _by_vertex(mesh.edges, mesh.vertex_count)
+    neighbours = mesh.edges[:, ::-1].ravel()[order].astype(np.uint32)
+    return Fans(corner_starts, corners, neighbour_starts, neighbours)
+
+
+def _by_vertex(
+    vertices: npt.NDArray[np.integer], vertex_count: int
+) -> tuple[Unsigned, npt.NDArray[np.intp]]:
+    order = np.argsort(vertices, axis=None, kind="stable")
+    counts = np.bincount(vertices.ravel(), minlength=vertex_count)
+    return np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32), order

@@ -1,0 +1,124 @@
+"""Loops shared among threads: the same bits, every item once, and none for small meshes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from risorius import assets, refine
+from risorius.refine.mesh import threads
+from tests import meshes
+
+ROOT = Path(__file__).resolve().parents[3]
+LOOK = {"scheme": "cubic", "criterion": "displacement+rest"}
+OPTIONS: dict[str, dict[str, Any]] = {
+    "look": LOOK,
+    "paper": {},
+    "coherent": {"coherent": True},
+    "loop, refined": {"blend": True, "normals": "refined"},
+    "unblended": {"scheme": "cubic", "blend": False},
+    "none": {},
+}
+
+
+def force_threads(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    """Let loops over small meshes be shared by so many threads, in many small parts."""
+    monkeypatch.setattr(threads, "PART", 16)
+    monkeypatch.setattr(threads, "MOST", count)
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+@pytest.mark.parametrize("mesh", [meshes.irregular(4), meshes.tube(24, 12), meshes.with_debris()])
+def test_bits_do_not_depend_on_threads(
+    mesh: meshes.Mesh, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One, two and three threads make the same frames, which are sound; seams and debris too."""
+    refiner = "none" if name == "none" else "kahler"
+    bound = [
+        refine.create(refiner, mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv, **OPTIONS[name])
+        for _ in range(3)
+    ]
+    for seed in range(4):
+        frame = meshes.wrinkled(mesh, seed)
+        found = []
+        for count, each in enumerate(bound, 1):
+            force_threads(monkeypatch, count)
+            made = each.refine(frame)
+            refine.check(each, made, frame)
+            found.append(
+                [array.tobytes() for array in (*made[:5], *each.origins()) if array is not None]
+            )
+        assert found[0] == found[1] == found[2]
+        assert refiner == "none" or made.triangle_count > 1.2 * len(mesh.faces)
+
+
+def test_every_item_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts make up the whole, whoever takes them; what fails in one fails for the caller."""
+    force_threads(monkeypatch, 3)
+    for count in (0, 1, 31, 32, 1000):
+        done = np.zeros(count, np.int64)
+
+        def add(first: int, last: int, items: np.ndarray) -> None:
+            items[first:last] += 1
+
+        threads.share(add, count, done)
+        assert (done == 1).all()
+
+    def fail(first: int, last: int) -> None:
+        if last == 1000:
+            raise ValueError("the last part")
+
+    with pytest.raises(ValueError, match="the last part"):
+        threads.share(fail, 1000)
+
+
+def test_small_meshes_start_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A face is refined where it is, and anything is where numba is told of one thread."""
+
+    def refuse() -> None:
+        raise AssertionError("a thread was started")
+
+    monkeypatch.setattr(threads, "_threads", refuse)
+    head = assets.load("head")
+    refiner = refine.create("kahler", head.faces, head.vertices, **LOOK)
+    assert refiner.refine(1.01 * head.vertices).triangle_count > len(head.faces)
+    monkeypatch.setattr(threads, "MOST", 1)
+    threads.share(lambda first, last: None, 1_000_000)
+    monkeypatch.setattr(threads, "MOST", 2)
+    with pytest.raises(AssertionError, match="a thread was started"):
+        threads.share(lambda first, last: None, 1_000_000)
+
+
+FORKED = """
+import os
+from risorius import refine
+from risorius.refine.mesh import threads
+from tests import meshes
+threads.PART, threads.MOST = 16, 2
+mesh = meshes.irregular(4)
+frame = meshes.wrinkled(mesh, 1)
+refiner = refine.create("kahler", mesh.faces, mesh.vertices, **{LOOK})
+before = refiner.refine(frame).positions.copy()
+child = os.fork()
+same = (refiner.refine(frame).positions == before).all()
+if child == 0:
+    os._exit(0 if same else 3)
+assert same and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_forked_processes_have_threads_of_their_own() -> None:
+    """A child that was forked refines as its parent does, and waits for no thread that is not."""
+    code = FORKED.replace("{LOOK}", repr(LOOK))
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore::DeprecationWarning", "-c", code],
+        cwd=ROOT, capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
