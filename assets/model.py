@@ -85,8 +85,8 @@ class Part:
     roots: for a part that is attached to the skin and moves with it, for each vertex the one whose
         place on the skin it keeps to, shape (n,), int32; None for all others.
     strand_radius: half the thickness of the hairs that it consists of [mm]; 0 where it is none.
-    striation: place of each vertex across and along the strands with which it is striped [mm], and
-        a unit vector along them, shape (n, 5), float32; None for all but hair cards.
+    striation: for hair alone the place of each vertex across and along its strands [mm], the way
+        from their roots to their tips [mm], and how dense they are, shape (n, 6), float32.
     """
 
     name: str

@@ -8,7 +8,7 @@ from risorius.geometry.colour import to_linear
 
 from .camera_view import CameraView
 from .light import Light
-from .parts import Part
+from .parts import LAYERS, Part
 from .programs import write_uniform
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style
 
@@ -46,9 +46,9 @@ def mesh_shader(style: Style, has_texture: bool, has_bumps: bool, fades: bool) -
 
 def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
     """The file and the defines of the program of parts of a kind, see `PartBuffers`."""
+    if kind == "HAIR":
+        return ["hair.glsl", f"LAYERS {LAYERS}"]
     shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
-    if kind == "CARDS":
-        return ["cards.glsl", *shadows]
     sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
     return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
 
@@ -87,7 +87,7 @@ def set_part(
     `set_light` comes first; of it, light from behind does not reach what is enclosed, or fibres.
     """
     shine = part.shine
-    if kind == "CARDS":
+    if kind == "HAIR":
         program["gloss"] = 2.0 * shine
         return
     is_rimless = part.is_enclosed or kind == "FIBRES"

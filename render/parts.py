@@ -11,8 +11,11 @@ from risorius.geometry.colour import to_linear
 
 from .camera_view import box_corners
 
+OF_HAIR = "in_strand", "in_way", "in_dense"
 # What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.
-STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 5: ("CARDS", " 2f 3f", "in_strand", "in_along")}
+STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("HAIR", " 2f 3f 1f", *OF_HAIR)}
+LAYERS = 9  # of hair; with more a picture takes longer, with fewer one sees between them
+BLENDED = ("STRANDS", "HAIR")  # kinds that are partly transparent
 
 
 class Part(Protocol):
@@ -25,8 +28,8 @@ class Part(Protocol):
     bone: whose transform moves it. shine: 0 dull, 1 wet.
     is_enclosed: whether it lies within another surface, where light from behind does not get.
     strand_radius: half the thickness of the strands that it consists of; 0 where it is solid.
-    striation: place of each vertex across and along the fibres with which it is striped [mm],
-        (n, 2); for cards of strands a unit vector along them, too, (n, 5); None: it is plain.
+    striation: place of each vertex across and along fibres [mm], (n, 2), or None; of hair also the
+        way from root to tip [mm], at 0.6 of which the vertices lie, and how dense it is, (n, 6).
     """
 
     @property
@@ -63,7 +66,7 @@ class PartBuffers:
                 f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
             )
         self._gl = gl
-        # What it is drawn with: a define of surface.glsl, or CARDS for cards.glsl.
+        # What it is drawn with: a define of surface.glsl, or HAIR for hair.glsl.
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
         if columns:
@@ -118,7 +121,8 @@ class PartBuffers:
             )
         count = self._chosen_count if chosen else len(self.part.faces)
         self._gl.enable(moderngl.CULL_FACE)
-        self._arrays[program, indices].render(moderngl.TRIANGLES, vertices=3 * count)
+        layers = LAYERS if "in_way" in program else 1
+        self._arrays[program, indices].render(vertices=3 * count, instances=layers)
         self._gl.disable(moderngl.CULL_FACE)
 
 

@@ -30,10 +30,10 @@ from .materials import (
     value_texture,
 )
 from .outline import draw_fringes, fringes
-from .parts import Part, PartStore
+from .parts import BLENDED, Part, PartStore
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, scaled
-from .shadow import DEEP, OFFSET, ShadowMap, Thrower
+from .shadow import ShadowMap, Thrower
 from .stream import GpuStream, MeshBuffers, Share, Stream
 from .style import ColourBy, Shading, Style
 from .surface import NEWEST, Image, Surface
@@ -255,7 +255,7 @@ class Renderer:
         clip: Rectangle | None = None,
         cut: Plane | None = None,
     ) -> None:
-        """Draw coloured parts, each moved by the matrix of its bone (column vectors); strands last.
+        """Draw coloured parts, each moved by the matrix of its bone (column vectors); hair last.
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
@@ -273,7 +273,7 @@ class Renderer:
         occluder = self._occluder
         if is_chosen := occluder is not None and occluder.is_of(view, self.surface.target):
             occluder.choose_parts(placed)
-        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind == "STRANDS")
+        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind in BLENDED)
         if not self.surface.samples and cut is None:
             drawn += [(*each, "FRINGE") for each in placed if each[0].is_outlined]
         programs = {}
@@ -285,18 +285,17 @@ class Renderer:
             if cut is not None and "cut" in program:
                 set_cut(program, view, cut, SUNK)
             if shadow is not None and "shadow_map" in program:
-                offset = DEEP if kind == "CARDS" else OFFSET
-                shadow.set_uniforms(program, view, _SHADOW_UNIT, offset)
+                shadow.set_uniforms(program, view, _SHADOW_UNIT)
         for buffers, bone, *fringe in drawn:
             program = programs[buffers.kind, *fringe]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
             set_part(program, buffers.kind, buffers.part, style.light, view)
-            with blending(self._gl) if buffers.kind == "STRANDS" or fringe else nullcontext():
+            with blending(self._gl) if buffers.kind in BLENDED or fringe else nullcontext():
                 if fringe:
                     rows = fringes(buffers.rows, buffers.part.faces, view, bone)
                     draw_fringes(self._gl, program, rows)
                 else:
-                    buffers.draw(program, chosen=is_chosen)
+                    buffers.draw(program, chosen=is_chosen and buffers.kind != "HAIR")
 
     def draw_geometry(
         self,

@@ -24,7 +24,6 @@ RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade withi
 REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
 TEXEL = 2.0 * REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
-DEEP = 0.06  # the same for hair cards, 9 mm: they lie over each other, and all are lit
 STEEP = 0.999  # of a light's height, from which on it has no direction sideways
 
 Thrower = MeshBuffers | PlacedPart
@@ -76,13 +75,11 @@ class ShadowMap:
         """Whether it was last drawn for this view, in the frame of that number."""
         return self._drawn_for == (frame_number, view.fingerprint)
 
-    def set_uniforms(
-        self, program: moderngl.Program, view: CameraView, unit: int, offset: float = OFFSET
-    ) -> None:
-        """Let a program look up the shadow, through a texture unit; offset: see `OFFSET`."""
+    def set_uniforms(self, program: moderngl.Program, view: CameraView, unit: int) -> None:
+        """Let a program look up the shadow, through a texture unit."""
         radius = view.camera.scene_radius
         write_uniform(program, "shadow_matrix", self._view_to_light(view) @ _TO_TEXTURE)
-        program["shadow_offset"] = offset * radius
+        program["shadow_offset"] = OFFSET * radius
         program["shadow_reach"] = 2.0 * TEXEL * radius  # of the look-up, to each side
         self._depth.use(unit)
         program["shadow_map"] = unit

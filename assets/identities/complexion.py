@@ -24,7 +24,6 @@ import numpy.typing as npt
 import scipy
 
 from risorius.geometry.colour import to_linear, to_screen
-from risorius.geometry.normals import vertex_normals
 
 from ..data_files import Image, read_arrays_of
 from ..errors import AssetError
@@ -33,7 +32,7 @@ from ..fitting.head import FittedHead
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
-from .hair import CUTS, HAIR, bared, grown, shaded
+from .hair import CUTS, HAIR, hair_of, scalp_of
 from .person import Person
 from .traits import Identity, Sex
 
@@ -125,13 +124,11 @@ def recoloured(
     blood: float = 1.0,
     features: Features = PLAIN,
     haired_as: float | None = None,
-    parted: SingleArray | float = 0.0,
 ) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
     angle: ITA [deg], DARKEST to LIGHTEST, else ValueError. blood: as a share of what such skin has;
     0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which its hair goes, else `angle`.
-    parted: how far each texel lies bare between hair that is combed aside, 0 to 1, (H, W).
     """
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
@@ -140,8 +137,8 @@ def recoloured(
     hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
-    kept = _kept_hair(tints, features) * (1.0 - parted)
-    covered = _grown_over(tints, features) * (1.0 - parted) if features.grown else 0.0
+    kept = _kept_hair(tints, features)
+    covered = _grown_over(tints, features) if features.grown else 0.0
     light = np.empty_like(tints.light)
     relief = features.relief * tints.detail
     lips, beard = features.lips * BLOOD, features.beard * SHADOW
@@ -180,16 +177,14 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
         share = np.clip((features.brows + 0.2 - tints.brow) / 0.35, 0.0, 1.0)
         kept = kept * np.where(tints.brow < 1.99, share, 1.0).astype(np.float32)
     if features.baldness > 0.0:
-        behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
-        share = np.clip(behind / 14.0, 0.0, 1.0)
+        share = np.clip(_behind(tints, features) / 14.0, 0.0, 1.0)
         kept = kept * np.where(tints.scalp > 0.01, share, 1.0).astype(np.float32)
     return kept
 
 
 def _grown_over(tints: _Tints, features: Features) -> SingleArray:
     """How much long hair covers each texel of the scalp."""
-    behind = BEHIND * tints.scalp - IN_FRONT - features.baldness
-    covered = GROWN * np.clip((behind - 0.5) / 5.0, 0.0, 1.0)
+    covered = GROWN * np.clip((_behind(tints, features) - 0.5) / 10.0, 0.0, 1.0)
     return np.asarray(covered, dtype=np.float32)
 
 
@@ -229,33 +224,28 @@ def coloured(
         return replace(head, parts=parts, segments=segments)
     in_tone = partial(recoloured, blood=blood, features=features)
     if isinstance(head, Person):
-        parts = with_hair(head, parts, _hair_colour(angle, features), features.baldness)
-        places = head.uv[head.face_uv].astype(np.float64)
-        shape = head.albedo.shape[0], head.albedo.shape[1]
-        parted = bared(CUTS[head.identity.cut], head.vertices, head.faces, places, shape)
-        in_tone = partial(in_tone, haired_as=angle, parted=parted)  # hair stays, whatever the skin
-        head = replace(head, ambient_occlusion=_ambient_occlusion(head, parts), in_tone=in_tone)
+        in_tone = partial(in_tone, haired_as=angle)  # hair stays, whatever the skin
+        parts, head = _with_hair(head, parts, angle, features), replace(head, in_tone=in_tone)
     return replace(head, albedo=in_tone(angle), parts=parts, segments=segments)
 
 
-def with_hair(
-    person: Person, parts: Sequence[Part], colour: FloatArray, receded: float
+def _with_hair(
+    person: Person, parts: Sequence[Part], angle: float, features: Features
 ) -> tuple[Part, ...]:
-    """The parts of a person with the hair of its cut; colour: sRGB; receded: see `grown`."""
-    others = [part for part in parts if not part.name.startswith(HAIR)]
-    vertices, faces = person.vertices, person.faces
-    return (*others, *grown(person.identity.cut, vertices, faces, colour, receded=receded))
+    """The parts of a person with the hair of its cut; angle: ITA [deg]."""
+    others = tuple(part for part in parts if part.name != HAIR)
+    cut = CUTS[person.identity.cut]
+    if cut is None:
+        return others
+    uv = np.zeros((len(person.vertices), 2))
+    uv[person.faces] = person.uv[person.face_uv]
+    scalp = scalp_of(person.vertices, person.faces, uv, _behind(_tints(), features))
+    return (*others, hair_of(cut, scalp, _hair_colour(angle, features), person.identity.hair))
 
 
-def _ambient_occlusion(person: Person, parts: Sequence[Part]) -> Image:
-    """How open the skin of a person is to light from all around, with the hair that it has."""
-    hair = [part for part in parts if part.name.startswith(HAIR)]
-    ambient_occlusion = _tints().ambient_occlusion
-    if not hair:
-        return ambient_occlusion
-    normals = vertex_normals(person.vertices, person.faces)
-    places = person.uv[person.face_uv].astype(np.float64)
-    return shaded(ambient_occlusion, hair, person.vertices, normals, person.faces, places)
+def _behind(tints: _Tints, features: Features) -> SingleArray:
+    """How far texels lie behind somebody's hairline [mm]."""
+    return np.asarray(BEHIND * tints.scalp - IN_FRONT - features.baldness)
 
 
 def drawn_irises(

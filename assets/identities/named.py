@@ -30,7 +30,7 @@ class _Known:
 NAMED: Mapping[str, _Known] = MappingProxyType(
     {
         "ada": _Known(
-            27, Sex.WOMAN, 27.0, 34.0, "hazel", "bob",
+            27, Sex.WOMAN, 27.0, 34.0, "hazel", "fringed",
             {"go-go": -1.3, "zy-zy": -0.2, "ls-sto": 1.2, "sto-li": 1.4, "al-al": -0.6,
              "ch-ch": -0.2, "n-gn": -0.5, "sn-ls": -0.8},
             {"cheeks": 1.2, "chin width": -1.6, "jaw line": -1.2, "lips": 1.4, "eye slant": 0.8},
@@ -41,7 +41,7 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
             {"nose bridge": -1.2, "lips": 2.2, "cheekbones": 1.0, "jaw angle": 0.5, "chin": 0.4},
         ),
         "maria": _Known(
-            47, Sex.WOMAN, 66.0, 56.0, "blue", "waves",
+            47, Sex.WOMAN, 66.0, 56.0, "blue", "brushed",
             {"go-go": 0.2, "zy-zy": 0.5, "n-gn": -0.9, "ls-sto": -0.6, "sto-li": -0.4,
              "al-al": 0.4, "sn-ls": 0.6},
             {"chin": -0.8, "chin width": -0.3, "nose bridge": 0.5, "cheeks": -0.4},

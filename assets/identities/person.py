@@ -14,11 +14,10 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
-import scipy
 
 from risorius.geometry.normals import cross_products, vertex_normals
 
-from ..around import HAIRLINE, STRIP, direction_coordinates, line_height, neck_relief
+from ..around import STRIP, direction_coordinates, neck_relief
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
@@ -26,7 +25,6 @@ from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
 from ..fitting.warp import Similarity
 from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
-from ..smooth import smooth_step
 from .shaping import Field, Shaper, lids_on_eyes, measures_of
 from .traits import SHAPES, Identity, Sex
 
@@ -96,10 +94,8 @@ def _made(identity: Identity) -> Person:
     eyes = tuple(_eye(known, eye, field, bent) for eye in known.eyes)
     vertices = lids_on_eyes(known, bent, eyes, LID_SHARES)
     normals = vertex_normals(vertices, known.faces)
-    outward = identity.hair * _hair(known)
     if identity.sex is Sex.WOMAN:
-        outward -= NECK_OF_WOMEN * _neck(known)
-    vertices = vertices + outward[:, None] * normals
+        vertices = vertices - (NECK_OF_WOMEN * _neck(known))[:, None] * normals
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any():
         raise AssetError("no head has these measures without turning a triangle")
@@ -135,16 +131,6 @@ def _resting(years: float) -> float:
     """How far furrows show in a face at rest, 0 to 1."""
     past = float(np.clip((years - 30.0) / 45.0, 0.0, 1.0))
     return MOST_RESTING * past * past
-
-
-def _hair(known: Head) -> FloatArray:
-    """Share of the hair's height at each vertex, shape (V,); none around the ears."""
-    angle, height, _ = direction_coordinates(known.vertices)
-    behind = height - line_height(HAIRLINE, np.degrees(np.abs(angle)))
-    ears = np.concatenate([known.rings[f"ear_0_{side}"] for side in ("left", "right")])
-    away = scipy.spatial.cKDTree(known.vertices[ears]).query(known.vertices)[0]
-    top = 0.4 + 0.6 * smooth_step(20.0, 95.0, known.vertices[:, 1])
-    return top * smooth_step(2.0, 30.0, behind) * smooth_step(6.0, 30.0, away)
 
 
 def _neck(known: Head) -> FloatArray:

@@ -109,11 +109,11 @@ OF_AGE: Mapping[str, float] = MappingProxyType(
         "lips": -0.35, "mouth corners": -0.4,
     }
 )  # fmt: skip
-HAIR = MappingProxyType({Sex.WOMAN: (7.0, 12.0), Sex.MAN: (2.0, 7.0)})  # [mm]
+HAIR = 0.75, 1.3  # how long it is, beside its cut
 CUT_SHARES: Mapping[Sex, Mapping[str, float]] = MappingProxyType(
     {
-        Sex.WOMAN: {"bob": 0.4, "waves": 0.4, "short": 0.2},
-        Sex.MAN: {"short": 0.6, "cropped": 0.4},
+        Sex.WOMAN: {"fringed": 0.5, "swept": 0.2, "curly": 0.2, "brushed": 0.1},
+        Sex.MAN: {"short": 0.4, "cropped": 0.25, "brushed": 0.15, "swept": 0.1, "curly": 0.1},
     }
 )
 AGES = 20.0, 75.0  # [years]
@@ -126,8 +126,8 @@ class Identity:
 
     sex: whose norms `scores` belong to.
     age: [years].
-    hair: its height over the scalp [mm].
-    cut: name of its cut (hair/cuts.py).
+    hair: how long it is, beside that of its cut.
+    cut: name of its cut (`CUTS` of hair.py).
     scores: for each measure of `NORMS`, deviations from its mean.
     shapes: for each of `SHAPES`, deviations from the built-in head's.
     unevenness: for each of `SHAPES`, by how much it is more on the left and less on the right.
@@ -203,7 +203,7 @@ def sample_identity(
     for name in shapes:
         shift = side * OF_MEN.get(name, 0.0) + decades * OF_AGE.get(name, 0.0)
         shapes[name] = float(np.clip(0.8 * shapes[name] + shift, -MOST, MOST))
-    hair = float(random.uniform(*HAIR[sex]))
+    hair = float(random.uniform(*HAIR))
     cuts = CUT_SHARES[sex]
     cut = str(random.choice(list(cuts), p=list(cuts.values())))
     return Identity(

@@ -156,3 +156,27 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
         assert middle.min() > 0.4 * middle.mean()
         taken.append(darker.sum() / scale**2)
     assert max(taken) < 1.35 * min(taken)
+
+
+def test_hair_thins_out_toward_its_tips(surface: render.Surface) -> None:
+    """It covers what is under it at its roots, fades at its tips, and is away where none grows."""
+    renderer = render.Renderer(surface)
+    ball, covers = Ball(colour=(0.1, 0.1, 0.1)), []
+    for dense in (1.0, 0.0):
+        out = ball.normals
+        striation = np.column_stack([3.0 * ball.vertices[:, :2], 10.0 * out, 0.0 * out[:, 0]])
+        striation[:, 5] = dense
+        hair = SimpleNamespace(
+            **vars(ball), faces=ball.faces, colours=ball.colours, normals=out,
+            vertices=ball.vertices + 6.0 * out, striation=striation.astype(np.float32),
+        )  # fmt: skip
+        surface.begin()
+        renderer.draw_background(PLAIN)
+        renderer.draw_parts([hair], STILL, facing(), PLAIN)
+        surface.end()
+        row = 255 - surface.read().astype(np.int32)[48].mean(axis=1)
+        covers.append(row[48:])
+    assert not covers[1].any()
+    pixels = covers[0]  # 0.86 of a millimetre each; roots are 20 mm from the middle
+    assert pixels[:20].min() > 150.0 and not pixels[27:].any()
+    assert ((pixels > 5.0) & (pixels < 200.0)).sum() >= 2

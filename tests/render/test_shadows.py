@@ -80,10 +80,10 @@ def test_convex_things_do_not_shadow_themselves(
 
 
 @pytest.mark.parametrize("shadows", [True, False])
-def test_cards_throw_shadows_on_a_mesh_but_not_on_themselves(
+def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(
     surface: render.Surface, shadows: bool
 ) -> None:
-    """A ball of hair cards before a wall darkens it to its lower right, where it is told to.
+    """A ball of hair before a wall darkens it to its lower right, where it is told to.
 
     The ball keeps its colours: what is only a little nearer to the light does not shade it.
     """
@@ -98,10 +98,10 @@ def test_cards_throw_shadows_on_a_mesh_but_not_on_themselves(
         renderer.draw_background(style)
         if is_cast and shadows:
             renderer.cast_shadows(
-                [StripedBall()], {"cranium": before_wall}, facing(), style, stream=wall
+                [HairyBall()], {"cranium": before_wall}, facing(), style, stream=wall
             )
         renderer.draw_mesh(wall, facing(), style)
-        renderer.draw_parts([StripedBall()], {"cranium": before_wall}, facing(), style)
+        renderer.draw_parts([HairyBall()], {"cranium": before_wall}, facing(), style)
         surface.end()
         frames.append(surface.read().astype(np.int32))
     within, without = frames
@@ -111,13 +111,12 @@ def test_cards_throw_shadows_on_a_mesh_but_not_on_themselves(
 
 
 @dataclass(frozen=True, eq=False)
-class StripedBall(Ball):
-    """A ball whose strands run down."""
+class HairyBall(Ball):
+    """A ball whose strands stand up, and lie down a little."""
 
     @property
     def striation(self) -> npt.NDArray[np.float32]:
-        """Across and along [mm], and a unit vector along, shape (n, 5)."""
+        """Across and along [mm], the way from the root to the tip, and 1, shape (n, 6)."""
         normals = self.normals.astype(np.float64)
-        down = np.array([0.0, -1.0, 0.0]) + normals[:, 1:2] * normals
-        down /= np.maximum(np.linalg.norm(down, axis=1, keepdims=True), 1e-6)
-        return np.hstack([self.vertices[:, :2], down]).astype(np.float32)
+        way = 0.5 * normals - [0.0, 1.0, 0.0] + normals[:, 1:2] * normals
+        return np.hstack([self.vertices[:, :2], way, np.ones((len(way), 1))]).astype(np.float32)

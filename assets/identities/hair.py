@@ -1,0 +1,144 @@
+"""Hair that stands off the head: short, drawn as shells over the scalp (render/shaders/hair.glsl).
+
+part = hair_of("short", head.vertices, head.faces, behind, colour)
+
+One surface tells the renderer where hair grows, how dense it is, and how far and which way each
+strand goes; it moves with the skin. Strands run away from a whorl: one at the crown combs hair
+forward and down, one in front brushes it back, one at a temple sweeps it aside.
+After Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary surfaces".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from risorius.geometry.normals import vertex_normals
+
+from ..model import FloatArray, IndexArray, Part, SingleArray
+from ..smooth import Points, Values, smooth_step, unit
+from ..topology import quarter
+
+HAIR = "hair"  # the name of the part
+SHINE, DULL = 0.25, 0.7  # and how much of it curls have not
+LEVELS = 2  # how often triangles of the scalp are cut into four
+BULGE = 0.75  # of what the planes of an edge's ends would make of it
+MEAN = 0.6  # of the strands' way, where the part's own vertices lie
+SUNK = 0.3  # [mm] under the skin, for each before the hairline
+HEM = 13.0  # [mm] behind the hairline, from where hair is dense
+
+
+@dataclass(frozen=True)
+class Cut:
+    """How hair is cut and combed; all numbers of `CUTS` are chosen by eye.
+
+    whorl: the way from the middle of the head to where strands begin (x left, y up, z ahead).
+    sides, top: how long strands are [mm], on both sides and behind, and on top of the head.
+    lift: the sine of the angle at which they stand off the head.
+    behind: how far behind the hairline they are as long as that [mm].
+    curl: how far strands are no lines but curls, 0 to 1.
+    """
+
+    whorl: tuple[float, float, float]
+    sides: float
+    top: float
+    lift: float
+    behind: float = 25.0
+    curl: float = 0.0
+
+
+CUTS: Mapping[str, Cut | None] = MappingProxyType(
+    {
+        "cropped": None,  # as it is painted on the scalp
+        "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5),
+        "fringed": Cut((0.35, 0.75, -0.4), 22.0, 32.0, 0.3, behind=12.0),
+        "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
+        "brushed": Cut((0.15, 0.4, 0.9), 9.0, 28.0, 0.35, behind=18.0),
+        "curly": Cut((0.1, 0.75, -0.6), 9.0, 20.0, 0.8, behind=18.0, curl=1.0),
+    }
+)
+
+
+class Scalp(NamedTuple):
+    """Where hair grows: vertices (n, 3) [mm], unit normals, faces, and mm behind the hairline."""
+
+    points: Points
+    normals: Points
+    faces: IndexArray
+    behind: Values
+
+
+def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
+    """The part that is drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut."""
+    points, normals, faces, behind = scalp
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    whorl = unit(np.array([cut.whorl]))[0]
+    beside = unit(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
+    out = unit(points - middle)
+    away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
+    angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
+    faces = faces[(behind[faces] > 0.0).any(axis=1)]
+    # Where angles begin anew strands do not cross from one side to the other.
+    crosses = np.ptp(angle[faces], axis=1) > np.pi
+    again, number = np.unique(faces[crosses], return_inverse=True)
+    faces[crosses] = len(points) + number.reshape(-1, 3)
+    rows = np.concatenate([np.arange(len(points)), again])
+    points, normals, behind, away, out = (
+        each[rows] for each in (points, normals, behind, away, out)
+    )
+    angle = np.concatenate([angle, angle[again] + 2.0 * np.pi * (angle[again] < 0.0)])
+    radius = np.linalg.norm(points - middle, axis=1).mean()
+    comb = unit(np.cross(np.cross(whorl, out), normals))
+    comb *= np.sign((comb * (out * np.cos(away)[:, None] - whorl)).sum(axis=1))[:, None]
+    long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
+    long = length * long * smooth_step(0.0, cut.behind, behind)
+    way = long[:, None] * (cut.lift * normals + np.sqrt(1.0 - cut.lift**2) * comb)
+    # Outside the hairline it is under the skin.
+    points = points + (SUNK * np.minimum(behind, 0.0))[:, None] * normals
+    striation = np.column_stack(
+        [radius * angle, radius * away * (1.0 + 5.0 * cut.curl), way, np.minimum(behind / HEM, 2.0)]
+    )
+    return Part(
+        name=HAIR,
+        vertices=(points + MEAN * way).astype(np.float32),
+        normals=normals.astype(np.float32),
+        faces=faces,
+        colours=np.tile(colour, (len(points), 1)).astype(np.float32),
+        bone="cranium",
+        shine=SHINE * (1.0 - DULL * cut.curl),
+        striation=striation.astype(np.float32),
+    )
+
+
+def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArray) -> Scalp:
+    """The scalp of a head, finer than its mesh and round between its corners.
+
+    uv: of vertices, shape (V, 2). behind: how far texels lie behind the hairline [mm], (H, W).
+    Source: Boubekeur, Alexa 2008, "Phong tessellation".
+    """
+    height, width = behind.shape
+
+    def far(places: Points) -> Values:
+        """How far places on the texture lie behind the hairline [mm]."""
+        row, column = (1.0 - places[:, 1]) * height, places[:, 0] * width
+        texel = row.astype(int).clip(0, height - 1), column.astype(int).clip(0, width - 1)
+        return np.asarray(behind[texel], np.float64)
+
+    is_haired = (far(uv) > 0.0)[faces].any(axis=1)
+    used, number = np.unique(faces[is_haired], return_inverse=True)
+    faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
+    points, uv = vertices[used], uv[used].astype(np.float64)
+    for _ in range(LEVELS):
+        cut = quarter(faces, len(points))
+        faces, ends = cut.faces, points[cut.edges]
+        middle = ends.mean(axis=1, keepdims=True)
+        above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
+        bulge = -BULGE * (above * normals[cut.edges]).mean(axis=1)
+        points = np.vstack([points, middle[:, 0] + bulge])
+        normals = np.vstack([normals, unit(normals[cut.edges].mean(axis=1))])
+        uv = np.vstack([uv, uv[cut.edges].mean(axis=1)])
+    return Scalp(points, normals, faces, far(uv))

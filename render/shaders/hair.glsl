@@ -1,0 +1,87 @@
+// Short hair: one surface, drawn LAYERS times, from the skin to the tips of its strands; each layer
+// shows what of the strands is as long. What changes slowly is worked out at corners.
+// Source: Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary surfaces"; light
+// after Kajiya, Kay 1989, "Rendering fur with three dimensional textures", with two highlights, one
+// of the hair's colour, as in Scheuermann 2004, "Practical real-time hair rendering and shading".
+
+#include "lighting.glsl"
+
+#define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense;
+
+#if defined(VERTEX_STAGE)
+
+in vec3 in_position;  // on the skin, and MEAN of the way to the tips from there
+in vec3 in_normal;
+in vec3 in_colour;
+in vec2 in_strand;  // across and along strands [mm]
+in vec3 in_way;     // from their roots to the tips of the longest
+in float in_dense;  // how dense they are, from 0 up to 1; beyond, linear
+uniform mat4 model_view;
+uniform mat4 projection;
+uniform float gloss;
+const float MEAN = 0.6;
+out Surface { VARYINGS } surface;
+
+void main() {
+    float layer = (float(gl_InstanceID) + 0.5) / float(LAYERS);
+    vec4 position = model_view * vec4(in_position + (layer - MEAN) * in_way, 1.0);
+    vec3 normal = normalize(mat3(model_view) * in_normal), along = mat3(model_view) * in_way;
+    // Hair scatters light, so it is lit some way past where it turns away.
+    float facing = dot(normal, to_key);
+    float lit = clamp((facing + 0.3) / 1.3, 0.0, 1.0);
+    float rim = max(dot(normal, TO_RIM), 0.0);
+    surface.diffuse = 0.85 * key_light * lit + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
+        + hemisphere(normal) + 0.5 * rim_light * rim * rim;
+    surface.shine = key_light * (lit * clamp(2.0 * facing, 0.0, 1.0) * gloss);
+    surface.colour = in_colour;
+    surface.strand = in_strand;
+    surface.layer = layer, surface.dense = in_dense;
+    // Of the strands to the middle between eye and light.
+    surface.cosine = dot(along / max(length(along), 1e-6), normalize(to_key + normalize(-position.xyz)));
+    gl_Position = projection * position;
+}
+
+#elif defined(FRAGMENT_STAGE)
+
+in Surface { VARYINGS } surface;
+out vec4 pixel_colour;
+
+const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks of them
+const float LONG = 11.0;                 // [mm] after which a strand is another one
+const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
+const float SHARPNESS = 70.0, SOFTNESS = 14.0;
+const float DARK = 0.45;                 // of the light, at roots
+const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
+
+// A number for each place of a grid, 0 to 1, by a hash without sine; two grids at once.
+vec2 chance(vec2 column, vec2 row) {
+    vec2 number = fract(column * 0.1031 + row * 0.0973);
+    number *= number + 33.33;
+    return fract(number * (number + number));
+}
+
+// How far the strand, and the lock of them, of a number reaches: it changes along it.
+vec2 reach(vec2 number) {
+    vec2 along = surface.strand.y / LONG + 7.0 * chance(number, vec2(0.5)), row = floor(along);
+    return mix(chance(number, row), chance(number, row + 1.0), along - row);
+}
+
+void main() {
+    // Smooth between neighbours; those finer than a pixel fade into their mean.
+    vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
+    vec2 share = clamp(1.5 - fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
+    vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
+    float far = (0.65 + 0.5 * tones.x + 0.4 * tones.y) * smoothstep(0.0, 1.0, surface.dense);
+    float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(4.0 * far, 0.0, 1.0);
+    if (cover < 0.02) discard;
+    float uneven = 0.6 * tones.x + 0.4 * tones.y;
+    // Tilted toward the root and toward the tip.
+    float first = surface.cosine + UNEVEN * uneven - TILT, second = first + 2.0 * TILT;
+    float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);
+    float open = mix(DARK, 1.0, surface.layer);
+    vec3 front = surface.colour * (1.0 + 0.6 * uneven) * open;
+    vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * (bright * (0.06 + 0.4 * front) + 0.3 * glow * front);
+    pixel_colour = vec4(display(front * surface.diffuse + shine), cover);
+}
+
+#endif
