@@ -119,7 +119,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
         outline.append(refined.wrong(truth).sum() / static.wrong(truth).sum())
         smooth = [
             (
-                f"{cell.title}: {cell.triangles} triangles, RMS {cell.rms(truth):.1f}",
+                f"{cell.title}, {cell.triangles}, {cell.rms(truth):.1f}",
                 without_noise(cell.smooth),
             )
             for cell in cells
@@ -127,7 +127,8 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
         openings = [
             (f"{cell.wrong(truth).sum()} pixels wrong", cell.opening(truth)) for cell in cells
         ]
-        rows += [(f"{expression}, smooth", smooth), (f"{expression}, opening", openings)]
+        title = f"{expression}: triangles, and RMS of the difference from the dense mesh"
+        rows += [(title, smooth), (f"{expression}, opening", openings)]
     values = {
         "pixels that change visibly [%]": float(np.mean(changed)),
         "difference from the dense mesh, refined over static": float(np.mean(left)),

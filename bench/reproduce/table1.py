@@ -152,9 +152,9 @@ def outcome(*, rounds: int) -> Outcome:
     ]
     columns = ":<26|static:7d|dynamic:8d|t static:9.3f|t dynamic:9.3f|c_rt:6.2f|25 %:6.2f|75 %:6.2f"
     lines = [
-        f"The frame with the most triangles of the scene's own animation, by {renderer},",
-        "Gouraud shaded; times in ms, medians of static and refined in turn; c_rt with its",
-        "quartiles.",
+        f"{renderer}: the frame with",
+        "the most triangles of the scene's own animation, Gouraud shaded; times in ms, medians of",
+        "static and refined in turn; c_rt with its quartiles.",
         "",
         *table(columns, rows),
     ]

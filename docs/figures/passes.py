@@ -70,6 +70,7 @@ def tension(size: tuple[int, int] = (330, 400)) -> Image:
             scene.reset()
             scene.pose({pose: 1.0})
             scene.step(figures.SETTLED)
+            studio.draw_image()
             passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
             images = labelled(passes, studio.camera, ("depth", "tension")).images
             tinted = _tinted(images["tension"], images["depth"] > 0.0).astype(np.uint8)
