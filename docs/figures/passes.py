@@ -23,7 +23,6 @@ POSE = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15
 TURN = (-24.0, 4.0)  # [degrees] of the camera
 SETTLED = 1.0  # [s]
 MARGIN = 0.04  # of the picture, free on each side
-STRAINED = ("joy", "surprise", "disgust")
 FULL = 0.3  # stretch or compression that has the full colour
 SEEN, HIDDEN = (40, 230, 60), (235, 60, 40)
 COLOURS = {
@@ -66,7 +65,7 @@ def tension(size: tuple[int, int] = (330, 400)) -> Image:
     """The face in some expressions, coloured by how the skin is stretched and compressed."""
     scene, cells = FaceScene(), []
     with Capture(scene, CaptureOptions(size, camera="-18,2,1.45")) as studio:
-        for pose in STRAINED:
+        for pose in ("joy", "surprise", "disgust"):
             scene.reset()
             scene.pose({pose: 1.0})
             scene.step(figures.SETTLED)
