@@ -1,4 +1,4 @@
-"""What a face does while nobody moves it: it blinks, glances about, breathes, is never quite still.
+"""What a face does while nobody moves it: it blinks, glances about, and its head is never still.
 
 Plain functions of time: the same seed and the same time give the same values, in whatever order
 they are asked for, and no clock is read. Moments (blinks, glances) are drawn from a generator as
@@ -46,30 +46,11 @@ AWAY_FLATNESS = 0.55  # up and down is shorter
 AWAY_MEDIAN, AWAY_DURATION_SPREAD = 0.7, 0.4
 # A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
 SECONDS_PER_DEGREE = 0.0022
-HEAD_SHARE = 0.2  # of a glance that the head takes part in
-HEAD_TURNS_IN = 0.4  # [s], long after the eyes are there
 
 # The head at rest: most that it strays [degrees], and what its controls stand for at 1.
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
 HEAD_RANGES = {"head_yaw": 45.0, "head_pitch": 30.0, "head_roll": 30.0}
 HEAD_PERIODS = 4.7, 7.9, 13.3  # [s]
-
-# Breath: 13 or 14 a minute; in takes less than out, then there is a rest.
-BREATH_PERIOD, BREATH_WANDERS = 4.4, 0.12  # [s], and by what share of it breaths come early or late
-IN_UNTIL, OUT_UNTIL = 0.38, 0.88  # of a breath
-NOSTRILS, BREATH_PITCH = 0.14, 0.35  # of nasalis; of the head [degrees]
-
-# Muscles that are never quite relaxed, at most.
-TWITCHES = {
-    "frontalis_medial": 0.05,
-    "frontalis_lateral": 0.04,
-    "corrugator_supercilii": 0.03,
-    "orbicularis_oculi_palpebral_lower": 0.06,
-    "zygomaticus_major": 0.025,
-    "orbicularis_oris_marginal_lower": 0.04,
-}
-TWITCH_PERIODS = 2.9, 5.3, 8.3  # [s]
-TWITCH_SIDES = 0.25  # how far one side differs from the other
 
 LID = "orbicularis_oculi_palpebral_upper"
 SIDES = "left", "right"
@@ -84,39 +65,21 @@ class Life:
         self._blinks = Blinks(lids)
         self._glances = Glances(eyes)
         self._head = {name: Drift(slow, HEAD_PERIODS) for name in HEAD_STRAYS}
-        self._breath = Drift(slow, HEAD_PERIODS)
-        self._twitches = {name: Drift(slow, TWITCH_PERIODS) for name in TWITCHES}
-        self._uneven = {name: Drift(slow, TWITCH_PERIODS) for name in TWITCHES}
 
     def parts(self, time: float) -> dict[str, Values]:
         """What to add to each control at `time` [s] from the start; what is not named is 0.
 
-        In parts, each of which is moved together: lids, eyes, head, breath, muscles.
+        In parts, each of which is moved together: lids, eyes, head.
         """
         across, along = self._glances.at(time)
-        turn, rise = self._glances.of_head(time)
-        full, flow = breath(time / BREATH_PERIOD + BREATH_WANDERS * self._breath.at(time))
-        head = {name: most * self._head[name].at(time) for name, most in HEAD_STRAYS.items()}
-        head["head_yaw"] += turn
-        head["head_pitch"] += rise + BREATH_PITCH * full
+        strays = {name: most * self._head[name].at(time) for name, most in HEAD_STRAYS.items()}
         return {
             "lids": _both(LID, self._blinks.at(time)),
             "eyes": {
                 **_both("gaze_horizontal", across / EYE_RANGE),
                 **_both("gaze_vertical", along / EYE_RANGE),
             },
-            "head": {name: degrees / HEAD_RANGES[name] for name, degrees in head.items()},
-            "breath": _both("nasalis", NOSTRILS * flow),
-            **{name: self._twitch(name, time) for name in TWITCHES},
-        }
-
-    def _twitch(self, name: str, time: float) -> Values:
-        """A muscle that draws a little now and then, one side more than the other."""
-        drawn = TWITCHES[name] * max(self._twitches[name].at(time), 0.0)
-        uneven = TWITCH_SIDES * self._uneven[name].at(time)
-        return {
-            f"{name}_{side}": drawn * (1.0 + sign * uneven)
-            for side, sign in zip(SIDES, (1.0, -1.0), strict=True)
+            "head": {name: degrees / HEAD_RANGES[name] for name, degrees in strays.items()},
         }
 
 
@@ -165,24 +128,16 @@ class Glances:
 
     def at(self, time: float) -> Place:
         """Where they look at `time` [s]; a saccade leads from one place to the next."""
-        before, there, age, _ = self._move(time)
-        duration = SECONDS_PER_DEGREE * math.dist(before, there)
-        return _between(before, there, min(age / duration, 1.0) if duration else 1.0)
-
-    def of_head(self, time: float) -> Place:
-        """How far the head goes along with them: it sets out at once, turns softly and is late."""
-        before, there, age, stay = self._move(time)
-        share = min(age / min(HEAD_TURNS_IN, stay), 1.0)
-        across, along = _between(before, there, 0.5 - 0.5 * math.cos(math.pi * share))
-        return HEAD_SHARE * across, HEAD_SHARE * along
-
-    def _move(self, time: float) -> tuple[Place, Place, float, float]:
-        """From where they last moved to where, how long ago, how long they look there [s]."""
         while self.starts[-1] <= time:
             self._draw()
         last = max(bisect.bisect_right(self.starts, time) - 1, 0)
-        start, following = self.starts[last], self.starts[last + 1]
-        return self.places[max(last - 1, 0)], self.places[last], time - start, following - start
+        before, there = self.places[max(last - 1, 0)], self.places[last]
+        duration = SECONDS_PER_DEGREE * math.dist(before, there)
+        share = min((time - self.starts[last]) / duration, 1.0) if duration else 1.0
+        return (
+            before[0] + share * (there[0] - before[0]),
+            before[1] + share * (there[1] - before[1]),
+        )
 
     def _draw(self) -> None:
         """How long the last place is looked at, and the next one."""
@@ -210,14 +165,6 @@ class Glances:
         return size * math.cos(angle), AWAY_FLATNESS * size * math.sin(angle)
 
 
-def _between(before: Place, there: Place, share: float) -> Place:
-    """So far on the way from one place to another."""
-    return (
-        before[0] + share * (there[0] - before[0]),
-        before[1] + share * (there[1] - before[1]),
-    )
-
-
 class Drift:
     """Something slow that strays between -1 and 1: sines of periods that never meet."""
 
@@ -232,13 +179,3 @@ class Drift:
         """Where it is at `time` [s]."""
         waves = [math.sin(rate * time + phase) for rate, phase in self._waves]
         return sum(waves) / len(waves)
-
-
-def breath(breaths: float) -> tuple[float, float]:
-    """How full the lungs are and how fast air streams in, each 0 to 1, after so many breaths."""
-    phase = breaths % 1.0
-    if phase < IN_UNTIL:
-        share = phase / IN_UNTIL
-        return 0.5 - 0.5 * math.cos(math.pi * share), math.sin(math.pi * share)
-    share = min((phase - IN_UNTIL) / (OUT_UNTIL - IN_UNTIL), 1.0)
-    return 0.5 + 0.5 * math.cos(math.pi * share), 0.0

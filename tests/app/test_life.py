@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
 from risorius.app.motion.idle import EYES_MOST, Idle, looking_at
-from risorius.app.motion.life import EYE_RANGE, HEAD_RANGES, LID, Blinks, Glances, Life, breath
+from risorius.app.motion.life import EYE_RANGE, LID, Blinks, Glances, Life
 from risorius.app.performances import limits_of, script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
@@ -88,14 +88,6 @@ def test_values_stay_within_reach(seed: int, time: float) -> None:
         assert low <= value <= high, name
         if not name.startswith((LID, "gaze")):
             assert abs(value) < 0.2, name
-
-
-def test_the_head_goes_along_softly() -> None:
-    """It turns no faster than 15 degrees a second, however far and quickly the eyes go."""
-    life = Life(3)
-    turns = [life.parts(frame / 60.0)["head"]["head_yaw"] for frame in range(60 * 300)]
-    speeds = 60.0 * HEAD_RANGES["head_yaw"] * np.abs(np.diff(turns))
-    assert 5.0 < speeds.max() < 15.0
 
 
 def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene: FaceScene) -> None:
@@ -183,7 +175,7 @@ def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
     """With all that belongs to it: one lid stands for both, one way of the gaze for both eyes."""
     viewer, idle = np.array([100.0, 0.0, 900.0]), Idle(scene)
     whole = idle.beneath(NOBODY, viewer, 5.6)
-    assert {f"{LID}_left", "gaze_vertical_right", "head_roll", "nasalis_left"} <= whole.keys()
+    assert {f"{LID}_left", "gaze_vertical_right", "head_roll"} <= whole.keys()
     for control, gone in (
         ("wink", LID),
         ("gaze_horizontal", "gaze"),
@@ -194,7 +186,7 @@ def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
         assert left and not any(name.startswith(gone) for name in left), control
         assert all(whole[name] == value for name, value in left.items())
     smiling = idle.beneath(scene.moved_by("AU12"), viewer, 5.6)
-    assert "zygomaticus_major_left" not in smiling and f"{LID}_left" in smiling
+    assert smiling == whole
 
 
 def test_what_is_no_face_has_no_life() -> None:
@@ -220,17 +212,7 @@ def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> Non
     values = films[0][0]
     assert max(each[f"{LID}_left"] for each in values) == 1.0
     assert any(each["gaze_horizontal_left"] for each in values)
-    assert not any(each["zygomaticus_major_left"] for each in values)
-    assert not any(each["frontalis_medial_right"] for each in values)
     assert [each["AU12"] for each in values] == [script.at(n / 30.0)["AU12"] for n in range(91)]
-
-
-def test_breath_goes_in_and_out() -> None:
-    """In a breath the lungs are full once; air streams in only while they fill."""
-    full, flow = np.transpose([breath(share) for share in np.linspace(3.0, 4.0, 101)])
-    filling = np.diff(full) > 0.0
-    assert full.min() == 0.0 and full.max() > 0.99
-    assert 0.3 < filling.mean() < 0.5 and not (flow[:-1] * ~filling).max() > 0.1
 
 
 @pytest.mark.slow
