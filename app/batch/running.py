@@ -1,4 +1,4 @@
-"""The lines that are to be done, and what became of them: as a table to read, and as a file."""
+"""The lines that are to be done, and what became of them: in words, and as a file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ from ..workers import Send, WorkerPool
 from .listing import Job
 
 OK, FAILED, SKIPPED = "ok", "failed", "skipped"
-MOST_ROWS = 30  # of a table that is printed whole; of a longer one, what failed
 
 
 @dataclass(frozen=True)
@@ -34,11 +33,6 @@ class Result:
     seconds: float = 0.0
     frames: int = 0
     error: str = ""
-
-    @property
-    def rate(self) -> float:
-        """Frames a second."""
-        return self.frames / self.seconds if self.seconds > 0.0 else 0.0
 
 
 def run_lines(
@@ -99,20 +93,13 @@ def _do(job: Job, send: Send) -> None:
     send(tally.frames)
 
 
-def table(results: Sequence[Result], seconds: float) -> Iterator[str]:
-    """Rows of what became of the lines, and a last one for all, which took so many seconds."""
-    yield f"{'line':>6}  {'':7}  {'seconds':>8}  {'frames/s':>8}"
-    for each in sorted(results, key=lambda each: each.job.number):
-        if len(results) > MOST_ROWS and each.status != FAILED:
-            continue
-        rate = f"{each.rate:8.1f}" if each.frames else " " * 8
-        what = each.error or " ".join(map(str, each.job.outputs))
-        yield f"{each.job.number:6}  {each.status:7}  {each.seconds:8.1f}  {rate}  {what}"
+def in_words(results: Sequence[Result], seconds: float) -> str:
+    """What became of all lines, which took so many seconds."""
     counts = {name: sum(each.status == name for each in results) for name in (OK, FAILED, SKIPPED)}
     frames = sum(each.frames for each in results if each.status == OK)
     told = ", ".join(f"{number} {name}" for name, number in counts.items())
     rate = f", {frames / seconds:.1f} a second" if seconds > 0.0 else ""
-    yield f"{counted(len(results), 'line')}: {told}; {counted(frames, 'frame')}{rate}"
+    return f"{counted(len(results), 'line')}: {told}; {counted(frames, 'frame')}{rate}"
 
 
 def save_summary(target: Path, results: Sequence[Result]) -> None:

@@ -55,7 +55,7 @@ def batch(
     capture, export and convert; those that begin with # hold nothing. Relative paths begin
     where you stand. All lines are checked before the first is begun.
     """
-    from ..batch.running import FAILED, run_lines, save_summary, table
+    from ..batch.running import FAILED, in_words, run_lines, save_summary
     from ..workers import share_of_cores
 
     if jobs is not None and scheduler is not None:
@@ -78,8 +78,7 @@ def batch(
                         f"risorius: {in_one_line(listing)}:{result.job.number}: {result.error}",
                         file=sys.stderr,
                     )
-    for row in table(results, time.monotonic() - start):
-        click.echo(in_one_line(row))
+    click.echo(in_words(results, time.monotonic() - start))
     summary = logs / "summary.csv"
     save_summary(summary, results)
     click.echo(in_one_line(summary))

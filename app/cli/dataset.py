@@ -38,11 +38,6 @@ MOST = 1_000_000  # samples; their names have six digits
     help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours unless told.",
 )
 @click.option(
-    "--heads",
-    type=PATH,
-    help="A folder of heads of your own: NAME.obj, and its landmarks in NAME.json.",
-)
-@click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes."
 )
 @click.option("--resume", is_flag=True, help="Go on with a set, or make it larger.")

@@ -12,7 +12,6 @@ from ..files import save_text, written_atomically
 from ..stopping import cleaned_up_if_stopped
 from ..workers import Send, run_all
 from .folder import SetFolder
-from .persons import check_heads
 from .request import Request
 from .sampling import draw
 from .studio import Studio
@@ -60,8 +59,6 @@ def make_set(
         missing = [index for index in range(count) if index not in there]
         shares = _shares(request, missing, jobs)
         is_silent = not progress or None
-        if request.heads:
-            _check_heads(request, missing, folder, jobs, is_silent)
         size = 0
         bar = tqdm(total=count, initial=len(there), unit="sample", disable=is_silent, leave=False)
         with cleaned_up_if_stopped(bar.close), bar:
@@ -75,24 +72,6 @@ def make_set(
     return Made(count, count - len(there), size)
 
 
-def _check_heads(
-    request: Request, missing: Sequence[int], folder: SetFolder, jobs: int, is_silent: bool | None
-) -> None:
-    """UserError, before the first sample, that names all heads which cannot be fitted.
-
-    Found later, one would spoil the set: it is resumed with the same heads alone.
-    """
-    heads = [request.heads[person] for person in _by_person(request, missing)]
-    shares, broken = [heads[first::jobs] for first in range(min(jobs, len(heads)))], set[str]()
-    bar = tqdm(total=len(heads), unit="head", disable=is_silent, leave=False)
-    with cleaned_up_if_stopped(bar.close), bar:
-        for why in run_all(check_heads, shares, log=folder.log):
-            broken |= {why} - {None}
-            bar.update()
-    if broken:
-        raise UserError("; ".join(sorted(broken)))
-
-
 def make_samples(share: Share, send: Send) -> None:
     """Make the samples of a share that are not there, and tell how many bytes each has."""
     studio, folder = Studio(share.request), SetFolder(share.request.output)
@@ -101,21 +80,20 @@ def make_samples(share: Share, send: Send) -> None:
             send(folder.write_sample(index, studio.shoot(index).save))
 
 
-def _by_person(request: Request, indices: Sequence[int]) -> dict[int, list[int]]:
-    """The samples of each person together, for a head takes seconds to build."""
-    found: dict[int, list[int]] = {}
-    for index in indices:
-        found.setdefault(draw(request.table, request.seed, index).person, []).append(index)
-    return dict(sorted(found.items()))
-
-
 def _shares(request: Request, missing: Sequence[int], jobs: int) -> list[Share]:
-    """As many shares as processes, about equally large."""
-    ordered = [index for indices in _by_person(request, missing).values() for index in indices]
-    each = -(-len(ordered) // jobs)
+    """As many shares as processes, about equally large.
+
+    The samples of one person are together, for a head takes seconds to build.
+    """
+
+    def person(index: int) -> int:
+        return draw(request.table, request.seed, index).person
+
+    ordered = sorted(missing, key=person)
+    each = max(-(-len(ordered) // jobs), 1)
     return [
         Share(request, tuple(ordered[first : first + each]))
-        for first in range(0, len(ordered), max(each, 1))
+        for first in range(0, len(ordered), each)
     ]
 
 

@@ -5,20 +5,15 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from risorius.assets.meshes import FORMATS
-
-from ..errors import UserError
 from ..passes.labelled import check_wanted
 from ..passes.passes import IMAGES
-from .surroundings import Backgrounds, backgrounds_of, digest, files_in
+from .surroundings import Backgrounds, backgrounds_of
 from .table import SampleTable, load_table
-
-HEADS = tuple(f".{name}" for name in FORMATS)
 
 
 @dataclass(frozen=True)
@@ -26,8 +21,7 @@ class Request:
     """A data set that is asked for; fit to be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
-    app/passes/passes.py. heads: files of heads, beside each of
-    which its landmarks lie; none: persons are made. told: the options that say all this.
+    app/passes/passes.py. told: the options that say all this.
     """
 
     output: Path
@@ -36,7 +30,6 @@ class Request:
     passes: tuple[str, ...]
     table: SampleTable
     backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
-    heads: tuple[Path, ...] = ()
     told: str = ""
     version: str = version("risorius")
 
@@ -50,7 +43,6 @@ class Request:
             "size": list(self.size),
             "passes": list(self.passes),
             "background": self.backgrounds.options,
-            "heads": digest(self.heads) if self.heads else None,
             **{f"[{name}]": section for name, section in table.items()},
         }
         return dict(json.loads(json.dumps(options)))
@@ -64,22 +56,16 @@ def request_of(
     passes: Sequence[str],
     sample: Path | None = None,
     background: str | None = None,
-    heads: Path | None = None,
 ) -> Request:
     """What the command line asks for; UserError for what cannot be."""
     check_wanted(passes, "face")
     passes = tuple(name for name in IMAGES if name in passes)
-    samples = load_table(sample)
-    found = () if heads is None else _heads_in(heads)
-    if found:
-        samples = replace(samples, persons=replace(samples.persons, count=len(found)))
     told = {
         "sample": sample,
         "seed": seed,
         "passes": ",".join(passes),
         "size": "x".join(map(str, size)),
         "background": background,
-        "heads": heads,
     }
     words = [(f"--{name}", str(value)) for name, value in told.items() if value is not None]
     return Request(
@@ -87,21 +73,7 @@ def request_of(
         seed,
         size,
         passes,
-        samples,
+        load_table(sample),
         backgrounds_of(background),
-        found,
         shlex.join(word for pair in words for word in pair),
     )
-
-
-def _heads_in(folder: Path) -> tuple[Path, ...]:
-    """The heads of a folder; UserError unless there are some, each with its landmarks."""
-    if not folder.is_dir():
-        raise UserError(f"--heads {folder}: no such folder")
-    heads = files_in(folder, HEADS)
-    if not heads:
-        raise UserError(f"--heads {folder}: no head in it, {', '.join(HEADS)}")
-    for head in heads:
-        if not head.with_suffix(".json").is_file():
-            raise UserError(f"{head}: its landmarks are missing, {head.with_suffix('.json').name}")
-    return tuple(head.absolute() for head in heads)

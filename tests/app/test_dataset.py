@@ -230,50 +230,12 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
 
 
-@pytest.fixture
-def heads(face: FaceScene, tmp_path: Path) -> Path:
-    """A folder of a user's heads: a, b, and c, each with its landmarks."""
-    folder = tmp_path / "heads"
-    folder.mkdir()
-    lines = [f"v {x} {y} {z}" for x, y, z in 1.1 * face.head.vertices]
-    lines += [f"f {a} {b} {c}" for a, b, c in face.head.faces + 1]
-    for name in "abc":
-        (folder / f"{name}.obj").write_text("\n".join(lines), "utf-8")
-        landmarks = json.dumps(face.head.landmarks.tolist())
-        (folder / f"{name}.json").write_text(landmarks, "utf-8")
-    return folder
-
-
-@pytest.mark.slow
-def test_heads_of_a_folder_are_the_persons(heads: Path, tmp_path: Path) -> None:
-    """Every one of them, by the name of its file."""
-    request = request_of(tmp_path, seed=2, size=(64, 64), passes=(), heads=heads)
-    studio = Studio(request)
-    shown = {studio.shoot(index).known.labels["person"]["head"] for index in range(9)}
-    assert shown == {"a.obj", "b.obj", "c.obj"}
-
-
-def test_broken_heads_are_told_before_the_first_sample(heads: Path, tmp_path: Path) -> None:
-    """All in one line, so that the folder can be put right at once; the set is begun anew then."""
-    folder = tmp_path / "set"
-    (heads / "b.obj").write_text("no mesh", "utf-8")
-    (heads / "c.json").write_text("[]", "utf-8")
-    told = refusal(run(folder, "--heads", str(heads), count=30))
-    assert "b.obj" in told and "c.json" in told
-    assert not list(folder.glob("*.png"))
-    assert run(folder, count=1).exit_code == 0
-    (heads / "a.json").unlink()
-    told = refusal(run(tmp_path / "other", "--heads", str(heads)))
-    assert "its landmarks are missing, a.json" in told
-
-
 @pytest.mark.parametrize(
     ("options", "told"),
     [
         (("--passes", "colour"), "'colour' is no pass"),
         (("--background", "no such"), "neither a folder nor a colour"),
         (("--background", "broken"), "broken/face.png: cannot be read as a picture"),
-        (("--heads", "/nowhere"), "no such folder"),
         (("--sample", "/nowhere.toml"), "no such table"),
     ],
 )
