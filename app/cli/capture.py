@@ -137,7 +137,7 @@ def capture(
     from ..passes.labelled import beside
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
-    check_apart(written, (script, sound, drawing.head, drawing.landmarks, playback.mapping))
+    check_apart(written, (script, sound, drawing.head, drawing.landmarks))
     if sound is not None and (output is None or output.suffix.lower() not in HEARD):
         raise UserError(f"--sound {sound}: only a film is heard; end -o in {', '.join(HEARD)}")
     performance = played(

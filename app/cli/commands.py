@@ -31,7 +31,6 @@ from .options import (
     option,
     packed,
     played,
-    printing,
     with_playback,
 )
 from .parameters import Size
@@ -61,7 +60,7 @@ class Live:
     def listening(self, playback: Playback) -> Listening | None:
         """Where to listen, None for nowhere; UserError for what does not go together.
 
-        playback: its mapping, gains and mirror are those of the live face.
+        playback: its gains and mirror are those of the live face.
         """
         if self.live is None:
             source = click.get_current_context().get_parameter_source
@@ -74,7 +73,6 @@ class Live:
             self.live,
             self.address,
             self.port,
-            playback.mapping,
             playback.gains,
             playback.mirror,
         )
@@ -102,12 +100,12 @@ def view(
     """Open the window: a face with a slider for every muscle.
 
     With --head alone, the landmarks of that mesh are marked first. With --live the face follows
-    somebody's, which a phone or `risorius send` sends; --mapping, --gain and --mirror are that
+    somebody's, which a phone or `risorius send` sends; --gain and --mirror are that
     face's then.
     """
     listening = live.listening(playback)
     if listening is not None:
-        playback = replace(playback, mapping=None, gains=(), mirror=False)  # the live face has them
+        playback = replace(playback, gains=(), mirror=False)  # the live face has them
     is_bare = drawing.head is not None and drawing.landmarks is None and drawing.person is None
     mesh = drawing.head if is_bare else None
     is_plain = (script, scene, sound, playback) == (None, None, None, Playback())
@@ -165,12 +163,6 @@ def replay(
 @click.command()
 @click.argument("recording", type=PATH)
 @click.option("-o", "--output", type=PATH, required=True, help="script.toml")
-@printing(
-    "--mapping-table",
-    "risorius.app.recordings",
-    "mapping.toml",
-    "Print the table that --mapping replaces, to be copied and edited.",
-)
 @QUIET
 @with_playback
 def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> None:
@@ -181,7 +173,7 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
     from ..files import check_apart, check_file
     from ..script import save_script
 
-    check_apart((output,), (recording, playback.mapping))
+    check_apart((output,), (recording,))
     check_file(output)
     if output.suffix.lower() != ".toml":
         raise UserError(f"{output}: scripts are written as .toml; choose a name that ends so")

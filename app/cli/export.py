@@ -75,7 +75,7 @@ def export(
     from ..files import check_apart
 
     chosen = format_for(output, exporting.name)
-    inputs = (script, subject.head, subject.landmarks, playback.mapping)
+    inputs = (script, subject.head, subject.landmarks)
     check_apart(chosen.outputs(output), inputs)
     request = Request(
         subject.refinement() if exporting.refined else None,

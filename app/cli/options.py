@@ -254,7 +254,6 @@ PLAYBACK = (
         show_default=True,
         help="How far muscles are ahead of the recording [s], since skin follows late.",
     ),
-    click.option("--mapping", type=PATH, help="Your table of channels and controls, TOML."),
     click.option("--face", metavar="ID", help="Which face, where a file has several."),
     click.option("--rate", type=FiniteRange(1, 1000), help="Frames a second, for wrong times."),
 )

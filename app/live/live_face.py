@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..recordings.calibration import Calibration, gains_of, neutral_now, usual_gains
-from ..recordings.mapping import load_mapping
+from ..recordings.mapping import controls_of
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 from .frame import LiveFrame
 from .protocols import Listening
@@ -44,7 +44,6 @@ class State(enum.Enum):
 class LiveFace:
     """What a receiver brings, as a face.
 
-    table: which controls the channels move.
     calibration: what is done to the channels; may be replaced at any time.
     channels: those of the newest frame, and older ones that it did not name; as they came.
     subject: whose face it is, "" where nobody says so.
@@ -62,7 +61,6 @@ class LiveFace:
         """Listen from now on; UserError where that cannot be. wake: see `Receiver`."""
         listening.protocol.check()
         self.listening, self._clock = listening, clock
-        self.table = load_mapping(listening.mapping)
         usual = usual_gains(listening.protocol.title)
         gains, default = gains_of(listening.gains, CHANNELS, usual)
         self.calibration = Calibration({}, gains, default, listening.mirror)
@@ -167,7 +165,7 @@ class LiveFace:
 
     def controls(self) -> dict[str, float]:
         """Our controls as the face has them, not yet cut off at their limits."""
-        return self.table.controls(self.calibration.apply(self.channels))
+        return controls_of(self.calibration.apply(self.channels))
 
     def calibrate(self) -> None:
         """The face of the next half second is neutral."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import socket
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 from ..errors import UserError, in_one_line, needed
 from . import livelink, vmc
@@ -46,14 +45,13 @@ class Listening:
     """Where packets are expected, of which protocol, and how they are taken at first.
 
     kind: a key of PROTOCOLS. address: the only one that is listened on. port: None for the
-    protocol's own. mapping: a table of one's own. gains: "NAME=x" each. mirror: left and right
+    protocol's own. gains: "NAME=x" each. mirror: left and right
     change places.
     """
 
     kind: str
     address: str = LOOPBACK
     port: int | None = None
-    mapping: Path | None = None
     gains: tuple[str, ...] = ()
     mirror: bool = False
 

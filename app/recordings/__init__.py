@@ -1,20 +1,19 @@
 """What other programs recorded of a face: files and packets of their kinds, as one `Take`.
 
-`read_take` reads one, a `Calibration` takes the face at rest away, and a `MappingTable` says which
+`read_take` reads one, a `Calibration` takes the face at rest away, and `controls_of` says which
 controls of a face its channels move.
 """
 
 from .calibration import Calibration, calibration_for
-from .mapping import MappingTable, load_mapping
+from .mapping import controls_of
 from .reading import is_recording, read_take
 from .take import Take
 
 __all__ = [
     "Calibration",
-    "MappingTable",
     "Take",
     "calibration_for",
+    "controls_of",
     "is_recording",
-    "load_mapping",
     "read_take",
 ]

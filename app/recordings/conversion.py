@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import in_one_line
 from ..script import POSE_SECONDS, TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
 from .calibration import calibration_for
-from .mapping import load_mapping
+from .mapping import controls_of
 from .report import Report, report_of
 from .take import Array, Take
 
@@ -33,14 +33,13 @@ class Playback:
 
     neutral: "first:SECONDS", "percentile" or "none". gains: "NAME=x" each. mirror: left and right
     change places. lead: how far muscles are asked ahead of the recording [s]; eyes and head in
-    proportion. mapping: a table of one's own. face, rate: see `read_take`.
+    proportion. face, rate: see `read_take`.
     """
 
     neutral: str | None = None
     gains: tuple[str, ...] = ()
     mirror: bool = False
     lead: float = LEAD
-    mapping: Path | None = None
     face: str | None = None
     rate: float | None = None
 
@@ -48,14 +47,12 @@ class Playback:
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:
     """The script that plays a take on a face with these controls, and what there is to say.
 
-    Raises UserError for a neutral, a gain or a mapping that cannot be.
+    Raises UserError for a neutral or a gain that cannot be.
     """
-    mapping = load_mapping(playback.mapping)
-    mapping.check(limits)
     calibration = calibration_for(
         take, neutral=playback.neutral, gains=playback.gains, mirror=playback.mirror
     )
-    controls = mapping.controls(calibration.apply(take.channels))
+    controls = controls_of(calibration.apply(take.channels))
     curves = {
         name: np.clip(values, *limits[name]) for name, values in controls.items() if name in limits
     }

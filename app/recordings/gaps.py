@@ -7,7 +7,6 @@ nothing jumps. Rows that are missing are such a gap, too.
 
 from __future__ import annotations
 
-import bisect
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -45,12 +44,14 @@ def whole_take(
         raise UserError(
             f"{source}: {kind}: no frame shows a face; nothing is there that could be played"
         )
-    kept = _in_order(times)
-    if not kept.any():
+    if not np.isfinite(times).any():
         raise UserError(f"{source}: {kind}: no row has a time that can be read")
-    if not kept.all():
-        told.append(f"{int((~kept).sum())} rows out of the order of time were left out.")
-    times = times[kept] - times[kept][0]
+    known = np.flatnonzero(np.abs(times - np.nanmedian(times)) <= LONGEST_TAKE)
+    moments, first = np.unique(times[known], return_index=True)
+    kept = known[first]
+    if len(kept) < len(times):
+        told.append(f"{len(times) - len(kept)} rows without a time of their own were left out.")
+    times = moments - moments[0]
     if times[-1] > LONGEST_TAKE:
         raise UserError(
             f"{source}: {kind}: lasts {times[-1]:.6g} s; a recording lasts a day at most"
@@ -75,30 +76,6 @@ def whole_take(
     if not filled:
         raise UserError(f"{source}: {kind}: no frame shows a face with a time")
     return Take(kind, source, times, filled, is_calibrated, tuple(told), tuple(unknown))
-
-
-def _in_order(times: Array) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """The most rows whose times rise from one to the next: one wrong time costs one row.
-
-    The longest rising subsequence, by patience sorting.
-    """
-    kept = np.isfinite(times)
-    if np.all(np.diff(times[kept]) > 0.0):
-        return kept
-    ends: list[float] = []  # the lowest time that ends a sequence of this length,
-    end_rows: list[int] = []  # its row,
-    before = np.full(len(times), -1)  # and the row before each in its sequence
-    for row in np.flatnonzero(kept).tolist():
-        length = bisect.bisect_left(ends, times[row])
-        before[row] = end_rows[length - 1] if length else -1
-        ends[length : length + 1] = [float(times[row])]
-        end_rows[length : length + 1] = [row]
-    kept[:] = False
-    row = end_rows[-1]
-    while row >= 0:
-        kept[row] = True
-        row = int(before[row])
-    return kept
 
 
 def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

@@ -200,23 +200,11 @@ def test_a_script_plays_whatever_its_name(tmp_path: Path) -> None:
     assert (script.title, report) == ("Smile", None)
 
 
-def test_the_mapping_table_is_printed_and_taken(tmp_path: Path) -> None:
-    table = tmp_path / "my.toml"
-    printed = risorius("convert", "--mapping-table")
-    assert printed.exit_code == 0
-    table.write_text(f"{printed.stdout}\nmouthSmileLeft = {{ jaw_open = 1.0 }}\n")
-    output = tmp_path / "script.toml"
-    result = risorius("convert", written(tmp_path), "-o", output, "--mapping", table, "--quiet")
-    assert result.exit_code == 0 and "take.csv" not in result.output
-    assert set(load_script(output).tracks) == {"jaw_open", "head_yaw"}
-
-
 @pytest.mark.parametrize(
     ("option", "told"),
     [
         (("--neutral", "last"), "--neutral last: allowed are"),
         (("--gain", "mouth=1"), "--gain mouth=1: no channel"),
-        (("--mapping", "no.toml"), "no.toml: no such mapping"),
         (("--rate", "0"), "--rate"),
         (("--lead", "-1"), "--lead"),
     ],

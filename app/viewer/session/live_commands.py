@@ -56,11 +56,6 @@ class LiveCommands:
         check_scene(self._session.scene.name)
         self.stop()
         face = LiveFace(wanted, wake=self._wake)
-        try:
-            face.table.check(self._session.controls.limits)
-        except UserError:
-            face.close()
-            raise
         self.face, self.wanted, self.own_address = face, wanted, own_address()
         self._show_panel()
         return f"{wanted.protocol.title}: listening on {wanted.address}, port {face.port}"
