@@ -132,51 +132,48 @@ def _row(
 def traffic(card: KahlerGl, positions: npt.NDArray[np.float64]) -> dict[str, int]:
     """Bytes that each pass of a frame reads and writes, where a thread keeps what it has read.
 
-    Counted by what a thread of it names, in shaders/: vectors have 16 bytes, numbers 4.
+    Counted by what its threads name in shaders/: vectors of 16 bytes, numbers of 4.
     """
     mesh, frame = card.connectivity, card.refine(positions)
     v, e, f = mesh.vertex_count, len(mesh.edges), len(mesh.faces)
-    w, r, n, m = len(mesh.wedge_vertices), len(mesh.attribute_edges), *_counts(frame)
+    w, r, m = len(mesh.wedge_vertices), len(mesh.attribute_edges), frame.triangle_count
     splits = card.splits[mesh.attribute_edges]
     once, twice = int((splits > 0).sum()), int((splits > 1).sum())
-    centres = n - w - int((splits + (splits >> 1)).sum())
     values = 4 * (card.vertex_columns - 6)
-    is_curved = "place_curves" in card.passes
-    found = {
-        "normals": v * (8 + 24 + 32) + 3 * f * (4 + 12 + 72) + is_curved * (32 * v + 12 * f),
-        "mark": r * (4 + 16 + 8) + (e * (3 * 16 + 12) if is_curved else r * (32 + 12)),
-        "configure": f * (3 * 4 + 3 * 4 + 16),
-        "offsets": 8 * (r + 2 * f) // GROUP + 28,
+    look_up = f * (3 * 8 + 12 + 3 * 12) + m * 20
+    blocks = 8 * (r + 2 * f) // GROUP + 28
+    if "place_curves" not in card.passes:
+        moved = len(np.unique(mesh.edges[card.splits > 0]))
+        return {
+            "normals": v * (8 + 24 + 32) + 3 * f * (4 + 12 + 72),
+            "mark": r * (4 + 8 + 32 + 4 + 8) + once * 8,
+            "configure": f * (12 + 12 + 4 + 8),
+            "offsets": blocks,
+            "place": w * (8 + 32 + 24 + 2 * values)
+            + moved * (8 * 20 + 16)
+            + r * 4
+            + once * (4 + 16 + 8 + 64 + 32 + 40 + 3 * values)
+            + look_up,
+            "quarters": r * 4 + twice * (28 + 16 + 48 + 12 + 5 * 16 + 60 + 6 * values),
+        }
+    centres = frame.vertex_count - w - int((splits + (splits >> 1)).sum())
+    return {
+        "normals": v * (8 + 24 + 64) + 3 * f * (4 + 12 + 72 + 4),
+        "steepen": v * (8 + 4 + 32) + 2 * e * 20,
+        "displace": e * (12 + 48 + 32 + 32 + 64),
+        "centres": f * (24 + 96 + 16),
+        "surface_vertices": v * (8 + 32) + 3 * f * (4 + 8 + 48),
+        "surface_edges": e * (12 + 8 + 64 + 32 + 16 + 20),
+        "mark": r * (4 + 8 + 4) + e * (4 + 8),
+        "configure": f * (12 + 12 + 8 + 12),
+        "offsets": blocks,
+        "place_curves": w * (4 + 32 + 24 + 2 * values)
+        + r * 4
+        + once * (4 + 8 + 8 + 64 + 32 + 24 + 3 * values)
+        + twice * (32 + 48 + 6 * values)
+        + look_up,
+        "place_centres": f * 4 + centres * (36 + 3 * 44 + 72 + 96 + 24 + 16 + 12),
     }
-    look_up = f * (12 + 12 + 8) + (m - f) * 24 + 16 * m
-    if is_curved:
-        found |= {
-            "steepen": v * (8 + 4 + 32) + 2 * e * 20,
-            "displace": e * (16 + 48 + 64 + 64),
-            "centres": f * (24 + 96 + 16),
-            "surface_vertices": v * (8 + 32) + 3 * f * (12 + 48),
-            "surface_edges": e * (24 + 64 + 48 + 32),
-            "place_curves": w * (36 + 24 + 2 * values)
-            + 4 * r
-            + look_up
-            + once * (20 + 96 + 24 + 3 * values)
-            + twice * (32 + 48 + 6 * values),
-            "place_centres": 4 * f + centres * (36 + 240 + 24),
-        }
-    else:
-        found |= {
-            "place": w * (20 + 32 + 24 + 2 * values)
-            + v * (9 * 20)
-            + 4 * r
-            + look_up
-            + once * (20 + 96 + 40 + 3 * values),
-            "quarters": 4 * r + twice * (40 + 10 * 16 + 60 + 72 + 6 * values),
-        }
-    return found
-
-
-def _counts(frame: refine.RefinedMesh) -> tuple[int, int]:
-    return frame.vertex_count, frame.triangle_count
 
 
 def report(found: Report) -> str:

@@ -110,6 +110,7 @@ class KahlerGl(BaseRefiner):
         Raises GpuError where the mesh is too large for the driver.
         """
         super().__init__(faces, rest_positions, **values)
+        self._own(told.criterion, *told.criterion.parts)
         self.find_normals()
         self._rules = Rules(self.connectivity, self.rest_positions, self.normals, told)
         table = None if self._values is None else self._values.values

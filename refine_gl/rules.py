@@ -73,8 +73,8 @@ class Rules:
     ) -> None:
         """Raise ValueError for criteria that the card has not."""
         self._mesh, self._rest = mesh, rest_positions
-        self.scheme, decides, self.blends, self.coherent = told
-        parts = _parts(decides)
+        self.scheme, self.criterion, self.blends, self.coherent = told
+        parts = _parts(self.criterion)
         if told.scheme == "loop" and any(isinstance(each, Displacement) for each in parts):
             raise ValueError('criterion "displacement" needs scheme="cubic" in kahler-gl')
         if silent := [type(each).__name__ for each in parts if not each.measures]:

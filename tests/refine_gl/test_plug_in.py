@@ -206,6 +206,16 @@ def test_what_the_card_has_not(options: dict[str, Any], words: str) -> None:
         refine.create("kahler-gl", MESH.faces, MESH.vertices, **options)
 
 
+def test_a_criterion_serves_one_refiner() -> None:
+    """As everywhere: it knows the mesh that it was bound to."""
+    shared = refine.Displacement()
+    told: dict[str, Any] = {"scheme": "cubic", "criterion": shared}
+    first = refine.create("kahler-gl", MESH.faces, MESH.vertices, **told)
+    with pytest.raises(ValueError, match="this Displacement serves another refiner"):
+        refine.create("kahler-gl", MESH.faces, MESH.vertices, **told)
+    assert first.refine(BENT).triangle_count > 0
+
+
 def test_a_look_that_the_card_has_not(tmp_path: Path) -> None:
     """On the command line that is one line, and nothing is written."""
     picture = tmp_path / "joy.png"
