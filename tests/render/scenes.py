@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -92,6 +94,15 @@ def facing(half: float = 50.0) -> render.OrbitCamera:
     return camera
 
 
+@contextmanager
+def fresh_frame(renderer: render.Renderer, style: render.Style = PLAIN) -> Iterator[None]:
+    """Draw within, over the style's background; the surface has the frame afterwards."""
+    renderer.surface.begin()
+    renderer.draw_background(style)
+    yield
+    renderer.surface.end()
+
+
 def draw_image(
     surface: render.Surface,
     shape: Shape,
@@ -103,10 +114,8 @@ def draw_image(
     """Draw the shape over the style's background on a fresh frame, shape (H, W, 3), int32."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
-    surface.begin()
-    renderer.draw_background(style)
-    renderer.draw_mesh(stream, camera or facing(), style, values=values)
-    surface.end()
+    with fresh_frame(renderer, style):
+        renderer.draw_mesh(stream, camera or facing(), style, values=values)
     return surface.read().astype(np.int32)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, at, facing, lent, sphere, square
+from .scenes import PLAIN, at, facing, fresh_frame, lent, sphere, square
 
 LEVEL, STEEP = (128, 128, 0, 0), 100.0  # a slope of 1 over a square of 100 mm
 
@@ -30,13 +30,11 @@ def furrowed(
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     rows = None if amounts is None else np.tile(np.float32(amounts), (len(shape.positions), 1))
     stream.upload(len(shape.positions), len(shape.triangles), rows)
-    surface.begin()
-    renderer.draw_background(style)
-    values = np.zeros(len(shape.triangles), np.uint8)
-    renderer.draw_mesh(
-        stream, facing(), style, values=values, bumps=renderer.load_bumps(texels, STEEP)
-    )
-    surface.end()
+    with fresh_frame(renderer, style):
+        values = np.zeros(len(shape.triangles), np.uint8)
+        renderer.draw_mesh(
+            stream, facing(), style, values=values, bumps=renderer.load_bumps(texels, STEEP)
+        )
     return surface.read().astype(np.int32)
 
 
@@ -98,10 +96,8 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(surface: render.Surface) -> No
         rows = np.zeros((len(shape.positions), 2), np.float32)
         rows[: int(share * len(rows))] = 1.0
         stream.upload(len(shape.positions), len(shape.triangles), rows)
-        surface.begin()
-        renderer.draw_background(PLAIN)
-        renderer.draw_mesh(stream, facing(), PLAIN, bumps=level)
-        surface.end()
+        with fresh_frame(renderer):
+            renderer.draw_mesh(stream, facing(), PLAIN, bumps=level)
         frames.append(surface.read().astype(np.int32))
     assert np.abs(frames[0] - frames[1]).max() <= 1
 

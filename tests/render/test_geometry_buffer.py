@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from risorius import render
 
-from .scenes import STILL, Ball, Shape, facing, joined, lent, sphere, square
+from .scenes import STILL, Ball, Shape, facing, fresh_frame, joined, lent, sphere, square
 
 CHORD = 0.2  # [unit of the scene] a sphere of 8192 triangles lies this far within its ball, at most
 
@@ -142,13 +142,11 @@ def test_a_picture_is_the_same_before_and_after(surface: render.Surface) -> None
     stream, ball = lent(renderer, sphere()), Ball(shape=sphere(3, 60.0))
     pictures = []
     for is_between in (False, True, False):
-        surface.begin()
-        renderer.draw_background(style)
-        renderer.draw_mesh(stream, camera, style)
-        if is_between:
-            renderer.draw_geometry(stream, [ball], STILL, camera)
-        renderer.draw_parts([ball], STILL, camera, style)
-        surface.end()
+        with fresh_frame(renderer, style):
+            renderer.draw_mesh(stream, camera, style)
+            if is_between:
+                renderer.draw_geometry(stream, [ball], STILL, camera)
+            renderer.draw_parts([ball], STILL, camera, style)
         renderer.draw_geometry(stream, [ball], STILL, camera)
         pictures.append(surface.read())
     assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[2])

@@ -20,6 +20,7 @@ from .scenes import (
     SignedImage,
     draw_image,
     drawn,
+    fresh_frame,
     joined,
     lent,
     sphere,
@@ -59,11 +60,9 @@ def test_other_light_leaves_nothing_behind(surface: render.Surface) -> None:
 
     def picture(style: render.Style) -> render.Image:
         """The mesh and a part in front of it."""
-        surface.begin()
-        renderer.draw_background(style)
-        renderer.draw_mesh(stream, camera, style)
-        renderer.draw_parts([Ball()], STILL, camera, style)
-        surface.end()
+        with fresh_frame(renderer, style):
+            renderer.draw_mesh(stream, camera, style)
+            renderer.draw_parts([Ball()], STILL, camera, style)
         return surface.read()
 
     studio = picture(SHADED)

@@ -8,7 +8,7 @@ import pytest
 from risorius import render
 from risorius.render import Lines
 
-from .scenes import PLAIN, at, drawn, facing, lent, square
+from .scenes import PLAIN, at, drawn, facing, fresh_frame, lent, square
 
 RED = (1.0, 0.0, 0.0)
 
@@ -21,12 +21,10 @@ def test_lines_before_and_behind(surface: render.Surface) -> None:
     under = over - (0, 40, 10)
     frames = []
     for hidden_opacity in (0.5, 0.0):
-        surface.begin()
-        renderer.draw_background(PLAIN)
-        renderer.draw_mesh(wall, facing(), PLAIN)
-        colours = np.array([(0, 0.8, 0), (0, 0, 0.9)])
-        renderer.draw_lines(Lines([over, under], colours, 4.0, hidden_opacity), facing())
-        surface.end()
+        with fresh_frame(renderer):
+            renderer.draw_mesh(wall, facing(), PLAIN)
+            colours = np.array([(0, 0.8, 0), (0, 0, 0.9)])
+            renderer.draw_lines(Lines([over, under], colours, 4.0, hidden_opacity), facing())
         frames.append(surface.read().astype(np.int32))
     skin = at(frames[0], 0.0, 0.0)
     for frame in frames:
@@ -40,11 +38,9 @@ def test_lines_are_not_joined(surface: render.Surface) -> None:
     renderer = render.Renderer(surface)
     left = np.array([(-40.0, -10, 0), (-40, 10, 0)])
     right = np.array([(40.0, -10, 0), (40, 10, 0)])
-    surface.begin()
-    renderer.draw_background(PLAIN)
-    renderer.draw_lines(Lines([], RED), facing())
-    renderer.draw_lines(Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED), facing())
-    surface.end()
+    with fresh_frame(renderer):
+        renderer.draw_lines(Lines([], RED), facing())
+        renderer.draw_lines(Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED), facing())
     columns = np.nonzero(drawn(surface.read().astype(np.int32)).any(axis=0))[0]
     assert len(columns) > 2 and not ((columns > 20) & (columns < 76)).any()
 

@@ -16,7 +16,7 @@ from PIL import Image
 
 from risorius import render
 
-from .scenes import LIGHT_SKIN, Ball, joined, lent, sphere, square
+from .scenes import LIGHT_SKIN, Ball, fresh_frame, joined, lent, sphere, square
 
 STORED = Path(__file__).parent / "pictures"
 SIZE = (160, 120)
@@ -38,13 +38,11 @@ def scene(surface: render.Surface, style: render.Style) -> render.Image:
     ball = np.eye(4)
     ball[:3, 3] = (55.0, -30.0, 10.0)
     values = (np.arange(len(shape.triangles)) % 7).astype(np.uint8)
-    surface.begin()
-    renderer.draw_background(style)
-    renderer.draw_mesh(stream, camera, style, values=values)
-    renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, camera, style)
-    line = np.array([(-60.0, 40, 20), (60, -40, -20)])
-    renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), camera)
-    surface.end()
+    with fresh_frame(renderer, style):
+        renderer.draw_mesh(stream, camera, style, values=values)
+        renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, camera, style)
+        line = np.array([(-60.0, 40, 20), (60, -40, -20)])
+        renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), camera)
     return surface.read()
 
 

@@ -11,7 +11,7 @@ from risorius import render
 from risorius.render.camera_view import CameraView
 from risorius.render.outline import fringes
 
-from .scenes import PLAIN, facing, joined, lent, sphere, square
+from .scenes import PLAIN, facing, fresh_frame, joined, lent, sphere, square
 
 RADIUS = 45.0
 
@@ -27,12 +27,10 @@ def ball(
         renderer = render.Renderer(surface)
         stream = lent(renderer, shape)
         values = np.zeros(len(shape.triangles), np.uint8)
-        surface.begin()
-        renderer.draw_background(style)
-        renderer.draw_mesh(stream, facing(), style, values=values)
-        if is_smoothed:
-            renderer.draw_outline(stream, facing(), style)
-        surface.end()
+        with fresh_frame(renderer, style):
+            renderer.draw_mesh(stream, facing(), style, values=values)
+            if is_smoothed:
+                renderer.draw_outline(stream, facing(), style)
         assert surface.gl.error == "GL_NO_ERROR"
         return surface.read().astype(np.int32)
 
@@ -88,11 +86,9 @@ def test_skin_fades_toward_a_plane() -> None:
         stream = lent(renderer, square(30.0))
         pictures = []
         for fade in (None, (0.0, 1.0 / 60.0, 0.0, 0.5)):  # from the lower edge to the upper one
-            surface.begin()
-            renderer.draw_background(PLAIN)
-            renderer.draw_mesh(stream, facing(), PLAIN, fade=fade)
-            renderer.draw_outline(stream, facing(), PLAIN, fade=fade)
-            surface.end()
+            with fresh_frame(renderer):
+                renderer.draw_mesh(stream, facing(), PLAIN, fade=fade)
+                renderer.draw_outline(stream, facing(), PLAIN, fade=fade)
             pictures.append(255.0 - surface.read().astype(np.float64).mean(axis=2))
     whole, faded = pictures
     rows = np.flatnonzero(whole[:, 48] > 1.0)

@@ -9,7 +9,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, Shape, at, drawn, facing, lent, sphere, square
+from .scenes import PLAIN, STILL, Ball, Shape, at, drawn, facing, fresh_frame, lent, sphere, square
 
 
 def test_parts_move_with_their_bones(surface: render.Surface) -> None:
@@ -20,10 +20,8 @@ def test_parts_move_with_their_bones(surface: render.Surface) -> None:
     for x in (-25.0, 25.0):
         moved = np.eye(4)
         moved[:3, 3] = (x, 0.0, 0.0)
-        surface.begin()
-        renderer.draw_background(PLAIN)
-        renderer.draw_parts([ball], {"eye_left": moved}, facing(), PLAIN)
-        surface.end()
+        with fresh_frame(renderer):
+            renderer.draw_parts([ball], {"eye_left": moved}, facing(), PLAIN)
         frame = surface.read().astype(np.int32)
         assert at(frame, x, 0.0)[2] > at(frame, x, 0.0)[0] + 30
         places.append(np.nonzero(drawn(frame))[1].mean())
@@ -37,10 +35,8 @@ def test_what_is_not_enclosed_has_smooth_edges() -> None:
     for is_enclosed in (False, True):
         with render.open_offscreen((96, 96), samples=0) as surface:
             renderer = render.Renderer(surface)
-            surface.begin()
-            renderer.draw_background(PLAIN)
-            renderer.draw_parts([Ball(is_enclosed=is_enclosed)], STILL, facing(), PLAIN)
-            surface.end()
+            with fresh_frame(renderer):
+                renderer.draw_parts([Ball(is_enclosed=is_enclosed)], STILL, facing(), PLAIN)
             assert surface.gl.error == "GL_NO_ERROR"
             frame = surface.read().astype(np.int32)
         lightest = frame[40:56, 40:56, 0].max()  # of the ball's red, before white
@@ -60,10 +56,8 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) ->
     )  # fmt: skip
     for scale in (1.0, 0.5):
         part.vertices = (scale * ball.vertices).astype(np.float32)
-        surface.begin()
-        renderer.draw_background(PLAIN)
-        renderer.draw_parts([part], STILL, facing(), PLAIN)
-        surface.end()
+        with fresh_frame(renderer):
+            renderer.draw_parts([part], STILL, facing(), PLAIN)
         pixels.append(drawn(surface.read().astype(np.int32)).sum())
     assert 0.2 * pixels[0] < pixels[1] < 0.3 * pixels[0]
 
@@ -73,10 +67,10 @@ def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
     renderer = render.Renderer(surface)
     frames = []
     for shine in (0.0, 1.0):
-        surface.begin()
-        renderer.draw_background(render.Style(background=render.DARK))
-        renderer.draw_parts([Ball(shine=shine, colour=(0.1, 0.1, 0.1))], STILL, facing(25.0), PLAIN)
-        surface.end()
+        with fresh_frame(renderer, render.Style(background=render.DARK)):
+            renderer.draw_parts(
+                [Ball(shine=shine, colour=(0.1, 0.1, 0.1))], STILL, facing(25.0), PLAIN
+            )
         frames.append(surface.read().astype(int).sum(axis=2))
     dull, wet = frames
     assert dull.max() < 400 and wet.max() > 600
@@ -88,11 +82,9 @@ def test_parts_and_mesh_hide_each_other(surface: render.Surface) -> None:
     renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=10.0))
     ball = Ball()
-    surface.begin()
-    renderer.draw_background(PLAIN)
-    renderer.draw_mesh(wall, facing(), PLAIN)
-    renderer.draw_parts([ball], STILL, facing(), PLAIN)
-    surface.end()
+    with fresh_frame(renderer):
+        renderer.draw_mesh(wall, facing(), PLAIN)
+        renderer.draw_parts([ball], STILL, facing(), PLAIN)
     frame = surface.read().astype(np.int32)
     assert at(frame, 0.0, 0.0)[2] > at(frame, 0.0, 0.0)[0]  # the ball's front comes through
     assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # its rim is behind the wall
@@ -107,10 +99,8 @@ def test_parts_have_one_side(surface: render.Surface) -> None:
     shown = []
     for triangles, normals in ((bowl, ball.normals), (bowl[:, ::-1], -ball.normals)):
         part = Ball(shape=Shape(ball.vertices, normals, triangles))
-        surface.begin()
-        renderer.draw_background(PLAIN)
-        renderer.draw_parts([part], STILL, facing(), PLAIN)
-        surface.end()
+        with fresh_frame(renderer):
+            renderer.draw_parts([part], STILL, facing(), PLAIN)
         shown.append(at(surface.read().astype(np.int32), 0.0, 0.0))
     assert shown[0].min() >= 254
     assert 60 < shown[1][2] < 250 and shown[1][2] > 2 * shown[1][0]
@@ -146,10 +136,8 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
                 colours=np.full((6, 3), 0.05, np.float32),
                 faces=np.array(faces, np.int32),
             )  # fmt: skip
-            surface.begin()
-            renderer.draw_background(PLAIN)
-            renderer.draw_parts([hair], STILL, facing(), PLAIN)
-            surface.end()
+            with fresh_frame(renderer):
+                renderer.draw_parts([hair], STILL, facing(), PLAIN)
             darker = 255.0 - surface.read().mean(axis=2)
         columns = darker.sum(axis=0)
         middle = columns[int(0.35 * len(columns)) : int(0.65 * len(columns))]
@@ -170,10 +158,8 @@ def test_hair_thins_out_toward_its_tips(surface: render.Surface) -> None:
             **vars(ball), faces=ball.faces, colours=ball.colours, normals=out,
             vertices=ball.vertices + 6.0 * out, striation=striation.astype(np.float32),
         )  # fmt: skip
-        surface.begin()
-        renderer.draw_background(PLAIN)
-        renderer.draw_parts([hair], STILL, facing(), PLAIN)
-        surface.end()
+        with fresh_frame(renderer):
+            renderer.draw_parts([hair], STILL, facing(), PLAIN)
         row = 255 - surface.read().astype(np.int32)[48].mean(axis=1)
         covers.append(row[48:])
     assert not covers[1].any()

@@ -14,7 +14,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, facing, sphere
+from .scenes import PLAIN, STILL, Ball, facing, fresh_frame, sphere
 
 KINDS = ("program", "buffer", "texture", "depth_texture", "renderbuffer", "framebuffer")
 KINDS += ("vertex_array", "simple_framebuffer", "depth_renderbuffer", "sampler")
@@ -63,13 +63,11 @@ def draw_all(surface: render.Surface) -> np.ndarray:
         replace(PLAIN, wireframe=True, colour_by=render.ColourBy.SPLITS),
     ]
     for style in styles:
-        surface.begin()
-        renderer.draw_background(style)
-        renderer.draw_mesh(stream, camera, style, values=values, texture=texture, bumps=bumps)
-        renderer.draw_parts([Ball()], STILL, camera, style)
-        renderer.draw_outline(stream, camera, style, texture=texture)
-        renderer.draw_lines(render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), camera)
-        surface.end()
+        with fresh_frame(renderer, style):
+            renderer.draw_mesh(stream, camera, style, values=values, texture=texture, bumps=bumps)
+            renderer.draw_parts([Ball()], STILL, camera, style)
+            renderer.draw_outline(stream, camera, style, texture=texture)
+            renderer.draw_lines(render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), camera)
     frame = surface.read()
     return frame
 

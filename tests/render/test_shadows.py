@@ -18,6 +18,7 @@ from .scenes import (
     at,
     draw_image,
     facing,
+    fresh_frame,
     joined,
     lent,
     sphere,
@@ -94,15 +95,13 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(
     before_wall[2, 3] = 30.0
     frames = []
     for is_cast in (True, False):
-        surface.begin()
-        renderer.draw_background(style)
-        if is_cast and shadows:
-            renderer.cast_shadows(
-                [HairyBall()], {"cranium": before_wall}, facing(), style, stream=wall
-            )
-        renderer.draw_mesh(wall, facing(), style)
-        renderer.draw_parts([HairyBall()], {"cranium": before_wall}, facing(), style)
-        surface.end()
+        with fresh_frame(renderer, style):
+            if is_cast and shadows:
+                renderer.cast_shadows(
+                    [HairyBall()], {"cranium": before_wall}, facing(), style, stream=wall
+                )
+            renderer.draw_mesh(wall, facing(), style)
+            renderer.draw_parts([HairyBall()], {"cranium": before_wall}, facing(), style)
         frames.append(surface.read().astype(np.int32))
     within, without = frames
     is_darker = at(within, 30.0, -33.0).sum() < 0.8 * at(without, 30.0, -33.0).sum()

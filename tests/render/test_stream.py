@@ -7,7 +7,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, draw_image, facing, lent, sphere, square
+from .scenes import PLAIN, draw_image, facing, fresh_frame, lent, sphere, square
 
 
 def test_lent_arrays_fit_the_contract(surface: render.Surface) -> None:
@@ -26,10 +26,8 @@ def test_eight_columns_draw_the_same(surface: render.Surface) -> None:
     stream = lent(renderer, sphere(), columns=8)
     stream.vertices[:, 6:] = 1e6
     stream.upload(len(stream.vertices), len(stream.triangles))
-    surface.begin()
-    renderer.draw_background(PLAIN)
-    renderer.draw_mesh(stream, facing(), PLAIN)
-    surface.end()
+    with fresh_frame(renderer):
+        renderer.draw_mesh(stream, facing(), PLAIN)
     assert (surface.read() == expected).all()
 
 
@@ -44,10 +42,8 @@ def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
     stream.vertices[:4, :3], stream.vertices[:4, 3:] = shape.positions, shape.normals
     stream.triangles[:2] = shape.triangles
     stream.upload(4, 2)
-    surface.begin()
-    renderer.draw_background(PLAIN)
-    renderer.draw_mesh(stream, facing(), PLAIN)
-    surface.end()
+    with fresh_frame(renderer):
+        renderer.draw_mesh(stream, facing(), PLAIN)
     assert (surface.read() == expected).all()
 
 
@@ -66,11 +62,9 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
         count = len(shape.triangles) - 5 * frame
         stream.vertices[:, :3] = shape.positions * np.float32(1.0 + 0.001 * frame)
         stream.upload(len(shape.positions), count)
-        surface.begin()
-        renderer.draw_background(style)
-        renderer.draw_mesh(stream, facing(), style, values=np.zeros(count, np.uint8))
-        renderer.draw_lines(lines, facing())
-        surface.end()
+        with fresh_frame(renderer, style):
+            renderer.draw_mesh(stream, facing(), style, values=np.zeros(count, np.uint8))
+            renderer.draw_lines(lines, facing())
         surface.read()
         peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert (stream.vertex_buffer, stream.index_buffer) == buffers
@@ -83,10 +77,8 @@ def test_mesh_without_triangles_draws_nothing(surface: render.Surface) -> None:
     renderer = render.Renderer(surface)
     stream = lent(renderer, square())
     stream.upload(0, 0)
-    surface.begin()
-    renderer.draw_background(PLAIN)
-    renderer.draw_mesh(stream, facing(), render.Style(background=render.WHITE))
-    surface.end()
+    with fresh_frame(renderer):
+        renderer.draw_mesh(stream, facing(), render.Style(background=render.WHITE))
     assert (surface.read() >= 254).all()
 
 

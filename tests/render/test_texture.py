@@ -10,7 +10,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, draw_image, facing, lent, sphere, square
+from .scenes import PLAIN, Shape, draw_image, facing, fresh_frame, lent, sphere, square
 
 SignedImage = npt.NDArray[np.int32]
 
@@ -32,10 +32,8 @@ def textured(
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     stream.upload(len(shape.positions), len(shape.triangles))
     texture = renderer.load_texture(image, occlusion)
-    surface.begin()
-    renderer.draw_background(style)
-    renderer.draw_mesh(stream, camera or facing(), style, values=values, texture=texture)
-    surface.end()
+    with fresh_frame(renderer, style):
+        renderer.draw_mesh(stream, camera or facing(), style, values=values, texture=texture)
     return surface.read().astype(np.int32)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import PLAIN, STILL, Ball, facing, lent, sphere, square
+from .scenes import PLAIN, STILL, Ball, facing, fresh_frame, lent, sphere, square
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -51,12 +51,10 @@ def test_background_covers_what_was_drawn(surface: render.Surface) -> None:
     """An inset starts on an empty viewport: neither colours nor depth of before are left."""
     renderer = render.Renderer(surface)
     near, far = lent(renderer, square(z=40.0)), lent(renderer, square(z=-40.0))
-    surface.begin()
-    renderer.draw_background(PLAIN)
-    renderer.draw_mesh(near, facing(), PLAIN)
-    renderer.draw_background(PLAIN, (20, 20, 50, 50))
-    renderer.draw_mesh(far, facing(), PLAIN, viewport=(20, 20, 50, 50))
-    surface.end()
+    with fresh_frame(renderer):
+        renderer.draw_mesh(near, facing(), PLAIN)
+        renderer.draw_background(PLAIN, (20, 20, 50, 50))
+        renderer.draw_mesh(far, facing(), PLAIN, viewport=(20, 20, 50, 50))
     inset = surface.read()[-70:-20, 20:70]
     assert (inset[:3] >= 254).all() and (inset[20:30, 20:30] < 250).any(axis=2).all()
 
