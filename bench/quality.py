@@ -109,25 +109,26 @@ def measure(
     `progress`: called with the name of each expression before it is measured.
     """
     scores = []
-    with _Pictures(subject) as pictures:
-        bound = {title: _bound(subject, pictures.view, *METHODS[title]) for title in methods}
+    shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
+    cameras = [render.OrbitCamera.framing(shown, view=view) for view in VIEWS]
+    bound = {title: _bound(subject, *METHODS[title]) for title in methods}
+    with Canvas((SIZE * FINER, SIZE * FINER), samples=0) as canvas:
         for name in expressions or subject.poses:
             progress(name)
             pose, faces = subject.poses[name], subject.dense_faces
-            truth = pictures.shoot((pose.dense, vertex_normals(pose.dense, faces), faces))
+            dense = pose.dense, vertex_normals(pose.dense, faces), faces
+            truth = _shoot(canvas, cameras, dense)
             for method, make in bound.items():
                 mesh = make(pose.coarse)
                 distances = closest_points(pose.dense, mesh[0], mesh[2]).distances
                 share = len(mesh[2]) / len(subject.coarse_faces)
                 distance = float(np.sqrt((distances**2).mean()))
-                errors = _apart(pictures.shoot(mesh), truth)
+                errors = _apart(_shoot(canvas, cameras, mesh), truth)
                 scores.append(Score(method, name, share, distance, *errors))
     return scores
 
 
-def _bound(
-    subject: Subject, view: refine.View, refiner: str, options: Mapping[str, Any]
-) -> Callable[[Points], Mesh]:
+def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callable[[Points], Mesh]:
     """What makes the mesh of a method of positions (V, 3)."""
     told = dict(options)
     if told.get("scheme") == "detail":
@@ -141,12 +142,12 @@ def _bound(
     bound = refine.create(kind, subject.coarse_faces, subject.rest.coarse, **told)
     if refiner == "sliding":
         most = BUDGET * len(subject.coarse_faces)
-        return lambda positions: _slid(bound, told["criterion"], positions, most, view)
-    return lambda positions: bound.refine(positions, view=view)
+        return lambda positions: _slid(bound, told["criterion"], positions, most)
+    return bound.refine
 
 
 def _slid(
-    refiner: refine.Refiner, criterion: Any, positions: Points, most: float, view: refine.View
+    refiner: refine.Refiner, criterion: Any, positions: Points, most: float
 ) -> refine.RefinedMesh:
     """Refine with thresholds, scaled together, that give `most` triangles or a few less."""
     usual = type(criterion)().thresholds
@@ -155,7 +156,7 @@ def _slid(
         scale = float(np.exp(logarithm))
         once, twice = scale * float(usual.once), scale * float(usual.twice)
         criterion.thresholds = Thresholds(once, twice, "measures")
-        return refiner.refine(positions, view=view)
+        return refiner.refine(positions)
 
     low, high = np.log(SCALES)
     for _ in range(SEARCH_STEPS):
@@ -164,36 +165,18 @@ def _slid(
     return refined(high)
 
 
-class _Pictures:
-    """Draws meshes of one subject; a context manager."""
+def _shoot(
+    canvas: Canvas, cameras: Sequence[render.OrbitCamera], mesh: Mesh
+) -> tuple[Points, npt.NDArray[np.bool_]]:
+    """Grey levels over the background (views, SIZE, SIZE), and which fine pixels are covered.
 
-    def __init__(self, subject: Subject) -> None:
-        self._canvas = Canvas((SIZE * FINER, SIZE * FINER), samples=0)
-        shown = np.concatenate([pose.dense for pose in (subject.rest, *subject.poses.values())])
-        self._cameras = [render.OrbitCamera.framing(shown, view=view) for view in VIEWS]
-        eye = self._cameras[0]
-        self.view = refine.View(eye.eye, eye.focal(1.0, SIZE))
-        """Where the first picture is taken from, for criteria that ask."""
-
-    def __enter__(self) -> _Pictures:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._canvas.surface.close()
-
-    def shoot(self, mesh: Mesh) -> tuple[Points, npt.NDArray[np.bool_]]:
-        """Grey levels over the background (views, SIZE, SIZE), and which fine pixels are covered.
-
-        The latter has shape (views, FINER * SIZE, FINER * SIZE).
-        """
-        drawings = [Drawing(camera, CLAY) for camera in self._cameras]
-        positions, normals, triangles = mesh[:3]
-        images = np.stack(
-            [self._canvas.draw_surface(positions, normals, triangles, each) for each in drawings]
-        )
-        fine = images.mean(axis=3)
-        covered = fine > 0.0  # lit clay is nowhere black, an empty frame is
-        return _block_means(np.where(covered, fine, LEVEL_BEHIND)), covered
+    The latter has shape (views, FINER * SIZE, FINER * SIZE).
+    """
+    drawings = [Drawing(camera, CLAY) for camera in cameras]
+    x, normals, faces = mesh[:3]
+    fine = np.stack([canvas.draw_surface(x, normals, faces, each) for each in drawings]).mean(3)
+    covered = fine > 0.0  # lit clay is nowhere black, an empty frame is
+    return _block_means(np.where(covered, fine, LEVEL_BEHIND)), covered
 
 
 def _apart(
