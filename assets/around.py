@@ -1,4 +1,4 @@
-"""Places on the built-in head as angle, height and radius, and where hair and neck begin there.
+"""Places on the built-in head as angle, height and radius, and the neck there.
 
 A direction is measured from a vertical axis up to CROWN, and from the axis' upper end above it, so
 that the crown of the head is a dome without a pole in the way.
@@ -11,13 +11,6 @@ from .smooth import Points, Values, bump, smooth_step
 AXIS_Z = 15.0  # [mm] the vertical axis stands here, on x = 0
 CROWN = 40.0  # [mm] height of the axis' upper end
 REFERENCE = 70.0  # [mm] radius of the capsule on which heights above CROWN are measured
-TOP = CROWN + REFERENCE * np.pi / 2
-# angle [deg], height [mm] along the hairline, from the middle of the forehead to the nape
-HAIRLINE = (
-    (0, 66), (14, 67), (28, 70), (40, 68), (50, 57), (57, 44), (62, 34), (68, 28), (74, 23),
-    (79, 10), (82, -8), (86, -18), (91, -21), (95, -19), (99, -4), (103, 10), (109, 18), (117, 16),
-    (123, 2), (126, -20), (131, -52), (138, -78), (150, -90), (180, -94),
-)  # fmt: skip
 # height [mm], angle [deg] along the muscle that turns the head
 NECK_MUSCLE = ((-170, 24), (-156, 33), (-140, 47), (-122, 66), (-104, 84), (-86, 96), (-70, 103))
 STRIP = 12.4  # [mm] half of what a vertex of the neck stands for: edges have 15 to 32 mm there
@@ -32,25 +25,6 @@ def direction_coordinates(points: Points) -> tuple[Values, Values, Values]:
     elevation = np.arctan2(above, np.maximum(horizontal, 1e-9))
     height = np.where(points[:, 1] < CROWN, points[:, 1], CROWN + REFERENCE * elevation)
     return angle, height, np.hypot(horizontal, above)
-
-
-def rays(angle: Values, height: Values) -> tuple[Points, Points]:
-    """Axis points and outward unit directions for capsule coordinates, each of shape (n, 3)."""
-    elevation = np.maximum(height - CROWN, 0.0) / REFERENCE
-    level = np.cos(elevation)
-    directions = np.stack([level * np.sin(angle), np.sin(elevation), level * np.cos(angle)], axis=1)
-    origins = np.zeros_like(directions)
-    origins[:, 1] = np.minimum(height, CROWN)
-    origins[:, 2] = AXIS_Z
-    return origins, directions
-
-
-def line_height(line: tuple[tuple[int, int], ...], angle: Values) -> Values:
-    """Height of a line around the head at an angle [mm], its corners rounded."""
-    table = np.array(line, dtype=np.float64)
-    spread = np.linspace(-5.0, 5.0, 7)
-    heights = [np.interp(np.abs(angle + turn), table[:, 0], table[:, 1]) for turn in spread]
-    return np.asarray(np.mean(heights, axis=0), dtype=np.float64)
 
 
 def neck_relief(angle: Values, height: Values, radius: Values, strip: float = 0.0) -> Values:

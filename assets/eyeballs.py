@@ -6,11 +6,13 @@ The pole lies at the pupil, so that pupil and iris are round at any resolution. 
 on the cornea: one opaque surface that glints is enough at the size of a face on a screen.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from .model import Part
 from .smooth import Points, Values, smooth_step
 from .solids import Solid, ball, joined, mix, welded
 
@@ -21,8 +23,9 @@ FINE_SEGMENTS, COARSE_SEGMENTS = 60, 30  # as far as the limbus, beyond it
 RING_DISTANCES = (0.0, 1.6, 1.95, 2.6, 3.3, 4.0, 4.7, 5.2, 5.6, 6.0, 6.5)  # [mm] from the axis
 LAST_ANGLE_DEG, COARSE_RINGS = 100.0, 5  # the rest is never seen
 
-SCLERA = (0.90, 0.885, 0.87)
-LID_SHADOW = 0.30  # of the light, lost on the sclera below the upper lid
+SCLERA = (0.86, 0.84, 0.82)
+LID_SHADOW = 0.52  # of the light, lost below the upper lid
+LOWER_SHADOW, CORNER_SHADOW = 0.12, 0.28  # the same above the lower one, and toward the corners
 CAUSTIC = 0.45  # of the iris' light, gained below: the cornea gathers there what comes from above
 CANTHUS = (0.80, 0.55, 0.51)
 PUPIL = (0.015, 0.013, 0.013)
@@ -71,14 +74,17 @@ def _iris(beside: Values, around: Values, iris: Iris) -> npt.NDArray[np.float64]
 
 
 def _colours(beside: Values, around: Values, ahead: Points, iris: Iris) -> npt.NDArray[np.float64]:
-    toward_corners = smooth_step(0.60, 0.93, np.abs(ahead[:, 0]))
-    colour = mix(SCLERA, CANTHUS, 0.75 * toward_corners)
+    aside = np.abs(ahead[:, 0])
+    colour = mix(SCLERA, CANTHUS, 0.75 * smooth_step(0.60, 0.93, aside))
+    colour *= 1.0 - CORNER_SHADOW * smooth_step(0.3, 0.85, aside)[:, None]
     in_iris = 1.0 - smooth_step(5.6, 6.4, beside)
     colour = colour * (1.0 - in_iris[:, None]) + _iris(beside, around, iris) * in_iris[:, None]
     ring = smooth_step(4.6, 5.7, beside) * (1.0 - smooth_step(5.8, 6.6, beside))
     colour = mix(colour, iris.limbus, 0.7 * ring)
     colour = mix(colour, PUPIL, 1.0 - smooth_step(PUPIL_RADIUS - 0.2, PUPIL_RADIUS + 0.2, beside))
-    return colour * (1.0 - LID_SHADOW * smooth_step(0.05, 0.42, ahead[:, 1]))[:, None]
+    lid_shadow = LID_SHADOW * smooth_step(-0.1, 0.38, ahead[:, 1])
+    lower = LOWER_SHADOW * smooth_step(-0.2, -0.42, ahead[:, 1])
+    return colour * (1.0 - lid_shadow - lower)[:, None]
 
 
 def _ball(angles: Values, segments: int, iris: Iris) -> Solid:
@@ -106,3 +112,20 @@ def eyeball(iris: Iris = IRIS) -> Solid:
     both = joined([fine, coarse])
     both.faces = np.vstack([both.faces, np.array(seam, dtype=np.int32)])
     return welded(both)
+
+
+def with_irises(parts: Sequence[Part], name: str | None = None) -> tuple[Part, ...]:
+    """The parts of a head, its eyes painted: in a colour of `IRISES`, else ValueError; or its own.
+
+    name: None for the shipped eyes.
+    """
+    if name is not None and name not in IRISES:
+        raise ValueError(f"no eyes are {name!r}; allowed are {', '.join(IRISES)}")
+    left = eyeball(IRIS if name is None else IRISES[name])
+    colours = {"eyeball_left": left.colours, "eyeball_right": left.mirrored().colours}
+    return tuple(
+        replace(part, colours=colours[part.name].astype(np.float32))
+        if part.name in colours
+        else part
+        for part in parts
+    )

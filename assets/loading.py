@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from .data_files import read_arrays, read_toml
 from .errors import AssetError
+from .eyeballs import with_irises
 from .model import Cloth, Eye, Head, Layer, Part, Plane
 from .sheets import make_cloth, make_plane
 
@@ -158,4 +159,4 @@ def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
                 strand_radius=float(arrays["part_hair"][i]),
             )
         )
-    return tuple(parts)
+    return with_irises(parts)

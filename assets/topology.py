@@ -46,12 +46,6 @@ def unique_points(points: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArra
     return first[order], np.argsort(order)[number.reshape(-1)]
 
 
-def places_in_triangle(parts: int) -> FloatArray:
-    """Shares of the corners all over a triangle whose edges are in so many parts, shape (n, 3)."""
-    whole = range(parts + 1)
-    return np.array([(i, j, parts - i - j) for i in whole for j in whole[: parts + 1 - i]]) / parts
-
-
 def smallest_angles(vertices: FloatArray, faces: Faces) -> FloatArray:
     """Smallest inner angle of each face [deg], shape (F,)."""
     corner = vertices[faces]

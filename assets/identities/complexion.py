@@ -27,7 +27,7 @@ from risorius.geometry.colour import to_linear, to_screen
 
 from ..data_files import Image, read_arrays_of
 from ..errors import AssetError
-from ..eyeballs import IRISES, eyeball
+from ..eyeballs import with_irises
 from ..fitting.head import FittedHead
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
@@ -186,20 +186,6 @@ def _grown_over(tints: _Tints, features: Features) -> SingleArray:
     """How much long hair covers each texel of the scalp."""
     covered = GROWN * np.clip((_behind(tints, features) - 0.5) / 10.0, 0.0, 1.0)
     return np.asarray(covered, dtype=np.float32)
-
-
-def with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
-    """The parts of a head, its eyes of another colour: one of `IRISES`, else ValueError."""
-    if name not in IRISES:
-        raise ValueError(f"no eyes are {name!r}; allowed are {', '.join(IRISES)}")
-    left = eyeball(IRISES[name])
-    colours = {"eyeball_left": left.colours, "eyeball_right": left.mirrored().colours}
-    return tuple(
-        replace(part, colours=colours[part.name].astype(np.float32))
-        if part.name in colours
-        else part
-        for part in parts
-    )
 
 
 def coloured(

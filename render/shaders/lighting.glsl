@@ -17,6 +17,7 @@ const vec3 BLEED = vec3(0.30, 0.10, 0.04);
 const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);
 const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // of what folds take away
 const float OCCLUDED_KEY = 0.35;  // how much folds take of the key: an area light, not a point
+const float SHEEN = 0.9;  // of the narrow lobe of skin, beside the wide one
 const vec3 WARMTH = vec3(1.25, 0.955, 0.82);  // of the ambient light, from skin nearby
 
 struct Lit {
@@ -35,8 +36,11 @@ Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpn
     float grazing = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
     float fresnel = grazing * grazing * grazing;
     vec3 ambient = hemisphere(normal);
-    // exp2(-sharpness (1 - cosine)) stands for a power of the cosine: one exp2 and no log2.
+    // exp2(-sharpness (1 - cosine)) stands for a power of the cosine: one exp2 and no log2. Skin
+    // has two lobes, the oil on it a narrow one (d'Eon, Luebke 2007, GPU Gems 3, chapter 14).
     float highlight = exp2(sharpness * (dot(normal, normalize(to_key + to_eye)) - 1.0));
+    float narrow = highlight * highlight;
+    highlight *= mix(1.0, 0.8 + SHEEN * narrow * narrow, subsurface);
     Lit lit;
     // What the key scatters past the terminator has no shadow, and what it shines straight fades
     // out toward the terminator: so the errors of a shadow map, largest there, are never seen.
