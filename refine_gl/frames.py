@@ -44,16 +44,12 @@ class Frames:
     ) -> None:
         """Hand the mesh over, and look at it at rest: positions of shape (V, 3).
 
-        Raises GpuError where OpenGL is too old, or has too little room.
+        Raises GpuError as `check_driver`.
         """
-        if gl.version_code < LEAST_VERSION:
-            raise GpuError(
-                f"OpenGL 4.3 is needed, and this context has {gl.version_code / 100:.1f}"
-            )
+        check_driver(gl, tables, rules)
         self.gl = gl
         self._tables = tables
         sizes = tables.sizes
-        check_room(gl, tables, rules)
         self.passes = rules.passes
         self._sizes = gl.buffer(_block(tables))
         self._mesh = _buffer(gl, NUMBER * len(tables.words))
@@ -150,8 +146,10 @@ def groups_of_pass(name: str, sizes: dict[str, int]) -> int:
     return max(sum(groups_of(sizes[count]) for count in THREADS[name]), 1)
 
 
-def check_room(gl: moderngl.Context, tables: Tables, rules: Rules) -> None:
-    """Raise GpuError for a mesh that is larger than what the driver's buffers hold."""
+def check_driver(gl: moderngl.Context, tables: Tables, rules: Rules) -> None:
+    """Raise GpuError where OpenGL is too old, a shader is refused, or buffers are too small."""
+    if gl.version_code < LEAST_VERSION:
+        raise GpuError(f"OpenGL 4.3 is needed, and this context has {gl.version_code / 100:.1f}")
     sizes = tables.sizes
     rows = sizes["wedge_count"] + 3 * sizes["attribute_edge_count"]
     rows += sizes["face_count"] if rules.blends else 0
@@ -168,6 +166,8 @@ def check_room(gl: moderngl.Context, tables: Tables, rules: Rules) -> None:
             f"a mesh of {sizes['face_count']} triangles needs buffers of {largest / 2**20:.0f} MB, "
             f"and this driver has up to {room / 2**20:.0f} MB"
         )
+    for name in rules.passes:
+        _compile(gl, tables, name)
 
 
 def _buffer(gl: moderngl.Context, size: int) -> moderngl.Buffer:

@@ -33,7 +33,7 @@ from risorius.refine.kahler.refiner import points_on_edges
 from risorius.refine.mesh.arrays import Floats, Small
 
 from .context import GpuError, OwnContext, own_context
-from .frames import Frames, check_room
+from .frames import Frames, check_driver
 from .refined import GpuBuffers, GpuMesh, Run
 from .rules import SCHEMES, Rules, Told
 from .tables import tables_of
@@ -65,8 +65,8 @@ def create_kahler_gl(
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
     - `values`: `uv`, `face_uv` and `attributes`, as `refine.create` takes them.
 
-    Where there is no OpenGL 4.3, or too little room for the mesh, the log says so, once, and what
-    comes back is the refiner `kahler`, told the same.
+    Where there is no OpenGL 4.3, too little room for the mesh, or a driver that refuses a shader,
+    the log says so, once, and what comes back is the refiner `kahler`, told the same.
     """
     for name, flag in (("blend", blend), ("coherent", coherent)):
         if flag not in (None, True, False):
@@ -107,7 +107,7 @@ class KahlerGl(BaseRefiner):
     ) -> None:
         """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames that bring none.
 
-        Raises GpuError where the mesh is too large for the driver.
+        Raises GpuError where the driver refuses a shader, or a mesh of this size.
         """
         super().__init__(faces, rest_positions, **values)
         self._own(told.criterion, *told.criterion.parts)
@@ -115,7 +115,7 @@ class KahlerGl(BaseRefiner):
         self._rules = Rules(self.connectivity, self.rest_positions, self.normals, told)
         table = None if self._values is None else self._values.values
         self._tables = tables_of(self.connectivity, table, self._rules)
-        own.run(check_room, own.gl, self._tables, self._rules)
+        own.run(check_driver, own.gl, self._tables, self._rules)
         self._own_context = own
         self._own_buffers: GpuBuffers | None = None
         self._frames: Frames | None = None  # of the context of the last frame

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
-from risorius.refine_gl import GpuError, KahlerGl, context, refiner
+from risorius.refine_gl import GpuError, KahlerGl, context, frames, refiner, tables
 from risorius.refine_gl.frames import Frames
 from risorius.refine_gl.refined import GpuBuffers
 from tests import meshes
@@ -164,12 +164,25 @@ def test_without_opengl_the_processor_refines(caplog: pytest.LogCaptureFixture) 
     np.testing.assert_array_equal(other.refine(BENT).triangles, wanted.triangles)
 
 
-def test_an_old_context_is_refused(surface: render.Surface) -> None:
+def test_an_old_context_is_refused() -> None:
     """A context that has no compute shaders says which version it is."""
     _, card = bound()
-    old = SimpleNamespace(version_code=410)
+    old: Any = SimpleNamespace(version_code=410)
     with pytest.raises(GpuError, match=re.escape("OpenGL 4.3 is needed, and this context has 4.1")):
-        Frames(old, card._tables, card.rest_positions, np.zeros(0, bool))  # type: ignore[arg-type]
+        Frames(old, card._tables, card._rules, card.rest_positions)
+
+
+def test_a_driver_that_refuses_a_shader(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Then the processor refines as well, and the line has the driver's complaint."""
+    whole = frames._text
+    refiner._tell.cache_clear()
+    monkeypatch.setattr(frames, "_text", lambda name: whole(name) + "?" * (name == "mark"))
+    with caplog.at_level(logging.WARNING):
+        assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
+    (told,) = caplog.messages
+    assert told.startswith("kahler-gl: the driver refuses mark.glsl: ") and "error" in told
 
 
 def test_meshes_beyond_the_drivers_buffers(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,14 +190,12 @@ def test_meshes_beyond_the_drivers_buffers(monkeypatch: pytest.MonkeyPatch) -> N
     own = context.own_context()
     refiner._tell.cache_clear()
     small = {**own.gl.info, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE": 1 << 12}
-    monkeypatch.setattr(own, "gl", SimpleNamespace(info=small, gc=own.gl.gc))
+    monkeypatch.setattr(own, "gl", SimpleNamespace(info=small, gc=own.gl.gc, version_code=450))
     assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
 
 
 def test_shaders_take_eight_buffers() -> None:
     """OpenGL 4.3 promises no more storage buffers in all, nor a larger group of threads."""
-    from risorius.refine_gl import frames, tables
-
     bindings = re.findall(r"std430, binding = (\d+)", frames._text("common"))
     assert sorted(map(int, bindings)) == list(range(8))
     assert tables.GROUP <= 1024
