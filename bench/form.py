@@ -3,36 +3,37 @@
 Topology, rows, landmarks, texture and what else is no place stay as they ship. The mesh is laid on
 the mean person (registration.py), carried along the modes to one who is drawn at random, and
 mended there: lips shut, insides behind them, no narrow triangles, lids on the eyeballs, eyeballs,
-teeth and the mouth's walls behind the skin. The finer meshes follow the person's own surface, and
-stay with the coarse one where they would cut through themselves. Written are head.npz and what
-lies beside it, but for the light, which `python -m risorius.app.scenes.ambient_occlusion` bakes.
+teeth and the mouth's walls behind the skin (form_parts.py). The finer meshes follow the person's
+own surface, and stay with the coarse one where they would cut through themselves. Written are
+head.npz and what lies beside it, but for the light, which
+`python -m risorius.app.scenes.ambient_occlusion` bakes.
 """
 
 from __future__ import annotations
 
 import re
 import shutil
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from risorius import assets
 from risorius.app.files import folder_atomically
 from risorius.assets.data_files import read_arrays
-from risorius.assets.fitting.organs import FittedSkin, place_parts
-from risorius.assets.fitting.warp import ThinPlateSpline, nearest_on
-from risorius.assets.identities.shaping import lids_on_eyes
+from risorius.assets.fitting.warp import nearest_on
+from risorius.assets.identities.shaping import measures_of
 from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Eye, FineMesh, FloatArray, Head, IndexArray, Part
-from risorius.geometry.normals import vertex_normals
+from risorius.assets.norms import NORMS
+from risorius.geometry.normals import cross_products, vertex_normals
 
+from .form_parts import lids_and_eyes, placed_parts, warp_of
 from .identity_space import IdentitySpace
 from .reference_rows import Reference, free_vertices, row_targets, warped
 from .registration import (
@@ -48,13 +49,13 @@ from .registration import (
 
 RMS, MOST_WEIGHT = 0.9, 2.3  # of the drawn weights: an ordinary person
 MEAN_ANGLE, LEAST_ANGLE = 16.0, 14.0  # [deg] of triangles, on the mean and on the person
-LID_SHARES = (1.0, 1.0, 0.9, 0.55, 0.2)  # of the way onto the eyeball, row by row around an eye
-EYE_RADIUS, IRIS_RADIUS, CLEARANCE = 13.0, 5.9, 0.25  # [mm]
-OUTWARD = 0.3  # [mm] that an eyeball's centre is beside the middle of its lids
-GIVE = 0.5  # of the warp of parts where the skin has no row
-WALL_DEPTH, WALL_ROUNDS = 1.2, 4  # [mm] of the mouth's walls behind the skin; rounds of pushing
+NOSTRIL_ROOF = np.array([-1.2, 12.5, -7.7])  # [mm] from the middle of the left nostril's edge
+WALL = 0.38, 1.0  # of the way up there, and how wide the nostril still is
+EAR_ROUNDS, EAR_STEP = 8, 0.4  # of standing out, by so much each [mm]
+USUAL, STEPS = 0.8, 4  # how strongly measures draw a person to published means; Newton's steps
 FINE_STIFFNESS, FINE_REACH, FINE_ALIKE = (0.3, 0.1, 0.05), 3.0, 0.4  # as registration has them
 KEPT_ROUNDS, LEAST_SHARE = 14, 0.1  # of the way from flat triangles to the form, where they cut
+LEAST_COSINE = 0.15  # between a finer triangle and the one that it is a part of
 OWN = re.compile(r"head(_\w+)?\.(npz|png)")
 
 
@@ -107,18 +108,40 @@ def fitted(head: Head, reference: Reference, weights: FloatArray) -> Form:
     mean = relaxed(head, mean, reference, on_surface(head, mean, reference, free), MEAN_ANGLE)
     lying = on_surface(head, mean, reference, free)
     fields = _fields(head, mean, reference, lying)
+    weights = usual(head, mean, fields, weights)
     person = reference.person(weights)
     x = settled(head, mean + np.tensordot(weights, fields, 1))
-    x = relaxed(head, x, person, lying, LEAST_ANGLE)
-    eyes = eyes_behind_lids(head, x)
-    x = _mirrored(head, lids_on_eyes(head, x, eyes, LID_SHARES))
+    x = ears_off_head(head, relaxed(head, x, person, lying, LEAST_ANGLE))
+    x, eyes = lids_and_eyes(head, x)
+    x = _mirrored(head, x)
     fine = head.finer(2)
-    finest = finer_on(head, fine, x, person, lying)
-    finest = without_cuts(head, fine, x, finest)
-    x_axis = ThinPlateSpline(*_pairs(head, x))
-    parts = placed_parts(head, x, eyes, x_axis)
-    axis = x_axis.points(head.jaw_axis)
+    finest = without_cuts(head, fine, x, finer_on(head, fine, x, person, lying))
+    warp = warp_of(head, x)
+    axis = warp.points(head.jaw_axis)
+    parts = placed_parts(head, x, eyes, warp)
     return Form(x, finest, eyes, parts, 0.5 * (axis + axis[::-1] * MIRROR))
+
+
+def usual(head: Head, mean: FloatArray, fields: FloatArray, drawn: FloatArray) -> FloatArray:
+    """Weights of somebody near a drawn person whose measures are nearer to published means.
+
+    The likeliest one, where people are drawn around that person and measures around the middle
+    between the means of women and men, with deviations of 1 / sqrt(USUAL). Both of shape (k,).
+    """
+    weights = drawn.copy()
+
+    def scores(weights: FloatArray) -> FloatArray:
+        found = measures_of(mean + np.tensordot(weights, fields, 1), head.anatomy)
+        rows = [(norm.women, norm.men, found[code]) for code, norm in NORMS.items()]
+        return np.array([0.5 * (women.score(x) + men.score(x)) for women, men, x in rows])
+
+    for _ in range(STEPS):
+        ways = 0.5 * np.eye(len(weights))
+        slopes = np.array([scores(weights + way) - scores(weights - way) for way in ways]).T
+        system = np.eye(len(weights)) + USUAL * slopes.T @ slopes
+        left = scores(weights) - slopes @ (weights - drawn)
+        weights = drawn - np.linalg.solve(system, USUAL * slopes.T @ left)
+    return weights
 
 
 def _mirrored(head: Head, x: FloatArray) -> FloatArray:
@@ -140,7 +163,14 @@ def _fields(head: Head, x: FloatArray, reference: Reference, lying: IndexArray) 
     edges = [
         head.rings[f"{row}_{side}"] for row in ("mouth_2", "eye_1") for side in ("left", "right")
     ]
-    return spread(head, x, fields, np.concatenate([lying, rim, *edges]))
+    known = np.concatenate([lying, rim, *edges])
+    fields = spread(head, x, fields, known)
+    for side in ("left", "right"):  # ears go as a whole, lest they cut into the head
+        rows = [head.rings[f"{row}_{side}"] for row in (*(f"ear_{k}" for k in range(5)), "concha")]
+        ear = np.unique(np.concatenate(rows))
+        fields[:, ear] = fields[:, rows[0]].mean(axis=1, keepdims=True)
+        known = np.union1d(known, ear)
+    return spread(head, x, fields, known)
 
 
 def settled(head: Head, vertices: FloatArray) -> FloatArray:
@@ -162,33 +192,29 @@ def settled(head: Head, vertices: FloatArray) -> FloatArray:
         share = 1.0 if k in (0, 10) else min(1.0, opening[0] / opening[1])
         x[inside[k]] = x[edge[k]] + (rest[inside[k]] - rest[edge[k]]) * [1.0, share, 1.0]
     ring, roof = head.rings["nostril_left"], head.anatomy["nostril_roof_left"]
-    moved, cap = x[ring] - rest[ring], sorted(neighbours(head.faces)[roof])
+    beside, middle = neighbours(head.faces), x[ring].mean(axis=0)
+    cap = sorted(beside[roof])
     for vertex in cap:
-        x[vertex] = rest[vertex] + moved[np.linalg.norm(rest[ring] - rest[vertex], axis=1).argmin()]
-    for before, after in zip(cap, (*cap[1:], cap[0]), strict=True):
-        x[before] = 0.75 * x[before] + 0.25 * (x[after] + rest[before] - rest[after])
-    x[roof] = rest[roof] + moved.mean(axis=0)
+        edge = x[sorted(beside[vertex] & set(ring.tolist()))].mean(axis=0)
+        x[vertex] = middle + WALL[0] * NOSTRIL_ROOF + WALL[1] * (edge - middle)
+    x[roof] = middle + NOSTRIL_ROOF
     changed = np.unique(np.concatenate([*mouth, inside, cap, [roof]]))
     x[head.mirror[changed]] = x[changed] * MIRROR
     return x
 
 
-def eyes_behind_lids(head: Head, x: FloatArray) -> tuple[Eye, ...]:
-    """Eyeballs that lie on the edges of the lids as well as they can, all of one size."""
-    ring = head.rings["eye_1_left"]
-    edge = x[np.delete(ring, [0, 1, len(ring) - 1])]  # without the inner corner
-    middle = 0.5 * (x[ring[5]] + x[ring[15]])
-    aside = middle[:2] + np.array([OUTWARD, 0.0])
-
-    def off(centre: FloatArray) -> FloatArray:
-        gaps = np.linalg.norm(edge - centre, axis=1) - EYE_RADIUS - CLEARANCE
-        return np.concatenate([gaps, 2.0 * (centre[:2] - aside)])
-
-    left = scipy.optimize.least_squares(off, middle - [0.0, 0.0, EYE_RADIUS]).x
-    return (
-        Eye("right", left * MIRROR, EYE_RADIUS, IRIS_RADIUS),
-        Eye("left", left, EYE_RADIUS, IRIS_RADIUS),
-    )
+def ears_off_head(head: Head, vertices: FloatArray) -> FloatArray:
+    """Vertices of which those of the ears stand out so far that they do not cut into the head."""
+    x = vertices.copy()
+    ear = np.concatenate([head.rings[f"ear_{row}_left"] for row in range(1, 5)])
+    ear = np.setdiff1d(ear, head.rings["ear_0_left"])
+    for _ in range(EAR_ROUNDS):
+        cutting = np.intersect1d(head.faces[np.unique(self_intersections(x, head.faces))], ear)
+        if not len(cutting):
+            break
+        x[cutting, 0] += EAR_STEP
+        x[head.mirror[cutting]] = x[cutting] * MIRROR
+    return x
 
 
 def finer_on(
@@ -248,9 +274,10 @@ def _images(head: Head, fine: FineMesh) -> IndexArray:
 
 
 def without_cuts(head: Head, fine: FineMesh, x: FloatArray, finest: FloatArray) -> FloatArray:
-    """Vertices of a finer mesh, nearer to the coarse triangles where levels 1 or 2 cut themselves.
+    """Vertices of a finer mesh, nearer to the coarse triangles where it would cut itself.
 
-    As they are written: new ones in single precision.
+    So at levels 1 and 2, and where a triangle would be turned over. As they are written: new
+    vertices in single precision.
     """
     flat, images, count = fine.interpolate(x), _images(head, fine), len(x)
     share, levels = np.ones(len(finest)), (head.finer(1), fine)
@@ -262,7 +289,7 @@ def without_cuts(head: Head, fine: FineMesh, x: FloatArray, finest: FloatArray) 
         cutting = [
             level.faces[np.unique(self_intersections(at[: len(level.vertices)], level.faces))]
             for level in levels
-        ]
+        ] + [level.faces[turned_over(head, level, x, at)] for level in levels]
         bad = np.unique(np.concatenate([faces.ravel() for faces in cutting]))
         if not len(bad):
             break
@@ -271,52 +298,12 @@ def without_cuts(head: Head, fine: FineMesh, x: FloatArray, finest: FloatArray) 
     return at
 
 
-def _pairs(head: Head, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Points of the skin before and after, and what they give: the same on both sides."""
-    rows = [ring for name, ring in head.rings.items() if not name.startswith("rim")]
-    anatomy = np.array(list(head.anatomy.values()))
-    named = np.unique(np.concatenate([*rows, head.landmarks, anatomy]))
-    named = np.union1d(named, head.mirror[named])
-    others = np.setdiff1d(np.arange(len(x)), named)
-    others = others[head.vertices[others, 0] >= 0.0][::2]
-    others = np.union1d(others, head.mirror[others])
-    use = np.concatenate([named, others])
-    give = np.r_[np.zeros(len(named)), np.full(len(others), GIVE)]
-    return head.vertices[use], x[use], give
-
-
-def placed_parts(
-    head: Head, x: FloatArray, eyes: tuple[Eye, ...], warp: ThinPlateSpline
-) -> tuple[Part, ...]:
-    """Eyeballs, lashes, teeth, tongue and walls of the mouth in the skin; the shirt stays."""
-    normals = vertex_normals(x, head.faces)
-    skin = FittedSkin(x, normals, x[head.landmarks], head.mandible_weight)
-    parts = []
-    for old, new in zip(head.parts, place_parts(head, skin, warp, eyes), strict=True):
-        vertices = new.vertices.astype(np.float64)
-        if old.name.startswith("oral_cavity"):
-            vertices = _behind(vertices, x, normals, head.faces)
-        placed = replace(
-            new,
-            vertices=vertices.astype(np.float32),
-            normals=vertex_normals(vertices, new.faces).astype(np.float32),
-        )
-        parts.append(old if old.name == "shirt" else placed)
-    return tuple(parts)
-
-
-def _behind(
-    points: FloatArray, vertices: FloatArray, normals: FloatArray, faces: IndexArray
-) -> FloatArray:
-    """Points pushed along the skin's normals until they are WALL_DEPTH behind it."""
-    pushed = points.copy()
-    for _ in range(WALL_ROUNDS):
-        at = nearest_on(pushed, np.zeros_like(pushed), vertices, faces)
-        facing = at.interpolate(normals)
-        facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
-        height = ((pushed - at.interpolate(vertices)) * facing).sum(axis=1)
-        pushed -= np.maximum(height + WALL_DEPTH, 0.0)[:, None] * facing
-    return pushed
+def turned_over(head: Head, fine: FineMesh, x: FloatArray, at: FloatArray) -> IndexArray:
+    """Numbers of a finer mesh's triangles that look another way than the coarse one there."""
+    own = cross_products(at[: len(fine.vertices)], fine.faces)
+    parent = np.repeat(cross_products(x, head.faces), len(fine.faces) // len(head.faces), axis=0)
+    lengths = np.linalg.norm(own, axis=1) * np.linalg.norm(parent, axis=1)
+    return np.flatnonzero((own * parent).sum(axis=1) < LEAST_COSINE * lengths).astype(np.int32)
 
 
 def save(head: Head, form: Form, folder: Path) -> None:

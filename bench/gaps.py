@@ -51,7 +51,7 @@ EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
 LID_COLUMNS, LID_END = 23, 1.5  # planes across an eye; mm beside its corners not looked at
 LID_STEP = 0.05  # mm between lines of sight in a plane
 LID_WINDOW = 12.0  # mm above and below the eye's middle
-EYE = 70.0  # mm around the eye's middle in which skin may cover it
+EYE = 100.0  # mm around the eye's middle in which skin may cover it
 
 
 class PoseGaps(NamedTuple):

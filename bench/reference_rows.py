@@ -39,8 +39,9 @@ FURROW = (
     (13.5, -46.0, 97.6),
 )  # fmt: skip
 # [mm]; larger, and the lobe cuts into the neck of some persons.
-EAR_SHIFT, EAR_SCALE = np.array([4.5, -8.0, 0.0]), 0.88
+EAR_SHIFT, EAR_SCALE = np.array([4.5, -5.0, 0.0]), np.array([0.95, 1.0, 0.92])
 BRIDGE, BROWS = (27, 28, 29, 30, 33, 34, 35), (8, 22, 23, 24, 25, 26)  # landmarks
+HIGHER = {27: 3.5, 28: 1.5}  # [mm]: anatomists have the nasion above where ICT-FaceKit marks it
 NECK, BEHIND = -116.0, (0.0, -52.0)  # y; z, y [mm] beyond which the neck is left as it is
 
 
@@ -97,6 +98,8 @@ def row_targets(head: Head, reference: Reference) -> Targets:
     for group, weight in ((BRIDGE, 0.4), (BROWS, 0.15)):
         for k in group:
             place = reference.vertices[reference.landmarks[k]]
+            if k in HIGHER:
+                place = reference.nearest(place + np.array([0.0, HIGHER[k], 0.0])) * [0.0, 1.0, 1.0]
             targets[int(head.landmarks[k])] = (place, weight)
     targets |= {int(head.mirror[v]): (p * MIRROR, w) for v, (p, w) in targets.items()}
     rim = [*rings["rim_left"].tolist(), *rings["rim_right"].tolist()]
@@ -180,7 +183,7 @@ def _eye_targets(head: Head, reference: Reference) -> dict[int, tuple[FloatArray
         return np.asarray(points[points[:, 0].argmax()])
 
     rows = (
-        (1, 2, en + np.array([0.6, 0.0, -0.3]), outermost(2), 1.0),
+        (1, 2, en + np.array([0.2, 0.0, -0.3]), outermost(2), 1.0),
         (2, 5, en + np.array([-1.1, 0.0, 0.3]), outermost(5), 1.0),
         (3, 6, en + np.array([-1.5, 0.0, 0.3]), ex + np.array([3.0, 0.0, -2.5]), 0.5),
         (4, 8, en + np.array([-1.5, 0.0, 0.3]), ex + np.array([3.0, 0.0, -2.5]), 0.5),
