@@ -33,7 +33,7 @@ class ApplicationContext:
             self.stage = Stage(surface, session.scene, settings.display, self.times)
             self.opened = stack.pop_all()  # to be closed with the window
         self.view = View(session, settings, surface)
-        self.panel_state = PanelState(wanted_tab=settings.tab)
+        self.panel_state = PanelState()
         self.question = Question(session)
         self.scripts = ScriptCommands(session, self.files, self.question, settings.note_recent)
         self.exporter = Exporter(session, settings, self.stage, self.view)

@@ -39,7 +39,6 @@ from .interface.gui import THEMES
 LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
 SIDES_EXPORTED = 16, 8192  # [pixels] of what is exported
-FURTHEST = 1e6  # of any number that says where a camera is
 ZOOMS = 0.6, 3.0  # least and most of the size of words
 COMPARISONS = ("off", "wipe", "side by side")
 SKINS = {  # whether it is textured, and its colour
@@ -52,7 +51,6 @@ BACKGROUNDS = {"theme": None, **{name: getattr(render, name.upper()) for name in
 # Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
 TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
 TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
-TABS = ("Face", "Mechanism", "Live")
 MOST_RECENT = 10  # files that are remembered
 MOST_TOLD = 4  # of values that are of no use; a line has room for no more
 
@@ -111,9 +109,7 @@ def _refiners() -> list[str | None]:
 
 
 _Pair = Annotated[tuple[int, int], Within(*SIDES_SHOWN)]
-_Place = Annotated[tuple[float, float, float, float, float, float], Within(-FURTHEST, FURTHEST)]
 Size = Annotated[tuple[int, int] | None, MadeFrom(_Pair, tuple)]
-Camera = Annotated[list[float], MadeFrom(_Place, list)]  # yaw, pitch, distance, target
 Share = Annotated[float, Within(0.0, 1.0)]
 Option = Annotated[Any, MadeFrom(Any, _option)]  # of a refiner, which knows more about it
 
@@ -214,12 +210,10 @@ class Settings(Record):
     zoom: Annotated[float, Within(*ZOOMS)] = 1.0  # of all words and sliders
     is_linked: Flag = True  # sliders of both sides
     is_alive: Flag = True  # the face, where nobody moves it
-    tab: Annotated[str, OneOf(TABS)] = "Face"
     # [letters' heights]; layout.py has the limits of a screen.
     panel_width: Annotated[float, Within(0.0, 1000.0)] = 22.5
     shows_curves: Flag = False  # of keys, instead of rows
     folds: dict[str, Flag] = field(default_factory=dict)  # which headings are open, by title
-    cameras: dict[str, Camera] = field(default_factory=dict)  # by scene
     recent: list[str] = field(default_factory=list)  # files, latest first
     display: Display = field(default_factory=Display)
     export: ExportChoices = field(default_factory=ExportChoices)

@@ -18,7 +18,7 @@ from risorius.app.script.places import NOWHERE
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.session.session import Session
-from risorius.app.viewer.settings import Display
+from risorius.app.viewer.settings import Display, Settings
 
 from .driving import HELLO, SIZE, replace_state, settle, xdotool
 
@@ -62,7 +62,9 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     script = replace(script_for(None, "face"), duration=0.5)
     replace_state(viewer.session, Session(viewer.session.scene, script))
     viewer.session.scene.reset()
-    viewer.settings.display, viewer.face_panel.search = Display(), ""
+    viewer.settings.display, viewer.settings.is_linked = Display(), True
+    viewer.settings.panel_width = Settings().panel_width
+    viewer.face_panel.search = viewer.face_panel.filter = ""
     viewer.settings.folds.clear()
     replace_state(viewer.files, FileDialogs())
     viewer.messages.text = ""

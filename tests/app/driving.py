@@ -168,6 +168,12 @@ def drop(viewer: Viewer, *paths: Path) -> None:
     settle(viewer)
 
 
+def put(viewer: Viewer, *paths: Path) -> None:
+    """The same, without the other program."""
+    viewer.drop([str(path) for path in paths])
+    settle(viewer)
+
+
 def where_key(viewer: Viewer, place: KeyPlace) -> tuple[float, float]:
     """Where a key is, in the first row that has it [window units]."""
     row = next(row for row in viewer.timeline.dope_sheet.rows if place in row.places)

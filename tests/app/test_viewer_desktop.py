@@ -1,18 +1,20 @@
-"""The window among others: full screen and back, panels hidden, minimised, the first size.
+"""The window among others: what is seen first, hidden panels, minimised, the first size.
 
 A window manager is used where one is there (openbox, say); only what needs one is skipped without.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import glfw
 import numpy as np
@@ -23,8 +25,9 @@ from Xlib.protocol import event
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.interface.gui import THEMES
 from risorius.app.viewer.settings import load_settings
-from risorius.app.viewer.window.splash_screen import FIRST_SIZE
+from risorius.app.viewer.window.splash_screen import COMPILING, FIRST_SIZE, LOADING, picture
 
 from .driving import (
     DEADLINE,
@@ -41,6 +44,7 @@ from .driving import (
 )
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
+
 
 ROOT = Path(__file__).parents[2]
 MANAGERS = ("openbox", "xfwm4", "metacity", "icewm", "fluxbox")
@@ -152,7 +156,7 @@ def test_a_minimised_window_rests_and_comes_back(tmp_path: Path) -> None:
         wait_for(lambda: used_share(program.pid, 1.0) > 0.1)
         tell(window, "windowminimize")
         wait_for(lambda: used_share(program.pid, 1.0) < 0.02)
-        ask_to_close(window)
+        ask_to_close(int(window))
         assert program.wait(DEADLINE) == 0
         assert program.stderr is not None and program.stderr.read() == ""
         assert load_settings(settings)[0].size == (700, 500)
@@ -165,10 +169,10 @@ def tell(window: str, what: str) -> None:
     subprocess.run(["xdotool", what, window], check=True, capture_output=True, timeout=30)
 
 
-def ask_to_close(window: str) -> None:
+def ask_to_close(window: int) -> None:
     """What a click on the cross above the window sends it."""
     screen = display.Display()
-    target = screen.create_resource_object("window", int(window))
+    target = screen.create_resource_object("window", window)
     words = [screen.intern_atom("WM_DELETE_WINDOW"), X.CurrentTime, 0, 0, 0]
     kind = screen.intern_atom("WM_PROTOCOLS")
     target.send_event(event.ClientMessage(window=target, client_type=kind, data=(32, words)))
@@ -199,3 +203,68 @@ def looks_whole(window: str) -> bool:
     skin = pixels[..., 2] - pixels[..., 0] > 30  # redder than blue
     panel = pixels[:, : size.width // 4]
     return bool(skin[:, size.width // 3 :].mean() > 0.05 and panel.std() > 5 and panel.mean() > 150)
+
+
+def windows_of(process: subprocess.Popen[bytes], screen: display.Display) -> Iterator[Any]:
+    """Those on the screen that a process has opened."""
+    number = screen.get_atom("_NET_WM_PID")
+    for window in screen.screen().root.query_tree().children:
+        with contextlib.suppress(XError):  # it is not there any more
+            told = window.get_full_property(number, X.AnyPropertyType)
+            if told is not None and told.value[0] == process.pid:
+                yield window
+
+
+def first_pictures(process: subprocess.Popen[bytes]) -> Iterator[np.ndarray]:
+    """What the window of a process that starts shows, again and again, (H, W, 3)."""
+    screen = display.Display()
+    while process.poll() is None:
+        for window in windows_of(process, screen):
+            with contextlib.suppress(XError):  # it is not shown yet
+                size = window.get_geometry()
+                read = window.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF)
+                pixels = np.frombuffer(read.data, np.uint8).reshape(size.height, size.width, 4)
+                yield pixels[..., 2::-1].astype(int)
+        time.sleep(0.02)
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
+    """Start `risorius view` as on a machine where nothing is compiled yet."""
+    begun = []
+    folders = {"XDG_CONFIG_HOME": tmp_path / "config", "NUMBA_CACHE_DIR": tmp_path / "compiled"}
+    environment = {**os.environ, **{name: str(path) for name, path in folders.items()}}
+
+    def view() -> subprocess.Popen[bytes]:
+        """Start it."""
+        command = [sys.executable, "-m", "risorius", "view", "--size", "640x400"]
+        begun.append(subprocess.Popen(command, env=environment, stderr=subprocess.PIPE))
+        return begun[-1]
+
+    yield view
+    for process in begun:
+        process.kill()
+        process.wait()
+
+
+def test_a_line_is_seen_before_anything_is_compiled(
+    start: Callable[[], subprocess.Popen[bytes]], tmp_path: Path
+) -> None:
+    """The first start says what goes on, and closes when asked."""
+    process = start()
+    wanted = [
+        picture((640, 400), 15.0, THEMES["light"], text).astype(int)
+        for text in (LOADING, COMPILING)
+    ]
+    is_like = [False, False]
+    for shown in first_pictures(process):
+        for index, image in enumerate(wanted):
+            is_like[index] |= bool(np.abs(shown - image).max() <= 8)
+        if not is_like[0]:
+            assert not list((tmp_path / "compiled").rglob("*.nbc"))
+        if all(is_like):
+            break
+    assert all(is_like)
+    for window in windows_of(process, display.Display()):
+        ask_to_close(window.id)
+    assert process.wait(DEADLINE) == 0

@@ -1,15 +1,18 @@
-"""Files that come into the window and leave it, driven as a desktop would."""
+"""Files that come into the window and leave it, and sounds."""
 
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from risorius.app.scenes import build_scene
 from risorius.app.script import load_script
+from risorius.app.sound import player
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display
 from tests.heads import stranger
@@ -19,16 +22,22 @@ from .driving import (
     NEEDS_A_SCREEN,
     click,
     drag,
+    drag_and_release,
     drop,
+    middle,
     moved,
     nose,
+    on_screen,
+    put,
     settle,
     until,
     write,
     xdotool,
 )
+from .sounds import noise, write_wav
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
+
 
 EXAMPLE = "scripts/speech.toml"
 SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
@@ -52,16 +61,17 @@ def test_a_bad_file_dropped_is_told_and_survived(viewer: Viewer, tmp_path: Path)
     """Nonsense shows one line in the window, which goes on; the script that was there stays."""
     before, bad = viewer.session.script, tmp_path / "bad.toml"
     bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
-    drop(viewer, bad)
+    put(viewer, bad)
     assert viewer.messages.is_error and "no_such_muscle" in viewer.messages.text
     assert "\n" not in viewer.messages.text and "message" in viewer.gui.places
     bad.write_bytes(bytes(range(256)))
-    drop(viewer, bad)
+    put(viewer, bad)
     assert "cannot be read" in viewer.messages.text
-    drop(viewer, tmp_path)
+    put(viewer, bad, tmp_path)
+    assert "one of them is enough" in viewer.messages.text
     assert viewer.messages.is_error and viewer.session.script is before
     bad.write_text(POSE)
-    drop(viewer, bad)
+    put(viewer, bad)
     assert viewer.session.values["jaw_open"] == 0.5
 
 
@@ -140,7 +150,7 @@ def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
     """A script that was opened is saved without a question; the title tells its name and state."""
     script = tmp_path / "smile.toml"
     script.write_text(f"# mine\n{SCRIPT}")
-    drop(viewer, script)
+    put(viewer, script)
     assert title_of(viewer) == "Risorius: smile.toml"
     viewer.session.seek(1.0)
     xdotool(viewer, "key", "k")
@@ -175,24 +185,12 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "Escape")
     script = tmp_path / "smile.toml"
     script.write_text(SCRIPT)
-    drop(viewer, script)
+    put(viewer, script)
     script.write_text(SCRIPT.replace("joy", "anger"))
     xdotool(viewer, "key", "k", "ctrl+s")
     assert viewer.files.is_waiting and "another program" in viewer.messages.text
     assert "anger" in script.read_text()
     xdotool(viewer, "key", "Escape")
-
-
-def test_of_several_scripts_the_first_is_opened(viewer: Viewer, tmp_path: Path) -> None:
-    """The window says which files it has left, and goes on with one of them."""
-    names = ("one.toml", "two.toml", "three.toml")
-    for seconds, name in enumerate(names, start=3):
-        (tmp_path / name).write_text(SCRIPT.replace("duration = 2.0", f"duration = {seconds}.0"))
-    drop(viewer, *(tmp_path / name for name in names))
-    assert viewer.session.name == "one.toml" and viewer.session.script.duration == 3.0
-    said = viewer.messages.text
-    assert said.startswith("one.toml: opened") and said.endswith("two.toml, three.toml")
-    assert not viewer.messages.is_error
 
 
 @pytest.mark.slow
@@ -203,9 +201,9 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
     try:
         viewer.session.set("jaw_open", 0.5)
         viewer.session.note()
-        drop(viewer, landmarks)
+        put(viewer, landmarks)
         assert viewer.messages.is_error and "half of a head" in viewer.messages.text
-        drop(viewer, landmarks, mesh)
+        put(viewer, landmarks, mesh)
         assert until(viewer, lambda: "opened" in viewer.messages.text)
         assert len(viewer.session.scene.faces) > len(before.faces)
         assert viewer.session.values["jaw_open"] == 0.5 and viewer.session.has_unsaved_pose
@@ -215,7 +213,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
         assert viewer.session.values["jaw_open"] == 0.0
         script = tmp_path / "smile.toml"
         script.write_text(SCRIPT)
-        drop(viewer, mesh, script, landmarks)
+        put(viewer, mesh, script, landmarks)
         assert until(viewer, lambda: "smile.toml: opened with stranger" in viewer.messages.text)
         viewer.session.seek(2.0)
         assert until(viewer, lambda: moved(viewer) > 2.0)
@@ -279,7 +277,7 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(
     take = written(tmp_path / "take.csv")
     before = take.read_bytes()
     viewer.session.set("jaw_open", 0.4)
-    drop(viewer, take)
+    put(viewer, take)
     assert viewer.question.is_open and viewer.session.has_unsaved_pose
     click(viewer, "question: Open without saving")
     assert "take.csv: Table of named columns, 31 frames in 1.00 s" in viewer.messages.text
@@ -293,3 +291,95 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(
     saved = load_script(tmp_path / "take.toml")
     assert saved.at(0.5)["jawOpen"] == pytest.approx(viewer.session.script.at(0.5)["jawOpen"])
     assert take.read_bytes() == before
+
+
+LONG_SCRIPT = "duration = 8.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\n"
+
+
+@pytest.fixture(params=["null device", "no device"])
+def has_device(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """A device that plays into nothing, or none at all."""
+    is_there = request.param == "null device"
+    found = [pytest.importorskip("miniaudio").Backend.NULL] if is_there else []
+    monkeypatch.setattr(player, "backends", lambda: found)
+    return is_there
+
+
+@pytest.fixture
+def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
+    """Half a second of silence, then noise; not in the window yet."""
+    samples = np.concatenate([np.zeros(8_000), noise(2.5)])
+    (tmp_path / "s.toml").write_text(LONG_SCRIPT)
+    viewer.session.open(load_script(tmp_path / "s.toml"))
+    yield write_wav(tmp_path / "noise.wav", samples)
+    viewer.soundtrack.close()
+
+
+def test_a_sound_is_dropped_and_played(viewer: Viewer, sound: Path, has_device: bool) -> None:
+    """It gets a row of its own, plays and pauses with the script; without a device in peace."""
+    before = viewer.timeline.height()
+    put(viewer, sound)
+    assert "noise.wav" in viewer.messages.text and not viewer.messages.is_error
+    assert viewer.session.script.sound == sound and viewer.session.script_is_unsaved
+    settle(viewer)
+    assert viewer.timeline.height() > before and viewer.soundtrack.sound is not None
+    xdotool(viewer, "key", "space")
+    assert viewer.session.is_playing
+    assert until(viewer, lambda: viewer.session.time > 0.2)
+    assert until(viewer, lambda: viewer.soundtrack.is_heard == has_device)
+    xdotool(viewer, "key", "space")
+    assert not viewer.session.is_playing and not viewer.soundtrack.is_heard
+    assert not viewer.messages.is_error
+    viewer.messages.text = ""
+    assert until(viewer, lambda: viewer.is_idle)
+
+
+def test_the_waveform_is_seen_and_scrubs(viewer: Viewer, sound: Path, has_device: bool) -> None:
+    """Silence is a line, noise is not; a press in it goes to that time, as in the ruler."""
+    put(viewer, sound)
+    viewer.time_axis.show_whole()
+    viewer.messages.text = ""
+    xdotool(viewer, "mousemove", 2, 2)
+    assert until(viewer, lambda: viewer.is_idle)
+    left, top, _, bottom = viewer.gui.places["time"]
+    axis = viewer.time_axis
+    image = viewer.surface.read().astype(int)
+    density = image.shape[1] / viewer.surface.size[0]
+    upper = round((top + 0.45 * (bottom - top)) * density), round((bottom - 4) * density)
+
+    def contrast(first: float, last: float) -> float:
+        columns = slice(round(axis.x(first) * density), round(axis.x(last) * density))
+        return float(image[slice(*upper), columns].std())
+
+    assert contrast(0.6, 1.9) > 2.0 * contrast(0.1, 0.4)
+    place = on_screen(viewer, axis.x(1.5), bottom - 6)
+    drag_and_release(viewer, place, (0, 0))
+    assert viewer.session.time == pytest.approx(1.5, abs=0.1)
+    assert left < axis.x(0.0) and middle(viewer, "time")
+
+
+@pytest.mark.parametrize("has_device", ["null device"], indirect=True)
+def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_device: bool) -> None:
+    """Ctrl+S writes it, undo and the menu take it away, a lost file is told once and survived."""
+    put(viewer, sound)
+    xdotool(viewer, "key", "ctrl+s")
+    assert load_script(sound.parent / "s.toml").sound == sound and not viewer.session.unsaved
+    assert 'sound = "noise.wav"' in (sound.parent / "s.toml").read_text()
+    xdotool(viewer, "key", "ctrl+z")
+    assert viewer.session.script.sound is None and viewer.soundtrack.sound is None
+    xdotool(viewer, "key", "ctrl+shift+z")
+    assert viewer.soundtrack.sound is not None
+    viewer.scripts.remove_sound()
+    settle(viewer)
+    assert viewer.soundtrack.sound is None and not viewer.scripts.has_sound
+    bad = sound.parent / "bad.mp3"
+    bad.write_text("no sound")
+    put(viewer, bad)
+    assert viewer.messages.is_error and "there is no sound in it" in viewer.messages.text
+    sound.unlink()
+    viewer.session.open(load_script(sound.parent / "s.toml"))
+    settle(viewer)
+    assert "no such sound file; the script plays without" in viewer.messages.text
+    viewer.messages.text = ""
+    xdotool(viewer, "key", "space")
+    assert until(viewer, lambda: viewer.session.time > 0.2) and not viewer.messages.text

@@ -178,9 +178,8 @@ def test_rows_of_the_timeline(hello: Script) -> None:
     assert joy.channel.values.tolist() == [0.0, 1.0, 0.6, 0.0] and joy.parents == ("Whole poses",)
     assert blink.channel == hello.tracks["blink"] and blink.parents == ("Tracks",)
     assert poses.places.near(1.2, 0.3) == {JOY} and not poses.places.near(2.0, 0.3)
-    assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out\nJoy 1.00\nJaw open 0.10"
-    assert described(hello, Places.of(KeyPlace("blink", 2.12))) == "2.12 s, ease-in\nBlink 1.00"
-    assert described(hello, Places.of(KeyPlace(POSES, 0.0))) == "0.00 s\nneutral"
+    assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out"
+    assert described(hello, Places.of(KeyPlace("blink", 2.12))) == "2.12 s, ease-in"
 
 
 @given(amount=st.floats(-3.0, 3.0), choice=st.lists(st.booleans(), min_size=8, max_size=8))

@@ -225,19 +225,3 @@ class TestInTheWindow:
         xdotool(viewer, "key", "Return")
         assert until(viewer, lambda: viewer.room is None)
         assert mesh.with_name("kept.json").exists() and viewer.session.values["jaw_open"] == 0.5
-
-    @pytest.mark.slow
-    def test_marks_that_make_no_head_are_told_and_kept(self, viewer: Viewer, mesh: Path) -> None:
-        """Use this head: one line, and the marks are there to be mended."""
-        viewer.mark(mesh)
-        self.mark_first(viewer)
-        marking = self.room(viewer).marking
-        lower = marking.marks.places[8]
-        for number in range(42, 48):
-            marking.marks = marking.marks.placed(number, lower)
-        marking.note()
-        marking.file = mesh.with_name("wrong.json")
-        xdotool(viewer, "key", "ctrl+Return")
-        assert until(viewer, lambda: viewer.messages.is_error)
-        assert "\n" not in viewer.messages.text and viewer.room is not None
-        assert not marking.unsaved and marking.file.exists()

@@ -1,8 +1,7 @@
-"""Several files let go over the window: what to play, a sound, a head, and what is too much."""
+"""Files let go over the window: what to play, a sound, a head."""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -33,11 +32,13 @@ class DroppedFiles:
     mesh: Path | None = None
     landmarks: Path | None = None
     sound: Path | None = None
-    left_over: tuple[Path, ...] = ()  # of each kind the first one counts
 
     @classmethod
     def of(cls, paths: Sequence[Path]) -> DroppedFiles:
-        """Sort out files by the ends of their names; JSON may be a recording, too."""
+        """Sort out files by the ends of their names; JSON may be a recording, too.
+
+        UserError for several of a kind.
+        """
         meshes = [path for path in paths if path.suffix.lower() in MESHES]
         landmarks = [
             path for path in paths if path.suffix.lower() == LANDMARKS and not is_recording(path)
@@ -45,19 +46,15 @@ class DroppedFiles:
         sounds = [path for path in paths if path.suffix.lower() in SOUNDS]
         scripts = [path for path in paths if path not in (*meshes, *landmarks, *sounds)]
         kinds = (scripts, meshes, landmarks, sounds)
-        script, mesh, landmark, sound = (next(iter(kind), None) for kind in kinds)
-        left_over = tuple(itertools.chain.from_iterable(kind[1:] for kind in kinds))
-        return cls(script, mesh, landmark, sound, left_over)
+        for several in (kind for kind in kinds if len(kind) > 1):
+            names = ", ".join(path.name for path in several)
+            raise UserError(f"{names}: one of them is enough; drop it alone")
+        return cls(*(next(iter(kind), None) for kind in kinds))
 
     @property
     def has_head(self) -> bool:
         """Whether there is any part of a head."""
         return self.mesh is not None or self.landmarks is not None
-
-    def remark(self) -> str:
-        """The end of a message: which files were not opened."""
-        names = [path.name for path in self.left_over]
-        return f"; not opened, as one is enough: {', '.join(names)}" if names else ""
 
     def scene(self) -> Scene:
         """A face with the head, fitted; UserError for one that cannot be."""
@@ -125,7 +122,7 @@ class FileDrop:
 
     def _open(self, dropped: DroppedFiles) -> Message:
         """Show the head first, then what shall be played on it."""
-        line, remark = None, dropped.remark()
+        line, remark = None, ""
         if dropped.mesh is not None and dropped.landmarks is None:
             line = self._mark(dropped.mesh, None)
             self._scripts.note_recent(dropped.mesh)
@@ -139,8 +136,7 @@ class FileDrop:
             self.has_other_head = True
             assert dropped.mesh is not None and dropped.landmarks is not None
             self._scripts.note_recent(dropped.mesh, dropped.landmarks)
-            line = f"{dropped.mesh.name}: opened{remark}"
-            remark = f" with {dropped.mesh.name}{remark}"
+            line, remark = f"{dropped.mesh.name}: opened", f" with {dropped.mesh.name}"
         if dropped.script is not None:
             line = self._scripts.open(dropped.script, remark) or line
         if dropped.sound is not None:

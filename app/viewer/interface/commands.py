@@ -16,7 +16,7 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
          if imgui.Key.tab <= key < imgui.Key.gamepad_start}  # fmt: skip
 # Ctrl keys that a line of text takes for itself while one writes.
 _WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
-_CHANGING = ("Edit", "Keys", "Expression")  # menus of what ends a drag of the mouse first
+_CHANGING = ("Edit", "Keys", "Expression")  # menus of what waits until the mouse lets go
 _WALKING = ("Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "PageUp", "PageDown")
 
 
@@ -60,9 +60,8 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
             is_taken = is_for_text or (gui.owns_keys and key in _WALKING)
             if is_taken or not imgui.is_key_chord_pressed(chord(key)):
                 continue
-            if command.menu in _CHANGING and imgui.is_any_mouse_down():
-                gui.let_go_before(_KEYS[key.rpartition("+")[2]])
-            elif command.can_run():
+            is_in_the_way = command.menu in _CHANGING and imgui.is_any_mouse_down()
+            if command.can_run() and not is_in_the_way:
                 messages.attempt(command.run)
 
 

@@ -238,14 +238,6 @@ class Gui:
             if is_visible:
                 imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
 
-    def let_go_before(self, key: imgui.Key) -> None:
-        """End what the mouse drags as if it had let go, and then take the key as pressed anew."""
-        io = imgui.get_io()
-        for button in (LEFT, RIGHT, MIDDLE):
-            io.add_mouse_button_event(button, False)
-        for is_down in (False, True):
-            io.add_key_event(key, is_down)
-
     def with_keys(self, text: str) -> str:
         """A text with the keys of commands, in place of their labels in brackets."""
         return re.sub(r"\[(.+?)\]", lambda found: self.keys.get(found[1]) or found[0], text)

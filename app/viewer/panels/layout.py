@@ -100,8 +100,8 @@ class Layout:
             is_open, _ = imgui.begin_tab_item(label, None, flags)
             self._gui.remember(f"tab {title}")
             if is_open:
-                if state.wanted_tab in ("", title):
-                    self._settings.tab, state.wanted_tab = title, ""
+                if state.wanted_tab == title:
+                    state.wanted_tab = ""
                 draw_panel()
                 imgui.end_tab_item()
         imgui.end_tab_bar()

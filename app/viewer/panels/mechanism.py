@@ -30,7 +30,6 @@ HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is ([Refine])",
     "Look": "smooth: what looks best; paper: the paper's own rule ([Paper's look]). A look sets "
     "the refiner and all that it is told",
-    "Refiner": "any that is registered",
     "Compare": "the simulated mesh at the left, refined at the right, under one camera: wipe "
     "([Compare: wipe]) or side by side ([Compare: side by side])",
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
@@ -45,10 +44,8 @@ HINTS = {
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
-    "levels": "how often all triangles are split",
     "Shading": "[Next shading] goes through them",
     "Colours": "of the simulated mesh's triangles, however refined ([Colour by splits]: splits)",
-    "Skin": "[Texture] switches the texture",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
     "Occlusion": "less light from all around in folds of the textured skin",
@@ -123,9 +120,6 @@ class MechanismPanel:
             imgui.text(f"{drawn.label}: {count} triangles")
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")
-        splits = stage.refined.refiner.splits
-        once, more = int((splits == 1).sum()), int((splits > 1).sum())
-        muted(self._gui, f"{len(splits)} edges: {once} split once, {more} more often")
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""

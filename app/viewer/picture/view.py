@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict
 
-import numpy as np
 from imgui_bundle import imgui
 
 from risorius import render
@@ -34,13 +33,6 @@ class View:
         self.area = (0.0, 0.0, 1.0, 1.0)
         self.pointed = {}
         self.fit_scene()
-        place = settings.cameras.get(session.scene.name)
-        if place is not None:  # as it stood when this scene's window was closed
-            yaw, pitch, distance, *target = place
-            radius = self.camera.scene_radius
-            self.camera.yaw, self.camera.pitch = yaw, min(max(pitch, -90.0), 90.0)
-            self.camera.target = np.array(target)
-            self.camera.distance = min(max(distance, radius), 20.0 * radius)
 
     def fit_scene(self) -> None:
         """The camera as at first: all of the scene."""
@@ -80,17 +72,12 @@ class View:
         return self.pixels((0.0, 0.0, em(), 1.0))[2]
 
     @property
-    def camera_place(self) -> list[float]:
-        """Yaw, pitch, distance and target of the camera, to be remembered."""
-        camera = self.camera
-        place = [camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()]
-        return [float(number) for number in place]
-
-    @property
     def state(self) -> object:
         """Everything that the picture depends on, but for the motion of the scene."""
         display = repr(asdict(self.display))
-        return self.camera_place, display, self._settings.theme, self.viewport, self.pointed
+        camera = self.camera
+        place = camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()
+        return place, display, self._settings.theme, self.viewport, self.pointed
 
     def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
         """The line between the two halves of a comparison, and what to drag it by."""

@@ -17,7 +17,6 @@ from ..messages import Message
 from ..session.session import Session
 
 TRACKS, ALL = "Tracks", "Whole poses"  # names of rows
-MOST_LINES = 7  # of a key's values that are told
 
 
 @dataclass(frozen=True)
@@ -70,26 +69,18 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
 
 
 def described(script: Script, places: Places) -> str:
-    """What there is to say about keys at one time: a title, then the values that they hold."""
-    name, lines, easings = "", list[str](), set[str]()
-    for track, times in sorted(places.times.items()):  # the poses come first
+    """What there is to say about keys at one time: that, a pose's name, other easings."""
+    names, easings = list[str](), set[str]()
+    for track, times in places.times.items():
         if track == POSES:
-            for pose in (pose for pose in script.poses if pose.time in times):
-                name = pose.name or ""
-                lines += [_value(*each) for each in pose.values.items() if each[1]] or ["neutral"]
-                easings.add(pose.easing)
+            poses = [pose for pose in script.poses if pose.time in times]
+            names += [pose.name for pose in poses if pose.name]
+            easings |= {pose.easing for pose in poses}
         else:
             channel = script.tracks[track]
-            for index in np.searchsorted(channel.times, times):
-                lines.append(_value(track, channel.values[index]))
-                easings.add(EASING_NAMES[channel.easings[index]])
-    title = ", ".join(filter(None, (name, f"{places.first:.2f} s", *sorted(easings - {"smooth"}))))
-    more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
-    return "\n".join([title, *lines[:MOST_LINES], *more])
-
-
-def _value(name: str, value: float) -> str:
-    return f"{readable(name)} {value:.2f}"
+            found = channel.easings[np.searchsorted(channel.times, times)].tolist()
+            easings |= {EASING_NAMES[each] for each in found}
+    return ", ".join([*names, f"{places.first:.2f} s", *sorted(easings - {"smooth"})])
 
 
 class KeySelection:

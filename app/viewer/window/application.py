@@ -148,7 +148,6 @@ class Application(ApplicationContext):
     def remember(self) -> None:
         """Write the settings as they are now; UserError where that cannot be."""
         if self._settings_path is not None:
-            self.settings.cameras[self.session.scene.name] = self.view.camera_place
             self.settings.size = self.gui.window_size
             save_settings(self._settings_path, self.settings)
 

@@ -1,0 +1,337 @@
+"""The panels, by real events: search, comparisons, headings, small windows, dense screens."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from risorius.app.anatomy import AnatomyView
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.capture.captions import plate
+from risorius.app.viewer import Viewer
+from risorius.app.viewer.settings import SKINS, Display
+from risorius.app.viewer.window.window import REFRESH
+from risorius.assets.loading import read_words
+
+from .driving import (
+    NEEDS_A_SCREEN,
+    SIZE,
+    clear_search,
+    click,
+    drag,
+    drag_and_release,
+    middle,
+    moved,
+    on_screen,
+    settle,
+    show_controls,
+    until,
+    xdotool,
+)
+
+from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
+
+pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
+
+SMILE = "zygomaticus_major"
+
+
+def rows_shown(viewer: Viewer) -> set[str]:
+    """Labels of the rows in the panel."""
+    settle(viewer)
+    return {name.removeprefix("show ") for name in viewer.gui.places if name.startswith("show ")}
+
+
+def test_plain_words_find_controls(viewer: Viewer) -> None:
+    """What people would say finds expressions, units, shapes and muscles."""
+    viewer.settings.zoom = 0.6  # room for all of them at once
+    settle(viewer)  # until all is in its place
+    try:
+        for words, found in (
+            ("smile", {"joy", "AU12", "mouthSmile", SMILE}),
+            ("frown", {"anger", "AU4", "mouthFrown", "corrugator_supercilii"}),
+            ("chew", {"AU26", "jawOpen", "jaw_open"}),
+        ):
+            show_controls(viewer, words)
+            shown = rows_shown(viewer)
+            assert found <= shown and len(shown) < 20, words
+            clear_search(viewer)
+    finally:
+        viewer.settings.zoom = 1.0
+
+
+def test_filters_show_one_kind(viewer: Viewer) -> None:
+    """A button shows its kind alone, a second click everything."""
+    click(viewer, "only Visemes")
+    assert all(name.startswith("viseme_") for name in rows_shown(viewer))
+    click(viewer, "only Visemes")
+    assert {"joy", "wink"} <= rows_shown(viewer)
+
+
+def test_one_side_is_copied_to_the_other(viewer: Viewer) -> None:
+    """By the menu, whatever spells its sides how; eyes and jaw stay where they are."""
+    session = viewer.session
+    shown = {"AU12_left": 0.5, "mouthSmileRight": 0.3, "wink": 0.2, "gaze_horizontal_left": 0.4}
+    for name, value in {**shown, "jaw_sideways": 0.1, "AU61": 0.2}.items():
+        session.set(name, value)
+    session.note()
+    click(viewer, "menu Edit")
+    click(viewer, "menu Edit: Left to right")
+    values = {name: value for name, value in session.values.items() if value}
+    assert values == {
+        "AU12_left": 0.5, "AU12_right": 0.5, "wink": 0.2, "wink_right": 0.2,
+        "gaze_horizontal_left": 0.4, "jaw_sideways": 0.1, "AU61": 0.2,
+    }  # fmt: skip
+    xdotool(viewer, "key", "ctrl+z")
+    click(viewer, "menu Edit")
+    click(viewer, "menu Edit: Right to left")
+    assert until(viewer, lambda: session.values["mouthSmileLeft"] == 0.3)
+    assert session.values["AU12_left"] == session.values["wink"] == 0.0
+
+
+def test_words_are_of_controls_that_there_are(viewer: Viewer) -> None:
+    """Names, synonyms and filters of the table all mean something."""
+    controls = viewer.session.controls
+    limits, words = controls.limits, read_words()
+
+    def is_known(name: str) -> bool:
+        return any(f"{name}{side}" in limits for side in ("", "_left", "Left"))
+
+    found = {name for names in words["synonyms"].values() for name in names}
+    assert all(map(is_known, [*words["names"], *found]))
+    groups = {title for titles in words["filters"].values() for title in titles}
+    assert groups == set(controls.groups)
+
+
+def in_panel(viewer: Viewer, *rows: tuple[str, str]) -> None:
+    """Choose in lists of the Mechanism panel."""
+    for row, choice in rows:
+        click(viewer, row)
+        click(viewer, f"{row}: {choice}")
+
+
+def only_open(viewer: Viewer, title: str) -> None:
+    """Fold all of the Mechanism panel but one heading, so that there is room for it."""
+    viewer.panel_state.wanted_tab = "Mechanism"
+    titles = ("Refinement", "Style", "Anatomy", "Light and person", "Milliseconds")
+    viewer.settings.folds.update({each: each == title for each in titles})
+    settle(viewer)
+
+
+def seen_labels(viewer: Viewer, page: np.ndarray, origin: tuple[int, int]) -> list[bool]:
+    """Whether each label of the window is in a picture whose lower left corner is there."""
+    seen = []
+    for x, y, image in viewer.surface.labels:
+        bottom = len(page) - (y - origin[1])
+        part = page[bottom - len(image) : bottom, x - origin[0] :][:, : image.shape[1]]
+        is_opaque = image[..., 3] == 255
+        seen.append(bool(is_opaque.any() and (part == image[..., :3])[is_opaque].all()))
+    return seen
+
+
+def test_both_sides_have_captions_and_colours_a_bar(viewer: Viewer, tmp_path: Path) -> None:
+    """In the window and in a screenshot alike; none where nothing is compared or coloured."""
+    assert not viewer.surface.labels
+    viewer.settings.display.colours = "tension"
+    xdotool(viewer, "key", "d")
+    assert until(viewer, lambda: viewer.is_idle)
+    assert len(viewer.surface.labels) == 3
+    height = viewer.view.viewport[3]
+    size = max(height / 36.0, 15.0)
+    count = viewer.stage.refined.triangle_count
+    for text, label in zip(
+        ("static\n2030 triangles", f"smooth\n{count} triangles"),
+        viewer.surface.labels,
+        strict=False,
+    ):
+        assert np.array_equal(label[2], plate(text, size))
+    assert seen_labels(viewer, viewer.surface.read(), (0, 0)) == [True] * 3
+    xdotool(viewer, "key", "F12")
+    (path,) = tmp_path.glob("*.png")
+    page = np.asarray(Image.open(path))
+    assert seen_labels(viewer, page, viewer.view.viewport[:2]) == [True] * 3
+    viewer.settings.display = Display()
+    settle(viewer)
+    assert not viewer.surface.labels
+
+
+def test_the_refiner_on_the_card_is_one_of_the_list(viewer: Viewer) -> None:
+    """Chosen by the mouse it draws from the card, and the picture is as it was; set back, too."""
+    only_open(viewer, "Refinement")
+    pictures = [viewer.stage.draw_image(viewer.view)]
+    in_panel(viewer, ("Refiner", "kahler-gl"))
+    assert isinstance(viewer.stage.refined.stream, render.GpuStream)
+    pictures.append(viewer.stage.draw_image(viewer.view))
+    assert viewer.stage.refined.label == "kahler-gl" and not viewer.messages.text
+    assert np.array_equal(*pictures)
+    in_panel(viewer, ("scheme", "detail"))
+    assert "scheme must be one of ('loop', 'cubic')" in viewer.messages.text
+    click(viewer, "Reset all")
+    assert isinstance(viewer.stage.refined.stream, render.Stream)
+
+
+def test_the_number_pad_looks_from_all_sides(viewer: Viewer) -> None:
+    """Exactly, and about the same point from as far; Alt does where there is no number pad."""
+    camera = viewer.view.camera
+    place = camera.distance, camera.target.tolist()
+    for keys, yaw, pitch in (
+        ("KP_Next", 90.0, 0.0),
+        ("ctrl+KP_Next", -90.0, 0.0),
+        ("KP_Down", 35.0, 4.0),
+        ("ctrl+KP_Down", -35.0, 4.0),
+        ("KP_Home", 0.0, 90.0),
+        ("KP_End", 0.0, 0.0),
+        ("alt+3", 90.0, 0.0),
+    ):
+        xdotool(viewer, "key", keys)
+        assert (camera.yaw, camera.pitch) == (yaw, pitch), keys
+    assert (camera.distance, camera.target.tolist()) == place
+    assert not any(viewer.session.values.values())  # alt+3 is no expression
+
+
+@pytest.mark.slow
+def test_light_background_and_tone_are_chosen(viewer: Viewer) -> None:
+    """Each changes the picture at once, and none keeps the others."""
+    only_open(viewer, "Light and person")
+    assert until(viewer, lambda: viewer.is_idle)
+    pages = [viewer.surface.read()[:, 400:].astype(int)]
+    for row, choice in (("Background", "white"), ("Light", "hard"), ("Skin tone", "dark")):
+        in_panel(viewer, (row, choice))
+        assert until(viewer, lambda: viewer.is_idle)
+        pages.append(viewer.surface.read()[:, 400:].astype(int))
+        assert np.abs(pages[-1] - pages[-2]).mean() > 1.0
+    assert viewer.settings.display == Display(background="white", light="hard", tone="dark")
+    click(viewer, "Reset all")
+    assert until(viewer, lambda: viewer.is_idle)
+    assert np.abs(viewer.surface.read()[:, 400:] - pages[0]).mean() < 0.1
+
+
+def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
+    """U switches them on and off; nothing stays behind."""
+    settle(viewer)
+    usual = viewer.stage.draw_image(viewer.view).astype(int)
+    xdotool(viewer, "key", "u")
+    settle(viewer)
+    assert viewer.settings.display.overlays == ["muscles"]
+    shown = viewer.stage.draw_image(viewer.view).astype(int)
+    assert (np.abs(shown - usual).max(axis=2) > 16).mean() > 0.05
+    size = shown.shape[1], shown.shape[0]
+    style = render.Style(albedo=SKINS["textured"][1], background=viewer.view.background)
+    options = CaptureOptions(size=size, style=style, anatomy=AnatomyView(("muscles",)))
+    with Capture(viewer.session.scene, options) as capture:
+        capture.camera = viewer.view.camera
+        off = np.abs(capture.draw_image().astype(int) - shown)
+    assert np.percentile(off, 99) <= 2.0
+    viewer.surface.make_current()
+    xdotool(viewer, "key", "u")
+    settle(viewer)
+    assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)
+
+
+def test_headings_stay_folded(viewer: Viewer) -> None:
+    """A heading that was folded is folded the next time; one that is searched only meanwhile."""
+    click(viewer, "Expressions")
+    assert "joy" not in viewer.gui.places
+    click(viewer, "Jaw")
+    assert viewer.settings.folds == {"Expressions": False, "Jaw": True}
+    show_controls(viewer, "joy")
+    assert "joy" in viewer.gui.places
+    clear_search(viewer)
+    settle(viewer)
+    assert "joy" not in viewer.gui.places and "jaw_open" in viewer.gui.places
+
+
+def test_the_panel_can_be_made_wider(viewer: Viewer) -> None:
+    """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
+    left, top, _, height = viewer.view.area
+    drag_and_release(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
+    assert viewer.view.area[0] == pytest.approx(left - 90, abs=3)
+    viewer.settings.panel_width = 22.5
+    drag_and_release(viewer, on_screen(viewer, viewer.view.area[0] - 1, top + 0.5 * height), (5, 0))
+
+
+@pytest.mark.parametrize("zoom", [1.0, 3.0])
+def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
+    """However large the words are, no button is cut off and nothing hides the picture."""
+    try:
+        viewer.settings.zoom = zoom
+        xdotool(viewer, "key", "F1")
+        left, _, width, height = viewer.view.area
+        assert width > 0.5 * SIZE[0] and height > 0.4 * SIZE[1]
+        for name in ("Mirror", "Link sides", "search", "show joy", "show blink"):
+            assert viewer.gui.places[name][2] <= left, name
+        for name in ("play", "record", "loop", "speed", "time"):
+            assert viewer.gui.places[name][0] >= left, name
+            assert viewer.gui.places[name][2] <= SIZE[0], name
+        x, y, right, bottom = viewer.gui.places["help"]
+        assert min(x, y) >= 0.0 and right <= SIZE[0] and bottom <= SIZE[1]
+    finally:
+        viewer.settings.zoom, viewer.panel_state.is_help_open = 1.0, False
+        settle(viewer)
+
+
+def test_any_size_can_be_drawn(viewer: Viewer) -> None:
+    """Made tiny, flat, and large again while the face moves: it goes on, and nothing explodes."""
+    import glfw
+
+    before = viewer.view.area
+    xdotool(viewer, "key", "1")
+    try:
+        for size in ((1, 1), (40, 30), (700, 20), (20, 500), SIZE):
+            glfw.set_window_size(viewer.surface.handle, *size)
+            settle(viewer)
+            assert moved(viewer) < 60.0
+    finally:
+        glfw.set_window_size(viewer.surface.handle, *SIZE)
+        settle(viewer)
+    assert until(viewer, lambda: viewer.is_idle)
+    assert viewer.surface.read().shape == (SIZE[1], SIZE[0], 3)
+    assert viewer.view.area == before  # the panel is as wide as it was
+
+
+@pytest.mark.slow
+def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
+    """At a content scale of 2 words, sliders and lines are doubled, and the mouse still hits."""
+    left, top, right, bottom = viewer.gui.places["Neutral"]
+    result = subprocess.run(
+        [sys.executable, "-m", "tests.app.dense_window"],
+        capture_output=True, text=True, timeout=120, check=False, cwd=Path(__file__).parents[2],
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    found = json.loads(result.stdout)
+    # Letters are as wide as whole pixels allow, which at twice the size is not quite twice as much.
+    assert found["button"] == pytest.approx([2.0 * (right - left), 2.0 * (bottom - top)], abs=6.0)
+    assert found["line"] == 2.0
+    assert found["is_settled"]  # the first picture is where all others are
+    assert found["frame"] == found["window"] == [1200, 800]
+    assert found["slid"] > 0.3
+    assert found["dragged"] > 4.0
+
+
+def test_a_slider_answers_at_once_while_the_face_moves(viewer: Viewer) -> None:
+    """A slider that is dragged shows it in the same frame, however long panels may be kept."""
+    show_controls(viewer, "jaw open")
+    place = middle(viewer, "jaw_open")
+    left, top, right, bottom = map(round, viewer.gui.places["jaw_open"])
+    viewer.refresh = 60.0
+    try:
+        viewer.view.camera.orbit(3.0, 0.0)
+        drag(viewer, place, (1, 0))
+        for _ in range(3):
+            before = viewer.surface.read()[top:bottom, left:right].astype(int)
+            value = viewer.session.values["jaw_open"]
+            subprocess.run(["xdotool", "mousemove_relative", "--", "12", "0"], check=True)
+            viewer.view.camera.orbit(3.0, 0.0)
+            assert until(viewer, lambda old=value: viewer.session.values["jaw_open"] != old)
+            after = viewer.surface.read()[top:bottom, left:right].astype(int)
+            assert (np.abs(after - before).max(axis=2) > 40).sum() > 20
+    finally:
+        viewer.refresh = REFRESH
+        xdotool(viewer, "mouseup", 1)
+        clear_search(viewer)
