@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
@@ -24,6 +26,20 @@ def refusal(result: Result) -> str:
     lines = [line for line in result.output.splitlines() if not line.startswith("Compiling, ")]
     assert len(lines) == 1 and lines[0].startswith("risorius: "), result.output
     return lines[0]
+
+
+def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
+    """Start Python with these words as a process that hears signals, whoever runs the tests.
+
+    Those that run behind an `&` or `nohup` ignore them, and pass that on. What it says is kept.
+    """
+
+    def hear() -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+    told = [sys.executable, *map(str, words)]
+    return subprocess.Popen(told, stderr=subprocess.PIPE, preexec_fn=hear, **options)
 
 
 def positions_in_blender(path: Path, folder: Path, rate: float, frames: int) -> Path:

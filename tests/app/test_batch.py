@@ -15,10 +15,9 @@ from typing import Any
 import pytest
 from click.testing import Result
 
-from .command_line import refusal, risorius
+from .command_line import refusal, risorius, started
 from .test_workers import is_running, wait_until
 
-COMMAND = (sys.executable, "-m", "risorius")
 SCRIPT = "duration = {0}\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = {0}\n{1} = 1.0\n"
 POSES = ("joy", "sadness", "anger", "fear")
 SMALL = "--size 64x48 --samples 0 --fps 20"
@@ -206,20 +205,10 @@ def films(count: int) -> list[str]:
     return [f"{number}.mp4" for number in range(count)]
 
 
-def started(*arguments: str) -> subprocess.Popen[bytes]:
-    """The command as a process that hears signals, whoever runs the tests."""
-    return subprocess.Popen(
-        [*COMMAND, "batch", "clips.txt", *arguments],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        preexec_fn=_hear_signals,
-    )
-
-
-def _hear_signals() -> None:
-    """Undo what a shell in the background and `nohup` have their processes ignore."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+def begun(*arguments: str) -> subprocess.Popen[bytes]:
+    """The command as a process."""
+    words = ("-m", "risorius", "batch", "clips.txt", *arguments)
+    return started(*words, stdout=subprocess.DEVNULL)
 
 
 def workers_of(process: subprocess.Popen[bytes]) -> list[int]:
@@ -240,7 +229,7 @@ linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks i
 def test_stopped_halfway_and_resumed(number: signal.Signals) -> None:
     """Nothing half-written is left, no process runs on, and what is missing is made afterwards."""
     names = films(3)
-    process = started("--jobs", "2", "--quiet")
+    process = begun("--jobs", "2", "--quiet")
     wait_until(lambda: bool(list(Path("made").glob(".risorius-*/*.mp4"))))
     process.send_signal(number)
     _, told = process.communicate(timeout=60)
@@ -264,7 +253,7 @@ def test_killed_at_random_moments() -> None:
     for _ in range(10):
         for name in names:
             Path("made", name).unlink()
-        process = started("--jobs", "2", "--quiet")
+        process = begun("--jobs", "2", "--quiet")
         time.sleep(chance.uniform(0.2, 6.0))
         victims = [process.pid, *workers_of(process)]
         os.kill(chance.choice(victims), signal.SIGKILL)
@@ -283,7 +272,7 @@ def test_killed_at_random_moments() -> None:
 def test_ctrl_c_reaches_the_cluster(cluster: Any) -> None:
     """What workers have half written goes, and what was not begun is not begun."""
     films(6)
-    process = started("--scheduler", cluster.scheduler_address, "--quiet")
+    process = begun("--scheduler", cluster.scheduler_address, "--quiet")
     wait_until(lambda: bool(list(Path("made").glob(".risorius-*/*.mp4"))))
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)

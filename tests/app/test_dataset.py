@@ -9,7 +9,6 @@ import random
 import re
 import shutil
 import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -30,7 +29,7 @@ from risorius.app.dataset.table import load_table
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 
-from .command_line import refusal, risorius
+from .command_line import refusal, risorius, started
 
 COUNT, SEED, SIZE, PASSES = 5, 11, (80, 64), ("depth", "normal", "segmentation")
 ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
@@ -309,13 +308,9 @@ def test_killed_at_any_moment_nothing_half_written_has_its_name(made: Path, tmp_
     for attempt in range(30):
         if attempt % 5 == 0:
             shutil.rmtree(folder, ignore_errors=True)
-        process = subprocess.Popen(
-            [sys.executable, "-m", "risorius", "dataset", "--count", str(COUNT), "--jobs", "2",
-             "-o", str(folder), *OPTIONS, *(["--resume"] if folder.exists() else [])],
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-        )  # fmt: skip
+        words = ("-m", "risorius", "dataset", "--count", COUNT, "--jobs", "2", "-o", folder)
+        resume = ["--resume"] if folder.exists() else []
+        process = started(*words, *OPTIONS, *resume, start_new_session=True)
         time.sleep(chance.uniform(0.2, 1.0) * usual)
         number = chance.choice([signal.SIGKILL, signal.SIGINT])
         os.kill(process.pid, number)

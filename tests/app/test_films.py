@@ -27,7 +27,7 @@ from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import parse_script
 
-from .command_line import risorius
+from .command_line import risorius, started
 
 Image = npt.NDArray[np.uint8]
 WIDTH, HEIGHT, COUNT, RATE = 97, 63, 12, 25.0
@@ -235,11 +235,7 @@ def test_a_film_whose_processes_end(tmp_path: Path, number: signal.Signals) -> N
         "processes.worthwhile = lambda *_: 2\nrun()"
     )
     arguments = ["capture", "--scene", "face", "--size", "160x120", "--quiet"]
-    process = subprocess.Popen(
-        [sys.executable, "-c", code, *arguments, "-o", str(tmp_path / "film.mp4")],
-        stderr=subprocess.PIPE,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
+    process = started("-c", code, *arguments, "-o", tmp_path / "film.mp4")
     begun: dict[int, str] = {}
     drawing: list[int] = []
     while process.poll() is None and len(drawing) < 2:

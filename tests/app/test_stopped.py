@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-COMMAND = (sys.executable, "-m", "risorius")
+from .command_line import started
+
 SLOW = ("capture", "--scene", "face", "--size", "320x240", "--samples", "0")
 
 
@@ -38,13 +39,8 @@ def test_nothing_half_written_is_left(
     tmp_path: Path, output: str, pattern: str, number: signal.Signals
 ) -> None:
     """Ctrl-C, or a closed terminal, while a film or frames are begun and while they are written."""
-    process = subprocess.Popen(
-        [*COMMAND, *SLOW, "-o", str(tmp_path / output), "--quiet"],
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-        # Tests that run behind an `&` or `nohup` have the signals ignored, and pass that on.
-        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
-    )
+    words = ("-m", "risorius", *SLOW, "-o", tmp_path / output, "--quiet")
+    process = started(*words, start_new_session=True)
     while process.poll() is None and not is_there(tmp_path, pattern):
         time.sleep(0.01)
     os.killpg(process.pid, number)
@@ -87,12 +83,7 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
         f"with outputs.film(pathlib.Path({str(folder / 'film.mp4')!r}), (16, 16), 30) as add:\n"
         "    add(numpy.zeros((16, 16, 3), numpy.uint8))"
     )
-    process = subprocess.Popen(
-        [sys.executable, "-c", code],
-        stderr=subprocess.PIPE,
-        env={**os.environ, "IMAGEIO_FFMPEG_EXE": str(slow)},
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
+    process = started("-c", code, env={**os.environ, "IMAGEIO_FFMPEG_EXE": str(slow)})
     while process.poll() is None and not (tmp_path / "slow_ffmpeg.has_all").exists():
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -17,6 +16,7 @@ from risorius.app.errors import UserError
 from risorius.app.workers import WorkerPool, run_all, share_of_cores
 
 from . import working
+from .command_line import started
 
 STOPPED = """
 import sys
@@ -137,10 +137,7 @@ def test_whoever_stops_early_leaves_no_process() -> None:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_nothing_runs_on_when_it_is_stopped(tmp_path: Path, number: signal.Signals) -> None:
     """Ctrl-C, `kill`, and even the end of the process that asked without a word."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", STOPPED, str(tmp_path)],
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
+    process = started("-c", STOPPED, tmp_path)
     wait_until(lambda: len(list(tmp_path.glob(".risorius-*/?"))) == 2)
     threads = Path(f"/proc/{process.pid}/task").glob("*/children")
     workers = [int(each) for file in threads for each in file.read_text().split()]
