@@ -14,7 +14,6 @@ sums number points and subtriangles in the order of `refine.Kahler`. A barrier f
 Nobody here learns how much came of it: the draw command holds that.
 """
 
-import time
 from importlib.resources import files
 
 import moderngl
@@ -31,8 +30,6 @@ MOST_GROUPS = 65535
 """Of a dispatch, that OpenGL promises."""
 VECTOR, NUMBER, DOUBLE = 16, 4, 8
 """Bytes."""
-STANDING = 1e-3
-"""No card does all passes within [ms]."""
 _STREAM = {4: "vertex_buffer", 5: "index_buffer", 6: "source_buffer", 7: "command_buffer"}
 
 
@@ -77,33 +74,13 @@ class Frames:
 
         `positions`: shape (V, 3); `metric`: what the processor measured, shape (E,).
         """
-        self._begin(positions, metric, stream)
-        for name in self.passes:
-            self._dispatch(name)
-
-    def timed(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> float:
-        """Do the same; how long the passes took, by the card's own clock [ms]. This waits.
-
-        Where that stands still, as software's does, by that of the processor.
-        """
-        self._begin(positions, metric, stream)
-        clock = self.gl.query(time=True)
-        self.gl.finish()
-        start = time.perf_counter()
-        with clock:
-            for name in self.passes:
-                self._dispatch(name)
-        self.gl.finish()
-        waited = time.perf_counter() - start
-        taken = 1e-6 * float(clock.elapsed)
-        return taken if taken > STANDING else 1e3 * waited
-
-    def _begin(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> None:
         self._frame += 1
         self._bind()
         for binding, name in _STREAM.items():
             getattr(stream, name).bind_to_storage_buffer(binding)
         self._hand_over(positions, metric)
+        for name in self.passes:
+            self._dispatch(name)
 
     def fetch_numbers(self, name: str, count: int) -> Unsigned:
         """The first numbers that passes have handed on under a name; this waits for the frame."""

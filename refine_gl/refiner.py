@@ -192,14 +192,6 @@ class KahlerGl(BaseRefiner):
         """The dispatches of a frame, by name, in their order."""
         return self._rules.passes
 
-    def time(self, positions: npt.NDArray[np.floating]) -> float:
-        """Refine a frame in a context of our own, and once more by the card's clock [ms]; waits."""
-        self.refine(positions)
-        frames, buffers = self._frames, self._own_buffers
-        assert frames is not None and buffers is not None
-        milliseconds: float = self._run(frames.timed, self.positions, self._measured(None), buffers)
-        return milliseconds
-
     @property
     def room_bytes(self) -> int:
         """Of all buffers on the card: none before the first frame."""
