@@ -2,7 +2,7 @@
 
 A window sleeps until something happens, and a frame must be such a thing: asking for it once in a
 while would let it lie. Nobody is woken for a part of a frame, for one without a face, or for what
-is none; and only now and then for frames that say what those before them said.
+is none.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from .frame import MOST_BYTES, LiveFrame
 from .protocols import ANYWHERE, LOOPBACK, Listening, resolved
 
 MOST_WAITING = 256  # frames or parts of them; of more, the oldest are dropped
-STILL_THERE = 0.2  # [s] after which a frame wakes although it says nothing new
 LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
 
 
@@ -43,9 +42,6 @@ class Receiver:
         self._waiting: deque[tuple[float, LiveFrame]] = deque(maxlen=MOST_WAITING)
         self.received = self.unusable = 0
         self.has_frame = False
-        self._said: dict[str, float] = {}  # the newest value of each channel
-        self._is_new = False  # whether anything has changed since somebody was woken
-        self._woke_at = -STILL_THERE
         self._socket = _bound_socket(listening)
         self._socket.settimeout(LOOK_AROUND)
         self._is_closing = False
@@ -86,18 +82,10 @@ class Receiver:
             self.unusable += 1
         else:
             self._waiting.append((at, frame))
-            self._wake_for(frame, at)
+            if frame.is_complete and frame.has_face and not self.has_frame:
+                self.has_frame = True
+                self._wake()
         self.received += 1
-
-    def _wake_for(self, frame: LiveFrame, at: float) -> None:
-        """Wake who waits, if this makes a frame whole that is worth it."""
-        says_new = any(self._said.get(name) != value for name, value in frame.channels.items())
-        self._said.update(frame.channels)
-        self._is_new = self._is_new or says_new or not frame.has_face
-        is_due = self._is_new or at - self._woke_at >= STILL_THERE
-        if frame.is_complete and frame.has_face and is_due and not self.has_frame:
-            self.has_frame, self._is_new, self._woke_at = True, False, at
-            self._wake()
 
 
 def _bound_socket(listening: Listening) -> socket.socket:
