@@ -32,7 +32,7 @@ class ColourBy(Enum):
 
 # Albedos, chosen by eye under this package's light.
 SKIN: Colour = (0.79, 0.625, 0.545)
-FLESH: Colour = (0.45, 0.19, 0.17)  # inside of lids and mouth
+FLESH: Colour = (0.60, 0.27, 0.25)  # inside of lids and mouth
 INNER_SHARE = 0.75  # of a cold albedo, on its back side
 WARM = 0.8  # from which on an albedo is that of skin
 CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures

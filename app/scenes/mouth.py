@@ -28,11 +28,11 @@ class Gloom(NamedTuple):
     powers: tuple[float, float, float] = (1.0, 1.0, 1.0)  # of red, green, blue in what is left
 
 
-# Chosen by eye. What light reaches a molar has met red flesh before. The lower ones lie deep in the
-# shadow of lips and upper teeth: bright and grey, they would look like one broken tooth.
+# Chosen by eye. What light reaches a molar has met red flesh before. It is little that gets lost:
+# dark ones look like broken teeth, and rows that end before the corner of the mouth.
 REDDENED = (0.9, 1.2, 1.25)
-FLESH, GUMS = Gloom(2.0, 34.0, 0.15), Gloom(2.0, 24.0, 0.4)
-UPPER_TEETH, LOWER_TEETH = Gloom(2.0, 34.0, 0.45, REDDENED), Gloom(0.0, 24.0, 0.55, REDDENED)
+FLESH, GUMS = Gloom(2.0, 34.0, 0.15), Gloom(2.0, 34.0, 0.2)
+UPPER_TEETH, LOWER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED), Gloom(2.0, 36.0, 0.25, REDDENED)
 
 
 @dataclass(eq=False)

@@ -55,7 +55,7 @@ CUTS: Mapping[str, Cut | None] = MappingProxyType(
     {
         "cropped": None,  # as it is painted on the scalp
         "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5),
-        "fringed": Cut((0.35, 0.75, -0.4), 22.0, 32.0, 0.3, behind=12.0),
+        "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=12.0),
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
         "brushed": Cut((0.15, 0.4, 0.9), 9.0, 28.0, 0.35, behind=18.0),
         "curly": Cut((0.1, 0.75, -0.6), 9.0, 20.0, 0.8, behind=18.0, curl=1.0),

@@ -6,7 +6,7 @@
 
 #include "lighting.glsl"
 
-#define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense;
+#define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense; float facing;
 
 #if defined(VERTEX_STAGE)
 
@@ -38,6 +38,7 @@ void main() {
     surface.layer = layer, surface.dense = in_dense;
     // Of the strands to the middle between eye and light.
     surface.cosine = dot(along / max(length(along), 1e-6), normalize(to_key + normalize(-position.xyz)));
+    surface.facing = dot(normal, -normalize(position.xyz));
     gl_Position = projection * position;
 }
 
@@ -50,6 +51,7 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
+const float SIDEWAYS = 5.0;              // how soon layers are whole, from their side to their front
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 
@@ -73,6 +75,8 @@ void main() {
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
     float far = (0.65 + 0.5 * tones.x + 0.4 * tones.y) * smoothstep(0.0, 1.0, surface.dense);
     float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(4.0 * far, 0.0, 1.0);
+    // Seen from the side, upper layers are lines with gaps between them.
+    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), surface.layer);
     if (cover < 0.02) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;
     // Tilted toward the root and toward the tip.

@@ -130,7 +130,7 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     assert scene.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
     image, classes = label_of(haired("fringed"))
     is_hair = classes == Segment.HAIR
-    assert is_hair.mean() > 0.06 and (classes[0] == Segment.BACKGROUND).all()
+    assert is_hair.mean() > 0.04 and (classes[0] == Segment.BACKGROUND).all()
     assert image[is_hair].mean() < 0.7 * image[classes == Segment.SKIN].mean()
     assert (label_of(haired("cropped"))[1] == Segment.HAIR).sum() < is_hair.sum()
     parts = Anatomy(scene).layers(AnatomyView(("muscles",))).parts
