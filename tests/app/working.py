@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 from risorius.app.errors import UserError
@@ -60,7 +59,7 @@ def talk(word: str, send: Send) -> None:
     subprocess.run([sys.executable, "-c", f"print('{word} by a child')"], check=True)
 
 
-def write_slowly(target: Path, send: Callable[[object], None]) -> None:
+def write_slowly(target: Path, send: Send) -> None:
     """Write a file for ever; its folder tells that it has begun."""
     with written_atomically(target) as part:
         part.write_text("half")
