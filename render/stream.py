@@ -88,6 +88,11 @@ class MeshBuffers:
         """Its triangles, shape (triangle_count, 3)."""
         raise NotImplementedError
 
+    @property
+    def places(self) -> npt.NDArray[np.float32]:
+        """Where its vertices are, or some near them, shape (n, 3)."""
+        return self.drawn_rows[:, :3]
+
     def _upload_bumps(self, bump_amounts: npt.NDArray[np.float32]) -> None:
         """Upload amounts, and the triangles anew: first those that have bumps."""
         if self._bump_buffers is None:
@@ -311,6 +316,7 @@ class GpuStream(MeshBuffers):
         self.command_buffer = gl.buffer(bytes(NUMBER * COMMAND_WORDS))
         self._margin = margin
         self._frame: Fetched | None = None
+        self._positions = np.zeros((0, 3), np.float32)
 
     @property
     def vertex_count(self) -> int:
@@ -334,6 +340,11 @@ class GpuStream(MeshBuffers):
         assert self._frame is not None
         return self._frame.triangles
 
+    @property
+    def places(self) -> npt.NDArray[np.float32]:
+        """Vertices of the mesh that it was made of, shape (V, 3)."""
+        return self._positions
+
     def show(
         self,
         frame: Fetched,
@@ -349,6 +360,7 @@ class GpuStream(MeshBuffers):
         self._frame = frame
         self.has_bumps = bump_amounts is not None
         self._ranges = {}
+        self._positions = positions.astype(np.float32)
         box = np.stack([positions.min(axis=0) - self._margin, positions.max(axis=0) + self._margin])
         self.corners = box_corners(box)
         if bump_amounts is not None:

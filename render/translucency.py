@@ -83,7 +83,7 @@ def fade_seen(fade: Plane | None, stream: MeshBuffers, view: CameraView) -> Plan
     """Where a mesh fades, in view space; None where nothing of that is inside the frame."""
     if fade is None:
         return None
-    places = stream.drawn_rows[:, :3]
+    places = stream.places
     faded = places[places @ np.array(fade[:3], np.float32) + fade[3] < 1.0].astype(np.float64)
     is_seen = len(faded) and min(view.covered_pixels(faded, 0.0)[2:]) > 0
     return in_view(fade, view) if is_seen else None

@@ -82,7 +82,6 @@ def test_pictures_are_the_same(
 def test_nothing_comes_back(scene: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where nobody asks for numbers, a graphics card draws a frame that only it knows."""
     monkeypatch.setattr(render.Surface, "is_software", property(lambda _: False))
-    monkeypatch.setattr(scene, "fade", None)  # which the neck of the built-in head does
     with render.open_offscreen(SIZE, samples=4) as surface:
         pipeline = Pipeline(scene, render.Renderer(surface))
         _, card = both(pipeline)
