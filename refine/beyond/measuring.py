@@ -93,8 +93,8 @@ class Maximum(Criterion):
 
     def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
         """Write the largest metric of every edge, shape (E,)."""
-        metric[:] = -np.inf
-        for part in self.parts:
+        self.parts[0].measure(positions, normals, metric)
+        for part in self.parts[1:]:
             part.measure(positions, normals, self._metric)
             np.maximum(metric, self._metric, out=metric)
 
