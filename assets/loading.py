@@ -85,7 +85,7 @@ def _read_layers() -> tuple[Layer, ...]:
 
 
 def read_words() -> Mapping[str, Any]:
-    """Plain words for controls: the tables `names`, `filters` and `synonyms`.
+    """Plain words for controls: tables of `names` and `synonyms`, the `order` of groups.
 
     Raises AssetError when the file is not TOML.
     """

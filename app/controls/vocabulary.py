@@ -52,11 +52,6 @@ def _synonyms() -> tuple[tuple[str, frozenset[str]], ...]:
     )
 
 
-def filters() -> Mapping[str, tuple[str, ...]]:
-    """Groups of controls that are shown together, by what a button calls them."""
-    return {title: tuple(groups) for title, groups in _table("filters").items()}
-
-
 def title_of(name: str, action: str = "") -> tuple[str, str]:
     """The code that a control is known by, "" for none, and its plain name, "" for a code alone.
 

@@ -64,7 +64,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.session.scene.reset()
     viewer.settings.display, viewer.settings.is_linked = Display(), True
     viewer.settings.panel_width = Settings().panel_width
-    viewer.face_panel.search = viewer.face_panel.filter = ""
+    viewer.face_panel.search = ""
     viewer.settings.folds.clear()
     replace_state(viewer.files, FileDialogs())
     viewer.messages.text = ""

@@ -147,11 +147,17 @@ def moved(viewer: Viewer) -> float:
 
 def nose(viewer: Viewer) -> tuple[int, int]:
     """The tip of the nose, on the screen."""
-    tip = viewer.session.scene.positions[viewer.session.scene.positions[:, 2].argmax()]
+    return seen_at(
+        viewer, viewer.session.scene.positions[viewer.session.scene.positions[:, 2].argmax()]
+    )
+
+
+def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:
+    """A point of the scene, on the screen."""
     left, top, width, height = viewer.view.area
     camera = viewer.view.camera
     matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
-    clip = np.append(tip, 1.0) @ matrix
+    clip = np.append(point, 1.0) @ matrix
     x, y = clip[:2] / clip[3]
     return on_screen(viewer, left + width * (0.5 + 0.5 * x), top + height * (0.5 - 0.5 * y))
 

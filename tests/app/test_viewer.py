@@ -28,6 +28,7 @@ from .driving import (
     moved,
     nose,
     on_screen,
+    seen_at,
     settle,
     show_controls,
     until,
@@ -281,16 +282,10 @@ MAJOR = "zygomaticus_major"
 
 def photograph(viewer: Viewer) -> np.ndarray:
     """What F12 writes."""
-    before = set(viewer_pictures())
+    before = set(Path.cwd().glob("*.png"))
     xdotool(viewer, "key", "F12")
-    assert until(viewer, lambda: bool(set(viewer_pictures()) - before))
-    (path,) = set(viewer_pictures()) - before
+    (path,) = set(Path.cwd().glob("*.png")) - before
     return np.asarray(Image.open(path)).astype(int)
-
-
-def viewer_pictures() -> list[str]:
-    """Screenshots in the present folder."""
-    return [str(path) for path in Path.cwd().glob("*.png")]
 
 
 def point_at_slider(viewer: Viewer) -> None:
@@ -316,16 +311,6 @@ def landmark(viewer: Viewer, number: int) -> tuple[int, int]:
     """A landmark of the face, on the screen."""
     scene = viewer.session.scene
     return seen_at(viewer, scene.positions[scene.head.landmarks[number]])
-
-
-def seen_at(viewer: Viewer, point: np.ndarray) -> tuple[int, int]:
-    """A point of the scene, on the screen."""
-    left, top, width, height = viewer.view.area
-    camera = viewer.view.camera
-    matrix = np.asarray(camera.view_matrix() @ camera.projection_matrix(width / height))
-    clip = np.append(point, 1.0) @ matrix
-    x, y = clip[:2] / clip[3]
-    return on_screen(viewer, left + width * (0.5 + 0.5 * x), top + height * (0.5 - 0.5 * y))
 
 
 def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:

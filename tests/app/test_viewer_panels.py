@@ -66,14 +66,6 @@ def test_plain_words_find_controls(viewer: Viewer) -> None:
         viewer.settings.zoom = 1.0
 
 
-def test_filters_show_one_kind(viewer: Viewer) -> None:
-    """A button shows its kind alone, a second click everything."""
-    click(viewer, "only Visemes")
-    assert all(name.startswith("viseme_") for name in rows_shown(viewer))
-    click(viewer, "only Visemes")
-    assert {"joy", "wink"} <= rows_shown(viewer)
-
-
 def test_one_side_is_copied_to_the_other(viewer: Viewer) -> None:
     """By the menu, whatever spells its sides how; eyes and jaw stay where they are."""
     session = viewer.session
@@ -105,8 +97,7 @@ def test_words_are_of_controls_that_there_are(viewer: Viewer) -> None:
 
     found = {name for names in words["synonyms"].values() for name in names}
     assert all(map(is_known, [*words["names"], *found]))
-    groups = {title for titles in words["filters"].values() for title in titles}
-    assert groups == set(controls.groups)
+    assert words["order"] == list(controls.groups)
 
 
 def in_panel(viewer: Viewer, *rows: tuple[str, str]) -> None:

@@ -26,7 +26,7 @@ from ...script import Script, pose_script
 from ...workers import Task
 from ..frame_times import FrameTimes
 from ..interface.gui import NOTE_FLAGS, Gui, em, wake_up
-from ..interface.widgets import button, choose, dialog, muted, shortened
+from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
 from ..messages import Message
 from ..picture.stage import Stage, style_of
 from ..picture.view import View
@@ -218,6 +218,7 @@ class ExportDialog:
 
     def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: View) -> None:
         self._gui, self._exporter, self._files, self._view = gui, exporter, files, view
+        self._rows = LabelledRows(gui, LABELS / WIDTH, {})
         self._was_focused = False  # in the frame before: no list was open over it
 
     def draw(self) -> Message:
@@ -236,19 +237,10 @@ class ExportDialog:
                         imgui.close_current_popup()
         return None
 
-    def _row(self, label: str, width: float = -1.0) -> str:
-        """Words at the left, and room for what follows, whose own name is returned."""
-        imgui.align_text_to_frame_padding()
-        muted(self._gui, label)
-        imgui.same_line(em(LABELS))
-        imgui.set_next_item_width(width)
-        return f"##{label}"
-
     def _pick(self, label: str, now: Value, choices: Mapping[Value, str]) -> Value:
         """A list to choose from; what is chosen."""
-        self._row(label)
         values = {text: value for value, text in choices.items()}
-        chosen = choose(self._gui, label, choices[now], values)
+        chosen = self._rows.choose(label, choices[now], values)
         return now if chosen is None else values[chosen]
 
     def _draw_motion(self, choices: ExportChoices) -> None:
@@ -259,15 +251,17 @@ class ExportDialog:
         if not is_sheet:
             choices.source = self._pick("What", choices.source, SOURCES)
         if choices.source == "pose" and not is_sheet:
-            name, most, always = self._row("Length"), 600.0, imgui.SliderFlags_.always_clamp
+            self._rows.begin("Length")
+            always = imgui.SliderFlags_.always_clamp
             _, choices.seconds = imgui.drag_float(
-                name, choices.seconds, 0.05, 0.1, most, "%.2f s", always
+                "##length", choices.seconds, 0.05, 0.1, 600.0, "%.2f s", always
             )
         if kind.is_drawn:
             sizes = {choices.size: "Typed", self._view.viewport[2:]: "As in the window", **PICTURES}
             words = {size: f"{name}: {size[0]} x {size[1]}" for size, name in sizes.items()}
             choices.size = self._pick("Size", choices.size, words)
-            _, sides = imgui.input_int2(self._row("", em(11.0)), [*choices.size])
+            self._rows.begin("")
+            _, sides = imgui.input_int2("##sides", [*choices.size])
             self._gui.remember("export: sides")
             width, height = (min(max(side, SIDES_EXPORTED[0]), SIDES_EXPORTED[1]) for side in sides)
             choices.size = width, height
@@ -278,7 +272,7 @@ class ExportDialog:
         can = kind.can_be_transparent, kind.is_drawn and not is_sheet
         for (switch, label), is_possible in zip(SWITCHES.items(), can, strict=True):
             if is_possible:
-                self._row("")
+                self._rows.begin("")
                 setattr(choices, switch, imgui.checkbox(label, getattr(choices, switch))[1])
                 self._gui.remember(f"export: {label}")
 

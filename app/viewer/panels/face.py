@@ -6,44 +6,34 @@ from collections.abc import Sequence
 
 from imgui_bundle import imgui
 
-from ...controls.vocabulary import filters
 from ..context import ApplicationContext
-from ..interface.gui import colour, em
 from ..interface.widgets import button, button_width, heading, hint, muted, stay_in_line
 from .rows import ControlRows, Row, search_rows
 
 FLASH = 90  # frames for which a selected slider is marked
-LEAST_ROOM = 20.0  # [em] below buttons and search
 
 
 class FacePanel:
-    """Buttons, search, filters and groups of rows."""
+    """Buttons, search, and groups of rows."""
 
     def __init__(self, app: ApplicationContext) -> None:
         self._gui, self._session, self._settings = app.gui, app.session, app.settings
         self.rows = ControlRows(app)
         self.search = ""
-        self.filter = ""  # the groups that are shown alone, by what their button reads
         self._selected: str | None = None  # to be scrolled to
         self._flash = 0
 
     def select(self, name: str) -> None:
         """Open the group of a control, scroll to it and mark it."""
-        self.search = self.filter = ""
+        self.search = ""
         self._selected, self._flash = name, FLASH
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         self._draw_buttons()
-        has_room = imgui.get_content_region_avail().y > em(LEAST_ROOM)
-        if has_room:
-            self._draw_filters()
         imgui.begin_child("controls", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
-        if not has_room:  # they scroll
-            self._draw_filters()
         groups = self._session.controls.groups
-        shown = filters().get(self.filter, tuple(groups))
-        counts = [self._draw_group(title, groups[title]) for title in groups if title in shown]
+        counts = [self._draw_group(title, names) for title, names in groups.items()]
         if not any(counts):
             muted(self._gui, "Nothing has such a name.")
         imgui.end_child()
@@ -66,18 +56,6 @@ class FacePanel:
         )
         gui.remember("search")
 
-    def _draw_filters(self) -> None:
-        """A button for each kind of control, which shows that kind alone; a second click all."""
-        groups = self._session.controls.groups
-        kinds = [title for title, titles in filters().items() if groups.keys() & {*titles}]
-        for title in kinds:
-            if title != kinds[0]:
-                stay_in_line(button_width(title))
-            is_on = self.filter == title
-            highlight = colour(self._gui.theme.accent, 0.5) if is_on else None
-            if button(self._gui, title, name=f"only {title}", highlight=highlight):
-                self.filter = "" if is_on else title
-
     def _draw_group(self, title: str, names: Sequence[str]) -> int:
         """Draw a group under its heading; how many rows it has that are asked for."""
         session, folds, current = self._session, self._settings.folds, self._session.current
@@ -90,8 +68,7 @@ class FacePanel:
         if not rows:
             return 0
         label = f"{title}  ({active})" if active else title
-        must_open = bool(self.search or self.filter)
-        if heading(self._gui, folds, title, label, must_open=must_open):
+        if heading(self._gui, folds, title, label, must_open=bool(self.search)):
             for row in rows:
                 self._draw_row(row)
         return len(rows)

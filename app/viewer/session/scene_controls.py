@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import chain
 
+from risorius.assets.loading import read_words
 from risorius.sim.layers import BOTH_SIDES
 
 from ...controls.mirror import parted
-from ...controls.vocabulary import filters
 from ...errors import counted
 from ...scenes import FaceScene, Scene, clamped
 
@@ -26,7 +25,7 @@ class SceneControls:
         self.limits = scene.limits
         own = scene.simulation.controls if isinstance(scene, FaceScene) else self.limits
         self.muscles = frozenset(own)
-        order = [*chain(*filters().values()), *scene.groups]
+        order = [*read_words()["order"], *scene.groups]
         self.groups = {
             title: scene.groups[title]
             for title in dict.fromkeys(order)
