@@ -27,7 +27,6 @@ from . import checked
 from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .coordinates import FaceSpace
-from .integrator import LONGEST_SUBSTEP, ROUNDING
 from .landmarks import (
     INNER_CORNERS,
     LANDMARK_COUNT,
@@ -53,10 +52,10 @@ from .skull import (
     eyeballs_from_landmarks,
     mandible_weight_from_landmarks,
 )
-from .springs import EdgeSprings
+from .substep import LONGEST_SUBSTEP, ROUNDING
 from .surface import Surface, build_surface
 from .teeth import Teeth, watch_teeth
-from .tissue import TissueSprings, masses_for_step
+from .tissue import EdgeSprings, TissueSprings, masses_for_step
 from .tongue import Tongue, place_tongue
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick

@@ -1,6 +1,6 @@
 r"""Cloth that falls over a ball: the springs of the skin, free of any bone.
 
-The membrane is that of the skin (springs.py), with two differences. Nothing holds a vertex but the
+The membrane is that of the skin (tissue.py), with two differences. Nothing holds a vertex but the
 hands that hold the whole sheet up: a tissue spring to its place at rest. And cloth resists being
 bent, by springs between the corners that face each other across an edge:
 
@@ -26,14 +26,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from . import checked, integrator
+from . import checked
 from .anatomy import mesh_of
 from .landmarks import Array
-from .springs import EdgeSprings
 from .state import State
-from .substep import accelerate, damp, edge_forces, move, tissue_forces
+from .substep import accelerate, damp, edge_forces, move, parts, tissue_forces
 from .surface import Surface, build_surface
-from .tissue import AREAL_MASS, TissueSprings, masses_for_step, tissue_energy
+from .tissue import AREAL_MASS, EdgeSprings, TissueSprings, masses_for_step, tissue_energy
 
 GRAVITY = np.array([0.0, -9810.0, 0.0])  # mm/s2
 LONGEST_SUBSTEP = 1.0 / 1200.0  # s: shorter than skin's, because cloth hardly stretches
@@ -107,7 +106,7 @@ class Cloth:
         state, mass = self._state, self._fabric.mass
         state.hold[:] = self.held * mass * HOLD_RATE**2
         state.pull[:] = (1.0 - self.held) * mass[:, None] * GRAVITY
-        count = integrator.parts(dt, LONGEST_SUBSTEP)
+        count = parts(dt, LONGEST_SUBSTEP)
         ball = self._ball._replace(turning=self.turning)
         advance_cloth(state, self._fabric, ball, count, dt / count)
         self.turned += self.turning * dt

@@ -73,7 +73,7 @@ class Controls:
         self.groups = MappingProxyType({**groups, **layers.groups})
         self.layers = layers.groups
         self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
-        self._index = {name: n for n, name in enumerate(self.names)}
+        self._places = {name: n for n, name in enumerate(self.names)}
         self._bounds = [self.limits[name] for name in self.names]
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
         self._low = np.array([c.low for c in controls], dtype=np.float64)
@@ -81,25 +81,25 @@ class Controls:
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
         self._floors = np.array([layers.floors[name] for name in layers.shares])  # (N - C, C)
         self._share_of = [
-            (self._index[name], self._index[whole]) for name, whole in layers.share_of.items()
+            (self._places[name], self._places[whole]) for name, whole in layers.share_of.items()
         ]
         self._values: Array = np.zeros(len(self.names))
         self.wanted: Array = np.zeros(len(controls))
         self.activation: Array = np.zeros(len(controls))
         self._speed: Array = np.zeros(len(controls))
 
-    def index(self, name: str) -> int:
+    def _index(self, name: str) -> int:
         """Place of a control among `names`, of a lowest one also in `wanted` and `activation`.
 
         ValueError offers near names.
         """
         if not isinstance(name, str):
             raise ValueError(f"control: was {quoted(name)}, must be a name; see .limits for all")
-        if name not in self._index:
+        if name not in self._places:
             near = difflib.get_close_matches(name, self.names, n=3, cutoff=0.4)
             hint = f"did you mean {', '.join(near)}?" if near else "see .limits for all names"
             raise ValueError(f"there is no control called {quoted(name)}; {hint}")
-        return self._index[name]
+        return self._places[name]
 
     @property
     def values(self) -> dict[str, float]:
@@ -114,14 +114,14 @@ class Controls:
         """What each lowest control adds up to: its own value and those of the layers above it."""
         return dict(zip(self.controls, self.wanted.tolist(), strict=True))
 
-    def now(self, name: str) -> float:
+    def _now(self, name: str) -> float:
         """The activation of a lowest control; 0 for one that this face does not have."""
-        place = self._index.get(name, len(self.controls))
+        place = self._places.get(name, len(self.controls))
         return float(self.activation[place]) if place < len(self.controls) else 0.0
 
-    def checked(self, name: str, value: float, *, cut_off: bool = False) -> tuple[int, float]:
+    def _checked(self, name: str, value: float, *, cut_off: bool = False) -> tuple[int, float]:
         """Place and value of a setting, if need be cut off; ValueError if it cannot be used."""
-        index = self.index(name)
+        index = self._index(name)
         low, high = self._bounds[index]
         number = finite(f"control '{name}'", value)
         if not cut_off and not low - SLACK <= number <= high + SLACK:
@@ -132,7 +132,7 @@ class Controls:
 
     def set(self, name: str, value: float) -> None:
         """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
-        self.index(name)  # what is no name may not even be a key
+        self._index(name)  # what is no name may not even be a key
         self.set_all({name: value})
 
     def set_all(self, values: Mapping[str, float]) -> None:
@@ -147,7 +147,7 @@ class Controls:
     def _set_all(self, values: Mapping[str, float], *, others_to_zero: bool, cut_off: bool) -> None:
         if not isinstance(values, Mapping):
             raise ValueError(f"values: was {quoted(values)}, must be a mapping of name to number")
-        checked = [self.checked(*each, cut_off=cut_off) for each in values.items()]
+        checked = [self._checked(*each, cut_off=cut_off) for each in values.items()]
         if others_to_zero:
             self._values[:] = 0.0
         for index, value in checked:
@@ -163,15 +163,15 @@ class Controls:
             np.maximum(self.wanted, least, out=self.wanted, where=least > 0.0)
             np.clip(self.wanted, self._low, self._high, out=self.wanted)
 
-    def advance(self, dt: float) -> None:
+    def _advance(self, dt: float) -> None:
         """Let activations follow their values for `dt` [s]: exact critically damped motion."""
         follow(self.wanted, self.activation, self._speed, self._rate, dt)
 
-    def arrive(self) -> None:
+    def _arrive(self) -> None:
         """Let activations be where their values are, at once."""
         self.activation[:], self._speed[:] = self.wanted, 0.0
 
-    def copy_controls(self, other: Controls) -> None:
+    def _copy(self, other: Controls) -> None:
         """Take on values and activations of controls of the same face."""
         self._values[:], self.wanted[:] = other._values, other.wanted
         self.activation[:], self._speed[:] = other.activation, other._speed
@@ -199,13 +199,13 @@ class MuscleDrive:
     def __init__(self, rig: Rig, names: tuple[str, ...], controls: Controls) -> None:
         self._controls = controls
         halved = {muscle.name for muscle in rig.muscles if muscle.halves}
-        self._own = np.array([controls.index(name) for name in names], dtype=np.int64)
+        self._own = np.array([controls._index(name) for name in names], dtype=np.int64)
         wholes = [name.removesuffix("_left").removesuffix("_right") for name in names]
         drive = {muscle.name: muscle.drive for muscle in rig.muscles}
         self._power = rig.tissue.drive_power * np.array([drive[w] for w in wholes], np.float64)
         self._has_whole = np.array([whole in halved for whole in wholes], dtype=np.bool_)
         self._whole = np.array(
-            [controls.index(w if w in halved else n) for w, n in zip(wholes, names, strict=True)],
+            [controls._index(w if w in halved else n) for w, n in zip(wholes, names, strict=True)],
             dtype=np.int64,
         )
 

@@ -5,7 +5,7 @@
     jaw, gaze  ->  bones and lids carry the tissue springs' far ends     skull.py, lids.py
     muscles    ->  one anchor per skin vertex                            muscles.py, fibres.py
                       |
-    tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, springs.py
+    tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, substep.py
     lips and eyeballs keep skin out                                      contact.py, substep.py
 
 Built once from a mesh (anatomy.py), then `step` moves it. Everything inside runs in the standard
@@ -26,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..schema import quoted
-from . import checked, integrator
+from . import checked
 from .anatomy import Anatomy, Tick
 from .contact import SEALED
 from .controls import Controls, MuscleDrive
@@ -36,7 +36,7 @@ from .layers import Layers
 from .lids import turn_lids
 from .skull import Bones
 from .state import State
-from .substep import advance
+from .substep import LONGEST_FRAME, advance, substeps_in, ticks_in
 from .tissue import carry, tissue_energy
 
 FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
@@ -145,14 +145,14 @@ class Simulation(Controls):
         """Take on controls, positions and velocities of a clone; ValueError for any other."""
         if not isinstance(other, Simulation) or other._anatomy is not self._anatomy:
             raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
-        self.copy_controls(other)
+        self._copy(other)
         self._state.x[:], self._state.v[:] = other._state.x, other._state.v
         self._positions[:] = other._positions
 
     def jump(self, values: Mapping[str, float]) -> None:
         """Set several controls, and let all muscles and bones obey at once; the skin follows."""
         self.set_all(values)
-        self.arrive()
+        self._arrive()
         self._state.v[:] = 0.0
 
     def kick(self, velocities: npt.ArrayLike) -> None:
@@ -188,20 +188,20 @@ class Simulation(Controls):
         Raises SimulationUnstable if a position is no longer finite.
         """
         dt = checked.number("dt", dt)
-        if not 0.0 < dt <= integrator.LONGEST_FRAME + 1e-9:
+        if not 0.0 < dt <= LONGEST_FRAME + 1e-9:
             raise ValueError(
-                f"dt: was {dt!r} s, must be above 0 and at most {integrator.LONGEST_FRAME:g} s; "
+                f"dt: was {dt!r} s, must be above 0 and at most {LONGEST_FRAME:g} s; "
                 "take several steps for a longer time"
             )
         anatomy, state, bones = self._anatomy, self._state, self._bones
-        ticks = integrator.ticks_in(dt)
+        ticks = ticks_in(dt)
         tick = dt / ticks
-        count = integrator.substeps_in(tick)
+        count = substeps_in(tick)
         for _ in range(ticks):
-            self.advance(tick / 2.0)
+            self._advance(tick / 2.0)
             self._place_targets()
             advance(state, anatomy.skin, Tick(count, tick / count, self._grip, bones.mandible))
-            self.advance(tick / 2.0)
+            self._advance(tick / 2.0)
         broken = to_posed_head(
             state.x, anatomy.surface.positions, self._axes, self._rest, bones.turn, anatomy.turns,
             self._positions,
@@ -214,7 +214,7 @@ class Simulation(Controls):
 
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
-        anatomy, now, bones = self._anatomy, self.now, self._bones
+        anatomy, now, bones = self._anatomy, self._now, self._bones
         state, surface, muscles = self._state, anatomy.surface, anatomy.muscles
         bones.follow(now)
         weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
@@ -234,7 +234,7 @@ class Simulation(Controls):
 
     def bone_transforms(self) -> dict[str, npt.NDArray[np.float64]]:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
-        return self._bones.transforms(self.now)
+        return self._bones.transforms(self._now)
 
     def pivots(self) -> dict[str, npt.NDArray[np.float64]]:
         """What each bone turns about at rest, name of `bone_transforms` -> (3,) [head units]."""
@@ -246,7 +246,7 @@ class Simulation(Controls):
         As the mandible's motion finds them: its bone's matrix has still to be applied. A tongue at
         rest is the same array each time.
         """
-        anatomy, now = self._anatomy, self.now
+        anatomy, now = self._anatomy, self._now
         if anatomy.tongue is None:
             return None
         out, up = max(now("tongue_out"), 0.0), max(now("tongue_up"), 0.0)

@@ -1,4 +1,4 @@
-"""Skin tissue: what holds each vertex to the bone under it, and how heavy it is.
+"""Skin and tissue: what holds each vertex to the bone under it and to the next, and its weight.
 
 Kähler ties each skin vertex to a bone or muscle point by a spring and adds its mirror image
 outside the skin, so that skin slides sideways but neither sinks in nor lifts off. With anchor
@@ -10,10 +10,17 @@ to first order. We use this linearised pair, not the two springs: it has no rest
 singularity when skin slides far (a smile moves it by more than the tissue is thick) and costs no
 square root. n turns with the bone.
 
-Source: Kähler et al. 2001, section 3.2 (counter springs); Lee, Terzopoulos, Waters 1995 for
-layered tissue.
-Differs from it: linearised; the far end r is the bone-carried rest position, muscles act as
-springs of their own (muscles.py).
+The skin itself is a membrane. Every edge is a spring with the rest length of the undeformed mesh.
+Its stiffness follows from the adjacent triangle areas (Van Gelder), so the membrane does not depend
+on the triangulation; beyond a strain it stiffens (biphasic, as skin does). A second, linear term
+lets neighbours move alike: edge springs alone resist no shear on a valence-4 grid and leave single
+vertices behind.
+
+Source: Kähler et al. 2001, section 3.2 (edges are springs, counter springs); Van Gelder 1998; Lee,
+Terzopoulos, Waters 1995 for layered tissue and biphasic stiffness.
+Differs from them: linearised; the far end r is the bone-carried rest position, muscles act as
+springs of their own (muscles.py). The shear term: measured against scans it, not the membrane,
+gives skin its smooth field of motion.
 """
 
 from __future__ import annotations
@@ -21,6 +28,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from ..jit import njit
 from .landmarks import Array
@@ -29,6 +37,7 @@ from .state import State
 from .surface import Surface
 
 AREAL_MASS = 1.0  # g/cm2: skin and fat about 1 cm thick; only ratios to stiffness matter
+MODIOLUS = 5.0  # mm: its radius (anatomy: a knot of some 10 mm across)
 STABLE_STEP_SHARE = 0.5  # of the square of the largest stable step; the rest is margin for geometry
 
 
@@ -47,6 +56,57 @@ class TissueSprings(NamedTuple):
         return cls(
             tissue.tangential * scale, tissue.normal * scale, tissue.damping, tissue.damping_ratio
         )
+
+
+class EdgeSprings(NamedTuple):
+    """All edges of the skin as springs."""
+
+    edges: npt.NDArray[np.uint32]  # (E, 2); unsigned saves the kernel a test per access
+    rows: npt.NDArray[np.uint32]  # (V + 1,) edges that begin at vertex i: rows[i] up to rows[i + 1]
+    rest_length: Array  # (E,) mm
+    stiffness: Array  # (E,) of the membrane
+    shear: Array  # (E,)
+    stiffening: float
+    strain_limit: float
+
+    @classmethod
+    def along(cls, surface: Surface, tissue: Tissue, knots: Array) -> EdgeSprings:
+        """Springs along all edges of a surface.
+
+        knots: points (K, 3) [mm] around which skin is firm, the mouth corners: there many muscles
+        are knotted together (the modiolus), and no fold may turn inside out. The knot resists
+        stretch more than turning, or a round mouth has pointed corners.
+        """
+        stiffness = tissue.membrane * tissue.stiffness_scale * surface.edge_stiffness
+        middle = surface.positions[surface.edges].mean(axis=1)
+        shear = tissue.shear * stiffness
+        for knot in knots:
+            near = np.exp(-((middle - knot) ** 2).sum(axis=1) / MODIOLUS**2)
+            stiffness = stiffness * (1.0 + tissue.modiolus * near)
+            shear = shear * (1.0 + tissue.modiolus_shear * near)
+        rows = np.searchsorted(surface.edges[:, 0], np.arange(surface.vertex_count + 1))
+        return cls(
+            surface.edges.astype(np.uint32), rows.astype(np.uint32), surface.lengths, stiffness,
+            shear, tissue.stiffening, tissue.stiffening_strain,
+        )  # fmt: skip
+
+    def row_bound(self, vertex_count: int) -> Array:
+        """Gershgorin bound of the springs' stiffness per vertex, stiff slope, shape (V,)."""
+        most = 2.0 * (self.stiffness * self.stiffening + self.shear)
+        bound = np.zeros(vertex_count)
+        for end in range(2):
+            np.add.at(bound, self.edges[:, end], most)
+        return bound
+
+    def energy(self, x: Array, offset: Array) -> float:
+        """Energy stored in all edges; `offset` is x minus the bone-carried rest."""
+        i, j = self.edges.T
+        edge = x[j] - x[i]
+        extension = np.linalg.norm(edge, axis=1) - self.rest_length
+        beyond = np.maximum(extension - self.strain_limit * self.rest_length, 0.0)
+        stored = self.stiffness * (extension**2 + (self.stiffening - 1.0) * beyond**2)
+        stored += self.shear * ((offset[j] - offset[i]) ** 2).sum(axis=1)
+        return float(stored.sum() / 2.0)
 
 
 def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:

@@ -57,11 +57,11 @@ def test_activation_follows_without_overshoot() -> None:
     fine.set_all({"one": 1.0})
     path = []
     for _ in range(12):
-        coarse.advance(1 / 120)
-        fine.advance(1 / 240)
-        fine.advance(1 / 240)
-        path.append(coarse.now("one"))
-        assert coarse.now("one") == pytest.approx(fine.now("one"), abs=1e-12)
+        coarse._advance(1 / 120)
+        fine._advance(1 / 240)
+        fine._advance(1 / 240)
+        path.append(coarse._now("one"))
+        assert coarse._now("one") == pytest.approx(fine._now("one"), abs=1e-12)
     assert np.all(np.diff([0.0, *path]) > 0.0)
     assert 0.9 < path[-1] <= 1.0
 

@@ -56,8 +56,8 @@ FACES = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
 
 def wanted(subject: Controls, **values: float) -> dict[str, float]:
     """What the lowest controls add up to when these values are set and no others."""
-    subject.set_all(values, others_to_zero=True)
-    return dict(zip(LOWEST, subject.wanted.tolist(), strict=True))
+    subject.pose(values)
+    return subject.sums
 
 
 def test_rows_share_into_the_layers_below() -> None:

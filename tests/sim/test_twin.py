@@ -13,10 +13,9 @@ from risorius.assets.model import Head
 from risorius.sim.anatomy import Tick
 from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
-from risorius.sim.integrator import substeps_in
 from risorius.sim.lids import turn_lids
 from risorius.sim.skull import REST
-from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, tissue_forces
+from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, substeps_in, tissue_forces
 from risorius.sim.tissue import carry, tissue_energy
 from tests.sim.poses import FRAME, settled_displacement
 
@@ -257,7 +256,7 @@ def test_a_step_is_its_substeps(head: Head) -> None:
     fast.set_all(values)
     plain.set_all(values)
     fast.step(FRAME)
-    plain.advance(FRAME / 2.0)
+    plain._advance(FRAME / 2.0)
     plain._place_targets()
     for _ in range(substeps_in(FRAME)):
         _plain_substep(plain, FRAME / substeps_in(FRAME))
