@@ -15,7 +15,6 @@ OF_HAIR = "in_strand", "in_way", "in_dense"
 # What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("HAIR", " 2f 3f 1f", *OF_HAIR)}
 LAYERS = 9  # of hair; with more a picture takes longer, with fewer one sees between them
-BLENDED = ("STRANDS", "HAIR")  # kinds that are partly transparent
 
 
 class Part(Protocol):

@@ -30,7 +30,7 @@ from .materials import (
     value_texture,
 )
 from .outline import draw_fringes, fringes
-from .parts import BLENDED, Part, PartStore
+from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, scaled
 from .shadow import ShadowMap, Thrower
@@ -273,7 +273,7 @@ class Renderer:
         occluder = self._occluder
         if is_chosen := occluder is not None and occluder.is_of(view, self.surface.target):
             occluder.choose_parts(placed)
-        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind in BLENDED)
+        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind in ("STRANDS", "HAIR"))
         if not self.surface.samples and cut is None:
             drawn += [(*each, "FRINGE") for each in placed if each[0].is_outlined]
         programs = {}
@@ -290,12 +290,13 @@ class Renderer:
             program = programs[buffers.kind, *fringe]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
             set_part(program, buffers.kind, buffers.part, style.light, view)
-            with blending(self._gl) if buffers.kind in BLENDED or fringe else nullcontext():
+            is_hair, is_mixed = buffers.kind == "HAIR", buffers.kind == "STRANDS" or bool(fringe)
+            with blending(self._gl, hides=is_hair) if is_mixed or is_hair else nullcontext():
                 if fringe:
                     rows = fringes(buffers.rows, buffers.part.faces, view, bone)
                     draw_fringes(self._gl, program, rows)
                 else:
-                    buffers.draw(program, chosen=is_chosen and buffers.kind != "HAIR")
+                    buffers.draw(program, chosen=is_chosen and not is_hair)
 
     def draw_geometry(
         self,

@@ -24,11 +24,11 @@ _PREMULTIPLYING_BLEND: Any = (
 
 
 @contextlib.contextmanager
-def blending(gl: moderngl.Context) -> Iterator[None]:
-    """What this block draws lies over what is there, by its opacity, and hides nothing."""
+def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
+    """What this block draws lies over what is there, by its opacity; whether it hides the rest."""
     gl.enable(moderngl.BLEND)
     gl.blend_func = _PREMULTIPLYING_BLEND
-    gl.fbo.depth_mask = False
+    gl.fbo.depth_mask = hides
     try:
         yield
     finally:

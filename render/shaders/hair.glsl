@@ -51,7 +51,7 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const float SIDEWAYS = 5.0;              // how soon layers are whole, from their side to their front
+const float SIDEWAYS = 8.0;              // how soon layers are whole, from their side to their front
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 

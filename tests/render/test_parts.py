@@ -166,3 +166,23 @@ def test_hair_thins_out_toward_its_tips(surface: render.Surface) -> None:
     pixels = covers[0]  # 0.86 of a millimetre each; roots are 20 mm from the middle
     assert pixels[:20].min() > 150.0 and not pixels[27:].any()
     assert ((pixels > 5.0) & (pixels < 200.0)).sum() >= 2
+
+
+def test_hair_hides_what_is_drawn_after_it_behind(surface: render.Surface) -> None:
+    """An outline of skin under hair is not seen through it."""
+    renderer = render.Renderer(surface)
+    wall = lent(renderer, square(z=-5.0))
+    ball = Ball(colour=(0.1, 0.1, 0.1))
+    striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, ball.normals[:, 0]])
+    striation[:, 5] = 1.0
+    hair = SimpleNamespace(
+        **vars(ball), faces=ball.faces, colours=ball.colours, normals=ball.normals,
+        vertices=ball.vertices, striation=striation.astype(np.float32),
+    )  # fmt: skip
+    surface.begin()
+    renderer.draw_background(PLAIN)
+    renderer.draw_parts([hair], STILL, facing(), PLAIN)
+    renderer.draw_mesh(wall, facing(), PLAIN)
+    surface.end()
+    frame = surface.read().astype(np.int32)
+    assert at(frame, 0.0, 0.0).max() < 100 < at(frame, 30.0, 30.0).max()
