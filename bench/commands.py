@@ -210,15 +210,11 @@ def bench_window(size: tuple[int, int], seconds: float) -> None:
 @click.option(
     "--seconds", type=FiniteRange(1.0, 60.0), default=8.0, show_default=True, help="Of the script."
 )
-@click.option("--head", "head_file", type=FILE, help="A head of your own, with --landmarks.")
-@click.option("--landmarks", type=FILE, help="The 68 iBug landmarks of --head, as JSON.")
-def bench_capture(
-    size: tuple[int, int], seconds: float, head_file: Path | None, landmarks: Path | None
-) -> None:
+@click.option("--head", type=FILE, nargs=2, help="A head of your own, and its 68 landmarks.")
+def bench_capture(size: tuple[int, int], seconds: float, head: tuple[Path, Path] | None) -> None:
     """Time a film without a screen: frames a second, and where its time goes."""
     from risorius.app.scenes import own_head
 
     from . import capture
 
-    head = own_head(head_file, landmarks) if head_file and landmarks else None
-    click.echo(capture.report(size, seconds, head))
+    click.echo(capture.report(size, seconds, own_head(*head) if head else None))
