@@ -51,7 +51,7 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const float SIDEWAYS = 8.0;              // how soon layers are whole, from their side to their front
+const float SIDEWAYS = 6.0;              // how soon layers are whole, from their side to their front
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 
@@ -76,7 +76,7 @@ void main() {
     float far = (0.65 + 0.5 * tones.x + 0.4 * tones.y) * smoothstep(0.0, 1.0, surface.dense);
     float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(4.0 * far, 0.0, 1.0);
     // Seen from the side, upper layers are lines with gaps between them.
-    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), surface.layer);
+    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), min(3.0 * surface.layer, 1.0));
     if (cover < 0.02) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;
     // Tilted toward the root and toward the tip.
