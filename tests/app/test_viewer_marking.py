@@ -159,6 +159,30 @@ class TestInTheWindow:
             xdotool(viewer, "click", 1)
         assert until(viewer, lambda: self.room(viewer).marking.marks.is_complete)
 
+    def test_a_head_stands_upright_before_anything_is_marked(
+        self, viewer: Viewer, mesh: Path
+    ) -> None:
+        """Its file has z up; two buttons turn it where the first guess is none."""
+        drop(viewer, mesh)
+        marking = self.room(viewer).marking
+        settle(viewer)
+        ways = placing(dict(enumerate(true_places()))).inverse.vectors(np.eye(3))
+
+        def axes() -> Array:
+            """To the left, up and out of the face, as they are seen."""
+            turned = marking.placing.vectors(ways)
+            return turned / np.linalg.norm(turned, axis=1, keepdims=True)
+
+        assert axes() == pytest.approx(np.eye(3), abs=0.1)
+        click(viewer, "Turn 90 degrees")
+        assert axes()[1] == pytest.approx([1.0, 0.0, 0.0], abs=0.1)  # up is to the right
+        for _ in range(3):
+            xdotool(viewer, "key", "t")
+        assert axes() == pytest.approx(np.eye(3), abs=0.1)
+        self.room(viewer).view.camera.orbit(80.0, 0.0)
+        click(viewer, "Upright")
+        assert abs(axes()[2] @ [1.0, 0.0, 0.0]) == pytest.approx(1.0, abs=0.1)
+
     def test_a_head_is_marked_from_the_first_click_to_the_picture(
         self, viewer: Viewer, mesh: Path, tmp_path: Path
     ) -> None:
@@ -183,6 +207,10 @@ class TestInTheWindow:
         assert number in marking.marks.by_hand
         xdotool(viewer, "key", "Right")
         assert marking.current == ORDER[ORDER.index(number) + 1]
+        self.room(viewer).view.camera.orbit(80.0, 0.0)  # whose side hides it
+        xdotool(viewer, "key", "Left")
+        settle(viewer)
+        assert number == marking.current and number in self.room(viewer).view.places()
         click(viewer, "Use this head")
         assert viewer.files.is_waiting
         xdotool(viewer, "key", "ctrl+a")

@@ -137,6 +137,11 @@ class Marking:
             self._normals = -self._normals
         self._nearest = scipy.spatial.cKDTree(self.positions)
 
+    def turn(self, rotation: FloatArray) -> None:
+        """Turn what is seen, (3, 3), as long as the marks do not tell how it stands."""
+        now = self.placing
+        self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
+
     def _stand_up(self, known: Mapping[int, Place]) -> None:
         """The first time: upright, looking ahead, as large as a head; AssetError for no face's."""
         upright = placing(known)

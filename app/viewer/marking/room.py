@@ -7,9 +7,12 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any
 
+import numpy as np
 from imgui_bundle import imgui
 
 from risorius import render
+from risorius.assets.fitting.guess import axes_turned
+from risorius.sim.landmarks import MIRRORED
 
 from ..context import ApplicationContext
 from ..interface.commands import Command, MenuBar
@@ -24,6 +27,8 @@ from .view import MarkingPanel, MarkingView, MeshScene
 
 SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size", "Keys and mouse")
 REACH = 0.8  # [em] around a mark in which the mouse takes it
+ASIDE = 40.0  # [degrees] from which a landmark is seen that the front hides
+QUARTER = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # of a turn in the picture
 
 
 class MarkingMouse(CameraMouse):
@@ -132,12 +137,28 @@ class Room:
 
         return self._question.before("Leave", go, other=self.marking)
 
+    def _step(self, direction: int) -> None:
+        """To another landmark; if its side is turned away, the camera goes there."""
+        self.marking.go(direction)
+        number, camera = self.marking.current, self.view.camera
+        if number not in self.view.places():
+            aside = 0.0 if MIRRORED[number] == number else ASIDE
+            camera.yaw = float(np.copysign(aside, self.marking.seen([number])[0][0, 0]))
+            camera.pitch = 0.0
+
+    def _straighten(self, roll: int = 0) -> None:
+        """Let what is seen now be the front, upright; or turned by so many right angles to it."""
+        seen = np.linalg.matrix_power(QUARTER, roll) @ np.array(self.view.camera.axes())
+        self.marking.turn(max(axes_turned(), key=lambda turn: float((turn * seen).sum())))
+        self.view.fit_scene()
+
     def _commands(self) -> tuple[Command, ...]:
         """All that a key or a menu does here alone."""
         marking, view = self.marking, self.view
         file, edit = partial(Command, "File"), partial(Command, "Edit")
         complete = partial(Command, can_run=lambda: marking.marks.is_complete)
         landmarks = partial(complete, "Landmarks")
+        turned = partial(Command, "View", can_run=lambda: not marking.is_upright)
         history = marking.history
         return (
             complete("File", "Use this head", "Ctrl+Enter", self.use),
@@ -146,8 +167,10 @@ class Room:
             file("Leave", "Ctrl+W", self.leave),
             edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: history.can_undo),
             edit("Redo", "Ctrl+Y", marking.redo, None, lambda: history.can_redo, "Ctrl+Shift+Z"),
-            landmarks("Point before", "Left", partial(marking.go, -1)),
-            landmarks("Next point", "Right", partial(marking.go, 1)),
+            turned("Upright", "U", self._straighten),
+            turned("Turn 90 degrees", "T", partial(self._straighten, 1)),
+            landmarks("Point before", "Left", partial(self._step, -1)),
+            landmarks("Next point", "Right", partial(self._step, 1)),
             landmarks("Guess again", "G", marking.guess),
             Command("View", "Frame the face", "F", view.fit_scene),
         )

@@ -39,7 +39,7 @@ SIDES = {
 }
 BEGIN = (
     "Click the point on the skin that the guide shows. Where the head does not look at you, drag "
-    "it with the mouse. The wheel zooms."
+    "it with the mouse and press Upright, or Turn 90 degrees. The wheel zooms."
 )
 GO_ON = (
     "Drag points that are not where they belong; a click on the skin moves this one. White inside: "
