@@ -230,6 +230,7 @@ class Head:
     segments_file: Path
     ambient_occlusion_file: Path
     finer_file: Path
+    modes_file: Path
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
 

@@ -16,7 +16,12 @@ Both describe samples, not how a face ought to be. Cross-check of one row: a sys
 review of 67 studies (pmc.ncbi.nlm.nih.gov/articles/PMC9029890) has 31.4 +- 2.5 mm for White en-en.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+import numpy as np
+
+from .model import FloatArray
 
 
 @dataclass(frozen=True)
@@ -91,3 +96,22 @@ NORMS = {
     "go-go": Norm(Sample(97.0, 6.5, 1382), Sample(103.7, 7.1, 898)),
     "ft-ft": Norm(Sample(105.7, 7.8, 1404), Sample(110.4, 8.4, 913)),
 }
+
+
+def measures_of(vertices: FloatArray, anatomy: Mapping[str, int]) -> dict[str, float]:
+    """All `DISTANCES` between vertices (V, 3), code -> [mm].
+
+    What is taken on one side is the mean of both.
+    """
+
+    def between(first: str, second: str) -> float:
+        """Their distance."""
+        return float(np.linalg.norm(vertices[anatomy[first]] - vertices[anatomy[second]]))
+
+    right = {name: name.replace("_left", "_right") for pair in DISTANCES.values() for name in pair}
+    return {
+        code: between(a, b)
+        if "_right" in a + b
+        else 0.5 * (between(a, b) + between(right[a], right[b]))
+        for code, (a, b) in DISTANCES.items()
+    }

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +26,11 @@ from risorius import assets
 from risorius.app.files import folder_atomically
 from risorius.assets.data_files import read_arrays
 from risorius.assets.fitting.warp import nearest_on
-from risorius.assets.identities.shaping import measures_of
+from risorius.assets.identities.person import ears_off_head
 from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Eye, FineMesh, FloatArray, Head, IndexArray, Part
-from risorius.assets.norms import NORMS
+from risorius.assets.norms import NORMS, measures_of
 from risorius.geometry.normals import cross_products, vertex_normals
 
 from .form_parts import lids_and_eyes, placed_parts, warp_of
@@ -51,9 +51,10 @@ RMS, MOST_WEIGHT = 0.9, 2.3  # of the drawn weights: an ordinary person
 MEAN_ANGLE, LEAST_ANGLE = 16.0, 14.0  # [deg] of triangles, on the mean and on the person
 NOSTRIL_ROOF = np.array([-1.2, 12.5, -7.7])  # [mm] from the middle of the left nostril's edge
 WALL = 0.38, 1.0  # of the way up there, and how wide the nostril still is
-EAR_ROUNDS, EAR_STEP = 8, 0.4  # of standing out, by so much each [mm]
 USUAL, STEPS = 0.8, 4  # how strongly measures draw a person to published means; Newton's steps
 FINE_STIFFNESS, FINE_REACH, FINE_ALIKE = (0.3, 0.1, 0.05), 3.0, 0.4  # as registration has them
+MODES, SHOWN = 24, (0.0, -115.0)  # that are kept; z, y [mm] above which all of a face lies
+STIFF = 200.0  # [mm2] how little nostrils are bent
 KEPT_ROUNDS, LEAST_SHARE = 14, 0.1  # of the way from flat triangles to the form, where they cut
 LEAST_COSINE = 0.15  # between a finer triangle and the one that it is a part of
 OWN = re.compile(r"head(_\w+)?\.(npz|png)")
@@ -69,6 +70,10 @@ class Form:
     eyes: tuple[Eye, ...]
     parts: tuple[Part, ...]
     jaw_axis: FloatArray
+    modes: FloatArray
+    """How people differ, (k, V, 3), each at one deviation."""
+    weights: FloatArray
+    """Of the modes, with which this head is one of them, (k,)."""
 
 
 def make(reference_folder: Path, folder: Path, seed: int) -> list[str]:
@@ -119,7 +124,8 @@ def fitted(head: Head, reference: Reference, weights: FloatArray) -> Form:
     warp = warp_of(head, x)
     axis = warp.points(head.jaw_axis)
     parts = placed_parts(head, x, eyes, warp)
-    return Form(x, finest, eyes, parts, 0.5 * (axis + axis[::-1] * MIRROR))
+    modes, own = principal(head, x, fields, weights)
+    return Form(x, finest, eyes, parts, 0.5 * (axis + axis[::-1] * MIRROR), modes, own)
 
 
 def usual(head: Head, mean: FloatArray, fields: FloatArray, drawn: FloatArray) -> FloatArray:
@@ -142,6 +148,61 @@ def usual(head: Head, mean: FloatArray, fields: FloatArray, drawn: FloatArray) -
         left = scores(weights) - slopes @ (weights - drawn)
         weights = drawn - np.linalg.solve(system, USUAL * slopes.T @ left)
     return weights
+
+
+def principal(
+    head: Head, x: FloatArray, fields: FloatArray, weights: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The MODES ways in which people differ most, (k, V, 3), and a person's weights of them.
+
+    Differences count by the area that shows them, those of crown and neck a tenth, and not by where
+    a face is. What the modes do to lips and nostrils is mended as a form is.
+    """
+    areas = np.linalg.norm(cross_products(x, head.faces), axis=1)
+    counts: FloatArray = np.bincount(head.faces.ravel(), np.repeat(areas, 3)).astype(np.float64)
+    is_shown = (x[:, 2] > SHOWN[0]) & (x[:, 1] > SHOWN[1])
+    counts *= np.where(is_shown, 1.0, 0.1)
+    head_alone = np.flatnonzero(x[:, 1] > SHOWN[1])
+    along = np.zeros((1, *x.shape))
+    along[:, head_alone, 1] = 1.0
+    rim = np.r_[head.rings["rim_left"], head.rings["rim_right"]]
+    along = spread(head, x, along, np.concatenate([head_alone, rim]))[0, :, 1:2]
+    fields = fields - along * _motions(x, fields, counts * is_shown)
+    seen = (fields * np.sqrt(counts)[:, None]).reshape(len(fields), -1)
+    turn = np.linalg.svd(seen, full_matrices=False)[0][:, :MODES]
+    shipped = replace(head, vertices=x)
+    modes = [
+        _soft(head, x, settled(shipped, x + mode) - x) for mode in np.tensordot(turn.T, fields, 1)
+    ]
+    return np.array(modes), turn.T @ weights
+
+
+def _motions(x: FloatArray, fields: FloatArray, counts: FloatArray) -> FloatArray:
+    """How each field (k, V, 3) moves the head as a whole: the nearest shift and small turn."""
+    units = np.eye(3)
+    turns = [np.cross(axis, x - np.average(x, axis=0, weights=counts)) for axis in units]
+    ways = np.array([*(np.broadcast_to(axis, x.shape) for axis in units), *turns])
+    weighed = np.einsum("avi,v->avi", ways, counts)
+    system = np.einsum("avi,bvi->ab", weighed, ways)
+    shares = np.linalg.solve(system, np.einsum("avi,kvi->ak", weighed, fields))
+    return np.asarray(np.einsum("ak,avi->kvi", shares, ways))
+
+
+def _soft(head: Head, x: FloatArray, mode: FloatArray) -> FloatArray:
+    """A mode in which lips go with their edges, and nostrils keep their make."""
+    moved = mode.copy()
+    for side in ("left", "right"):
+        edge = head.rings[f"mouth_2_{side}"]
+        for row, share in ((3, 0.6), (4, 0.35), (5, 0.15)):
+            ring = head.rings[f"mouth_{row}_{side}"]
+            moved[ring] += share * (mode[edge] - mode[ring])
+        ring, roof = head.rings[f"nostril_{side}"], head.anatomy[f"nostril_roof_{side}"]
+        nostril = np.concatenate([ring, sorted(neighbours(head.faces)[roof]), [roof]])
+        off = x[nostril] - x[ring].mean(axis=0)
+        near, still = off[: len(ring)], mode[ring] - mode[ring].mean(axis=0)
+        bend = np.linalg.solve(near.T @ near + STIFF * np.eye(3), near.T @ still)
+        moved[nostril] = mode[ring].mean(axis=0) + off @ bend
+    return np.asarray(0.5 * (moved + moved[head.mirror] * MIRROR))
 
 
 def _mirrored(head: Head, x: FloatArray) -> FloatArray:
@@ -200,20 +261,6 @@ def settled(head: Head, vertices: FloatArray) -> FloatArray:
     x[roof] = middle + NOSTRIL_ROOF
     changed = np.unique(np.concatenate([*mouth, inside, cap, [roof]]))
     x[head.mirror[changed]] = x[changed] * MIRROR
-    return x
-
-
-def ears_off_head(head: Head, vertices: FloatArray) -> FloatArray:
-    """Vertices of which those of the ears stand out so far that they do not cut into the head."""
-    x = vertices.copy()
-    ear = np.concatenate([head.rings[f"ear_{row}_left"] for row in range(1, 5)])
-    ear = np.setdiff1d(ear, head.rings["ear_0_left"])
-    for _ in range(EAR_ROUNDS):
-        cutting = np.intersect1d(head.faces[np.unique(self_intersections(x, head.faces))], ear)
-        if not len(cutting):
-            break
-        x[cutting, 0] += EAR_STEP
-        x[head.mirror[cutting]] = x[cutting] * MIRROR
     return x
 
 
@@ -328,6 +375,8 @@ def save(head: Head, form: Form, folder: Path) -> None:
     _write(folder / "head_wrinkles.npz", {**wrinkles, "across": across, "made_from": made_from})
     tints = dict(read_arrays(head.tints_file))
     _write(folder / "head_tints.npz", {**tints, "made_from": made_from})
+    modes = {"modes": form.modes.astype(np.float16), "weights": form.weights}
+    _write(folder / "head_modes.npz", {**modes, "made_from": made_from})
     for file in (head.albedo_file, head.segments_file):
         shutil.copyfile(file, folder / file.name)
 

@@ -13,9 +13,8 @@ import numpy as np
 import scipy
 
 from risorius.app.scenes.surface_attachment import SurfaceAttachment
-from risorius.assets.fitting.organs import FittedSkin, place_eyes, place_parts
+from risorius.assets.fitting.organs import FittedSkin, lids_on_eyes, place_eyes, place_parts
 from risorius.assets.fitting.warp import ThinPlateSpline, nearest_on
-from risorius.assets.identities.shaping import lids_on_eyes
 from risorius.assets.model import Eye, FloatArray, Head, IndexArray, Part
 from risorius.geometry.normals import vertex_normals
 

@@ -8,6 +8,7 @@ with it; the walls are pushed back where skin would come to lie behind them when
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -117,6 +118,26 @@ def _way_forward(centre: FloatArray, radius: float, skin: FloatArray) -> float:
         return 0.0
     height = np.sqrt(radius**2 - across[in_front] ** 2)
     return float((away[in_front, 2] - height).min())
+
+
+def lids_on_eyes(
+    known: Head, vertices: FloatArray, eyes: Sequence[Eye], shares: Sequence[float]
+) -> FloatArray:
+    """Vertices moved so that lids lie as far from eyes as the built-in head's.
+
+    eyes: in the order of `known.eyes`. shares: for each row of vertices around the eye, from its
+    edge out, how much of the way it goes. The corners of the eye, which rest on flesh, stay.
+    """
+    placed = vertices.copy()
+    for old, new in zip(known.eyes, eyes, strict=True):
+        for row, share in enumerate(shares):
+            ring = known.rings[f"eye_{row}_{old.name}"]
+            ring = np.delete(ring, [0, len(ring) // 2])
+            above = np.linalg.norm(known.vertices[ring] - old.centre, axis=1) / old.radius
+            away = vertices[ring] - new.centre
+            nearer = new.radius * above / np.linalg.norm(away, axis=1) - 1.0
+            placed[ring] += share * nearer[:, None] * away
+    return placed
 
 
 def place_parts(

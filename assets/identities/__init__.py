@@ -21,7 +21,8 @@ from .complexion import (
 from .hair import CUTS, HAIR
 from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
-from .traits import Identity, Sex, sample_identity
+from .space import PersonSpace, Sex, person_space
+from .traits import Identity, sample_identity
 
 __all__ = [
     "CUTS",
@@ -32,6 +33,7 @@ __all__ = [
     "Features",
     "Identity",
     "Person",
+    "PersonSpace",
     "Sex",
     "coloured",
     "drawn_irises",
@@ -41,6 +43,7 @@ __all__ = [
     "own_angle",
     "person_called",
     "person_in_words",
+    "person_space",
     "recoloured",
     "sample_identity",
     "typology_angle",

@@ -34,7 +34,8 @@ from ..model import FloatArray, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from .hair import CUTS, HAIR, hair_of, scalp_of
 from .person import Person
-from .traits import Identity, Sex
+from .space import Sex
+from .traits import Identity
 
 LIGHTEST, DARKEST = 70.0, -55.0  # ITA [deg]
 LEAST, MOST = 0.05, 3.4  # of melanin, among which a tone is looked for

@@ -2,8 +2,8 @@
 
     person = make_person(sample_identity(7))
 
-The shape is bent until the measures are the asked ones; then eyeballs are placed, and lids are laid
-on them.
+The skin is the mean person, moved by the modes as the identity has them (space.py); then eyeballs
+are placed, and lids are laid on them.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -21,14 +20,19 @@ from ..around import STRIP, direction_coordinates, neck_relief
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
-from ..fitting.organs import EYE_LANDMARKS, FittedSkin, place_parts
-from ..fitting.warp import Similarity
+from ..fitting.organs import EYE_LANDMARKS, FittedSkin, lids_on_eyes, place_parts
+from ..fitting.warp import Similarity, ThinPlateSpline
+from ..intersections import self_intersections
 from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
-from .shaping import Field, Shaper, lids_on_eyes, measures_of
-from .traits import SHAPES, Identity, Sex
+from ..norms import measures_of
+from .space import Sex, person_space, scores_of
+from .traits import Identity
 
-NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the deviations, tried in turn
+NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the weights, tried in turn
+MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own side
+EAR_ROUNDS, EAR_STEP = 8, 0.5  # of standing out, by so much each [mm]
+GIVE = 0.2  # of the warp of what lies in the head
 MOST_RESTING = 0.65
 NECK_OF_WOMEN = 0.85  # of the relief of the neck, which they have not
 LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
@@ -61,24 +65,17 @@ class Person(FittedHead):
         """Its measures, code -> [mm]."""
         return measures_of(self.vertices, self.anatomy)
 
-
-@lru_cache(maxsize=1)
-def _template() -> tuple[Head, Shaper, dict[str | int, int]]:
-    """The built-in head, its shaper, and the vertex of each point that a shape moves."""
-    head = load("head")
-    places = {
-        point: int(head.landmarks[point] if isinstance(point, int) else head.anatomy[point])
-        for pushes in SHAPES.values()
-        for point, _ in pushes
-    }
-    return head, Shaper(head, list(places.values())), places
+    @property
+    def scores(self) -> dict[str, float]:
+        """How many deviations they lie above the means of its sex, code -> score."""
+        return scores_of(self.measures, self.identity.sex)
 
 
 def make_person(identity: Identity) -> Person:
     """The head of an identity; the same numbers give the same head.
 
-    Where its measures contradict each other, as in one of some hundreds, all of it is brought
-    nearer to the mean, until they do not; the person's `identity` says what was made.
+    Where its skin would be turned over or cut itself, all of it is brought nearer to the mean;
+    the person's `identity` says what was made.
     """
     for share in NEARER[:-1]:
         with contextlib.suppress(AssetError):
@@ -87,28 +84,34 @@ def make_person(identity: Identity) -> Person:
 
 
 def _made(identity: Identity) -> Person:
-    """The head of an identity; AssetError where there is none, or its skin would be turned."""
-    known, shaper, _ = _template()
-    field = shaper.fit(identity.measures, _moves(identity.shapes), _moves(identity.unevenness))
-    bent = field.points(known.vertices)
-    eyes = tuple(_eye(known, eye, field, bent) for eye in known.eyes)
-    vertices = lids_on_eyes(known, bent, eyes, LID_SHARES)
+    """The head of an identity; AssetError where its skin would be turned over or cut itself."""
+    known, space = load("head"), person_space()
+    beside = known.vertices[:, :1]
+    askew = space.moved(np.array(identity.unevenness)) * beside / np.hypot(beside, MIDDLE)
+    bent = space.mean + space.moved(np.array(identity.weights)) + askew
+    eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
+    vertices = ears_off_head(known, lids_on_eyes(known, bent, eyes, LID_SHARES))
     normals = vertex_normals(vertices, known.faces)
     if identity.sex is Sex.WOMAN:
         vertices = vertices - (NECK_OF_WOMEN * _neck(known))[:, None] * normals
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
-    if (turned.sum(axis=1) <= 0.0).any():
-        raise AssetError("no head has these measures without turning a triangle")
+    if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
+        raise AssetError("nobody is so: a triangle of the skin is turned over, or cuts another")
     vertices.flags.writeable = False
     normals = vertex_normals(vertices, known.faces)
+    named = _named(known)
+    warp = ThinPlateSpline(known.vertices[named], vertices[named], GIVE)
     skin = FittedSkin(vertices, normals, vertices[known.landmarks], known.mandible_weight)
     return Person(
         vertices=vertices,
         faces=known.faces,
         landmarks=known.landmarks,
-        bone_depth=field.scale * known.bone_depth,
+        bone_depth=_scale(known.vertices[named], vertices[named]) * known.bone_depth,
         eyes=eyes,
-        parts=place_parts(known, skin, field, eyes),
+        parts=tuple(
+            old if old.bone == "neck" else new
+            for old, new in zip(known.parts, place_parts(known, skin, warp, eyes), strict=True)
+        ),
         uv=known.uv,
         face_uv=known.face_uv,
         albedo=known.albedo,
@@ -119,12 +122,26 @@ def _made(identity: Identity) -> Person:
         to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
         file_vertices=np.arange(len(vertices), dtype=np.int32),
         mandible_weight=known.mandible_weight,
-        jaw_axis=field.points(known.jaw_axis),
+        jaw_axis=warp.points(known.jaw_axis),
         anatomy=known.anatomy,
         mirror=known.mirror,
         ambient_occlusion=known.ambient_occlusion,
         identity=identity,
     )
+
+
+def ears_off_head(known: Head, vertices: FloatArray) -> FloatArray:
+    """Vertices of which those of the ears stand out so far that they do not cut into the head."""
+    x = vertices.copy()
+    rows = [known.rings[f"ear_{row}_{side}"] for row in range(1, 5) for side in ("left", "right")]
+    roots = [known.rings[f"ear_0_{side}"] for side in ("left", "right")]
+    ear = np.setdiff1d(np.concatenate(rows), np.concatenate(roots))
+    for _ in range(EAR_ROUNDS):
+        cutting = np.intersect1d(known.faces[np.unique(self_intersections(x, known.faces))], ear)
+        if not len(cutting):
+            break
+        x[cutting, 0] += EAR_STEP * np.sign(known.vertices[cutting, 0])
+    return x
 
 
 def _resting(years: float) -> float:
@@ -138,21 +155,24 @@ def _neck(known: Head) -> FloatArray:
     return np.asarray(neck_relief(*direction_coordinates(known.vertices), strip=STRIP))
 
 
-def _moves(shapes: Mapping[str, float]) -> dict[int, FloatArray]:
-    """How far vertices go [mm] for deviations of shapes."""
-    moves: dict[int, FloatArray] = {}
-    places = _template()[2]
-    for name, score in shapes.items():
-        for point, way in SHAPES[name]:
-            vertex = places[point]
-            moves[vertex] = moves.get(vertex, np.zeros(3)) + score * np.array(way)
-    return {vertex: way for vertex, way in moves.items() if np.linalg.norm(way) > 1e-9}
+def _named(known: Head) -> IndexArray:
+    """Vertices that lead what lies in the head: landmarks, named points, rows of lips and lids."""
+    rows = [row for name, row in known.rings.items() if name.startswith(("mouth_", "eye_1"))]
+    return np.unique(np.concatenate([known.landmarks, list(known.anatomy.values()), *rows]))
 
 
-def _eye(known: Head, eye: Eye, field: Field, vertices: FloatArray) -> Eye:
-    """An eyeball in its new place; eyeballs differ less than their openings."""
+def _scale(before: FloatArray, now: FloatArray) -> float:
+    """How much larger points (n, 3) are spread."""
+    spreads = [np.linalg.norm(x - x.mean(axis=0)) for x in (before, now)]
+    return float(spreads[1] / spreads[0])
+
+
+def _eye(known: Head, eye: Eye, vertices: FloatArray) -> Eye:
+    """An eyeball behind its lids; eyeballs differ less than their openings."""
     corners = known.landmarks[EYE_LANDMARKS[eye.name]][[0, 3]]
     before, now = (np.linalg.norm(np.diff(x[corners], axis=0)) for x in (known.vertices, vertices))
     scale = float(np.sqrt(now / before))
-    centre = field.points(eye.centre[None])[0]
+    lids = known.rings[f"eye_1_{eye.name}"]
+    behind = eye.centre - known.vertices[lids].mean(axis=0)
+    centre = vertices[lids].mean(axis=0) + scale * behind
     return Eye(eye.name, centre, scale * eye.radius, scale * eye.iris_radius)

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from risorius import assets
-from risorius.assets.identities.shaping import measures_of
 from risorius.assets.model import Head
-from risorius.assets.norms import NORMS, Sample
+from risorius.assets.norms import NORMS, Sample, measures_of
 
 LEBANON_2018 = "87 men, 135 women, doi 10.1016/j.forsciint.2018.10.021"
 TOMOGRAPHY_2015 = "18 women, doi 10.2319/040114-237.1"

@@ -107,6 +107,8 @@ def test_what_is_written_is_a_head(head: Head, tmp_path: Path) -> None:
         tuple(replace(eye, centre=1.02 * eye.centre) for eye in head.eyes),
         head.parts,
         1.02 * head.jaw_axis,
+        np.zeros((2, *head.vertices.shape)),
+        np.zeros(2),
     )
     save(head, larger, tmp_path)
     found = load_head(tmp_path / "head.npz")

@@ -1,0 +1,155 @@
+"""How people differ, on the vertices of the built-in head: modes, and who is drawn from them.
+
+A person is the mean with a weight for each mode; a weight of 1 is one deviation of people. The
+modes were fitted to those of ICT-FaceKit as the head's form was (`risorius bench form`), and turned
+so that the first ones move the face most (principal components). They know neither sex nor age.
+
+So weights are drawn under two laws at once: those of the modes, in which all have the mean 0 and
+the deviation 1, and those of a sex' published measures (`assets.norms`). Both are normal
+distributions, and so is their product (Bishop 2006, "Pattern recognition and machine learning",
+section 2.3.3). What the measures do not tell follows from how people are: who has a long face has a
+long nose. Sex and age push points as softly (brow ridge, jaw and chin of men; skin that sags); how
+far is chosen by eye, after what anatomists name.
+Source: Blanz, Vetter 1999, "A morphable model for the synthesis of 3D faces".
+
+Three widths were taken with calipers, which press on the skin over the bone (`norms`). A surface is
+wider there: on three scanned persons the jaw is 1.3 times as wide as the outer eye corners are
+apart, where the norms have 1.15. So as much as is pressed is added; how much is chosen by them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from functools import lru_cache
+from types import MappingProxyType
+
+import numpy as np
+
+from ..data_files import read_arrays_of
+from ..loading import load
+from ..model import FloatArray
+from ..norms import NORMS, Sample, measures_of
+
+MOST = 2.5  # deviations
+PRESSED = {"go-go": 10.0, "zy-zy": 4.0, "ft-ft": 2.0}  # [mm] by calipers, both sides together
+APART = 1.0  # by how much of their published difference women and men lie apart
+MEANS, SPREADS = 4.0, 0.25  # how strongly published means, and deviations, count beside the modes
+YOUNG = 30.0  # [years] from which on age is seen
+ASKED = 25.0  # how strongly measures that are asked for count beside the law of the modes
+# What ten years do to measures, in deviations.
+AGED_MEASURES = MappingProxyType(
+    {"sn-ls": 0.25, "ls-sto": -0.3, "sto-li": -0.25, "n-prn": 0.1, "al-al": 0.15, "ch-ch": 0.1}
+)
+# Points of the left half, an anatomical name or the number of a landmark, a way that they go, and
+# how far ten years take them, and how far a man's lie from a person's of no sex [mm].
+POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] = (
+    (24, (0, -1, 0), 0.35, 1.2), (26, (0, -1, 0), 0.35, 0.8), (24, (0, 0, 1), 0.0, 1.4),
+    ("glabella", (0, 0, 1), 0.0, 1.6), ("metopion", (0, 0, -1), 0.0, 0.8),
+    ("palpebrale_superius_left", (0, -1, 0), 0.2, 0.4), ("cheek_left", (-1, 0, -1), 0.35, 0.8),
+    ("cheilion_left", (0, -1, 0), 0.3, 0.0), ("labiale_superius", (0, 0, -1), 0.2, 0.8),
+    ("labiale_inferius", (0, 0, -1), 0.2, 0.8), (9, (1, 0, 0), 0.0, 2.0), (10, (1, 0, 0), 0.0, 2.0),
+    (11, (1, -1, 0), 0.35, 1.2), (12, (1, -1, 0), 0.35, 1.2), ("pogonion", (0, -1, 1), 0.0, 1.2),
+)  # fmt: skip
+POINT = 0.7  # [mm]: how exactly points are pushed
+
+
+class Sex(Enum):
+    """Whose norms a face is measured by."""
+
+    WOMAN = "woman"
+    MAN = "man"
+
+
+def norms_of(sex: Sex) -> dict[str, Sample]:
+    """The norms of a sex, code -> sample."""
+    return {code: norm.women if sex is Sex.WOMAN else norm.men for code, norm in NORMS.items()}
+
+
+def scores_of(measures: Mapping[str, float], sex: Sex) -> dict[str, float]:
+    """How many deviations measures on the surface [mm] lie above the means of a sex."""
+    return {
+        code: sample.score(measures[code] - PRESSED.get(code, 0.0))
+        for code, sample in norms_of(sex).items()
+    }
+
+
+@dataclass(frozen=True)
+class PersonSpace:
+    """mean + weights @ modes [mm]."""
+
+    mean: FloatArray
+    """Vertices, shape (V, 3)."""
+    modes: FloatArray
+    """Shape (k, V, 3)."""
+    own: FloatArray
+    """Weights of the built-in head, shape (k,)."""
+    slopes: FloatArray
+    """How the measures of NORMS change with each weight [mm], shape (m, k)."""
+    pushed: FloatArray
+    """How POINTS go their way with each weight [mm], shape (n, k)."""
+    anatomy: Mapping[str, int]
+
+    def moved(self, weights: FloatArray) -> FloatArray:
+        """Displacements from the mean, shape (V, 3)."""
+        return np.asarray(np.tensordot(weights, self.modes, 1), dtype=np.float64)
+
+    def draw(self, sex: Sex, age: float, random: np.random.Generator) -> FloatArray:
+        """The weights of somebody of that sex and age [years], shape (k,)."""
+        rows, off = self._measured(sex)
+        told, unit = rows.T @ rows, np.eye(len(self.modes))
+        mean = np.linalg.solve(unit + MEANS * told, MEANS * rows.T @ off)
+        decades = max(age - YOUNG, 0.0) / 10.0
+        side = 1.0 if sex is Sex.MAN else -1.0
+        far = np.array([decades * older + side * male for _, _, older, male in POINTS])
+        scores = decades * np.array([AGED_MEASURES.get(code, 0.0) for code in NORMS])
+        pushes = MEANS * rows.T @ scores + self.pushed.T @ far / POINT**2
+        mean += np.linalg.solve(
+            unit + MEANS * told + self.pushed.T @ self.pushed / POINT**2, pushes
+        )
+        chance = np.clip(random.normal(size=len(unit)), -MOST, MOST)
+        spread = np.linalg.cholesky(np.linalg.inv(unit + SPREADS * told))
+        return np.asarray(mean + spread @ chance)
+
+    def _measured(self, sex: Sex) -> tuple[FloatArray, FloatArray]:
+        """What the norms ask of weights: rows (m, k), and the right side (m,), in deviations."""
+        found, norms = measures_of(self.mean, self.anatomy), norms_of(sex)
+        off = []
+        for code, norm in NORMS.items():
+            middle = 0.5 * (norm.women.mean + norm.men.mean)
+            asked = middle + APART * (norms[code].mean - middle)
+            off.append(asked + PRESSED.get(code, 0.0) - found[code])
+        deviations = np.array([sample.deviation for sample in norms.values()])
+        return self.slopes / deviations[:, None], np.array(off) / deviations
+
+    def with_scores(self, weights: FloatArray, scores: Mapping[str, float], sex: Sex) -> FloatArray:
+        """Weights near given ones that have some measures, in deviations from the mean of a sex."""
+        asked = [list(NORMS).index(code) for code in scores]
+        wanted = np.array(list(scores.values()))
+        rows = self._measured(sex)[0][asked]
+        for _ in range(3):
+            now = scores_of(measures_of(self.mean + self.moved(weights), self.anatomy), sex)
+            left = wanted - np.array([now[code] for code in scores])
+            system = np.eye(len(weights)) + ASKED * rows.T @ rows
+            weights = weights + np.linalg.solve(system, ASKED * rows.T @ left)
+        return weights
+
+
+@lru_cache(maxsize=1)
+def person_space() -> PersonSpace:
+    """The space whose middle is the mean of people, read from the data that ship."""
+    head = load("head")
+    arrays = read_arrays_of(head.fingerprint, head.modes_file, ("modes", "weights"))
+    modes, own = (arrays[name].astype(np.float64) for name in ("modes", "weights"))
+    mean = head.vertices - np.tensordot(own, modes, 1)
+    sides = [
+        [measures_of(mean + half * mode, head.anatomy) for half in (0.5, -0.5)] for mode in modes
+    ]
+    slopes = np.array([[more[code] - less[code] for more, less in sides] for code in NORMS])
+    named = [point for point, *_ in POINTS]
+    numbers = [head.landmarks[p] if isinstance(p, int) else head.anatomy[p] for p in named]
+    ways = np.array([way for _, way, *_ in POINTS], dtype=np.float64)
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    pushed = np.einsum("kni,ni->nk", modes[:, numbers], ways)
+    return PersonSpace(mean, modes, own, slopes, pushed, head.anatomy)
