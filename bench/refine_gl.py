@@ -164,7 +164,7 @@ def traffic(card: KahlerGl, positions: npt.NDArray[np.float64]) -> dict[str, int
     values = 4 * (card.vertex_columns - 6)
     look_up = f * (3 * 8 + 12 + 3 * 12) + m * 20
     blocks = 8 * (r + 2 * f) // GROUP + 28
-    if "place_curves" not in card.passes:
+    if "quarters" in card.passes:
         moved = len(np.unique(mesh.edges[card.splits > 0]))
         return {
             "normals": v * (8 + 24 + 32) + 3 * f * (4 + 12 + 72),
@@ -189,7 +189,7 @@ def traffic(card: KahlerGl, positions: npt.NDArray[np.float64]) -> dict[str, int
         "mark": r * (4 + 8 + 4) + e * (4 + 8),
         "configure": f * (12 + 12 + 8 + 12),
         "offsets": blocks,
-        "place_curves": w * (4 + 32 + 24 + 2 * values)
+        "place": w * (4 + 32 + 24 + 2 * values)
         + r * 4
         + once * (4 + 8 + 8 + 64 + 32 + 24 + 3 * values)
         + twice * (32 + 48 + 6 * values)

@@ -40,10 +40,6 @@ class OwnContext:
         """Call something where the context is current, and wait for what it returns."""
         return self._thread.submit(call, *arguments).result()
 
-    def collect(self) -> None:
-        """Give back to OpenGL what nobody holds any more."""
-        self.run(self.gl.gc)
-
 
 def _open() -> moderngl.Context:
     """By EGL on Linux, or else by X11; elsewhere the native way."""

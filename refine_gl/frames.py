@@ -41,13 +41,12 @@ class Frames:
     ) -> None:
         """Hand the mesh over, and look at it at rest: positions of shape (V, 3).
 
-        Raises GpuError as `check_driver`.
+        Raises GpuError as `programs_of`.
         """
-        check_driver(gl, tables, rules)
+        self._programs = programs_of(gl, tables, rules)
         self.gl = gl
         self._tables = tables
         sizes = tables.sizes
-        self.passes = rules.passes
         self._sizes = gl.buffer(_block(tables))
         self._mesh = _buffer(gl, NUMBER * len(tables.words))
         self._mesh.write(tables.words)
@@ -56,11 +55,10 @@ class Frames:
         self._work = _buffer(gl, NUMBER * tables.work_count)
         rest_cosines = np.where(rules.undefined_edges(), -np.inf, 0.0).astype(np.float32)
         self._work.write(rest_cosines, offset=NUMBER * sizes["rest_cosines_at"])
-        self._programs = {name: _compile(gl, tables, name) for name in self.passes}
         self._frame = 0
         self._bind()
-        self._hand_over(rest_positions, None)
-        for name in self.passes[: self.passes.index("mark") + 1]:
+        self._hand_over(rest_positions, rules.still)
+        for name in rules.passes[: rules.passes.index("mark") + 1]:
             self._dispatch(name, is_rest=True)
 
     @property
@@ -79,21 +77,17 @@ class Frames:
         for binding, name in _STREAM.items():
             getattr(stream, name).bind_to_storage_buffer(binding)
         self._hand_over(positions, metric)
-        for name in self.passes:
+        for name in self._programs:
             self._dispatch(name)
 
-    def fetch_numbers(self, name: str, count: int) -> Unsigned:
-        """The first numbers that passes have handed on under a name; this waits for the frame."""
-        return self._fetch(self._work, NUMBER, name, count)
+    def fetch(self, name: str, count: int, size: int = NUMBER) -> Unsigned:
+        """The first numbers, or vectors, that passes have handed on under a name, as numbers.
 
-    def fetch_vectors(self, name: str, count: int) -> Floats:
-        """The first vectors, shape (count, 4)."""
-        return self._fetch(self._fields, VECTOR, name, count).view(np.float32).reshape(-1, 4)
-
-    def _fetch(self, buffer: moderngl.Buffer, size: int, name: str, count: int) -> Unsigned:
+        This waits for the frame.
+        """
+        buffer = self._work if size == NUMBER else self._fields
         start = size * self._tables.sizes[f"{name}_at"]
-        read = buffer.read(size * count, offset=start) if count else b""
-        return np.frombuffer(read, np.uint32)
+        return np.frombuffer(buffer.read(size * count, offset=start) if count else b"", np.uint32)
 
     def _bind(self) -> None:
         """Take the places that shaders look at; others use them, too."""
@@ -107,7 +101,7 @@ class Frames:
             self._positions.orphan()
             self._positions.write(positions)
         if metric is not None and len(metric):
-            self._work.write(metric, offset=NUMBER * self._tables.sizes["other_metrics_at"])
+            self._work.write(metric, offset=NUMBER * self._tables.sizes["measured_at"])
 
     def _dispatch(self, name: str, *, is_rest: bool = False) -> None:
         program = self._programs[name]
@@ -120,18 +114,21 @@ class Frames:
 
 def groups_of_pass(name: str, sizes: dict[str, int]) -> int:
     """How many groups of threads a pass takes: one at least."""
-    return max(sum(groups_of(sizes[count]) for count in THREADS[name]), 1)
+    return max([1, *(groups_of(sizes[count]) for count in THREADS[name])])
 
 
-def check_driver(gl: moderngl.Context, tables: Tables, rules: Rules) -> None:
-    """Raise GpuError where OpenGL is too old, a shader is refused, or buffers are too small."""
+def programs_of(
+    gl: moderngl.Context, tables: Tables, rules: Rules
+) -> dict[str, moderngl.ComputeShader]:
+    """The programs of all passes.
+
+    Raises GpuError where OpenGL is too old, a shader is refused, or buffers are too small.
+    """
     if gl.version_code < LEAST_VERSION:
         raise GpuError(f"OpenGL 4.3 is needed, and this context has {gl.version_code / 100:.1f}")
     sizes = tables.sizes
-    rows = sizes["wedge_count"] + 3 * sizes["attribute_edge_count"]
-    rows += sizes["face_count"] if rules.blends else 0
     largest = max(
-        NUMBER * sizes["columns"] * rows,
+        NUMBER * sizes["columns"] * sizes["most_rows"],
         3 * NUMBER * sizes["most_subtriangles"] * sizes["face_count"],
         NUMBER * len(tables.words),
         VECTOR * tables.field_count,
@@ -143,8 +140,7 @@ def check_driver(gl: moderngl.Context, tables: Tables, rules: Rules) -> None:
             f"a mesh of {sizes['face_count']} triangles needs buffers of {largest / 2**20:.0f} MB, "
             f"and this driver has up to {room / 2**20:.0f} MB"
         )
-    for name in rules.passes:
-        _compile(gl, tables, name)
+    return {name: _compile(gl, tables, name) for name in rules.passes}
 
 
 def _buffer(gl: moderngl.Context, size: int) -> moderngl.Buffer:
@@ -168,8 +164,7 @@ def _compile(gl: moderngl.Context, tables: Tables, name: str) -> moderngl.Comput
     if gl.extra is None:
         gl.extra = {}  # of whoever uses a context
     known: dict[str, moderngl.ComputeShader] = gl.extra.setdefault(__name__, {})
-    names = ["common", name, *(["look_up"] if name in ("place", "place_curves") else [])]
-    texts = [f"#line 1\n{_text(each)}" for each in names]
+    texts = [f"#line 1\n{_text(each)}" for each in ("common", name)]
     source = "\n".join(["#version 430 core", tables.head, *texts])
     if source not in known:
         try:

@@ -7,7 +7,8 @@ context, and fetches nothing. Handed arrays, or nothing, it uses a context of it
 
 import functools
 import logging
-from collections.abc import Callable, Sequence
+import operator
+from collections.abc import Sequence
 from typing import Any, Literal, Unpack, cast
 
 import numpy as np
@@ -30,10 +31,10 @@ from risorius.refine import (
 )
 from risorius.refine.beyond.options import criterion_of
 from risorius.refine.kahler.refiner import points_on_edges
-from risorius.refine.mesh.arrays import Floats, Small
+from risorius.refine.mesh.arrays import Small
 
 from .context import GpuError, OwnContext, own_context
-from .frames import Frames, check_driver
+from .frames import VECTOR, Frames, programs_of
 from .refined import GpuBuffers, GpuMesh, Run
 from .rules import SCHEMES, Rules, Told
 from .tables import tables_of
@@ -113,21 +114,22 @@ class KahlerGl(BaseRefiner):
         self._own(told.criterion, *told.criterion.parts)
         self.find_normals()
         self._rules = Rules(self.connectivity, self.rest_positions, self.normals, told)
-        table = None if self._values is None else self._values.values
+        self.passes = self._rules.passes
+        """The dispatches of a frame, by name, in their order."""
+        none = np.zeros((len(self.rest_positions), 0), np.float32)
+        table = none if self._values is None else self._values.values
         self._tables = tables_of(self.connectivity, table, self._rules)
-        own.run(check_driver, own.gl, self._tables, self._rules)
+        own.run(programs_of, own.gl, self._tables, self._rules)
         self._own_context = own
         self._own_buffers: GpuBuffers | None = None
         self._frames: Frames | None = None  # of the context of the last frame
-        self._run: Run = _here
+        self._run: Run = operator.call
         self._fetched_splits: Small | None = self.edge_splits
 
     @property
     def vertex_capacity(self) -> int:
         """Most output vertices: every wedge, three points on every attribute edge, and centres."""
-        mesh = self.connectivity
-        centres = len(mesh.faces) if self._rules.blends else 0
-        return len(mesh.wedge_vertices) + 3 * len(mesh.attribute_edges) + centres
+        return self._tables.sizes["most_rows"]
 
     @property
     def triangle_capacity(self) -> int:
@@ -139,7 +141,7 @@ class KahlerGl(BaseRefiner):
         """How often each edge was split in the last frame, shape (E,), read only; fetched."""
         if self._fetched_splits is None:
             assert self._frames is not None
-            numbers = self._run(self._frames.fetch_numbers, "splits", len(self.edges))
+            numbers = self._run(self._frames.fetch, "splits", len(self.edges))
             self._fetched_splits = numbers.astype(np.uint8)
             self._fetched_splits.flags.writeable = False
         return self._fetched_splits
@@ -148,7 +150,7 @@ class KahlerGl(BaseRefiner):
     def removals_out_of_order(self) -> int:
         """Splits taken back while a later one stayed, in all frames of this context; fetched."""
         frames = self._frames
-        return 0 if frames is None else int(self._run(frames.fetch_numbers, "removals", 1)[0])
+        return 0 if frames is None else int(self._run(frames.fetch, "removals", 1)[0])
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh; fetched."""
@@ -158,7 +160,8 @@ class KahlerGl(BaseRefiner):
             return origins
         counts = np.append(splits, 0)[mesh.triangle_edges].sum(axis=1)
         centres = np.flatnonzero(counts > 1)  # where the fan has a middle
-        weights = self._run(self._frames.fetch_vectors, "centres", len(mesh.faces))[centres, :3]
+        vectors = self._run(self._frames.fetch, "centres", len(mesh.faces), VECTOR)
+        weights = vectors.view(np.float32).reshape(-1, 4)[centres, :3]
         return origins.followed_by(mesh.faces[centres], weights)
 
     def refine(
@@ -174,7 +177,7 @@ class KahlerGl(BaseRefiner):
         if out is not None and not hasattr(out, "command_buffer"):
             return super().refine(positions, out, view)
         self.take(positions, view)
-        mesh = self._refine_own(view) if out is None else self._refine_in(out, _here, view)
+        mesh = self._refine_own(view) if out is None else self._refine_in(out, operator.call, view)
         return cast(RefinedMesh, mesh)  # it has all members of one
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
@@ -188,18 +191,13 @@ class KahlerGl(BaseRefiner):
         return vertex_count, triangle_count
 
     @property
-    def passes(self) -> list[str]:
-        """The dispatches of a frame, by name, in their order."""
-        return self._rules.passes
-
-    @property
     def room_bytes(self) -> int:
         """Of all buffers on the card: none before the first frame."""
         return sum(each.room_bytes for each in (self._frames, self._own_buffers) if each)
 
     def _refine_own(self, view: View | None) -> GpuMesh:
         own = self._own_context
-        own.collect()
+        own.run(own.gl.gc)  # what nobody holds any more
         if self._own_buffers is None:
             room = self.vertex_columns, self.vertex_capacity, self.triangle_capacity
             self._own_buffers = own.run(GpuBuffers, own.gl, *room)
@@ -213,17 +211,9 @@ class KahlerGl(BaseRefiner):
             )
         self._run = run
         self._fetched_splits = None
-        run(self._frames.run, self.positions, self._measured(view), stream)
+        measured = None  # by the processor
+        if self._rules.others is not None:
+            self.find_normals()
+            measured = self._rules.measure_others(self.positions, self.normals, view)
+        run(self._frames.run, self.positions, measured, stream)
         return GpuMesh(stream, run, self.vertex_columns, self.values_in)
-
-    def _measured(self, view: View | None) -> Floats | None:
-        """What the processor measures of the frame, shape (E,); None if the card does it all."""
-        if self._rules.others is None:
-            return None
-        self.find_normals()
-        return self._rules.measure_others(self.positions, self.normals, view)
-
-
-def _here(call: Callable[..., Any], *arguments: Any) -> Any:
-    """Call something in this thread."""
-    return call(*arguments)

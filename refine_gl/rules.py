@@ -34,8 +34,6 @@ from risorius.refine.mesh.vectors import ONE
 SCHEMES = "loop", "cubic"
 Arrays = Mapping[str, npt.NDArray[np.generic]]
 
-
-OUTPUT = "wedge_count", "attribute_edge_count", "face_count"
 THREADS: Mapping[str, tuple[str, ...]] = {
     "normals": ("vertex_count",),
     "steepen": ("vertex_count",),
@@ -46,14 +44,13 @@ THREADS: Mapping[str, tuple[str, ...]] = {
     "mark": ("attribute_edge_count",),
     "configure": ("face_count",),
     "offsets": (),  # one group
-    "place": OUTPUT,
+    "place": ("wedge_count", "attribute_edge_count", "face_count"),
     "quarters": ("attribute_edge_count",),
-    "place_curves": OUTPUT,
     "place_centres": ("face_count",),
 }
-"""What each pass has a thread for. Passes are dispatches; their shaders have their names."""
-CURVES = "steepen", "displace", "centres", "surface_vertices", "surface_edges"
-"""Passes of cubic edges before any is marked."""
+"""What each pass has threads for. Passes are dispatches; their shaders have their names."""
+CURVES = "steepen", "displace", "centres", "surface_vertices", "surface_edges", "place_centres"
+"""Passes of cubic edges alone."""
 
 
 class Told(NamedTuple):
@@ -92,11 +89,12 @@ class Rules:
         for bound in (*still, self.others):
             if bound is not None:
                 bound.bind(mesh, rest_positions, rest_normals)
-        self._still = np.full(len(mesh.edges), -np.inf, np.float32)
-        metric = np.zeros_like(self._still)
+        self.still = np.full(len(mesh.edges), -np.inf, np.float32)
+        """What those measure that do not change, shape (E,)."""
+        metric = np.zeros_like(self.still)
         for each in still:
             each.measure(rest_positions, rest_normals, metric)
-            np.maximum(self._still, metric, out=self._still)
+            np.maximum(self.still, metric, out=self.still)
         self._patterns = FANS if told.blend else CONFIGURATIONS
         if told.coherent:
             self._patterns = sequence_tables().patterns
@@ -104,11 +102,9 @@ class Rules:
     @property
     def passes(self) -> list[str]:
         """The dispatches of a frame, in their order."""
-        decided = ["mark", "configure", "offsets"]
-        if self.scheme == "loop":
-            return ["normals", *decided, "place", "quarters"]
-        centres = ["place_centres"] if self.blends else []
-        return ["normals", *CURVES, *decided, "place_curves", *centres]
+        left_out = {"quarters"} if self.scheme == "cubic" else set(CURVES)
+        left_out |= set() if self.blends else {"place_centres"}
+        return [name for name in THREADS if name not in left_out]
 
     @property
     def switches(self) -> list[str]:
@@ -119,8 +115,7 @@ class Rules:
             "COHERENT": self.coherent,
             "BY_NORMAL": self._drop is not None,
             "BY_DISPLACEMENT": self._displacement is not None,
-            "BY_REST": bool((self._still > -np.inf).any()),
-            "BY_OTHERS": self.others is not None,
+            "BY_MEASURED": self.others is not None or bool((self.still > -np.inf).any()),
         }
         return [name for name, is_on in chosen.items() if is_on]
 
@@ -147,17 +142,12 @@ class Rules:
         if self.coherent:
             tables = sequence_tables()
             found["transitions"] = tables.transitions | tables.removals.astype(np.uint32) << 16
-        if "BY_REST" in self.switches:
-            found["still_metrics"] = self._still
         return {**found, **(self._ring() if self.scheme == "loop" else self._curves())}
 
     def fields(self) -> dict[str, int]:
         """Vectors that passes hand on, by name, and how many."""
-        vertices, edges, faces = (
-            self._mesh.vertex_count,
-            len(self._mesh.edges),
-            len(self._mesh.faces),
-        )
+        mesh = self._mesh
+        vertices, edges, faces = mesh.vertex_count, len(mesh.edges), len(mesh.faces)
         fields = {"points": vertices, "normals": vertices, "middles": edges}
         if self.scheme == "cubic":
             fields |= dict.fromkeys(
@@ -181,7 +171,7 @@ class Rules:
         metric = np.empty(len(self._mesh.edges), np.float32)
         self.others.set_view(view)
         self.others.measure(positions, normals, metric)
-        return metric
+        return np.maximum(metric, self.still)
 
     def _ring(self) -> Arrays:
         """What the paper's rule for vertices asks for."""

@@ -37,10 +37,10 @@ class Tables(NamedTuple):
     """Numbers that they hand on."""
 
 
-def tables_of(mesh: Connectivity, values: Floats | None, rules: Rules) -> Tables:
+def tables_of(mesh: Connectivity, values: Floats, rules: Rules) -> Tables:
     """Lay out a mesh. `values`: of corners, shape (A, k)."""
-    arrays = {**_arrays(mesh), **_values(mesh, values), **rules.arrays()}
-    sizes, views = _counts(mesh, values, arrays), {}
+    arrays = {**_arrays(mesh, values), **rules.arrays()}
+    sizes, views = _counts(mesh, values.shape[1], arrays, rules), {}
     words = [np.zeros(0, np.uint32)]
     for name, array in arrays.items():
         sizes[f"{name}_at"] = sum(map(len, words))
@@ -54,7 +54,7 @@ def tables_of(mesh: Connectivity, values: Floats | None, rules: Rules) -> Tables
         for place, name in enumerate(parts):
             sizes[f"{name}_at"] = sum(list(parts.values())[:place])
             views[name] = f"{buffer}[{name}_at + (k)]"
-    for name in ("rest_cosines", "other_metrics"):
+    for name in ("rest_cosines", "measured"):
         views[name] = f"uintBitsToFloat({views[name]})"
     limits = rules.limits
     lines = [
@@ -76,9 +76,9 @@ def groups_of(threads: int) -> int:
     return -(-threads // GROUP)
 
 
-def _counts(mesh: Connectivity, values: Floats | None, arrays: Arrays) -> dict[str, int]:
-    """How many there are of what."""
-    value_count = 0 if values is None else values.shape[1]
+def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) -> dict[str, int]:
+    """How many there are of what; of rows and subtriangles, at most."""
+    rows = len(mesh.wedge_vertices) + 3 * len(mesh.attribute_edges)
     return {
         "vertex_count": mesh.vertex_count,
         "edge_count": len(mesh.edges),
@@ -89,6 +89,7 @@ def _counts(mesh: Connectivity, values: Floats | None, arrays: Arrays) -> dict[s
         "columns": GEOMETRY_COLUMNS + value_count,
         "attribute_edge_blocks": groups_of(len(mesh.attribute_edges)),
         "face_blocks": groups_of(len(mesh.faces)),
+        "most_rows": rows + len(mesh.faces) * rules.blends,
         "most_subtriangles": arrays["patterns"].size // arrays["counts"].size,
     }
 
@@ -106,13 +107,16 @@ def _work(mesh: Connectivity, sizes: dict[str, int]) -> dict[str, int]:
         "states": faces,
         "removals": 1,
         "rest_cosines": edges,
-        "other_metrics": edges,
+        "measured": edges,
         "blocks": sizes["attribute_edge_blocks"] + 2 * sizes["face_blocks"],
     }
 
 
-def _arrays(mesh: Connectivity) -> Arrays:
-    """The connectivity, and the corners around each vertex in the order of triangles."""
+def _arrays(mesh: Connectivity, values: Floats) -> Arrays:
+    """The connectivity, the corners around each vertex in the order of triangles, and values.
+
+    Those are texture coordinates and attributes, of wedges and at both ends of attribute edges.
+    """
     corners = mesh.faces.ravel()
     sums = np.cumsum(np.bincount(corners, minlength=mesh.vertex_count))
     return {
@@ -124,13 +128,6 @@ def _arrays(mesh: Connectivity) -> Arrays:
         "attribute_edges": mesh.attribute_edges,
         "triangle_attribute_edges": mesh.triangle_attribute_edges,
         "wedge_vertices": mesh.wedge_vertices,
+        "wedge_values": wedge_values(mesh, values),
+        "edge_values": values[mesh.attribute_edge_uv],
     }
-
-
-def _values(mesh: Connectivity, values: Floats | None) -> Arrays:
-    """Texture coordinates and attributes of wedges, and at both ends of attribute edges."""
-    if values is None:
-        none = np.zeros(0, np.float32)
-        return {"wedge_values": none, "edge_values": none}
-    ends = values[mesh.attribute_edge_uv]
-    return {"wedge_values": wedge_values(mesh, values), "edge_values": ends}

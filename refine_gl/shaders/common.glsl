@@ -15,6 +15,13 @@ layout(std430, binding = 6) writeonly buffer Source { uint source[]; };
 layout(std430, binding = 7) buffer Command { uint command[]; };  // how much of it there is
 
 const uint NONE = 0xffffffffu;
+
+// What a thread does, where it has one of `count`: FOR_EACH(v, vertex_count) { ... }
+#define FOR_EACH(k, count) \
+    void each(uint k); \
+    void main() { if (gl_GlobalInvocationID.x < count) each(gl_GlobalInvocationID.x); } \
+    void each(uint k)
+
 shared uint sums[GROUP];
 
 // The sum of the values of this thread and those before it in its group (Hillis and Steele 1986).
@@ -31,12 +38,20 @@ uint scanned(uint value) {
     return sums[k];
 }
 
+// What those before this thread count in its group; its block gets the sum of the group.
+uint counted_before(uint count, uint first_block) {
+    uint sum = scanned(count);
+    if (gl_LocalInvocationIndex == GROUP - 1) blocks(first_block + gl_WorkGroupID.x) = sum;
+    return sum - count;
+}
+
+dvec3 position(uint v) {
+    return dvec3(positions[3u * v], positions[3u * v + 1u], positions[3u * v + 2u]);
+}
+
 // From vertex a to b, rounded when it has been taken.
 vec3 between(uint a, uint b) {
-    precise dvec3 way = dvec3(
-        positions[3u * b] - positions[3u * a],
-        positions[3u * b + 1u] - positions[3u * a + 1u],
-        positions[3u * b + 2u] - positions[3u * a + 2u]);
+    precise dvec3 way = position(b) - position(a);
     return vec3(way);
 }
 
@@ -53,6 +68,7 @@ vec3 crossed(vec3 u, vec3 v) {
 // OpenGL lets a driver's single square root and quotient be off by two units in the last place;
 // those of double precision, rounded, are not.
 float root_of(float x) { return float(sqrt(double(x))); }
+float length_of(vec3 v) { return root_of(dotted(v, v)); }
 
 // Length one; zero stays zero.
 vec3 unit(vec3 v) {
@@ -66,12 +82,15 @@ vec3 unit(vec3 v) {
     return size == 0.0LF ? vec3(0.0) : vec3(dvec3(v) / size);
 }
 
+vec3 weighed(float of_u, vec3 u, float of_v, vec3 v) {
+    precise vec3 first = of_u * u, second = of_v * v, both = first + second;
+    return both;
+}
+
 // A share of the way; to the last bit one of the two at 0 and at 1.
 vec3 mixed(vec3 start, vec3 end, float share) {
-    if (share == 1.0) return end;
     precise float rest = 1.0 - share;
-    precise vec3 from_start = rest * start, from_end = share * end, both = from_start + from_end;
-    return both;
+    return share == 1.0 ? end : weighed(rest, start, share, end);
 }
 
 vec3 row_of(uint k, uint first) {
@@ -79,11 +98,11 @@ vec3 row_of(uint k, uint first) {
     return vec3(rows[at], rows[at + 1u], rows[at + 2u]);
 }
 
-void write_row(uint k, uint first, vec3 v) {
-    uint at = columns * k + first;
-    rows[at] = v.x;
-    rows[at + 1u] = v.y;
-    rows[at + 2u] = v.z;
+void write_row(uint k, vec3 position, vec3 normal) {
+    for (uint i = 0u; i < 3u; ++i) {
+        rows[columns * k + i] = position[i];
+        rows[columns * k + 3u + i] = normal[i];
+    }
 }
 
 uint first_row(uint r) { return first_points(r) + blocks(r / uint(GROUP)); }

@@ -15,14 +15,11 @@ void main() {
         configurations(t) = row;
         count = counts(row);
     }
-    uint sum = scanned(count);
-    if (t < face_count) first_triangles(t) = sum - count;
-    if (gl_LocalInvocationIndex == GROUP - 1) blocks(attribute_edge_blocks + gl_WorkGroupID.x) = sum;
+    uint before = counted_before(count, attribute_edge_blocks);
+    if (t < face_count) first_triangles(t) = before;
 #ifdef BLENDED  // points in the middle of triangles are numbered after all others
     uint centre = t < face_count ? uint(has_centre(configurations(t))) : 0u;
-    uint centre_sum = scanned(centre);
-    if (t < face_count) first_centres(t) = centre_sum - centre;
-    if (gl_LocalInvocationIndex == GROUP - 1)
-        blocks(attribute_edge_blocks + face_blocks + gl_WorkGroupID.x) = centre_sum;
+    before = counted_before(centre, attribute_edge_blocks + face_blocks);
+    if (t < face_count) first_centres(t) = before;
 #endif
 }

@@ -3,16 +3,12 @@
 // Vlachos, Peters, Boyd, Mitchell 2001, as refine/beyond/cubic.py has it.
 const float FULLNESS = 1.2, TINIEST = 1.17549435e-38;
 
-float length_of(vec3 v) { return root_of(dotted(v, v)); }
-
 float share_of(float size, float other) {
     precise float both = size + other;
     return float(double(size) / double(max(both, TINIEST)));
 }
 
-void main() {
-    uint e = gl_GlobalInvocationID.x;
-    if (e >= edge_count) return;
+FOR_EACH(e, edge_count) {
     uint a = edge_points(4u * e), b = edge_points(4u * e + 1u);
     vec3 d = between(a, b);
     precise vec3 turn_a, turn_b;
@@ -29,12 +25,10 @@ void main() {
         turn_a = along_a - d;
         turn_b = along_b - d;
     }
-    precise vec3 near_a = 0.140625 * turn_a, near_b = 0.046875 * turn_b, difference = turn_a - turn_b;
-    precise vec3 far_a = 0.046875 * turn_a, far_b = 0.140625 * turn_b;
-    precise vec3 first = near_a - near_b, middle = 0.125 * difference, last = far_a - far_b;
-    displaced(3u * e) = vec4(first, 0.0);
+    precise vec3 difference = turn_a - turn_b, middle = 0.125 * difference;
+    displaced(3u * e) = vec4(weighed(0.140625, turn_a, -0.046875, turn_b), 0.0);
     displaced(3u * e + 1u) = vec4(middle, 0.0);
-    displaced(3u * e + 2u) = vec4(last, 0.0);
+    displaced(3u * e + 2u) = vec4(weighed(0.046875, turn_a, -0.140625, turn_b), 0.0);
     precise vec3 ends = seen(a).xyz + seen(b).xyz, straight = 0.5 * ends, whole = straight + middle;
     middles(e) = vec4(whole, 0.0);
 }

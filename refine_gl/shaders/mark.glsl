@@ -2,26 +2,24 @@
 uniform uint frame;
 uniform bool is_rest;
 
-#ifdef BY_NORMAL
-float drop_of(uint e, uint a, uint b) {
-    float cosine = dotted(normals(a).xyz, normals(b).xyz);
-    precise float drop = rest_cosines(e) - cosine;
-    // Where it is not 0 at rest it is -infinity: no direction to compare with, and never a split.
-    if (is_rest && rest_cosines(e) == 0.0) work[rest_cosines_at + e] = floatBitsToUint(cosine);
-    return drop;
-}
-#endif
-
 float scaled(float measure, float once, float width, float most) {
     precise float above = measure - once;
     return min(float(double(above) / double(width)), most);
 }
 
-// Of the criteria that measure, which is above 0 for one split, above 1 for two: the largest.
-float metric_of(uint e, float drop) {
-    float metric = uintBitsToFloat(0xff800000u);
-#if defined(BY_NORMAL) && defined(BLENDED)
+uint split_of(uint e, bool is_original) {
+    uint split = 0u;
+    float metric = uintBitsToFloat(0xff800000u);  // the largest: above 0 for one split, 1 for two
+#ifdef BY_NORMAL
+    float cosine = dotted(normals(edge_points(4u * e)).xyz, normals(edge_points(4u * e + 1u)).xyz);
+    precise float drop = rest_cosines(e) - cosine;
+    // Where it is not 0 at rest it is -infinity: no direction to compare with, and never a split.
+    if (is_rest && rest_cosines(e) == 0.0) work[rest_cosines_at + e] = floatBitsToUint(cosine);
+#ifdef BLENDED
     metric = scaled(drop, drop_once, drop_width, drop_most);
+#else
+    split = uint(drop > drop_once) + uint(drop > drop_twice);
+#endif
 #endif
 #ifdef BY_DISPLACEMENT
     float size = scaled(middles(e).w, size_once, size_width, size_most);
@@ -37,25 +35,9 @@ float metric_of(uint e, float drop) {
     }
     metric = max(metric, size);
 #endif
-#ifdef BY_REST
-    metric = max(metric, still_metrics(e));
+#ifdef BY_MEASURED  // by the processor, at rest or in this frame
+    metric = max(metric, measured(e));
 #endif
-#ifdef BY_OTHERS
-    metric = max(metric, other_metrics(e));
-#endif
-    return metric;
-}
-
-uint split_of(uint e, bool is_original) {
-    uint split = 0u;
-    float drop = 0.0;
-#ifdef BY_NORMAL
-    drop = drop_of(e, edge_points(4u * e), edge_points(4u * e + 1u));
-#ifndef BLENDED
-    split = uint(drop > drop_once) + uint(drop > drop_twice);
-#endif
-#endif
-    float metric = metric_of(e, drop);
 #ifdef CURVED
     if (is_original) {  // how far the points have grown out of the edge
 #ifdef BLENDED
@@ -78,7 +60,6 @@ void main() {
         if (split > 0u) moved(edge_points(4u * e)) = moved(edge_points(4u * e + 1u)) = frame;
 #endif
     }
-    uint points_on = split + (split >> 1), sum = scanned(points_on);
-    if (r < attribute_edge_count) first_points(r) = sum - points_on;
-    if (gl_LocalInvocationIndex == GROUP - 1) blocks(gl_WorkGroupID.x) = sum;
+    uint before = counted_before(split + (split >> 1), 0u);
+    if (r < attribute_edge_count) first_points(r) = before;
 }

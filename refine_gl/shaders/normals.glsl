@@ -1,9 +1,7 @@
 // A vertex: its normal, the sum of the cross products around it in the order of triangles; for cubic
 // edges another by the weights that corners have at rest, and its place as seen from vertex 0, so
 // that a mesh far from the origin loses nothing.
-void main() {
-    uint v = gl_GlobalInvocationID.x;
-    if (v >= vertex_count) return;
+FOR_EACH(v, vertex_count) {
     precise vec3 plain = vec3(0.0), weighted = vec3(0.0);
     for (uint k = corner_starts(v); k < corner_starts(v + 1u); ++k) {
         uint corner = vertex_corners(k), t = corner / 3u;
@@ -15,7 +13,7 @@ void main() {
         weighted += share;
 #endif
     }
-    points(v) = vec4(vec3(positions[3u * v], positions[3u * v + 1u], positions[3u * v + 2u]), 0.0);
+    points(v) = vec4(vec3(position(v)), 0.0);
     normals(v) = vec4(unit(plain), 0.0);
 #ifdef CURVED
     tangent_normals(v) = vec4(unit(weighted), 0.0);

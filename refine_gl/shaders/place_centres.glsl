@@ -6,20 +6,15 @@ vec2 beyond_others(float own, float other, float third) {
     return vec2(max(alone, 0.0), pair);
 }
 
-vec3 mixed_corners(uint a, uint b, uint c, vec3 shares, uint first) {
-    precise vec3 of_a = shares.x * row_of(a, first), of_b = shares.y * row_of(b, first);
-    precise vec3 of_c = shares.z * row_of(c, first), two = of_a + of_b, three = two + of_c;
-    return three;
-}
+float value_of(uint row, uint column) { return rows[columns * row + column]; }
 
-void main() {
-    uint t = gl_GlobalInvocationID.x;
-    if (t >= face_count || !has_centre(configurations(t))) return;
-    uint row = first_centre(t);
-    uint v[3], e[3];
+FOR_EACH(t, face_count) {
+    if (!has_centre(configurations(t))) return;
+    uint row = first_centre(t), v[3], w[3], e[3];
     float grown[3];
     for (uint i = 0u; i < 3u; ++i) {
         v[i] = faces(3u * t + i);
+        w[i] = corners(3u * t + i);
         e[i] = triangle_edges(3u * t + i);
         grown[i] = splits(e[i]) > 0u ? edge_normals(e[i]).w : 0.0;
     }
@@ -37,21 +32,19 @@ void main() {
     of_edges += vec3(third);
     centres(t) = vec4(of_corners, 0.0);
 
-    precise vec3 found[2];
-    for (uint part = 0u; part < 2u; ++part) {  // position, normal
-        precise vec3 centre = mixed_corners(v[0], v[1], v[2], of_corners, 3u * part);
-        for (uint i = 0u; i < 3u; ++i) {
-            if (splits(e[i]) == 0u) continue;
-            uint middle = first_row(e[i]) + (splits(e[i]) >> 1);
-            precise vec3 ends = row_of(v[i], 3u * part) + row_of(v[(i + 1u) % 3u], 3u * part);
-            precise vec3 half_way = 0.5 * ends, outward = row_of(middle, 3u * part) - half_way;
-            precise vec3 share = of_edges[i] * outward;
+    for (uint i = 0u; i < columns; ++i) {
+        precise float of_a = of_corners.x * value_of(w[0], i), of_b = of_corners.y * value_of(w[1], i);
+        precise float of_c = of_corners.z * value_of(w[2], i), two = of_a + of_b, centre = two + of_c;
+        for (uint k = 0u; k < 3u && i < 6u; ++k) {  // position and normal bulge with the edges
+            if (splits(e[k]) == 0u) continue;
+            precise float ends = value_of(w[k], i) + value_of(w[(k + 1u) % 3u], i), half_way = 0.5 * ends;
+            precise float outward = value_of(first_row(e[k]) + (splits(e[k]) >> 1), i) - half_way;
+            precise float share = of_edges[k] * outward;
             centre += share;
         }
-        found[part] = centre;
+        rows[columns * row + i] = centre;
     }
-    write_row(row, 0u, found[0]);
-    vec3 normal = unit(found[1]);
+    vec3 normal = unit(row_of(row, 3u));
     if (least > 0.0) {  // towards that of the hexagon around
         precise vec3 hexagon = vec3(0.0);
         for (uint i = 0u; i < 3u; ++i) {
@@ -62,11 +55,5 @@ void main() {
         precise float turned = 3.0 * least;
         normal = unit(mixed(normal, unit(hexagon), min(1.0, turned)));
     }
-    write_row(row, 3u, normal);
-    uint a = corners(3u * t), b = corners(3u * t + 1u), c = corners(3u * t + 2u);
-    for (uint i = 6u; i < columns; ++i) {
-        precise float of_a = of_corners.x * rows[columns * a + i], of_b = of_corners.y * rows[columns * b + i];
-        precise float of_c = of_corners.z * rows[columns * c + i], two = of_a + of_b, three = two + of_c;
-        rows[columns * row + i] = three;
-    }
+    write_row(row, row_of(row, 0u), normal);
 }

@@ -5,39 +5,27 @@ vec3 wing(uint u, uint v, uint e) {  // the middle of a neighbour edge, straight
     return straight;
 }
 
-void main() {
-    uint r = gl_GlobalInvocationID.x;
-    if (r >= attribute_edge_count || splits(r) < 2u) return;
+FOR_EACH(r, attribute_edge_count) {
+    if (splits(r) < 2u) return;
     uint e = attribute_edges(r), a = edge_points(4u * e), b = edge_points(4u * e + 1u);
     uint c = edge_points(4u * e + 2u), d = edge_points(4u * e + 3u), row = first_row(r);
     precise vec3 m = middles(e).xyz, at_a = row_of(a, 0u), at_b = row_of(b, 0u);
     precise vec3 ends_a = at_a + m, ends_b = at_b + m, ends = at_a + at_b;
-    precise vec3 beside_a = 0.5 * ends_a, beside_b = 0.5 * ends_b, middle, share;
+    precise vec3 beside_a = 0.5 * ends_a, beside_b = 0.5 * ends_b;
+    vec3 middle = weighed(0.75, m, 0.125, ends);
     if (c != a) {  // not on a border
         precise vec3 p = wing(a, c, wings(4u * e)), q = wing(b, c, wings(4u * e + 1u));
         precise vec3 s = wing(a, d, wings(4u * e + 2u)), t = wing(b, d, wings(4u * e + 3u));
         precise vec3 wings_a = p + s, wings_b = q + t, all = wings_a + wings_b, ring = ends + all;
-        share = 0.125 * wings_a;
-        beside_a = 0.375 * ends_a;
-        beside_a += share;
-        share = 0.125 * wings_b;
-        beside_b = 0.375 * ends_b;
-        beside_b += share;
-        share = 0.0625 * ring;
-        middle = 0.625 * m;
-        middle += share;
-    } else {
-        share = 0.125 * ends;
-        middle = 0.75 * m;
-        middle += share;
+        beside_a = weighed(0.375, ends_a, 0.125, wings_a);
+        beside_b = weighed(0.375, ends_b, 0.125, wings_b);
+        middle = weighed(0.625, m, 0.0625, ring);
     }
     precise vec3 at_middle = row_of(row + 1u, 3u);
     precise vec3 normal_a = row_of(a, 3u) + at_middle, normal_b = row_of(b, 3u) + at_middle;
-    write_row(row, 0u, beside_a);
-    write_row(row, 3u, unit(normal_a));
-    write_row(row + 1u, 0u, middle);
-    write_row(row + 2u, 0u, beside_b);
-    write_row(row + 2u, 3u, unit(normal_b));
+    write_row(row, beside_a, unit(normal_a));
+    write_row(row + 1u, middle, at_middle);
+    write_row(row + 2u, beside_b, unit(normal_b));
     place_values(r, row, 0.75, 0.25);
     place_values(r, row + 2u, 0.25, 0.75);
 }

@@ -1,10 +1,8 @@
 // A vertex: its normal, further from those of its neighbours than it is (refine/beyond/cubic.py).
-void main() {
-    uint v = gl_GlobalInvocationID.x;
-    if (v >= vertex_count) return;
+FOR_EACH(v, vertex_count) {
     precise vec3 around = vec3(0.0);
     for (uint k = neighbour_starts(v); k < neighbour_starts(v + 1u); ++k)
         around += tangent_normals(neighbours(k)).xyz;
-    precise vec3 taken = neighbour_share(v) * around, left = tangent_normals(v).xyz - taken;
+    vec3 left = weighed(1.0, tangent_normals(v).xyz, -neighbour_share(v), around);
     steeper(v) = vec4(unit(left), 0.0);
 }

@@ -2,9 +2,7 @@
 // change (refine/beyond/surface_normals.py, displacement.py).
 const float STEADY = 0.02;
 
-void main() {
-    uint e = gl_GlobalInvocationID.x;
-    if (e >= edge_count) return;
+FOR_EACH(e, edge_count) {
     uint a = edge_points(4u * e), b = edge_points(4u * e + 1u);
     uint side = edge_sides(2u * e) >> 2, other = edge_sides(2u * e + 1u) >> 2;
     precise vec3 ends = surface_normals(a).xyz + surface_normals(b).xyz, mean = 0.5 * ends;
@@ -16,13 +14,11 @@ void main() {
         vec3 far = other < face_count ? centres(other).xyz : middles(e).xyz;
         precise vec3 across = centres(side).xyz - far;
         precise float share = STEADY * dotted(along, along);
-        precise vec3 steady = share * mean, total = crossed(along, across);
-        total += steady;
-        normal = unit(total);
+        normal = unit(weighed(1.0, crossed(along, across), share, mean));
     }
     precise vec3 straight = seen(a).xyz + seen(b).xyz, half_way = 0.5 * straight;
     precise vec3 outward = middles(e).xyz - half_way, apart = normal - unit(ends);
-    float size = root_of(dotted(outward, outward));
+    float size = length_of(outward);
     precise float product = dotted(apart, apart) * dotted(along, along);
     precise float turn = turning * root_of(product), squares = size * size + turn * turn;
     edge_normals(e) = vec4(normal, 0.0);

@@ -1,7 +1,5 @@
 // A vertex: its normal on the surface where every edge is split (refine/beyond/surface_normals.py).
-void main() {
-    uint v = gl_GlobalInvocationID.x;
-    if (v >= vertex_count) return;
+FOR_EACH(v, vertex_count) {
     precise vec3 total = vec3(0.0);
     for (uint k = corner_starts(v); k < corner_starts(v + 1u); ++k) {
         uint corner = vertex_corners(k), t = corner / 3u, i = corner - 3u * t;

@@ -11,6 +11,12 @@ from risorius import refine
 from risorius.refine_gl import KahlerGl
 
 Points = npt.NDArray[np.float64]
+LOOK: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
+RULES: dict[str, dict[str, Any]] = {
+    "one level": {"threshold_twice": np.inf},
+    "two levels": {},
+    "window's look": LOOK,
+}
 
 
 def bound_twice(

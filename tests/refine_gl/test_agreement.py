@@ -18,18 +18,12 @@ from risorius.assets.model import Head
 from risorius.refine_gl import KahlerGl
 from tests import meshes
 
-from .agreement import Points, assert_same, bound_twice
+from .agreement import LOOK, RULES, Points, assert_same, bound_twice
 
 POSES = ("rest", "joy", "anger", "yawn", "kiss")
 VIEW = refine.View((3.0, 2.0, 20.0), 60.0)
 FAR = np.array([700.0, -300.0, 900.0])
 QUICK = ("joy", "kiss far away")
-LOOK: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
-RULES: dict[str, dict[str, Any]] = {
-    "one level": {"threshold_twice": np.inf},
-    "two levels": {},
-    "window's look": LOOK,
-}
 both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])
 
 

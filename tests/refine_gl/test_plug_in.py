@@ -21,15 +21,15 @@ from risorius.refine_gl.refined import GpuBuffers
 from tests import meshes
 from tests.app.command_line import refusal, risorius
 
-from .agreement import assert_same, bits, bound_twice
+from .agreement import RULES, assert_same, bits, bound_twice
 
 MESH = meshes.irregular(1, columns=6, rows=5, holes=1)
 BENT = meshes.wrinkled(MESH, 3, 0.5)
 
 
-def bound() -> tuple[refine.Refiner, KahlerGl]:
-    """Both refiners of a small mesh."""
-    return bound_twice(MESH.faces, MESH.vertices)
+def bound(**options: Any) -> tuple[refine.Refiner, KahlerGl]:
+    """Both refiners of a small mesh, told the same."""
+    return bound_twice(MESH.faces, MESH.vertices, **options)
 
 
 def test_it_joins_as_anybodys_would() -> None:
@@ -115,9 +115,10 @@ def test_buffers_of_another_context(surface: render.Surface) -> None:
     ]
 
 
-def test_a_lost_context_is_made_anew() -> None:
+@pytest.mark.parametrize("rules", ["two levels", "window's look"])
+def test_a_lost_context_is_made_anew(rules: str) -> None:
     """A window that is closed takes all buffers along; the next one gets the mesh again."""
-    processor, card = bound()
+    processor, card = bound(**RULES[rules])
     wanted = processor.refine(BENT)
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     for size in ((32, 32), (64, 48)):
