@@ -33,6 +33,9 @@ MOST = 1_000_000  # samples; their names have six digits
 )
 @click.option("--size", type=Size(), default=(512, 512), help="512x512 unless told.")
 @click.option(
+    "--refiner", metavar="NAME", help="Refine plug-in, unless that of the look, as of capture."
+)
+@click.option(
     "--background",
     metavar="COLOUR|FOLDER",
     help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours unless told.",

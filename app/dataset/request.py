@@ -12,6 +12,7 @@ from typing import Any
 
 from ..passes.labelled import check_wanted
 from ..passes.passes import IMAGES
+from ..refining.refiners import parse_options
 from .surroundings import Backgrounds, backgrounds_of
 from .table import SampleTable, load_table
 
@@ -21,7 +22,7 @@ class Request:
     """A data set that is asked for; fit to be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
-    app/passes/passes.py. told: the options that say all this.
+    app/passes/passes.py. refiner: None for that of the look. told: the options that say all this.
     """
 
     output: Path
@@ -30,6 +31,7 @@ class Request:
     passes: tuple[str, ...]
     table: SampleTable
     backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
+    refiner: str | None = None
     told: str = ""
     version: str = version("risorius")
 
@@ -43,6 +45,7 @@ class Request:
             "size": list(self.size),
             "passes": list(self.passes),
             "background": self.backgrounds.options,
+            "refiner": self.refiner,
             **{f"[{name}]": section for name, section in table.items()},
         }
         return dict(json.loads(json.dumps(options)))
@@ -56,9 +59,11 @@ def request_of(
     passes: Sequence[str],
     sample: Path | None = None,
     background: str | None = None,
+    refiner: str | None = None,
 ) -> Request:
     """What the command line asks for; UserError for what cannot be."""
     check_wanted(passes, "face")
+    parse_options(refiner, ())
     passes = tuple(name for name in IMAGES if name in passes)
     told = {
         "sample": sample,
@@ -66,6 +71,7 @@ def request_of(
         "passes": ",".join(passes),
         "size": "x".join(map(str, size)),
         "background": background,
+        "refiner": refiner,
     }
     words = [(f"--{name}", str(value)) for name, value in told.items() if value is not None]
     return Request(
@@ -75,5 +81,6 @@ def request_of(
         passes,
         load_table(sample),
         backgrounds_of(background),
+        refiner,
         shlex.join(word for pair in words for word in pair),
     )

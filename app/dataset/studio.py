@@ -122,7 +122,8 @@ class Studio:
         """A person of the set before the frame."""
         somebody = person_of(self._request, number)
         pipeline = Pipeline(FaceScene(somebody.head), self._renderer)
-        return _Model(pipeline, Passes(pipeline, pipeline.bind(Refinement())), somebody.labels)
+        drawn = pipeline.bind(Refinement(refiner=self._request.refiner))
+        return _Model(pipeline, Passes(pipeline, drawn), somebody.labels)
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:

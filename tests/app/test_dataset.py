@@ -134,6 +134,7 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
         (made, ("--resume", "--seed", "12"), "was begun with seed 11, not 12"),
         (made, ("--resume", "--background", "red"), "was begun with background null, not [1.0"),
         (made, ("--resume", "--passes", "depth"), "was begun with passes"),
+        (made, ("--resume", "--refiner", "none"), 'was begun with refiner null, not "none"'),
         (other, ("--resume",), "is not empty and no data set"),
     ):
         assert told in refusal(run(folder, *options))
@@ -236,6 +237,7 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
         (("--background", "no such"), "neither a folder nor a colour"),
         (("--background", "broken"), "broken/face.png: cannot be read as a picture"),
         (("--sample", "/nowhere.toml"), "no such table"),
+        (("--refiner", "mine"), "refiner 'mine' is unknown; there are"),
     ],
 )
 def test_what_cannot_be_is_told_before_work(

@@ -12,6 +12,8 @@ import pytest
 from PIL import Image
 
 from risorius import render
+from risorius.app.dataset.request import request_of
+from risorius.app.dataset.studio import Studio
 from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
@@ -112,6 +114,20 @@ def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
         assert result.exit_code == 0, result.output
         pictures.append(np.asarray(Image.open(path)))
     assert np.array_equal(*pictures)
+
+
+def test_samples_of_data_sets_are_the_same(tmp_path: Path) -> None:
+    """`dataset --refiner kahler-gl` makes the pictures, passes and labels that `kahler` makes."""
+    passes = ("depth", "normal", "splits", "segmentation")
+    requests = (
+        request_of(tmp_path, seed=3, size=(80, 64), passes=passes, refiner=name)
+        for name in ("kahler-gl", "kahler")
+    )
+    card, processor = (Studio(request).shoot(0) for request in requests)
+    assert np.array_equal(card.image, processor.image) and card.image.std() > 10.0
+    assert card.known.labels == processor.known.labels
+    for name in passes:
+        np.testing.assert_array_equal(card.known.images[name], processor.known.images[name])
 
 
 @pytest.mark.window
