@@ -59,9 +59,9 @@ def image(pipeline: Pipeline, drawn: DrawnMesh, style: render.Style) -> npt.NDAr
     return surface.read()
 
 
-def both(pipeline: Pipeline) -> tuple[DrawnMesh, DrawnMesh]:
+def both(pipeline: Pipeline, look: str = "paper") -> tuple[DrawnMesh, DrawnMesh]:
     """Made by the processor, and on the card."""
-    drawn = [pipeline.bind(Refinement("paper", name)) for name in ("kahler", "kahler-gl")]
+    drawn = [pipeline.bind(Refinement(look, name)) for name in ("kahler", "kahler-gl")]
     assert isinstance(drawn[1].refiner, KahlerGl)
     assert isinstance(drawn[1].stream, render.GpuStream)
     return drawn[0], drawn[1]
@@ -103,14 +103,14 @@ def test_numbers_of_each_pixel(pipeline: Pipeline) -> None:
         np.testing.assert_array_equal(ours, theirs)
 
 
-@pytest.mark.parametrize("options", [[], ["--compare", "none"]])
+@pytest.mark.parametrize("options", [["paper"], ["paper", "--compare", "none"], ["smooth"]])
 def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
     """`capture --refiner kahler-gl` draws what `--refiner kahler` draws."""
     pictures = []
     for name in ("kahler-gl", "kahler"):
         path = tmp_path / f"{name}.png"
-        still = ("--set", "joy=1", "--size", "160x120", "--look", "paper")
-        result = risorius("capture", "-o", path, *still, "--refiner", name, *options)
+        still = ("--set", "joy=1", "--size", "160x120", "--look")
+        result = risorius("capture", "-o", path, *still, *options, "--refiner", name)
         assert result.exit_code == 0, result.output
         pictures.append(np.asarray(Image.open(path)))
     assert np.array_equal(*pictures)
@@ -131,12 +131,13 @@ def test_samples_of_data_sets_are_the_same(tmp_path: Path) -> None:
 
 
 @pytest.mark.window
-def test_a_window_that_is_resized(scene: FaceScene) -> None:
+@pytest.mark.parametrize("look", ["paper", "smooth"])
+def test_a_window_that_is_resized(scene: FaceScene, look: str) -> None:
     """A window draws it in every size that it is given."""
     with render.open_window((200, 150), "kahler-gl", samples=0) as window:
         assert window.gl.version_code >= 430
         pipeline = Pipeline(scene, render.Renderer(window))
-        processor, card = both(pipeline)
+        processor, card = both(pipeline, look)
         for size in ((200, 150), (320, 200), (100, 240)):
             resize(window, size)
             wanted, got = (image(pipeline, each, PLAIN) for each in (processor, card))
