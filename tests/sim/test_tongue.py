@@ -68,7 +68,7 @@ def test_a_resting_tongue_is_the_part(simulation: sim.Simulation, head: Head) ->
     assert np.abs(bent - part(head, "tongue").vertices).max() < 1e-4
 
 
-@pytest.mark.parametrize("jaw", [0.2, 0.35, 0.6])
+@pytest.mark.parametrize("jaw", [0.25, 0.35, 0.6])
 def test_the_tongue_comes_out_over_the_lip(
     simulation: sim.Simulation, head: Head, jaw: float
 ) -> None:
@@ -78,7 +78,7 @@ def test_the_tongue_comes_out_over_the_lip(
         settled_displacement(simulation, {"jaw_open": jaw, "tongue_out": out})
         reach.append(tongue_now(simulation)[:, 2].max())
     lip = simulation.positions[head.landmarks[LOWER_LIP]]
-    assert np.all(np.diff(reach) > -0.1) and np.all(np.diff(reach)[1:] > 0.3)
+    assert np.all(np.diff(reach) > 0.3)
     assert reach[-1] > lip[2] + 2.0
     hangs = 0.5 if jaw < 0.3 else 7.0  # [mm]: a narrow mouth holds it up
     assert tongue_now(simulation)[tip, 1] < lip[1] - hangs
