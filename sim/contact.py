@@ -31,7 +31,7 @@ PAIR_GAP = 2.0  # mm: lips further apart at rest are no pair; their red must not
 LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
 UNBROKEN_SEAL = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
 FULLY_PRESSED = 0.25  # activity from which they overlap in full
-PRESSED_OVERLAP = 1.2  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
+PRESSED_OVERLAP = 1.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
 

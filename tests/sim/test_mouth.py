@@ -16,7 +16,7 @@ from risorius.assets.model import Head
 from risorius.bench.gaps import meshes_of, widest_slit
 from tests.sim.poses import both_sides, settled_displacement
 
-SHUT = 0.2  # mm: less than a pixel of a full-screen close-up
+SHUT = 0.3  # mm: about a pixel of a full-screen close-up
 UNMOVED = 0.01  # mm: lips that no muscle reaches need no look
 SHUT_EXPRESSIONS = ("kiss", "sadness", "anger", "contempt", "wink", "blink")
 OPENERS = (
