@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -323,9 +324,14 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
     search = ["xdotool", "search", "--onlyvisible", "--name"]
 
     def is_posed() -> bool:
+        # Keys are lost until the window listens. Each answer is awaited: the next try begins with
+        # "neutral", and nothing would be there to be recovered if the process ended at that moment.
         subprocess.run(["xdotool", "mousemove", "450", "200", "key", "n", "1", "m"], check=True)
-        title = [*search, r"^Risorius: Expressions \*$"]
-        return bool(subprocess.run(title, capture_output=True, check=False).stdout)
+        title, end = [*search, r"^Risorius: Expressions \*$"], time.monotonic() + 5.0
+        while time.monotonic() < end:
+            if subprocess.run(title, capture_output=True, check=False).stdout:
+                return True
+        return False
 
     try:
         shown = [*search[:2], "--sync", *search[2:], "^Risorius: Expressions$"]
