@@ -4,8 +4,6 @@ Python itself finds `risorius.refine` in `refine/` by what `pip install --editab
 that only look for files, like mypy and import-linter, get a tree of links.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import sys

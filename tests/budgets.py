@@ -5,8 +5,6 @@ that it lies in, so that `app` is the rest of the application. Every line of Pyt
 ones and comments too; of `refine_gl`, which is small because its work is done in shaders, theirs.
 """
 
-from __future__ import annotations
-
 import sys
 import tomllib
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What every test starts from: numpy's floating-point errors raise, random numbers have a seed."""
 
-from __future__ import annotations
-
 import os
 import random
 from collections.abc import Iterator

@@ -10,8 +10,6 @@ pixels by a step that nobody sees, and says so; every other file has the same by
 with 1.
 """
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

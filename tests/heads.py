@@ -1,7 +1,5 @@
 """Another head to fit: the built-in one, finer, of another shape, unit and orientation."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from pathlib import Path

@@ -5,8 +5,6 @@
 `make test-lowest` runs the tests with exactly these: a bound that nobody ever installed is a guess.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 import tomllib

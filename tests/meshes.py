@@ -3,8 +3,6 @@
 All triangles are counter-clockwise seen from +z (or from outside) unless the name says otherwise.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The three sentences of docs/architecture.md, as far as imports can tell, and limits of size."""
 
-from __future__ import annotations
-
 import ast
 import subprocess
 import sys

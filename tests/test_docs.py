@@ -1,7 +1,5 @@
 """What the pages promise to a reader is there: links, pictures, commands, code, and the site."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import re

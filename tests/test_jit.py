@@ -1,7 +1,5 @@
 """Compiled code: kept where that can be trusted, made again where it cannot, never old."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """What is installed: complete, one package, the same from checkout and sdist, usable anywhere."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os

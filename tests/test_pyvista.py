@@ -1,7 +1,5 @@
 """`mesh.risorius`, as PyVista's users find it: data go along, mistakes are told in its words."""
 
-from __future__ import annotations
-
 import doctest
 import subprocess
 import sys

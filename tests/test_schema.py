@@ -1,7 +1,5 @@
 """Tables of files become typed records, or one line says what is wrong with them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """The command as tests give it, in this process, and what it refuses; and Blender, as a reader."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

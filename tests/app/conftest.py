@@ -1,7 +1,5 @@
 """What tests of a file share: the window, and how each of them finds it; a Dask cluster."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterator
 from dataclasses import replace

@@ -4,8 +4,6 @@ A program of its own, because GLFW asks for the density once, when it starts. `f
 in the size that it chooses itself, on a screen of so many dots per inch.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import sys

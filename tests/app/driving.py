@@ -1,7 +1,5 @@
 """Driving the viewer's window from outside, with real mouse and key events."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -5,8 +5,6 @@ screen and ends when the window has said that it took them. Source: "Drag-and-Dr
 X Window System", version 5 (freedesktop.org); the parts of a source that offers only file names.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Sequence

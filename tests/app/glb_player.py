@@ -1,7 +1,5 @@
 """A plain player of glTF files: where every vertex is at a time, by the specification's words."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

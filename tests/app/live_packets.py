@@ -1,7 +1,5 @@
 """Packets written from the descriptions of their formats, apart from the code under test."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Mapping
 

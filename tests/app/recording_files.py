@@ -1,7 +1,5 @@
 """Files of recordings, written from the descriptions of their formats."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

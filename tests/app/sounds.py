@@ -1,7 +1,5 @@
 """Sounds that tests write for themselves."""
 
-from __future__ import annotations
-
 import wave
 from pathlib import Path
 

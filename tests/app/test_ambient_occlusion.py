@@ -1,7 +1,5 @@
 """Ambient occlusion: where light from all around reaches, and what it leaves of the scene."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

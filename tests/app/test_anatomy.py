@@ -1,7 +1,5 @@
 """Muscles and skull: sound surfaces that follow the face, and skin that lets them show."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`risorius batch`: lists are checked whole, lines are done once, and killing loses nothing."""
 
-from __future__ import annotations
-
 import csv
 import os
 import random

@@ -1,7 +1,5 @@
 """Calibration of recordings: neutral faces, gains, the mirror; for takes and for single frames."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

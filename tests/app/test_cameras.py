@@ -1,7 +1,5 @@
 """Where a camera stands, from a name or from numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Text on pictures lies where it belongs, and nowhere else."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from risorius import render

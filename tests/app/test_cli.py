@@ -1,7 +1,5 @@
 """The command line: what it writes, and that mistakes are one line and exit code 2."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -16,7 +14,7 @@ from PIL import Image
 
 from tests.heads import stranger
 
-from .command_line import refusal, risorius
+from .command_line import risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
@@ -109,81 +107,6 @@ def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
     most = int(result.output.rpartition(" triangles")[0].split()[-1])
     assert 1328 <= most <= 1540
     assert sheet.exists()
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ("capture --compare SMILE -o x.mp4", "a SCRIPT goes before --compare"),
-        ("capture SMILE -o x.mp4 --size ²x²", "'²x²' is no size"),
-        (
-            "capture SMILE -o x.mp4 --scene plane",
-            "unknown name 'joy'; `risorius controls --scene plane` lists every control",
-        ),
-        ("capture SMILE -o x.mp4 --shading toon", "'toon' is not one of"),
-        ("capture SMILE -o x.mp4 --time 1", "it goes with -o PICTURE.png"),
-        ("capture SMILE -o x.png --time 86400", "smile.toml ends at"),
-        ("convert nothing.csv -o c.png", "c.png: scripts are written as .toml"),
-        ("convert nothing.csv -o .", ".: is a folder"),
-        (
-            "capture SMILE -o x.mp4 --option threshold_once=0.2",
-            "threshold_once: counts for the criterion normal alone, and here it is displacement",
-        ),
-        (
-            "export SMILE -o x.usdz --refined --option threshold_twice=0.2",
-            "threshold_twice: counts for the criterion normal alone, and here it is displacement",
-        ),
-        (
-            "capture SMILE -o x.mp4 --look paper --option threshold_once=0.2",
-            "0 <= threshold_once <= threshold_twice",
-        ),
-        (
-            "capture SMILE -o x.mp4 --option blend=True --option coherent=1",
-            "option coherent was 1, must be on or off",
-        ),
-        (
-            "capture SMILE -o x.mp4 --refiner none --option scheme=detail",
-            "--option scheme=detail: --refiner none draws the mesh as it is and has no options",
-        ),
-        (
-            "capture --scene plane --set phase=-1 -o x.png",
-            "--set: phase is -1; it must be from 0 to 100",
-        ),
-        (
-            "capture --head no.obj -o x.png",
-            "--head HEAD.obj and --landmarks LANDMARKS.json go together",
-        ),
-        ("capture --head no.obj --person 3 -o x.png", "goes with neither --head nor --landmarks"),
-        ("capture --person 3 --scene plane -o x.png", "--head and --person go with the scene face"),
-        (
-            "capture --person -1 -o x.png",
-            "'-1' is nobody; write a number, 0 or more, or ada, kofi, maria",
-        ),
-        ("capture --person 4294967296 -o x.png", "4294967296 is not in the range 0<=x<=4294967295"),
-        ("capture --light moon -o x.png", "'moon' is not one of 'studio', 'side', 'overcast',"),
-        ("bench motion --reference nowhere", "Directory 'nowhere' does not exist"),
-    ],
-)
-def test_mistakes_are_one_line(
-    words: str, message: str, smile: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Bad input ends with exit code 2 and a text that says what is allowed; nothing is written."""
-    monkeypatch.chdir(smile.parent)
-    result = risorius(*[smile if word == "SMILE" else word for word in words.split()])
-    assert message in refusal(result)
-    assert list(smile.parent.iterdir()) == [smile]
-
-
-def test_a_folder_is_never_replaced_by_a_file(smile: Path, tmp_path: Path) -> None:
-    """A film or sheet named like a folder of the user's is refused, and the folder stays."""
-    for name in ("keep.mp4", "keep.png"):
-        kept = tmp_path / name / "mine.txt"
-        kept.parent.mkdir()
-        kept.write_text("mine")
-        for option in ("-o", "--sheet"):
-            result = risorius("capture", smile, option, kept.parent, "--size", "64x64", "--quiet")
-            assert result.exit_code == 2, (name, option)
-        assert kept.read_text() == "mine"
 
 
 def test_a_script_begins_in_its_first_pose(tmp_path: Path) -> None:

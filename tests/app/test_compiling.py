@@ -1,7 +1,5 @@
 """What is said while kernels are compiled, and that `risorius warm` compiles all of them."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

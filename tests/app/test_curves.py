@@ -1,7 +1,5 @@
 """Curves: from activations of muscles back to the controls of a layer."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

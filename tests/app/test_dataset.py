@@ -1,7 +1,5 @@
 """`risorius dataset`: a set of samples, whole and the same however it was made."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os
@@ -228,26 +226,6 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
         assert inner.mean() > 0.1
         assert np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max() <= 1
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
-
-
-@pytest.mark.parametrize(
-    ("options", "told"),
-    [
-        (("--passes", "colour"), "'colour' is no pass"),
-        (("--background", "no such"), "neither a folder nor a colour"),
-        (("--background", "broken"), "broken/face.png: cannot be read as a picture"),
-        (("--sample", "/nowhere.toml"), "no such table"),
-        (("--refiner", "mine"), "refiner 'mine' is unknown; there are"),
-    ],
-)
-def test_what_cannot_be_is_told_before_work(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...], told: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "broken").mkdir()
-    (tmp_path / "broken" / "face.png").write_text("no picture", "utf-8")
-    assert told in refusal(run(tmp_path / "set", *options))
-    assert not (tmp_path / "set").exists()
 
 
 @pytest.mark.slow

@@ -1,7 +1,5 @@
 """What samples of a data set are, before anything is drawn: the table, and draws from it."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 from pathlib import Path

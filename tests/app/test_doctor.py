@@ -1,7 +1,5 @@
 """`risorius doctor`: its verdict is what works, for every way in which something may be missing."""
 
-from __future__ import annotations
-
 import itertools
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`risorius export`: files whole or not at all, and one line for what cannot be."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -77,25 +75,6 @@ def test_curves_need_muscles(name: str, folder: Path) -> None:
     assert not Path("x.csv").exists()
     result = export("face.toml", "--as", name, "-o", "x.csv")
     assert result.exit_code == 0 and Path("x.csv").stat().st_size > 1000
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("-o", "x.pc2", "--refined"), "it goes with usd, usdz, obj, vtkhdf"),
-        (("-o", "x.usdc", "--rig", "arkit"), "--rig does not go with USD; it goes with gltf"),
-        (("-o", "x.obj"), "and folders with --as obj"),
-        (("-o", "x"), "x: has no suffix. Allowed are .glb"),
-        (("-o", "x.glb", "--as", "obj"), "leave out .glb or --as obj"),
-        (("-o", "x.usdc", "--as", "npz"), "numpy arrays is written as .npz"),
-        (("-o", "cloth.toml", "--as", "obj"), "cloth.toml: is read and would be written"),
-        (("-o", "deep/none", "--as", "obj", "--fps", "0"), "0.0 is not in the range 1<=x<=240"),
-    ],
-)
-def test_what_cannot_be_is_one_line(arguments: tuple[str, ...], words: str, folder: Path) -> None:
-    """It names what is allowed, and nothing is written."""
-    assert words in refusal(export("cloth.toml", *arguments))
-    assert {item.name for item in folder.iterdir()} == {"cloth.toml", "face.toml"}
 
 
 def test_files_of_somebody_else_stay(folder: Path) -> None:

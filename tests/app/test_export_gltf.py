@@ -1,7 +1,5 @@
 """glTF files hold what the clip holds: every vertex at every frame, read back by other readers."""
 
-from __future__ import annotations
-
 import functools
 import io
 import json
@@ -29,7 +27,7 @@ from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
 from risorius.geometry.normals import vertex_normals
 
-from .command_line import positions_in_blender, refusal, risorius
+from .command_line import positions_in_blender, risorius
 from .glb_player import Player
 
 NEAR = 0.1e-3  # [m] what is promised
@@ -325,13 +323,6 @@ def test_the_command_writes_it(tmp_path: Path) -> None:
     assert result.exit_code == 0 and "glTF, 10 frames" in result.stdout
     assert "follow the motion to" in result.stderr and result.stderr.count("\n") == 1
     assert "jawOpen" in Player(output).target_names("skin")
-
-
-def test_a_scene_without_shapes_has_no_rig(tmp_path: Path) -> None:
-    """One line, exit code 2, and no file."""
-    output = tmp_path / "plane.glb"
-    words = ("export", "--scene", "plane", "-o", output, "--rig", "units", "--quiet")
-    assert "Action units" in refusal(risorius(*words)) and not output.exists()
 
 
 @pytest.mark.blender

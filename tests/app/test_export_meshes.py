@@ -1,7 +1,5 @@
 """Exported meshes, read back by readers that are not ours, and compared in millimetres."""
 
-from __future__ import annotations
-
 import struct
 from pathlib import Path
 from typing import Any

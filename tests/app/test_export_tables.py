@@ -1,7 +1,5 @@
 """Exported curves: read by our own readers of recordings, they play the same face again."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Without extras: pictures are drawn, and what is missing is named with what installs it."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Films of every kind: their frames, in order and complete, at any size, transparent or not."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import os
@@ -122,17 +120,6 @@ def test_transparent_films(tmp_path: Path, suffix: str) -> None:
         assert np.abs(picture[..., 3].astype(int) - frame[..., 3]).mean() < 3.0
         edges = picture[:, (frame[0, :, 3] > 0)][:, [0, -1], :3].astype(int)
         assert np.abs(edges - (200, 150, 120)).max() < 24
-
-
-@pytest.mark.parametrize("suffix", [".mp4", ".mkv"])
-def test_films_that_cannot_be_transparent_are_refused(tmp_path: Path, suffix: str) -> None:
-    """One line, which names those that can."""
-    path = tmp_path / f"film{suffix}"
-    arguments = ["capture", "--scene", "plane", "-o", str(path), "--background", "transparent"]
-    result = risorius(*arguments)
-    assert result.exit_code == 2 and len(result.output.splitlines()) == 1
-    assert "take one of .mov, .webm, .gif, .webp, a folder of pictures" in result.output
-    assert not path.exists()
 
 
 def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """Wrinkles that are shape: no crack, bounded, of the drawn mesh alone, and seen by every pass."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 from types import SimpleNamespace

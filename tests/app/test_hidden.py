@@ -1,7 +1,5 @@
 """Triangles that are surely hidden are left out, and no pixel shows it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

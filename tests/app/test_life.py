@@ -1,7 +1,5 @@
 """The life of a face that nobody moves: how often, how far, the same each time, beneath all."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

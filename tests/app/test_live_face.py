@@ -1,7 +1,5 @@
 """A face that is sent: sockets on loopback, calibration, and what is done when nobody sends."""
 
-from __future__ import annotations
-
 import socket
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Packets of live faces: what they mean, and that nothing in a network can do harm."""
 
-from __future__ import annotations
-
 import math
 import struct
 import tracemalloc

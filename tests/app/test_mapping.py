@@ -1,7 +1,5 @@
 """From channels of a recording to controls of the face."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Outputs are whole or not there."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

@@ -1,7 +1,5 @@
 """Passes of a face: triangles, splits, tension and classes, and landmarks against the depth map."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What `capture --passes` writes: read back as other programs do, whole or not at all."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -98,35 +96,6 @@ def test_the_colours_are_those_without_passes(tmp_path: Path) -> None:
     for end in (".png", ".exr", "_seg.png", ".json"):
         assert (tmp_path / f"a{end}").read_bytes() == (tmp_path / f"b{end}").read_bytes()
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "c.png").read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (("--passes", "depth", "-o", "film.mp4"), "--passes are files beside each picture: give "
-         "-o a folder, or one picture.png"),
-        (("--passes", "depth", "--sheet", "sheet.png"), "--passes are files beside each picture"),
-        (("--passes", "depth,colour", "-o", "x.png"), "--passes: 'colour' is no pass; allowed are "
-         "depth, normal, triangle, splits, tension, segmentation, landmarks"),
-        (("--passes", "", "-o", "x.png"), "'' is no pass; allowed are depth"),
-        (("--passes", "depth", "--compare", "-o", "x.png"), "leave --compare out"),
-        (("--passes", "depth,landmarks", "--scene", "plane", "-o", "x.png"), "--passes landmarks: "
-         "the scene plane has no face; allowed are depth, normal, triangle, splits, tension"),
-    ],
-)  # fmt: skip
-def test_what_cannot_be_is_told_in_one_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], told: str
-) -> None:
-    """Before any work is done; nothing is written."""
-    monkeypatch.chdir(tmp_path)
-    script = () if "--scene" in arguments else ("--set", "joy")
-    if "--sheet" in arguments:
-        Path("poses.toml").write_text(SMILE.replace("AU12", 'name = "smile"\nAU12'))
-        script = ("poses.toml",)
-    result = risorius(*CAPTURE, *script, *arguments)
-    assert result.exit_code == 2 and result.output.count("\n") == 1
-    assert told in result.output
-    assert [path for path in tmp_path.iterdir() if path.suffix != ".toml"] == []
 
 
 def test_no_input_is_written_over(tmp_path: Path) -> None:

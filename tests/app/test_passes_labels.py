@@ -1,7 +1,5 @@
 """Cameras, poses and gazes as numbers: against OpenGL's matrices and what was asked of the face."""
 
-from __future__ import annotations
-
 import json
 import math
 

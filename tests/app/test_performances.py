@@ -1,7 +1,5 @@
 """Recordings as scripts: in time, in few keys, with a report; and the commands that take them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -198,43 +196,6 @@ def test_a_script_plays_whatever_its_name(tmp_path: Path) -> None:
     path.write_text("# A comment\ntitle = 'Smile'\n[[pose]]\ntime = 1.0\njoy = 1.0\n", "utf-8")
     script, report = read_performance(path)
     assert (script.title, report) == ("Smile", None)
-
-
-@pytest.mark.parametrize(
-    ("option", "told"),
-    [
-        (("--neutral", "last"), "--neutral last: allowed are"),
-        (("--gain", "mouth=1"), "--gain mouth=1: no channel"),
-        (("--rate", "0"), "--rate"),
-        (("--lead", "-1"), "--lead"),
-    ],
-)
-def test_wrong_options_are_one_line(tmp_path: Path, option: tuple[str, str], told: str) -> None:
-    result = risorius("convert", written(tmp_path), "-o", tmp_path / "out.toml", *option)
-    assert result.exit_code == 2 and result.stderr.count("\n") == 1
-    assert told in result.stderr
-    assert not (tmp_path / "out.toml").exists()
-
-
-@pytest.mark.parametrize("options", [("--mirror",), ("--gain", "all=2"), ("--lead", "0")])
-def test_a_script_takes_no_options_of_recordings(tmp_path: Path, options: tuple[str, ...]) -> None:
-    script = tmp_path / "smile.toml"
-    script.write_text("[[pose]]\ntime = 1\njoy = 1\n")
-    for what, output in (("capture", "a.png"), ("convert", "b.toml")):
-        result = risorius(what, script, "-o", tmp_path / output, *options)
-        assert result.exit_code == 2, result.output
-        assert f"is a script, and {options[0]} is for recordings" in result.stderr
-    result = risorius("capture", "--set", "joy", "-o", tmp_path / "a.png", *options)
-    assert result.exit_code == 2
-    assert f"{options[0]} is for recordings, and none is given" in result.stderr
-
-
-def test_a_script_cannot_be_converted(tmp_path: Path) -> None:
-    script = tmp_path / "smile.toml"
-    script.write_text("[[pose]]\ntime = 1\njoy = 1\n")
-    result = risorius("convert", script, "-o", tmp_path / "out.toml")
-    assert result.exit_code == 2
-    assert "is a script already" in result.stderr
 
 
 @pytest.mark.parametrize(

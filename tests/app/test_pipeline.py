@@ -1,7 +1,5 @@
 """Figure 1 as a whole: a stranger's refiner fits in, and the mesh stays as it is."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

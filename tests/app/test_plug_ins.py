@@ -1,7 +1,5 @@
 """A package of somebody else, installed beside the application, brings refinement of its own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -41,6 +39,8 @@ class Straight(refine.Scheme):
         frame.rows[frame.first_points[split], :6] = frame.rows[self.edges[split], :6].mean(axis=1)
 
 
+THREE = 3
+
 class Half(refine.PassThrough):
     """Draws the first triangles only."""
 
@@ -56,6 +56,7 @@ ENTRY_POINTS = """
 [risorius.refiners]
 half = theirs_for_a_test:Half
 gone = nowhere_at_all:Gone
+three = theirs_for_a_test:THREE
 
 [risorius.schemes]
 straight = theirs_for_a_test:Straight
@@ -109,6 +110,7 @@ def test_all_kinds_are_drawn(tmp_path: Path, options: list[str], count: int) -> 
         (["--option", "scheme=strait"], "'straight')"),
         (["--refiner", "half", "--option", "part=1"], "unknown option part; it takes share"),
         (["--refiner", "gone"], "'nowhere_at_all:Gone' cannot be loaded: ModuleNotFoundError"),
+        (["--refiner", "three"], "must be a class or a function, got 3"),
     ],
 )
 def test_what_is_of_no_use_is_told_in_one_line(

@@ -1,7 +1,5 @@
 """Looks: each can be drawn on every scene by every refiner, and the paper's is the paper's."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,7 +8,6 @@ import pytest
 
 from risorius import refine, render
 from risorius.app.capture.cameras import whole_scene
-from risorius.app.errors import UserError
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import parse_comparison, refiner_for
@@ -87,19 +84,3 @@ def test_a_comparison_is_of_looks_and_refiners(monkeypatch: pytest.MonkeyPatch) 
     )  # fmt: skip
     assert parse_comparison(None, shown) == ()
     assert parse_comparison("paper", shown) == (Refinement("paper"),)  # it is not changed
-
-
-@pytest.mark.parametrize(
-    ("names", "told"),
-    [
-        ("papre", "'papre' is neither a look (smooth, paper) nor a refiner (kahler, "),
-        ("none,", "'' is neither a look"),
-        ("smooth", "'smooth' would stand beside itself"),
-        ("none,loop,none", "'none' would stand beside itself"),
-    ],
-)
-def test_a_comparison_that_cannot_be(names: str, told: str) -> None:
-    """Names that nothing has, and two that are one."""
-    with pytest.raises(UserError) as error:
-        parse_comparison(names, Refinement())
-    assert told in str(error.value)

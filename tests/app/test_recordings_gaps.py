@@ -1,7 +1,5 @@
 """Gaps and the order of time: whatever rows a reader found, a Take keeps its promises."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Takes in JSON: shapes as MediaPipe and pages that use it write them, and speech as visemes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

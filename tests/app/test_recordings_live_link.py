@@ -1,7 +1,5 @@
 """Takes of Live Link Face: times, names, units and signs are found from what the file holds."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

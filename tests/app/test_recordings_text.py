@@ -1,7 +1,5 @@
 """Recordings as text: encodings, delimiters, commas, quotes, rows that do not belong."""
 
-from __future__ import annotations
-
 import math
 import os
 from pathlib import Path

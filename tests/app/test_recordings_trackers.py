@@ -1,7 +1,5 @@
 """Takes of OpenFace and py-feat, and of tables that name shapes and units in ways of their own."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

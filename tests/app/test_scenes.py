@@ -1,7 +1,5 @@
 """Scenes: values are kept within limits, the plane waves, the cloth falls, the face obeys."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

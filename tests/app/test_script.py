@@ -1,7 +1,5 @@
 """Scripts: what they mean, and what is said when they are wrong."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Places of keys as arrays: they do what sets and loops over keys would do."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

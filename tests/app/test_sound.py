@@ -1,7 +1,5 @@
 """Sound files: read, named by scripts, heard in films, seen at every zoom, played in step."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import time

@@ -1,7 +1,5 @@
 """The command as a process: stopped, and hung up."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

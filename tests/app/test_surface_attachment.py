@@ -1,7 +1,5 @@
 """Lashes and tears stand on the skin, however it moves."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

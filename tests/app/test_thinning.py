@@ -1,7 +1,5 @@
 """Thinning: how far the keys may be off, and how few of them there are."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

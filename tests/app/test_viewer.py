@@ -1,7 +1,5 @@
 """The real window, driven by real mouse and key events: sliders, skin, picture, what it asks."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -3,8 +3,6 @@
 A window manager is used where one is there (openbox, say); only what needs one is skipped without.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

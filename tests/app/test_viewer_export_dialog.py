@@ -1,7 +1,5 @@
 """File > Export, driven with mouse and keys: films, motion, progress, cancel, what goes wrong."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Files that come into the window and leave it, and sounds."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Iterator
 from importlib import resources

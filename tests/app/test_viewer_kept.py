@@ -1,7 +1,5 @@
 """What outlives the window: settings, and unsaved work, which the next one offers."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

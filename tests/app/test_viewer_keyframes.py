@@ -1,7 +1,5 @@
 """Editing keys without a window: what each change does to a script, and to a session."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Clicks, keys and words as they come to a window that draws slowly: each does what it is for."""
 
-from __future__ import annotations
-
 import subprocess
 import time
 from pathlib import Path

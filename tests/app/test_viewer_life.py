@@ -1,7 +1,5 @@
 """The face lives in the window while nobody moves it; what a user or a script moves is theirs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A live face in the real window: it is driven by `risorius send`, and by real clicks."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

@@ -1,7 +1,5 @@
 """Marking the 68 landmarks of a mesh: by real clicks in the window, and without one."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator

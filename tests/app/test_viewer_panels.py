@@ -1,7 +1,5 @@
 """The panels, by real events: search, comparisons, headings, small windows, dense screens."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

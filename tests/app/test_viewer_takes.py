@@ -1,7 +1,5 @@
 """What is recorded into a script while it plays, without a window."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 from pathlib import Path

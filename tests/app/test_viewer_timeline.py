@@ -1,7 +1,5 @@
 """The timeline in the real window: keys, in rows and as curves, that are dragged, and undone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

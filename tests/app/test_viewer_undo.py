@@ -1,7 +1,5 @@
 """What hands do to a script, without a window; and small parts of the window."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Processes that work: what they hand over, whatever dies, nothing left when they are stopped."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -1,7 +1,5 @@
 """Wrinkles that follow the simulated skin: when, where, which way, and on which heads."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path

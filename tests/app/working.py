@@ -1,7 +1,5 @@
 """What processes are asked to do in the tests of `app/workers.py`."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Skin of any tone and eyes of any colour: as the painter would paint them, from one number."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The eyes of a head that somebody brings: nobody looks past the ball into the empty head."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

@@ -1,7 +1,5 @@
 """The first guess of 68 landmarks: near the true ones, on the skin, and refused where senseless."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

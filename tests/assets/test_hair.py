@@ -1,7 +1,5 @@
 """Hair of persons: it grows on the scalp, stands off the head, and leaves the face free."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Persons: heads that measure what was asked for, and are faces like the built-in one."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Landmarks that are not in their order are refused by name; right ones, however rough, are not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Pictures that a mesh brings: read from beside it alone, and laid on its triangles as they are."""
 
-from __future__ import annotations
-
 import io
 import json
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The map of classes: every texel has one, sides mirror, and named places are what they are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

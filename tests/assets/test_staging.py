@@ -1,7 +1,5 @@
 """Folders in which files are made: gone after the work, and swept away where that was killed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

@@ -1,7 +1,5 @@
 """The map of wrinkles: furrows where skin wrinkles, and nothing where it does not."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What `bench form` mends and writes: meshes without cuts, eyes behind lids, files that load."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Closed lips and lids stay closed, and what measures it sees what is open."""
 
-from __future__ import annotations
-
 import pytest
 
 from risorius import assets, sim

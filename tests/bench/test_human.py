@@ -1,7 +1,5 @@
 """The measure of human form recovers people of its space, and says where a head is none of them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What `bench soak` and `bench tearing` measure with sees what is there."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

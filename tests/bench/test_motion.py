@@ -1,7 +1,5 @@
 """Scores of motion: made-up references of known motion, under every spelling of their names."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The measure of quality: subjects and errors."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

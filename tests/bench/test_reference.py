@@ -1,7 +1,5 @@
 """Reference data comes out of a checkout of ICT-FaceKit; a small one is written here."""
 
-from __future__ import annotations
-
 import gzip
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The benchmark of the refiners measures what it says."""
 
-from __future__ import annotations
-
 import gc
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The head's mesh comes to lie on a surface of other triangles, and stays a sound, even mesh."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What benchmarks print, and are held to: a target that is missed ends with exit code 1."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

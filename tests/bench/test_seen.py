@@ -4,8 +4,6 @@ The run needs MediaPipe (the extra 'mediapipe') and its model, the file that the
 variable FACE_LANDMARKER names.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

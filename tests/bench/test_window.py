@@ -1,7 +1,5 @@
 """What `risorius bench window` prints."""
 
-from __future__ import annotations
-
 import os
 
 import pytest

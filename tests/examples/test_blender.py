@@ -1,7 +1,5 @@
 """The add-on in Blender itself: where bpy is, or RISORIUS_BLENDER_PYTHON names a Python with it."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os

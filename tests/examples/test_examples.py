@@ -1,7 +1,5 @@
 """Every program in examples/ runs, and does what its first lines say."""
 
-from __future__ import annotations
-
 import importlib.util
 import subprocess
 import sys

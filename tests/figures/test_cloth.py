@@ -2,8 +2,6 @@
 triangles, of which the coarse one keeps every second vertex each way.
 """
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

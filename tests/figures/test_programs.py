@@ -1,7 +1,5 @@
 """The programs that draw the documentation obey the rules of the command."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,8 +1,6 @@
 """Inputs of the command line: a table of mistakes with the words they are told in, and hostile
 values for every option of every command."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -130,6 +128,74 @@ REFUSED = {
     f"capture good.toml -o {'x' * 300}.png": "File name too long",
     "bench quality --expression nobody": "--expression nobody: there are joy, ",
     "bench quality --reference folder": "face.npz: is not there",
+    # What other rooms refuse.
+    "capture --compare good.toml -o x.mp4": "a SCRIPT goes before --compare",
+    "capture good.toml -o x.mp4 --size ²x²": "'²x²' is no size",
+    "capture good.toml -o x.mp4 --scene plane": "unknown name 'joy'; `risorius controls --scene pl",
+    f"{IMAGE} --shading toon": "'toon' is not one of",
+    "capture good.toml -o x.png --time 86400": "good.toml ends at",
+    "capture --light moon -o x.png": "'moon' is not one of 'studio', 'side', 'overcast',",
+    "capture --scene plane --set phase=-1 -o x.png": "phase is -1; it must be from 0 to 100",
+    "capture --scene plane -o x.mp4 --background transparent": "take one of .mov, .webm, .gif, ",
+    "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
+    "convert nothing.csv -o .": ".: is a folder",
+    "convert good.toml -o out.toml": "is a script already",
+    "bench motion --reference nowhere": "Directory 'nowhere' does not exist",
+    # Persons.
+    "capture --head no.obj --person 3 -o x.png": "goes with neither --head nor --landmarks",
+    "capture --person 3 --scene plane -o x.png": "--head and --person go with the scene face",
+    "capture --person -1 -o x.png": "'-1' is nobody; write a number, 0 or more, or ada, kofi",
+    "capture --person 4294967296 -o x.png": "4294967296 is not in the range 0<=x<=4294967295",
+    # Recordings.
+    "convert take.csv -o out.toml --neutral last": "--neutral last: allowed are",
+    "convert take.csv -o out.toml --gain mouth=1": "--gain mouth=1: no channel",
+    "convert take.csv -o out.toml --rate 0": "--rate",
+    "convert take.csv -o out.toml --lead -1": "--lead",
+    "convert good.toml -o out.toml --gain all=2": "is a script, and --gain is for recordings",
+    "capture good.toml -o x.png --mirror": "is a script, and --mirror is for recordings",
+    "capture --set joy -o x.png --lead 0": "--lead is for recordings, and none is given",
+    "send take.csv --address nobody.invalid": "address 'nobody.invalid'",
+    "send take.csv --address ''": "that is no name",
+    "send take.csv --port 0": "not in the range",
+    # Passes and data sets.
+    "capture good.toml --passes depth -o x.mp4": "--passes are files beside each picture: give -o ",
+    "capture good.toml --passes depth --sheet x.png": "--passes are files beside each picture",
+    "capture good.toml --passes depth --compare -o x.png": "leave --compare out",
+    "capture --scene plane --passes depth,landmarks -o x.png": "the scene plane has no face; ",
+    f"{IMAGE} --passes depth,colour": "'colour' is no pass; allowed are depth, normal, triangle",
+    f"{IMAGE} --passes ''": "'' is no pass; allowed are depth",
+    "dataset --count 2 -o set --passes colour": "'colour' is no pass",
+    "dataset --count 2 -o set --background 'no such'": "neither a folder nor a colour",
+    "dataset --count 2 -o set --background broken": "face.png: cannot be read as a picture",
+    "dataset --count 2 -o set --sample nowhere.toml": "no such table",
+    "dataset --count 2 -o set --refiner mine": "refiner 'mine' is unknown; there are",
+    # Exports.
+    "export good.toml -o x.pc2 --refined": "it goes with usd, usdz, obj, vtkhdf",
+    "export good.toml -o x.usdc --rig arkit": "--rig does not go with USD; it goes with gltf",
+    "export --scene plane -o x.glb --rig units": "Action units",
+    "export good.toml -o x.obj": "and folders with --as obj",
+    "export good.toml -o x": "x: has no suffix. Allowed are .glb",
+    "export good.toml -o x.glb --as obj": "leave out .glb or --as obj",
+    "export good.toml -o x.usdc --as npz": "numpy arrays is written as .npz",
+    "export good.toml -o good.toml --as obj": "good.toml: is read and would be written",
+    "export good.toml -o deep/none --as obj --fps 0": "0.0 is not in the range 1<=x<=240",
+    "export good.toml -o x.usdz --refined --option threshold_twice=1": "the criterion normal alone",
+    # More options and outputs.
+    f"{IMAGE} --look paper --option threshold_once=0.2": "0 <= threshold_once <= threshold_twice",
+    f"{IMAGE} --option blend=True --option coherent=1": "option coherent was 1, must be on or off",
+    f"{IMAGE} --option threshold_twice={'9' * 400}": "is not a finite number up to 1e+30",
+    f"{IMAGE} --refiner kahler-gl --option scheme=detail": "refiner kahler-gl: scheme must be one",
+    f"{IMAGE} --compare papre": "'papre' is neither a look (smooth, paper) nor a refiner (kahler, ",
+    f"{IMAGE} --compare none,": "'' is neither a look",
+    f"{IMAGE} --compare smooth": "'smooth' would stand beside itself",
+    "capture good.toml --sheet folder.png": "is a folder",
+    "capture good.toml --sheet pipe.png": "is a device",
+    "capture good.toml --sheet same.png": "same.png: is read and would be written",
+    "capture good.toml -o x.png --sheet ./x.png": "two outputs at once",
+    "capture good.toml -o loop.mp4": "is a link that leads back to itself; choose another name",
+    "capture good.toml -o loop/x.png": "cannot be written: Too many levels of symbolic links",
+    "capture good.toml -o notes.txt/x.mp4": "cannot be written: Not a directory",
+    "reproduce figure9 -o pipe.png": "is a device",
 }
 
 HOSTILE = {

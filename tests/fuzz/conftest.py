@@ -1,7 +1,5 @@
 """Wrong inputs at every door: what all of them need, and how many of each went well."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Files that chance has damaged."""
 
-from __future__ import annotations
-
 import os
 import random
 from collections.abc import Sequence

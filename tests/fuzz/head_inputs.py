@@ -3,8 +3,6 @@
 Headers that lie about their sizes are read in a process with little memory, so a few stand for all.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import struct

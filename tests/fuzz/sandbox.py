@@ -1,7 +1,5 @@
 """A folder full of traps, and the rules by which every input must end."""
 
-from __future__ import annotations
-
 import os
 import re
 import resource
@@ -59,7 +57,10 @@ def furnish(folder: Path) -> None:
         sound.writeframes(bytes(range(256)) * 30)
     (folder / "head.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     (folder / "marks.json").write_text('{"landmarks": [0, 1, 2]}')
+    (folder / "take.csv").write_text("time,jawOpen\n0,0\n0.1,0.5\n0.2,0\n")
     (folder / "folder").mkdir()
+    (folder / "broken").mkdir()
+    (folder / "broken" / "face.png").write_text("no picture")
     (folder / "folder.png").mkdir()
     (folder / "full").mkdir()
     (folder / "full" / "mine.txt").write_text("mine")
@@ -68,6 +69,7 @@ def furnish(folder: Path) -> None:
     for name in ("loop", "loop.png", "loop.toml", "loop.mp4"):
         (folder / name).symlink_to(name)
     (folder / "dangling.png").symlink_to("nowhere/at/all.png")
+    (folder / "same.png").symlink_to("good.toml")
     (folder / "zeros.toml").symlink_to("/dev/zero")
 
 

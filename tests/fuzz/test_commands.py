@@ -1,7 +1,5 @@
 """The command line: every command and option, given what nobody should give it."""
 
-from __future__ import annotations
-
 import shlex
 from pathlib import Path
 
@@ -10,13 +8,14 @@ import pytest
 from .command_inputs import ACCEPTED, REFUSED, HostileValue, hostile_values
 from .sandbox import check_end, contents, run_command
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("ready_face", "no_long_work")]
+pytestmark = pytest.mark.usefixtures("ready_face", "no_long_work")
 
 
 def _short(words: str) -> str:
     return words if len(words) < 120 else f"{words[:100]}...{len(words)}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", ACCEPTED, ids=_short)
 def test_good_commands(line: str, sandbox: Path) -> None:
     """They end well, and leave nothing but their outputs."""
@@ -36,6 +35,7 @@ def test_mistakes(line: str, sandbox: Path) -> None:
     assert REFUSED[line] in ended.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hostile", list(hostile_values()), ids=lambda each: each.name)
 def test_hostile_values(hostile: HostileValue, sandbox: Path) -> None:
     """Whatever an option is given: success, or one line."""

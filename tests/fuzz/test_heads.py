@@ -1,7 +1,5 @@
 """Every odd head ends in a mesh, in a head, or in one line; soon, and in little memory."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Iterator

@@ -1,59 +1,45 @@
 """Settings, the environment, and what the system refuses: space, memory, files, streams."""
 
-from __future__ import annotations
-
-import math
 import os
 import resource
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, fields
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from risorius.app.viewer.settings import Settings, load_settings, save_settings, settings_path
+from risorius.app.viewer.settings import Settings, load_settings, settings_path
 
-from .sandbox import LONGEST, bounded, check_end, check_line, contents
 from .sandbox import Ended as End
-from .settings_inputs import ENVIRONMENTS, FILES, FILM, IMAGE
+from .sandbox import check_end, check_line, contents
 
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 COMMAND = "import sys; sys.argv[0] = 'risorius'; from risorius.__main__ import run; run()"
 STARTING = 60.0  # [s] a process of its own may have to compile first
-
-
-def numbers_in(stored: Any) -> Iterator[float]:
-    """Every number in a table, however deep."""
-    if isinstance(stored, dict):
-        stored = list(stored.values())
-    if isinstance(stored, list | tuple):
-        for each in stored:
-            yield from numbers_in(each)
-    elif isinstance(stored, int | float) and not isinstance(stored, bool):
-        yield stored
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_settings(name: str, tmp_path: Path) -> None:
-    """A broken file is told in one line; what is taken from it is of the right kind."""
-    path = tmp_path / "viewer.json"
-    path.write_bytes(FILES[name])
-    with bounded(LONGEST):
-        settings, told = load_settings(path)
-    if told:
-        check_line(told)
-    for field in fields(Settings):
-        value, known = getattr(settings, field.name), getattr(Settings(), field.name)
-        assert known is None or isinstance(value, type(known)), field.name
-    assert all(math.isfinite(number) for number in numbers_in(asdict(settings)))
-    save_settings(path, settings)
-    assert load_settings(path) == (settings, "")
+# What is set (None: taken away), the words of the command, and its exit code.
+Row = tuple[dict[str, str | None], str, int]
+IMAGE = "capture --scene plane --set amplitude -o x.png --size 16x16 --quiet"
+FILM = "capture --scene plane --set amplitude -o x.mp4 --size 16x16 --quiet"
+ENVIRONMENTS: dict[str, Row] = {
+    "nothing at all": ({"PATH": None, "HOME": None, "LANG": None}, IMAGE, 0),
+    "home is nowhere": ({"HOME": "/proc/nowhere", "XDG_CACHE_HOME": None}, IMAGE, 0),
+    "no folder for temporary files": ({"TMPDIR": "/nowhere"}, IMAGE, 0),
+    "wrong language": ({"LC_ALL": "xx_YY.nothing"}, IMAGE, 0),
+    "Python warns of all": ({"PYTHONWARNINGS": "default", "PYTHONDEVMODE": "1"}, "controls", 0),
+    "completion": ({"_RISORIUS_COMPLETE": "bash_source"}, "", 0),
+    "no film program": ({"IMAGEIO_FFMPEG_EXE": "/nowhere/ffmpeg"}, FILM, 2),
+    "film program fails": ({"IMAGEIO_FFMPEG_EXE": "/bin/false"}, FILM, 2),
+    "no OpenGL": ({"GLCONTEXT_LINUX_LIBEGL": "nothing.so"}, IMAGE, 2),
+    "no screen": ({"DISPLAY": None, "WAYLAND_DISPLAY": None}, "view", 2),
+    "wrong screen": ({"DISPLAY": ":987"}, "view", 2),
+    "settings in a file": ({"XDG_CONFIG_HOME": "notes.txt", "DISPLAY": None}, "view", 2),
+    "compiler is switched off": ({"NUMBA_DISABLE_JIT": "1"}, "doctor --offscreen", 0),
+    "older OpenGL": ({"MESA_GL_VERSION_OVERRIDE": "2.1"}, IMAGE, 2),
+}
 
 
 @pytest.mark.parametrize("folder", ["", "/", "~", "a\nb", "loop", "notes.txt", "x" * 5000])

@@ -1,7 +1,5 @@
 """The search for closest points against brute force."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

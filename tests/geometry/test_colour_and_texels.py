@@ -1,7 +1,5 @@
 """Colours there and back, and the texels of triangles against areas."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

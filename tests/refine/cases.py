@@ -1,7 +1,5 @@
 """What the tests of refine/ share: forced splits, names of output points, generated meshes."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 from hypothesis import strategies as st

@@ -5,8 +5,6 @@ and twice, by the names of its points; how it moves is worked out here. That it 
 mesh is another test's business (test_detail.py).
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass

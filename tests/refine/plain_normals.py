@@ -4,8 +4,6 @@ Where every edge is split once, each triangle is a fan of six around its middle.
 of the cross products of the small triangles around its point, of length one.
 """
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 
 from tests.refine.plain_schemes import Face, cross, dot

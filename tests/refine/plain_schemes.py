@@ -3,8 +3,6 @@
 Each is a function from an edge (low, high) and a number of quarters to a point, in `CurveRules`.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Callable

@@ -6,8 +6,6 @@ instead of numbers, so nothing depends on an order:
     ("vertex", v)  or  ("edge", low, high, quarters from low)
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Uniform Loop subdivision against a plain implementation."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

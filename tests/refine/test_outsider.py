@@ -5,8 +5,6 @@ in memory, and what comes out is judged in another way than by `refine.check`: t
 triangle's pieces is walked, and along an edge all triangles must show the same bytes.
 """
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Shortening along given directions: known strains, rigid motion, bends, bad input."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

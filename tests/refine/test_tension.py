@@ -1,7 +1,5 @@
 """The tension map: known strains, rigid motion, and a second implementation."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

@@ -1,7 +1,5 @@
 """Meshes of trimesh, as its users load and make them, come back refined with all they carry."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 from typing import Any

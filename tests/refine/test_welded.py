@@ -1,7 +1,5 @@
 """Doubled vertices are one while refining; what they carry parts again, as if bound by corners."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

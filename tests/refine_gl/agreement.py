@@ -1,7 +1,5 @@
 """The refiner on the graphics card beside that of the processor, which is what it is held to."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

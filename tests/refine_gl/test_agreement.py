@@ -3,8 +3,6 @@
 To the bit on Mesa's software OpenGL, which rounds as the processor does.
 """
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Drawn from where it was made: the same pictures as of arrays that were uploaded."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path

@@ -1,13 +1,10 @@
 """How the refiner on the graphics card is bound, lent to and asked; and what is done without."""
 
-from __future__ import annotations
-
 import copy
 import logging
 import pickle
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -19,7 +16,6 @@ from risorius.refine_gl import GpuError, KahlerGl, context, frames, refiner, tab
 from risorius.refine_gl.frames import Frames
 from risorius.refine_gl.refined import GpuBuffers
 from tests import meshes
-from tests.app.command_line import refusal, risorius
 
 from .agreement import RULES, assert_same, bits, bound_twice
 
@@ -216,22 +212,3 @@ def test_what_the_card_has_not(options: dict[str, Any], words: str) -> None:
     """Options that only `kahler` has are refused in words."""
     with pytest.raises(ValueError, match=re.escape(words)):
         refine.create("kahler-gl", MESH.faces, MESH.vertices, **options)
-
-
-def test_a_criterion_serves_one_refiner() -> None:
-    """As everywhere: it knows the mesh that it was bound to."""
-    shared = refine.Displacement()
-    told: dict[str, Any] = {"scheme": "cubic", "criterion": shared}
-    first = refine.create("kahler-gl", MESH.faces, MESH.vertices, **told)
-    with pytest.raises(ValueError, match="this Displacement serves another refiner"):
-        refine.create("kahler-gl", MESH.faces, MESH.vertices, **told)
-    assert first.refine(BENT).triangle_count > 0
-
-
-def test_a_look_that_the_card_has_not(tmp_path: Path) -> None:
-    """On the command line that is one line, and nothing is written."""
-    picture = tmp_path / "joy.png"
-    told = "--refiner", "kahler-gl", "--option", "scheme=detail"
-    result = risorius("capture", "-o", picture, "--set", "joy=1", *told)
-    assert "risorius: refiner kahler-gl: scheme must be one of" in refusal(result)
-    assert not picture.exists()

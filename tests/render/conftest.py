@@ -1,7 +1,5 @@
 """Surfaces to draw on."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterator

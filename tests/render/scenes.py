@@ -1,7 +1,5 @@
 """Small things to draw, and how the tests here look at images."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field

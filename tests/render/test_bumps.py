@@ -1,7 +1,5 @@
 """Wrinkles of the skin: they show as far as they are asked for, and nowhere else."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Camera maths: what is framed is seen, and moving the camera does what it says."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

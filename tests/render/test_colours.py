@@ -1,7 +1,5 @@
 """Wireframe, and colours by a value of each triangle: splits and amounts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """OpenGL that fails to start: one line with the cure, and findings instead of crashes."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

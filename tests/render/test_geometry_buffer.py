@@ -1,7 +1,5 @@
 """Numbers of what each pixel shows: against spheres and planes that are known exactly."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

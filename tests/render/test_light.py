@@ -1,7 +1,5 @@
 """Light that comes from elsewhere: what it does to a picture, and what it leaves alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import nan
 

@@ -1,7 +1,5 @@
 """Polylines over the scene."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -4,8 +4,6 @@
 them before you keep them.
 """
 
-from __future__ import annotations
-
 import os
 from dataclasses import replace
 from pathlib import Path

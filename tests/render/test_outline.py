@@ -1,7 +1,5 @@
 """Smooth outlines where a pixel has one sample."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rigid parts: where bones put them, how they shine, what hides them."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

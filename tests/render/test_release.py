@@ -1,7 +1,5 @@
 """What is given back to OpenGL: a renderer that nobody holds any more leaves nothing behind."""
 
-from __future__ import annotations
-
 import weakref
 from collections import Counter
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Shading: flat, Gouraud, per pixel; what light does to skin, front and back."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The shadow of the key light."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The buffer contract: capacities, columns, reuse."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

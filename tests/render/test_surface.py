@@ -1,7 +1,5 @@
 """Offscreen frames: size, orientation, samples, life and death."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Skin from a picture: where it lies, how bright it is, what goes over it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

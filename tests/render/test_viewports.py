@@ -1,7 +1,5 @@
 """Viewports and backgrounds: each touches its own pixels only."""
 
-from __future__ import annotations
-
 import pytest
 
 from risorius import render

@@ -1,7 +1,5 @@
 """The window: the same interface and the same pictures as offscreen. Needs a screen, or Xvfb."""
 
-from __future__ import annotations
-
 import inspect
 import time
 

@@ -1,7 +1,5 @@
 """The built-in head and one simulation of it, shared: building takes longer than most tests."""
 
-from __future__ import annotations
-
 import pytest
 
 from risorius import assets, sim

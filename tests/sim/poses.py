@@ -1,7 +1,5 @@
 """Posing and measuring a face in tests."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """A simulation can be built from any triangle mesh, with whatever it knows about itself."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Beside the muscles: head pose, lips over an open jaw, halves of a muscle, teeth, weight."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

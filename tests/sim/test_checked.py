@@ -1,7 +1,5 @@
 """The doors of `sim`: whatever is handed in wrongly is a ValueError that says what is allowed."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from types import SimpleNamespace

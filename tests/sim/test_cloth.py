@@ -1,7 +1,5 @@
 """The cloth: it falls, loses energy, stays out of the ball, and keeps the symmetry it has."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What skin rests on: how near it may come to an eyeball, and that it comes no nearer."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

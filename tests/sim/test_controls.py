@@ -1,7 +1,5 @@
 """Names, limits and groups of the controls, and how activations follow them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

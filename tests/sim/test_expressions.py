@@ -1,7 +1,5 @@
 """Muscles and expressions move the face where they should: landmarks, lids, lips, jaw."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Layers: tables above the muscles add up, take sides, and name the row that is wrong."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

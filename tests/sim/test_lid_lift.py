@@ -1,7 +1,5 @@
 """A closed lid of few triangles stands out so far that the eyeball does not cut through it."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

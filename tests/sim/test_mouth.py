@@ -4,8 +4,6 @@ Looked at from the front, both sides, above and below, on the mesh and on what r
 it (smoothing thins a folded lip a little, so closed lips are pressed together).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Muscles that lie on others follow them: carried along, lifted by their bulge, and only then."""
 
-from __future__ import annotations
-
 import copy
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Pull to pose: the muscles that hold the skin where it was drawn to are found."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

@@ -1,7 +1,5 @@
 """A finger on the skin: it follows, it stays stable, it swings back."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

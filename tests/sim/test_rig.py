@@ -1,7 +1,5 @@
 """The rig file: what it may say, and that each mistake is answered with muscle, key and cure."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Callable
 from typing import Any

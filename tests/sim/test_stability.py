@@ -1,7 +1,5 @@
 """Rest stays at rest, energy dies away, and no input breaks the face."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

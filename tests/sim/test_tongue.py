@@ -1,7 +1,5 @@
 """The tongue: it comes out between the teeth and over the lip, rises, and pierces nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

@@ -1,7 +1,5 @@
 """The compiled kernels against plain numpy written from the formulas, and forces against energy."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

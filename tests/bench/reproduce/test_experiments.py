@@ -1,7 +1,5 @@
 """Verdicts can be bad; `reproduce all` writes page and pictures, whatever they say."""
 
-from __future__ import annotations
-
 import math
 import re
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """The paper's figures 8, 9 and 10, and the film strip: what they claim holds on the pictures."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

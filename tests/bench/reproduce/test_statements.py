@@ -1,7 +1,5 @@
 """The statements of sections 3 and 4 hold, and what counts breaches of them sees them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

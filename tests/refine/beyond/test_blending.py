@@ -1,7 +1,5 @@
 """Nothing pops: the refined surface is a continuous function of the positions."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import pytest

@@ -1,7 +1,5 @@
 """The criterion `border`: mouths that open."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Criteria beside the paper's, and several at once."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -77,6 +75,9 @@ def test_view_is_needed() -> None:
         refine.View([0, 0, np.nan]),
         refine.View([0, 0]),
         refine.View([0, 0, 1], focal=0.0),
+        refine.View([0, 0, 5], "x"),
+        refine.View("eye"),
+        refine.View(5),
     ):
         with pytest.raises(ValueError, match="an eye of shape"):
             refiner.refine(mesh.vertices, view=view)
@@ -190,22 +191,6 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
     assert clear.sum() > 0.5 * len(edges)
     count = (metric > 0).astype(int) + (metric > 1)
     np.testing.assert_array_equal(splits[clear], count[clear])
-
-
-@pytest.mark.parametrize(
-    ("criterion", "text"),
-    [
-        ("bending", r"criterion 'bending' is unknown; there are \('normal', 'curvature'"),
-        ("normal+", "criterion '' is unknown; there are"),
-        ([], "an empty list decides nothing"),
-        (7, "criterion must be a name, a refine.Criterion, or a list, got 7"),
-    ],
-)
-def test_bad_criteria(criterion: object, text: str) -> None:
-    """What is no criterion is refused with what there is."""
-    mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match=text):
-        refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
 
 
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])

@@ -1,7 +1,5 @@
 """Closest points, the fit to a finer mesh, and detail that moves with the surface."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,14 +1,11 @@
 """Every scheme, blended and not, against its plain twin and the checker."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.refine.kahler.frame import ONCE
 from tests import meshes
 from tests.refine import plain_schemes
 from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, soups
@@ -17,7 +14,6 @@ from tests.refine.plain_twin import PaperRules, Rules, Twin, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
 
 SCHEMES = ("loop", "cubic")
-EVERY_SCHEME = (*SCHEMES, "detail")
 TOLERANCES = {"linear": (5e-7, 8e-6), "refined": (5e-7, 3e-5)}
 """Of positions, and of normals; refined ones stand on differences of float32 rows."""
 NORMALS = tuple(TOLERANCES)
@@ -93,35 +89,6 @@ def test_equals_plain_twin(normals: str, scheme: str, blend: bool, name: str) ->
 @given(
     soup=soups(),
     data=st.data(),
-    scheme=st.sampled_from(EVERY_SCHEME),
-    normals=st.sampled_from(NORMALS),
-    blend=st.booleans(),
-    seams=st.booleans(),
-)
-def test_soups(
-    soup: tuple[np.ndarray, np.ndarray],
-    data: st.DataObject,
-    scheme: str,
-    normals: str,
-    blend: bool,
-    seams: bool,
-) -> None:
-    """Any triangles with any metrics come out proper from every scheme, with seams and without."""
-    positions, faces = soup
-    edge_count = len(refine.connect(faces, len(positions)).edges)
-    metric = data.draw(st.lists(st.floats(-1, 3), min_size=edge_count, max_size=edge_count))
-    uv = np.random.default_rng(1).random((3, 2)) if seams else None
-    face_uv = np.random.default_rng(2).integers(3, size=faces.shape) if seams else None
-    mesh = meshes.Mesh(positions, faces, uv, face_uv)
-    deformed = meshes.wrinkled(mesh, 3, 0.1)
-    refiner = bound(mesh, scheme, blend, np.array(metric), normals=normals)
-    refine.check(refiner, refiner.refine(deformed), deformed)
-
-
-@settings(max_examples=60, deadline=None)
-@given(
-    soup=soups(),
-    data=st.data(),
     scheme=st.sampled_from(SCHEMES),
     normals=st.sampled_from(NORMALS),
     blend=st.booleans(),
@@ -175,57 +142,3 @@ def test_flat_stays_flat(scheme: str) -> None:
     )
     heights = 0.5 * refined.positions[:, 0] - 0.3 * refined.positions[:, 1]
     np.testing.assert_allclose(refined.positions[:, 2], heights, rtol=0, atol=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("options", "text"),
-    [
-        ({"scheme": "lop"}, "scheme 'lop' is unknown; there are"),
-        ({"scheme": 3}, "scheme must be one of .* or a refine.Scheme, got 3"),
-        ({"scheme": "detail"}, "go together, got scheme='detail' and detail not given"),
-        ({"detail": (np.eye(3), [[0, 1, 2]])}, "go together, got scheme='loop' and detail given"),
-        ({"scheme": "detail", "detail": np.eye(3)}, "detail must be a pair"),
-        (
-            {"scheme": "detail", "detail": (np.eye(3), [[0, 1, 3]])},
-            r"detail\[1\] must hold indices",
-        ),
-        ({"scheme": "detail", "detail": (np.eye(3), np.zeros((0, 3), int))}, "must have triangles"),
-        ({"blend": True, "coherent": True}, "ask for one of the two"),
-    ],
-)
-def test_bad_choices(options: dict[str, object], text: str) -> None:
-    """Choices that do not exist or do not fit together are refused with what there is."""
-    mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match=text):
-        refine.create("kahler", mesh.faces, mesh.vertices, **options)
-
-
-def test_scheme_of_somebody_else() -> None:
-    """A subclass takes the place of the built-in schemes."""
-
-    class Straight(refine.Scheme):
-        """Points stay on their edges."""
-
-        interpolates = True
-
-        def bind(self, connectivity: refine.Connectivity, *rest: object) -> None:
-            """Remember the edges."""
-            self.edges = connectivity.edges
-
-        def place(self, frame: refine.FrameBuffers) -> None:
-            """Write middles only."""
-            frame.rows[: len(frame.positions), :3] = frame.positions
-            frame.rows[: len(frame.positions), 3:6] = frame.normals
-            for e in frame.split_once[: frame.counts[ONCE]]:
-                a, b = self.edges[e]
-                frame.rows[frame.first_points[e]] = 0.5 * (frame.rows[a] + frame.rows[b])
-
-    mesh = meshes.open_grid()
-    refiner = refine.create(
-        "kahler",
-        mesh.faces,
-        mesh.vertices,
-        scheme=Straight(),
-        criterion=GivenMetric(np.ones(len(refine.connect(mesh.faces, len(mesh.vertices)).edges))),
-    )
-    refine.check(refiner, refiner.refine(mesh.vertices), mesh.vertices)

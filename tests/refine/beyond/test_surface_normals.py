@@ -1,13 +1,5 @@
 """Normals of the refined surface: true, steady, and the same whatever is split."""
 
-from __future__ import annotations
-
-import json
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -19,7 +11,6 @@ from risorius import refine
 from tests import meshes
 from tests.refine.cases import GivenMetric, surface_at
 
-ROOT = Path(__file__).resolve().parents[3]
 SCHEMES = ("loop", "cubic", "detail")
 STEPS = 800
 """Of a motion. What pops does so at once, however small the steps are."""
@@ -261,28 +252,3 @@ def test_far_from_the_origin(scheme: str) -> None:
     near = refiner.refine(deformed).normals.copy()
     far = refiner.refine(deformed + 1e5).normals
     np.testing.assert_allclose(far, near, rtol=0, atol=2e-5)
-
-
-@pytest.mark.slow
-def test_runs_as_python() -> None:
-    """Without the compiler every scheme shows the same normals."""
-    program = (
-        "import sys, numpy as np\n"
-        "from tests import meshes\n"
-        "from tests.refine.cases import GivenMetric\n"
-        "from tests.refine.beyond.test_surface_normals import SCHEMES, bound, metrics\n"
-        "mesh = meshes.irregular(3, 4, 3, 1)\n"
-        "deformed = meshes.wrinkled(mesh, 1, 0.2)\n"
-        "refiners = [bound(mesh, scheme, GivenMetric(metrics(mesh, 2))) for scheme in SCHEMES]\n"
-        "refiners += [bound(mesh, scheme, 'displacement') for scheme in SCHEMES]\n"
-        "print(np.concatenate([r.refine(deformed).normals for r in refiners]).tolist())\n"
-    )
-    shown = []
-    for switch in ("0", "1"):
-        told = subprocess.run(
-            [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, timeout=300,
-            env={**os.environ, "NUMBA_DISABLE_JIT": switch},
-        )  # fmt: skip
-        assert told.returncode == 0, told.stderr
-        shown.append(np.array(json.loads(told.stdout)))
-    np.testing.assert_allclose(shown[0], shown[1], rtol=0, atol=1e-5)

@@ -1,7 +1,5 @@
 """Attributes of any width ride along; inputs of any type and order are taken."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
@@ -56,24 +54,6 @@ def test_attributes_are_linear(name: str, options: dict[str, object]) -> None:
     ):
         expected = np.einsum("tci,tiu->tcu", places, values[refined.source])
         np.testing.assert_allclose(found[refined.triangles], expected, rtol=0, atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("attribute", "text"),
-    [
-        (np.zeros(6), r"attributes\['heat'\] must be numbers of shape \(V, k\), .*, got float64"),
-        (np.zeros((5, 2)), "needs one row per vertex .6., got 5"),
-        (np.full((6, 1), np.nan), "must be finite"),
-        ((np.zeros((3, 1)), np.full((8, 3), 3)), r"must hold indices from 0 to 2 into attributes"),
-        ((np.zeros((3, 1)), np.zeros((7, 3), int)), "one row per triangle .8., got 7"),
-        (np.array([["a"]] * 6), "must be numbers"),
-    ],
-)
-def test_bad_attributes(attribute: object, text: str) -> None:
-    """Attributes that do not fit are refused with their name."""
-    mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match=text):
-        refine.create("kahler", mesh.faces, mesh.vertices, attributes={"heat": attribute})
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])

@@ -1,7 +1,5 @@
 """The base class of refiners, as somebody else derives from it."""
 
-from __future__ import annotations
-
 from typing import Any, Unpack
 
 import numpy as np
@@ -98,35 +96,6 @@ def test_seams_and_attributes() -> None:
     assert mesh.uv is not None
     middles = mesh.uv[len(refiner.connectivity.wedge_vertices) :]
     np.testing.assert_allclose(middles, tube.uv[tube.face_uv].mean(axis=1), atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ({"positions": np.zeros((5, 3))}, r"positions must be floats of shape \(6, 3\)"),
-        ({"positions": np.full((6, 3), np.nan)}, "positions must be finite"),
-        ({"positions": np.ones((6, 3)), "out": np.zeros(3)}, "a stream must have the arrays"),
-        ({"positions": np.ones((6, 3)), "view": (0, 0, 1)}, "view must be a refine.View"),
-    ],
-)
-def test_what_goes_in_is_checked(arguments: dict[str, Any], text: str) -> None:
-    """A subclass need not look at what it is handed."""
-    mesh = meshes.octahedron()
-    refiner = Middles(mesh.faces, mesh.vertices)
-    with pytest.raises(ValueError, match=text):
-        refiner.refine(**arguments)
-
-
-def test_options_are_checked_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The options of a subclass and of its base are known to `create`, and no others."""
-    from risorius.refine.border import registry
-
-    monkeypatch.setattr(registry.refiners, "_factories", dict(registry.refiners._factories))
-    mesh = meshes.octahedron()
-    refine.register("middles", Middles)
-    refine.create("middles", mesh.faces, mesh.vertices, raised=1.0, attributes={"a": mesh.vertices})
-    with pytest.raises(ValueError, match=r"it takes \['attributes', 'raised'\]"):
-        refine.create("middles", mesh.faces, mesh.vertices, lowered=1.0)
 
 
 def test_base_refiner_fills_nothing() -> None:

@@ -1,7 +1,5 @@
 """The checker must notice what it promises to notice: each test breaks one relation."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from types import SimpleNamespace
 

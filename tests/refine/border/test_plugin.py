@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import copy
-import importlib.metadata
 import pickle
-from collections.abc import Callable, Iterator
 from functools import partial
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -73,92 +70,6 @@ def test_registered_refiner() -> None:
         refine.check(moved, moved.refine(FINE.vertices), FINE.vertices)
 
 
-@pytest.fixture
-def fresh_entry_points() -> Iterator[None]:
-    """Entry points are looked for anew in this test, and once more after it."""
-    registry._entry_points.cache_clear()
-    yield
-    registry._entry_points.cache_clear()
-
-
-KINDS = {
-    "refiner": (registry.refiners, Outside),
-    "criterion": (refine.criteria, refine.Curvature),
-    "scheme": (refine.schemes, LoopScheme),
-}
-
-
-def create_installed(kind: str) -> refine.Refiner:
-    """Ask for what the name `installed` stands for."""
-    if kind == "refiner":
-        return refine.create("installed", FINE.faces, FINE.vertices)
-    return refine.create("kahler", FINE.faces, FINE.vertices, **{kind: "installed"})
-
-
-def install(
-    monkeypatch: pytest.MonkeyPatch, group: str, load: Callable[[], object]
-) -> SimpleNamespace:
-    """Let there be a package that announces `installed` in this group."""
-    point = SimpleNamespace(name="installed", value="theirs:Thing", load=load)
-
-    def entry_points(*, group: str) -> list[SimpleNamespace]:
-        return [point] if group == announced else []
-
-    announced = group
-    monkeypatch.setattr(importlib.metadata, "entry_points", entry_points)
-    return point
-
-
-@pytest.mark.usefixtures("fresh_entry_points")
-@pytest.mark.parametrize("kind", KINDS)
-def test_entry_point(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
-    """An installed package brings things of all kinds, loaded when they are first asked for."""
-    known, factory = KINDS[kind]
-    loaded: list[int] = []
-    assert known._group == {"criterion": "risorius.criteria"}.get(kind, f"risorius.{kind}s")
-    point = install(monkeypatch, known._group, lambda: loaded.append(1) or factory)
-    assert known.available()[-1] == "installed"
-    assert known.installed() == {"installed": point}
-    assert not loaded
-    refiner = create_installed(kind)
-    assert loaded
-    refine.check(refiner, refiner.refine(FINE.vertices), FINE.vertices)
-
-
-def fail_to_import() -> object:
-    """A module that does not even import, and has much to say about it."""
-    raise ImportError("no such\nlibrary")
-
-
-@pytest.mark.usefixtures("fresh_entry_points")
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(
-    ("load", "text"),
-    [
-        (fail_to_import, "{kind} 'installed' of 'theirs:Thing' cannot be loaded: .*: no such lib"),
-        (lambda: 3, "{kind} 'installed' of 'theirs:Thing' must be a class or a function, got 3"),
-    ],
-)
-def test_broken_entry_point(
-    monkeypatch: pytest.MonkeyPatch, kind: str, load: Callable[[], object], text: str
-) -> None:
-    """A package that is of no use is named with its reason, and only when it is asked for."""
-    install(monkeypatch, KINDS[kind][0]._group, load)
-    assert "installed" in KINDS[kind][0].available()
-    with pytest.raises(ValueError, match=text.format(kind=kind)) as caught:
-        create_installed(kind)
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.usefixtures("fresh_entry_points")
-@pytest.mark.parametrize("kind", ["criterion", "scheme"])
-def test_entry_point_of_another_kind(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
-    """What a package makes is looked at as closely as an object that is handed over."""
-    install(monkeypatch, KINDS[kind][0]._group, lambda: lambda: 3.5)
-    with pytest.raises(ValueError, match=rf"{kind} must be .* got 3\.5"):
-        create_installed(kind)
-
-
 @pytest.mark.usefixtures("clean_registry")
 @pytest.mark.parametrize(
     ("name", "factory", "text"),
@@ -201,6 +112,7 @@ def test_unknown_option(name: str, text: str) -> None:
 
 NAN = FINE.vertices.copy()
 NAN[4, 1] = np.nan
+NO_FACES = np.zeros((0, 3), int)
 
 
 @pytest.mark.parametrize(
@@ -213,6 +125,7 @@ NAN[4, 1] = np.nan
         ({"faces": [[0, 1, 2, 3]]}, "cut polygons into triangles"),
         ({"rest_positions": FINE.vertices[:, :2]}, r"numbers of shape \(V, 3\), got float64"),
         ({"faces": [[0, 1, 2], [0, 1]]}, "faces must be integers .* is no array"),
+        ({"faces": [[0, 1, 2**70]]}, "faces must be integers"),
         ({"faces": np.ma.masked_equal(FINE.faces, 3)}, "faces .* has masked entries"),
         ({"rest_positions": NAN}, "must be finite and below 1e.15, but vertex 4 is"),
         ({"rest_positions": FINE.vertices * 1e16}, "must be finite and below 1e.15"),
@@ -227,6 +140,15 @@ NAN[4, 1] = np.nan
         ({"uv": np.full((6, 2), 1e39)}, "uv must be finite as single precision"),
         ({"attributes": [FINE.vertices]}, "attributes must be arrays by name, .* got list"),
         ({"attributes": {"a": [FINE.vertices, FINE.faces]}}, "a tuple of such values and the row"),
+        (
+            {"attributes": {"a": np.zeros(6)}},
+            r"attributes\['a'\] must be numbers of shape \(V, k\)",
+        ),
+        ({"attributes": {"a": np.zeros((5, 2))}}, "needs one row per vertex .6., got 5"),
+        ({"attributes": {"a": np.full((6, 1), np.nan)}}, "must be finite"),
+        ({"attributes": {"a": (np.eye(3), FINE.faces)}}, "indices from 0 to 2 into attributes"),
+        ({"attributes": {"a": (np.eye(6), FINE.faces[:7])}}, "one row per triangle .8., got 7"),
+        ({"attributes": {"a": np.array([["a"]] * 6)}}, "must be numbers"),
         ({"uv": np.zeros((3, 2)), "face_uv": FINE.faces}, "face_uv must hold indices from 0 to 2"),
         ({"uv": np.zeros((6, 2)), "face_uv": FINE.faces[:3]}, "one row per triangle .8., got 3"),
     ],
@@ -315,10 +237,29 @@ def test_frames_can_be_kept() -> None:
             "a name, a refine.Criterion, .*Curvature",
         ),
         ({"scheme": LoopScheme}, "scheme must be one of .*LoopScheme"),
+        ({"blend": 2}, "blend must be True or False, got 2"),
+        ({"threshold_once": -0.1}, "0 <= threshold_once <= threshold_twice .* got"),
+        ({"threshold_once": 0.3, "threshold_twice": 0.2}, "0 <= threshold_once <= threshold_twice"),
+        ({"threshold_once": np.nan}, "0 <= threshold_once <= threshold_twice .* got"),
+        ({"criterion": "bending"}, r"'bending' is unknown; there are \('normal', 'curvature'"),
+        ({"criterion": "normal+"}, "criterion '' is unknown; there are"),
+        ({"criterion": []}, "an empty list decides nothing"),
+        ({"criterion": 7}, "criterion must be a name, a refine.Criterion, or a list, got 7"),
+        ({"scheme": "lop"}, "scheme 'lop' is unknown; there are"),
+        ({"scheme": 3}, "scheme must be one of .* or a refine.Scheme, got 3"),
+        ({"scheme": "detail"}, "go together, got scheme='detail' and detail not given"),
+        ({"detail": (np.eye(3), [[0, 1, 2]])}, "go together, got scheme='loop' and detail given"),
+        ({"scheme": "detail", "detail": np.eye(3)}, "detail must be a pair"),
+        (
+            {"scheme": "detail", "detail": (np.eye(3), [[0, 1, 3]])},
+            r"detail\[1\] must hold indices",
+        ),
+        ({"scheme": "detail", "detail": (np.eye(3), NO_FACES)}, "must have triangles"),
+        ({"blend": True, "coherent": True}, "ask for one of the two"),
     ],
 )
-def test_options_of_another_kind(options: dict[str, object], text: str) -> None:
-    """A word for a number, or a class for an object, is refused with what it is."""
+def test_bad_options(options: dict[str, object], text: str) -> None:
+    """What is of another kind, does not exist or does not fit together is refused with what is."""
     with pytest.raises(ValueError, match=text):
         refine.create("kahler", FINE.faces, FINE.vertices, **options)
 
@@ -335,11 +276,3 @@ def test_an_object_knows_one_mesh(name: str) -> None:
     first.refine(FINE.vertices)  # and has not learnt the other's scheme
     del first
     create(**{name: thing})
-
-
-@pytest.mark.parametrize("view", [refine.View((0, 0, 5), "x"), refine.View("eye"), refine.View(5)])
-def test_views_of_another_kind(view: refine.View) -> None:
-    """An eye is a point, and a focal length a number."""
-    refiner = refine.create("kahler", FINE.faces, FINE.vertices, criterion="silhouette")
-    with pytest.raises(ValueError, match="view must have an eye of shape"):
-        refiner.refine(FINE.vertices, view=view)

@@ -1,16 +1,11 @@
 """The stream contract: lent arrays are filled in place, checked, and nothing is allocated."""
 
-from __future__ import annotations
-
 import copy
 import gc
-import math
 import pickle
 import tracemalloc
 from collections.abc import Callable
-from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -240,102 +235,3 @@ def test_anything_below_the_limit_is_finite(scheme: str) -> None:
     refined = refiner.refine(blown)
     assert np.isfinite(refined.positions).all()
     assert np.isfinite(refined.normals).all()
-
-
-class Ring:
-    """Slots of a file that is mapped, of which each frame gets the next."""
-
-    def __init__(self, refiner: refine.Refiner, path: Path, slots: int) -> None:
-        kinds = (
-            ("vertices", np.float32, (refiner.vertex_capacity, refiner.vertex_columns)),
-            ("triangles", np.uint32, (refiner.triangle_capacity, 3)),
-            ("source", np.int32, (refiner.triangle_capacity,)),
-        )
-        self.slots: list[dict[str, np.ndarray]] = []
-        path.write_bytes(bytes(slots * sum(4 * math.prod(shape) for _, _, shape in kinds)))
-        offset = 0
-        for _ in range(slots):
-            self.slots.append({})
-            for name, kind, shape in kinds:
-                self.slots[-1][name] = np.memmap(path, kind, "r+", offset, shape)
-                offset += 4 * math.prod(shape)
-        self.frame = -1
-
-    def reserve(self, vertex_count: int, triangle_count: int) -> None:
-        """Turn to the next slot; all have room for the worst case."""
-        self.frame += 1
-        vars(self).update(self.slots[self.frame % len(self.slots)])
-
-
-@pytest.mark.parametrize(("name", "options"), REFINERS)
-def test_mapped_memory(tmp_path: Path, name: str, options: dict[str, int]) -> None:
-    """Frames go straight into a file that is mapped, slot by slot; whoever reads it finds them."""
-    tube = meshes.tube(10, 6)
-    refiner = refine.create(
-        name, tube.faces, tube.vertices, uv=tube.uv, face_uv=tube.face_uv, **options
-    )
-    ring = Ring(refiner, tmp_path / "ring", slots=3)
-    for frame in range(5):
-        deformed = meshes.wrinkled(tube, frame)
-        expected = [np.array(part) for part in refiner.refine(deformed)[:5]]
-        mesh = refiner.refine(deformed, out=ring)
-        refine.check(refiner, mesh, deformed)
-        slot = ring.slots[frame % 3]
-        assert np.shares_memory(mesh.positions, slot["vertices"])
-        slot["vertices"].flush()
-        rows = np.fromfile(
-            tmp_path / "ring", np.float32, slot["vertices"].size, offset=slot["vertices"].offset
-        ).reshape(slot["vertices"].shape)[: mesh.vertex_count]
-        np.testing.assert_array_equal(rows, np.column_stack([*expected[:2], expected[4]]))
-
-
-class OnDevice:
-    """A refiner that leaves its output on another machine: here in bytes, which count requests."""
-
-    def __init__(self, faces: np.ndarray, rest_positions: np.ndarray) -> None:
-        self._here = refine.create("kahler", faces, rest_positions)
-        self.edges, self.triangle_edges = self._here.edges, self._here.triangle_edges
-        self.splits = self._here.splits
-        self.vertex_capacity = self.triangle_capacity = 0
-        self.vertex_columns = 6
-        self.origins = self._here.origins
-
-    def refine(self, positions: np.ndarray, out: object = None, view: object = None) -> FetchedMesh:
-        """Tell the counts, and where the rest is."""
-        mesh = self._here.refine(positions)
-        buffers = {
-            name: (array.tobytes(), array.dtype, array.shape)
-            for name, array in zip(mesh._fields[:4], mesh[:4], strict=True)
-        }
-        return FetchedMesh(mesh.vertex_count, mesh.triangle_count, buffers)
-
-
-class FetchedMesh:
-    """The members of `RefinedMesh`, fetched when they are asked for."""
-
-    uv = None
-    attributes: ClassVar[dict[str, np.ndarray]] = {}
-
-    def __init__(self, vertex_count: int, triangle_count: int, buffers: dict[str, Any]) -> None:
-        self.vertex_count, self.triangle_count = vertex_count, triangle_count
-        self.fetched: list[str] = []
-        self._buffers = buffers
-
-    def __getattr__(self, name: str) -> np.ndarray:
-        content, kind, shape = self._buffers[name]
-        self.fetched.append(name)
-        return np.frombuffer(content, kind).reshape(shape)
-
-
-def test_output_elsewhere() -> None:
-    """Who draws by the counts fetches nothing; the checker fetches every array once."""
-    mesh = meshes.irregular(3)
-    refiner = OnDevice(mesh.faces, mesh.vertices)
-    assert isinstance(refiner, refine.Refiner)
-    deformed = meshes.wrinkled(mesh, 4)
-    refined = refiner.refine(deformed)
-    assert refined.triangle_count > len(mesh.faces)
-    assert refined.fetched == []
-    refine.check(refiner, refined, deformed)  # type: ignore[arg-type]
-    assert refined.fetched == ["positions", "normals", "triangles", "source"]
-    assert refined.vertex_count == len(refined.positions)

@@ -1,7 +1,5 @@
 """Time-coherent splitting: the 271 sequences, their triangulations, and the way between them."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

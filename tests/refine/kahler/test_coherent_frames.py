@@ -1,7 +1,5 @@
 """`coherent=True` through the whole refiner, frame after frame (section 4.4)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 import numpy as np

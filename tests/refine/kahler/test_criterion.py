@@ -1,17 +1,13 @@
 """When edges split, and when they must not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from risorius import refine
 from risorius.refine.kahler.criterion import ROUNDING
-from risorius.refine.mesh.normals import vertex_normals
 from tests import meshes
 from tests.refine.cases import Forced
 from tests.refine.plain_twin import edge_dots, edge_name
-from tests.refine.plain_twin import vertex_normals as plain_normals
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -95,19 +91,6 @@ def test_rounding_guard() -> None:
         assert refiner.splits.sum() == expected
 
 
-def test_normals_are_weighted_by_area() -> None:
-    """Normals are those of the plain twin, and zero at vertices without triangles."""
-    mesh = meshes.with_debris()
-    positions = meshes.wrinkled(mesh, 7)
-    normals = np.zeros(positions.shape, dtype=np.float32)
-    vertex_normals(positions, mesh.faces.astype(np.uint32), normals)
-    expected = plain_normals(
-        [tuple(p) for p in positions], [tuple(int(v) for v in face) for face in mesh.faces]
-    )
-    np.testing.assert_allclose(normals, np.array(expected), rtol=0, atol=1e-6)
-    assert normals[15].tolist() == [0, 0, 0]
-
-
 def test_thresholds_between_frames() -> None:
     """Thresholds that are set, or replaced as a whole, count from the next frame on."""
     mesh = meshes.irregular(3)
@@ -122,20 +105,6 @@ def test_thresholds_between_frames() -> None:
     criterion.thresholds = refine.NormalDrop(3.0, 3.0).thresholds
     refiner.refine(deformed)
     assert not refiner.splits.any()
-
-
-@pytest.mark.parametrize("thresholds", [(-0.1, 0.2), (0.3, 0.2), (float("nan"), 1.0)])
-def test_bad_thresholds(thresholds: tuple[float, float]) -> None:
-    """Thresholds out of order are refused with the rule they break."""
-    mesh = meshes.triangle()
-    with pytest.raises(ValueError, match=r"0 <= threshold_once <= threshold_twice .* got"):
-        refine.create(
-            "kahler",
-            mesh.faces,
-            mesh.vertices,
-            threshold_once=thresholds[0],
-            threshold_twice=thresholds[1],
-        )
 
 
 def test_criterion_from_outside() -> None:

@@ -1,7 +1,5 @@
 """The paper's refiner against its plain twin and against the checker."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -65,24 +63,6 @@ def test_soups(soup: tuple[np.ndarray, np.ndarray], data: st.DataObject) -> None
     splits = data.draw(st.lists(st.integers(0, 2), min_size=edge_count, max_size=edge_count))
     refiner, refined = refine_and_check(mesh, positions, criterion=Forced(splits))
     assert_is_twin(mesh, positions, refiner, refined, normals_cancel=True)
-
-
-@settings(max_examples=60, deadline=None)
-@given(
-    seed=st.integers(0, 1000),
-    columns=st.integers(1, 8),
-    rows=st.integers(1, 8),
-    holes=st.integers(0, 4),
-    amplitude=st.floats(0.01, 2.0),
-    thresholds=st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)).map(sorted),
-)
-def test_generated_sheets(
-    seed: int, columns: int, rows: int, holes: int, amplitude: float, thresholds: list[float]
-) -> None:
-    """Grids of any size, with any deformation and thresholds, come out proper."""
-    mesh = meshes.irregular(seed, columns, rows, holes)
-    deformed = meshes.wrinkled(mesh, seed + 1, amplitude)
-    refine_and_check(mesh, deformed, threshold_once=thresholds[0], threshold_twice=thresholds[1])
 
 
 def test_capacity_is_reached() -> None:

@@ -1,7 +1,5 @@
 """The weights of Figs. 3 and 4, worked out by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

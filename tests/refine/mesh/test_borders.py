@@ -1,7 +1,5 @@
 """Border curves and their corners."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Edges, neighbourhoods, wedges and attribute edges."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,29 +8,6 @@ from risorius import refine
 from tests import meshes
 from tests.refine.cases import soups
 from tests.refine.plain_twin import Surroundings, edge_name
-
-
-@pytest.mark.parametrize(
-    ("name", "edge_count", "interior_count"),
-    [
-        ("triangle", 3, 0),
-        ("two_triangles", 5, 1),
-        ("fan", 12, 6),
-        ("tetrahedron", 6, 6),
-        ("octahedron", 12, 12),
-        ("half_shut_book", 5, 1),
-        ("pillow", 3, 3),
-        ("bow_tie", 6, 0),
-        ("three_on_an_edge", 7, 0),
-        ("inconsistent_pair", 5, 0),
-    ],
-)
-def test_edge_counts(name: str, edge_count: int, interior_count: int) -> None:
-    """Named meshes have the edges one counts by hand."""
-    mesh = meshes.NAMED[name]()
-    connectivity = refine.connect(mesh.faces, len(mesh.vertices))
-    assert len(connectivity.edges) == edge_count
-    assert connectivity.around.is_interior.sum() == interior_count
 
 
 @settings(max_examples=150, deadline=None)

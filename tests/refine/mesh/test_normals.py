@@ -1,7 +1,5 @@
 """Normals are of length one or exactly zero, whatever is done to a mesh."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loops shared among threads: the same bits, every item once, and none for small meshes."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
