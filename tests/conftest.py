@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from risorius import assets
+from risorius.assets.model import Head
+
 # No deadlines: a shared machine may stall any example. In continuous integration the examples are
 # the same every time, and more; at a developer's desk hypothesis keeps looking for new ones.
 settings.register_profile("everywhere", deadline=None, max_examples=40)
@@ -32,3 +35,9 @@ def fixed_seed() -> None:
 def generator() -> np.random.Generator:
     """A seeded numpy generator."""
     return np.random.default_rng(20030214)
+
+
+@pytest.fixture(scope="session")
+def head() -> Head:
+    """The built-in head, whose arrays nobody can write."""
+    return assets.load("head")

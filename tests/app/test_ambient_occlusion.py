@@ -92,19 +92,6 @@ def test_program_writes_the_light_of_a_head(unbaked: FaceScene) -> None:
         _ = load_head(head.ambient_occlusion_file.with_name("head.npz")).ambient_occlusion
 
 
-@pytest.mark.slow
-def test_baking_leaves_a_posed_face_alone(unbaked: FaceScene) -> None:
-    """Baking moves a face: one that is posed already keeps its pose, and gets the same image."""
-    rest = unbaked.positions.copy()
-    image = unbaked.ambient_occlusion()
-    assert np.array_equal(unbaked.positions, rest)
-    unbaked.pose({"joy": 1.0})
-    unbaked.step(0.3)
-    before = unbaked.positions.copy()
-    assert np.array_equal(unbaked.ambient_occlusion(), image)
-    assert np.array_equal(unbaked.positions, before) and unbaked.values["joy"] == 1.0
-
-
 def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
     """Molars lose more than incisors, eyes nothing."""
     head, shown = face.head.parts, face.parts

@@ -1,8 +1,5 @@
 """The command line: what it writes, and that mistakes are one line and exit code 2."""
 
-import os
-import subprocess
-import sys
 from itertools import combinations
 from pathlib import Path
 
@@ -11,8 +8,6 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from PIL import Image
-
-from tests.heads import stranger
 
 from .command_line import risorius
 
@@ -96,19 +91,6 @@ def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
     assert np.abs(drawn(320, "--compare")[0][:, :160] - pictures[0]).max() <= 2
 
 
-def test_the_plane_is_a_second_scene(tmp_path: Path) -> None:
-    """`capture --scene plane` refines the waving plane to the paper's many triangles."""
-    sheet = tmp_path / "plane.png"
-    result = risorius(
-        *"capture --scene plane --fps 10 --size 320x240 --quiet -o".split(),
-        *(tmp_path / "frames", "--sheet", sheet),
-    )
-    assert result.exit_code == 0, result.output
-    most = int(result.output.rpartition(" triangles")[0].split()[-1])
-    assert 1328 <= most <= 1540
-    assert sheet.exists()
-
-
 def test_a_script_begins_in_its_first_pose(tmp_path: Path) -> None:
     """A pose at time 0 is there in the first frame: the face is in it, the plane is waving."""
     path = tmp_path / "held.toml"
@@ -120,25 +102,6 @@ def test_a_script_begins_in_its_first_pose(tmp_path: Path) -> None:
         assert result.exit_code == 0, result.output
         count = int(result.output.split(": ")[1].split()[0])
         assert count > (2300 if scene == "face" else 1000)
-
-
-def test_no_opengl_is_one_line(tmp_path: Path) -> None:
-    """Without libEGL, capture says what is missing and the command that cures it."""
-    environment = {**os.environ, "GLCONTEXT_LINUX_LIBEGL": "libEGL-not-there.so"}
-    environment.pop("DISPLAY", None)
-    words = (sys.executable, "-m", "risorius", "capture")
-    result = subprocess.run(
-        [*words, "--scene", "plane", "--set", "amplitude", "-o", str(tmp_path / "x.mp4")],
-        capture_output=True,
-        text=True,
-        env=environment,
-        check=False,
-    )
-    assert result.returncode == 2
-    assert result.stderr.strip().startswith("risorius: ")
-    assert "Cure: unset GLCONTEXT_LINUX_LIBEGL" in result.stderr
-    assert len(result.stderr.strip().splitlines()) == 1
-    assert not list(tmp_path.iterdir())
 
 
 def test_controls_lists_what_scripts_may_name() -> None:
@@ -164,24 +127,6 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_head_of_ones_own_is_filmed(tmp_path: Path) -> None:
-    """`--head` and `--landmarks`: another head, in metres and z up, smiles; errors are one line."""
-    other = stranger()
-    mesh, landmarks = other.write(tmp_path)
-    image = tmp_path / "smile.png"
-    arguments = ("capture", "--head", mesh, "--landmarks", landmarks, "--set", "joy")
-    result = risorius(*arguments, "-o", image, "--size", "160x120", "--quiet")
-    assert result.exit_code == 0, result.output
-    assert np.asarray(Image.open(image)).std() > 10.0
-    other.write(tmp_path, landmarks=other.landmarks[::-1])
-    result = risorius(*arguments, "-o", image, "--quiet")
-    assert result.exit_code == 2
-    assert len(result.stderr.strip().splitlines()) == 1
-    result = risorius(*arguments[:5], "--scene", "plane", "-o", image, "--quiet")
-    assert "--head and --person go with the scene face" in result.stderr or result.exit_code == 2
-
-
-@pytest.mark.slow
 def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
     """`--person` and `--light`: other pictures than without, the same ones every time."""
     seen = []
@@ -191,14 +136,6 @@ def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
         assert result.exit_code == 0, result.output
         seen.append(np.asarray(Image.open(tmp_path / "a.png")).tobytes())
     assert seen[1] == seen[-1] and len(set(seen)) == 4
-
-
-def test_bench_refine() -> None:
-    """`bench refine` prints a row for each method."""
-    result = risorius("bench", "refine", "--size", "2k", "--seconds", "0.05")
-    assert result.exit_code == 0, result.output
-    for word in ("kahler 10 %", "kahler 100 %", "ns/tri"):
-        assert word in result.output
 
 
 def test_reproduce_table1() -> None:

@@ -5,7 +5,6 @@ import io
 import json
 import re
 import struct
-import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,10 +17,9 @@ from threadpoolctl import threadpool_limits
 
 from risorius import assets, sim
 from risorius.app.export import pieces
-from risorius.app.export.clip import Clip, Surface, record
+from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
-from risorius.app.export.pieces import moving_pieces
 from risorius.app.performances import script_for
 from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
@@ -368,32 +366,3 @@ def test_what_targets_cannot_follow_is_told(
     player = Player(tmp_path / "rough.glb")
     error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))
     assert remark is not None and f"{error:.2f} mm" in remark and error > 1.0
-
-
-@pytest.mark.slow
-def test_long_clips_take_little_memory_beside_their_own() -> None:
-    """Positions are never all there in double precision, nor normals of all frames."""
-    scene, generator = build_scene("plane"), np.random.default_rng(3)
-    shapes = scene.rest_positions.astype(np.float32) + np.tensordot(
-        generator.normal(size=(10_000, 5)), generator.normal(size=(5, *scene.positions.shape)), 1
-    ).astype(np.float32)
-    plane = Surface("plane", scene.rest_positions, scene.faces, shapes)
-    script = parse_script(SHAPES, source="test")
-    tracemalloc.start()
-    try:
-        moving_pieces(Clip(scene, script, 24.0, (plane,), {}, {}, {}))
-        assert tracemalloc.get_traced_memory()[1] < 3.0 * shapes.nbytes
-    finally:
-        tracemalloc.stop()
-
-
-@pytest.mark.slow
-def test_lips_of_a_rig_close_over_an_open_jaw(rigged: tuple[Player, str | None]) -> None:
-    """mouthClose says how much of jawOpen the lips make good, so both together shut the mouth."""
-    player, _ = rigged
-    names, marks = player.target_names("skin"), assets.load("head").landmarks
-    rest = player.attribute("skin", "POSITION").astype(np.float64)
-    opened = rest + player.target("skin", names.index("jawOpen"))
-    closed = opened + player.target("skin", names.index("mouthClose"))
-    gaps = [np.linalg.norm(shape[marks[62]] - shape[marks[66]]) for shape in (rest, opened, closed)]
-    assert gaps[1] > gaps[0] + 0.015 and gaps[2] < gaps[0] + 0.003

@@ -22,7 +22,7 @@ from risorius.app.capture import Capture, CaptureOptions, capture, outputs, proc
 from risorius.app.capture.encoder import FORMATS, TRANSPARENT, size_of_film
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
-from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.scenes import FaceScene
 from risorius.app.script import parse_script
 
 from .command_line import risorius, started
@@ -265,26 +265,6 @@ def test_a_disk_that_fills_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
         for frame in numbered_frames():
             add(frame)
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.slow
-@linux
-def test_memory_stays_flat() -> None:
-    """Some hundred frames take no more memory than the first ones."""
-
-    def resident() -> int:
-        """Of this process [bytes]."""
-        return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-
-    scene = PlaneScene()
-    with Capture(scene, SMALL) as studio:
-        sizes = []
-        for index in range(500):
-            scene.step(1.0 / 30.0)
-            studio.draw_frame()
-            if index in (100, 499):
-                sizes.append(resident())
-    assert sizes[1] - sizes[0] < 8e6  # half of the pictures that were read back: 2.3 MB
 
 
 @pytest.mark.slow

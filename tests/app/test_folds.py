@@ -18,10 +18,7 @@ from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.refining.refiners import refiner_for
 from risorius.app.refining.wrinkling import Compression, Relief, on_rows, relief_of
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.assets.fitting import fit
-from risorius.assets.meshes import Mesh
 from risorius.assets.model import HIGHEST_FOLD
-from risorius.assets.pictures import Texture
 
 JOY = Refinement()
 SIDE = 6  # of the sheet, in cells of 8 mm
@@ -124,19 +121,6 @@ def test_the_sheet_has_folds_to_crack() -> None:
     assert len(rims(wild, mesh.triangles)) > len(rims(smooth, mesh.triangles))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
-def test_the_simulated_mesh_keeps_its_bytes(joy: FaceScene, scheme: str) -> None:
-    """Folds move what is drawn, by at most a millimetre, and never by another refiner's rows."""
-    before = joy.positions.tobytes()
-    by = Refinement(options={"scheme": scheme, "criterion": "normal"})
-    smooth, mesh = folded(joy, by, joy.positions)
-    moved = np.linalg.norm(mesh.positions - smooth, axis=1)
-    assert joy.positions.tobytes() == before
-    assert 0.5 < moved.max() <= HIGHEST_FOLD + 1e-5
-    assert 0.01 < (moved > 0.1).mean() < 0.3
-
-
 def test_at_rest_and_in_the_papers_look_there_are_none(joy: FaceScene) -> None:
     """The paper's rule alone decides in its look; the mesh as it is stays as it is."""
     for refinement in (Refinement("paper"), Refinement(refiner=STATIC)):
@@ -193,38 +177,3 @@ def test_carved_normals_are_those_of_the_folds(joy: FaceScene) -> None:
     ]
     np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-5)
     assert off[1] < off[0]
-
-
-def _patchwork(head: assets.Head) -> Texture:
-    """A chequered picture, and the head's halves on it: one turned by a quarter, one smaller."""
-    is_left = (head.uv[head.face_uv, 0].mean(axis=1) > 0.5)[:, None]
-    turned = np.column_stack([1.0 - head.uv[:, 1], head.uv[:, 0]])
-    uv = np.concatenate([turned * [0.48, 0.9], head.uv * [0.7, 0.8] + [0.2, 0.1]])
-    face_uv = (head.face_uv + len(head.uv) * is_left).astype(np.int32)
-    squares = np.indices((16, 16)).sum(axis=0) % 2 * np.uint8(200)
-    picture = np.dstack([squares.astype(np.uint8)] * 3)
-    return Texture(
-        uv.astype(np.float32), face_uv, np.zeros(len(face_uv), np.int64), (lambda: picture,)
-    )
-
-
-@pytest.mark.slow
-def test_folds_lie_where_they_belong_in_an_own_layout() -> None:
-    """A head with a picture of its own folds as one without, but for a seam along its middle."""
-    head = assets.load("head")
-    weights = np.random.default_rng(3).dirichlet(np.ones(3), size=len(head.faces))
-    moves = []
-    for texture in (None, _patchwork(head)):
-        scene = FaceScene(fit(Mesh(head.vertices, head.faces, texture), head.landmarks))
-        scene.pose({"joy": 1.0})
-        scene.step(1.2)
-        assert scene.wrinkles is not None and scene.uv is not None
-        amounts = Compression(scene).amounts(scene.positions)[scene.faces]
-        shown, uv = (
-            np.einsum("fc,fck->fk", weights, each) for each in (amounts, scene.uv[scene.face_uv])
-        )
-        moves.append((shown * Relief(scene.wrinkles).heights(uv)).sum(axis=1))
-    is_beside = abs(head.vertices[head.faces, 0]).min(axis=1) > 12.0
-    plain, own = (each[is_beside] for each in moves)
-    assert abs(plain).max() > 0.3
-    assert abs(own - plain).max() < 0.15 and abs(own - plain).mean() < 0.05 * abs(plain).mean()

@@ -1,7 +1,5 @@
 """The life of a face that nobody moves: how often, how far, the same each time, beneath all."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,8 +15,6 @@ from risorius.app.script import Channel, Key, Script
 from risorius.app.viewer.frame_times import FrameTimes
 from risorius.app.viewer.session.physics import SEEN, STEP, Physics
 from risorius.app.viewer.session.session import Session
-from risorius.assets.fitting import fit_head
-from tests.heads import stranger
 
 HOUR = 3600.0
 NOBODY = frozenset[str]()
@@ -127,15 +123,6 @@ def test_both_eyes_meet_the_camera(scene: FaceScene, view: str) -> None:
     left, right = (pupils(scene)[side][1] for side in ("left", "right"))
     assert left[0] < right[0]  # they converge
     scene.reset()
-
-
-@pytest.mark.slow
-def test_a_head_of_ones_own_meets_the_camera(tmp_path: Path) -> None:
-    """Elsewhere and of another size, its eyes do as well."""
-    scene = FaceScene(fit_head(*stranger().write(tmp_path)))
-    eye = camera_for(scene, "three-quarter").eye
-    _look(scene, eye)
-    assert _off(scene, eye) < 2.0
 
 
 def _off(scene: FaceScene, viewer: np.ndarray) -> float:

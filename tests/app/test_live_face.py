@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
@@ -99,21 +98,6 @@ def test_the_newest_frame_counts(wire: Wire) -> None:
     wire.face.advance(0.0)
     assert wire.face.channels["jawOpen"] == pytest.approx(0.7)
     assert wire.face.rate == 8.0 and not wire.face.has_frame
-
-
-@pytest.mark.parametrize("wire", list(PROTOCOLS), indirect=True)
-def test_ten_thousand_random_packets_leave_it_as_it_was(
-    wire: Wire, generator: np.random.Generator
-) -> None:
-    """All are counted, and the frame after them is taken like the one before."""
-    packet = {"livelink": live_link, "vmc": vmc}[wire.face.listening.kind]
-    wire.take(packet({"JawOpen": 0.5}))
-    for _ in range(200):
-        lengths = generator.integers(0, 300, 50)
-        wire.take(*(generator.bytes(int(length)) for length in lengths))
-    assert wire.face.received == 10_001 and wire.face.unusable == 10_000
-    wire.take(packet({"JawOpen": 0.25}))
-    assert wire.face.channels["jawOpen"] == pytest.approx(0.25)
 
 
 def test_words_tell_who_sends_and_what_to_do(wire: Wire) -> None:

@@ -1,7 +1,5 @@
 """Outputs are whole or not there."""
 
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -64,23 +62,6 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
             raise RuntimeError("in the middle")
     left = sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*"))
     assert left == ["old", "old/frame_00000.png"]
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-def test_a_run_after_one_that_was_killed(tmp_path: Path) -> None:
-    """Its frames go into the same folder as if that was empty, and what was left goes."""
-    code = (
-        "import os, pathlib, signal, sys\nfrom risorius.app.capture import outputs\n"
-        "with outputs.folder(pathlib.Path(sys.argv[1]), overwrite=False):\n"
-        "    os.kill(os.getpid(), signal.SIGKILL)"
-    )
-    target = tmp_path / "frames"
-    subprocess.run([sys.executable, "-c", code, str(target)], check=False)
-    [left] = target.iterdir()
-    with outputs.folder(target, overwrite=False) as add:
-        add(GREY)
-    assert not left.exists() and list(target.iterdir()) == [target / "frame_00000.png"]
 
 
 def test_a_link_stays_a_link(tmp_path: Path) -> None:

@@ -60,6 +60,7 @@ def test_keys_arrive_as_one_by_one(
     change = keyframes.copied if are_copies else keyframes.moved
     changed, now = change(script, Places.of(*places), steps / 8.0)
     assert now == set(arrived)
+    assert changed.duration == max([script.duration, *(time for _, time in arrived)])
     assert dict(keyed_by_place(changed)) == stays | arrived
     for times in places_of(changed).times.values():
         assert np.all(np.diff(times) > 0.0)

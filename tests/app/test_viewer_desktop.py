@@ -1,12 +1,8 @@
-"""The window among others: what is seen first, hidden panels, minimised, the first size.
-
-A window manager is used where one is there (openbox, say); only what needs one is skipped without.
-"""
+"""The window among others: what is seen first, hidden panels, minimised, the first size."""
 
 import contextlib
 import json
 import os
-import shutil
 import subprocess
 import sys
 import time
@@ -21,10 +17,8 @@ from Xlib import X, display
 from Xlib.error import XError
 from Xlib.protocol import event
 
-from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.interface.gui import THEMES
-from risorius.app.viewer.settings import load_settings
 from risorius.app.viewer.window.splash_screen import COMPILING, FIRST_SIZE, LOADING, picture
 
 from .driving import (
@@ -34,55 +28,15 @@ from .driving import (
     click,
     nose,
     on_screen,
-    settle,
     show_controls,
     until,
-    wait_for,
     xdotool,
 )
 
-pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("desktop")]
+pytestmark = NEEDS_A_SCREEN
 
 
 ROOT = Path(__file__).parents[2]
-MANAGERS = ("openbox", "xfwm4", "metacity", "icewm", "fluxbox")
-MANAGER = next(filter(shutil.which, MANAGERS), None)
-needs_manager = pytest.mark.skipif(MANAGER is None, reason=f"needs one of {', '.join(MANAGERS)}")
-
-
-@pytest.fixture(scope="module")
-def desktop() -> Iterator[None]:
-    """A window manager for the tests of this file, where one is installed."""
-    if MANAGER is None:
-        yield
-        return
-    manager = subprocess.Popen([MANAGER], stderr=subprocess.DEVNULL)
-    try:
-        wait_for(is_managed)
-        # GLFW asks once, when it is made ready, what a window manager can do.
-        glfw.terminate()
-        yield
-    finally:
-        glfw.terminate()
-        manager.terminate()
-        manager.wait()
-
-
-@pytest.fixture(scope="module")
-def viewer(desktop: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
-    """One window for all tests of this file, amid the desktop."""
-    path = tmp_path_factory.mktemp("settings") / "viewer.json"
-    with Viewer(script_for(None, "face"), SIZE, settings_path=path) as opened:
-        opened.settings.is_alive = False  # what is compared stands still
-        settle(opened)
-        yield opened
-
-
-def is_managed() -> bool:
-    """Whether a window manager has told that it is there (EWMH)."""
-    screen = display.Display()
-    told = screen.intern_atom("_NET_SUPPORTING_WM_CHECK")
-    return screen.screen().root.get_full_property(told, X.AnyPropertyType) is not None
 
 
 def screen_size() -> tuple[int, int]:
@@ -91,6 +45,7 @@ def screen_size() -> tuple[int, int]:
     return screen.width_in_pixels, screen.height_in_pixels
 
 
+@pytest.mark.usefixtures("calm")
 def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     """H leaves the picture alone; menus come up at its edge; they bring all back."""
     around = viewer.view.area
@@ -113,6 +68,24 @@ def test_panels_hide_and_come_back(viewer: Viewer) -> None:
     xdotool(viewer, "key", "Escape")
 
 
+@pytest.mark.usefixtures("calm")
+def test_a_minimised_window_draws_nothing(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As long as the desktop hides it, though it plays; then it goes on."""
+    ask, hidden, drawn = glfw.get_window_attrib, [True, True, True], []
+
+    def attribute(window: Any, name: int) -> int:
+        return bool(hidden and hidden.pop()) if name == glfw.ICONIFIED else ask(window, name)
+
+    def frame() -> None:
+        drawn.append(len(hidden))
+        viewer.session.is_playing = False
+
+    monkeypatch.setattr(glfw, "get_window_attrib", attribute)
+    monkeypatch.setattr(viewer, "frame", frame)
+    viewer.run(playing=True, once=True)
+    assert drawn == [0]
+
+
 @pytest.mark.slow
 def test_the_first_size_suits_the_screen(tmp_path: Path) -> None:
     """Without a size the window is no larger than the screen; on a dense one it grows with it."""
@@ -130,43 +103,6 @@ def test_the_first_size_suits_the_screen(tmp_path: Path) -> None:
         assert found["panel"] == pytest.approx(22.5 * 15 * dots / 96, abs=3), dots
 
 
-@needs_manager
-def test_a_minimised_window_rests_and_comes_back(tmp_path: Path) -> None:
-    """While it plays: minimised it takes no time at all; brought back it looks and plays on."""
-    script = tmp_path / "long.toml"
-    script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 600.0\njaw_open = 1.0\n")
-    settings = tmp_path / "risorius" / "viewer.json"
-    program = subprocess.Popen(
-        [sys.executable, "-m", "risorius", "replay", str(script), "--size", "700x500"],
-        stderr=subprocess.PIPE, text=True, cwd=ROOT,
-        env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
-    )  # fmt: skip
-    try:
-        search = ["xdotool", "search", "--sync", "--onlyvisible", "--name", "Risorius: long"]
-        found = subprocess.run(search, check=True, capture_output=True, text=True, timeout=60)
-        window = found.stdout.split()[-1]
-        wait_for(lambda: looks_whole(window))
-        wait_for(lambda: used_share(program.pid, 1.0) > 0.1)
-        tell(window, "windowminimize")
-        wait_for(lambda: used_share(program.pid, 3.0) < 0.02)
-        tell(window, "windowactivate")
-        wait_for(lambda: looks_whole(window))
-        wait_for(lambda: used_share(program.pid, 1.0) > 0.1)
-        tell(window, "windowminimize")
-        wait_for(lambda: used_share(program.pid, 1.0) < 0.02)
-        ask_to_close(int(window))
-        assert program.wait(DEADLINE) == 0
-        assert program.stderr is not None and program.stderr.read() == ""
-        assert load_settings(settings)[0].size == (700, 500)
-    finally:
-        program.kill()
-
-
-def tell(window: str, what: str) -> None:
-    """Ask the desktop to do something with a window."""
-    subprocess.run(["xdotool", what, window], check=True, capture_output=True, timeout=30)
-
-
 def ask_to_close(window: int) -> None:
     """What a click on the cross above the window sends it."""
     screen = display.Display()
@@ -175,32 +111,6 @@ def ask_to_close(window: int) -> None:
     kind = screen.intern_atom("WM_PROTOCOLS")
     target.send_event(event.ClientMessage(window=target, client_type=kind, data=(32, words)))
     screen.sync()
-
-
-def used_share(process: int, seconds: float) -> float:
-    """Of a core, by a process."""
-
-    def used() -> float:
-        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-    before = used()
-    time.sleep(seconds)
-    return (used() - before) / seconds
-
-
-def looks_whole(window: str) -> bool:
-    """Whether the window's pixels on the screen are panels at the left and a face beside them."""
-    seen = display.Display().create_resource_object("window", int(window))
-    size = seen.get_geometry()
-    try:
-        raw = seen.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF).data
-    except XError:  # it is on its way
-        return False
-    pixels = np.frombuffer(raw, np.uint8).reshape(size.height, size.width, 4)[..., :3].astype(int)
-    skin = pixels[..., 2] - pixels[..., 0] > 30  # redder than blue
-    panel = pixels[:, : size.width // 4]
-    return bool(skin[:, size.width // 3 :].mean() > 0.05 and panel.std() > 5 and panel.mean() > 150)
 
 
 def windows_of(process: subprocess.Popen[bytes], screen: display.Display) -> Iterator[Any]:

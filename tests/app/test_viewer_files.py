@@ -127,14 +127,6 @@ def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) 
     viewer.surface.should_close = viewer.is_leaving = False
 
 
-def test_what_cannot_be_written_is_told(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """F12 in a folder that takes no files shows an error, and the window goes on."""
-    monkeypatch.chdir("/proc")
-    viewer.messages.text = ""
-    xdotool(viewer, "key", "F12")
-    assert until(viewer, lambda: "cannot be written" in viewer.messages.text)
-
-
 def title_of(viewer: Viewer) -> str:
     """What the desktop shows above the window."""
     settle(viewer)

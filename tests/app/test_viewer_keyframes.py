@@ -15,13 +15,10 @@ from risorius.app.script import (
     keyframes,
     load_script,
     parse_script,
-    save_script,
-    script_text,
 )
-from risorius.app.script.keyframes import FRAME, POSES
+from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer.session.session import Session
-from risorius.app.viewer.timeline.keys import all_tracks, described
 from risorius.app.viewer.timeline.time_axis import LEAST_SPAN, TimeAxis
 
 from .driving import HELLO
@@ -35,40 +32,12 @@ def hello() -> Script:
     return load_script(HELLO)
 
 
-def pose_times(script: Script) -> list[float]:
-    """When the script has poses [s]."""
-    return [pose.time for pose in script.poses]
-
-
-def test_moved_keys_stay_in_order_and_after_zero(hello: Script) -> None:
-    """A key can pass others; no key comes before 0; beyond the end the script grows."""
-    passed, _ = keyframes.moved(hello, Places.of(JOY), 2.5)
-    assert pose_times(passed) == [0.0, 3.0, 3.5, 4.0]
-    assert passed.poses[2].name == "joy"
-    both = [JOY, KeyPlace("blink", 2.0)]
-    first, places = keyframes.moved(hello, Places.of(*both), -9.0)
-    assert places == {KeyPlace(POSES, 0.0), KeyPlace("blink", 1.0)}
-    assert pose_times(first) == [0.0, 3.0, 4.0]  # it took the place of what was there
-    late, _ = keyframes.moved(hello, Places.of(KeyPlace(POSES, 4.0)), 2.0)
-    assert late.duration == 6.0
-    assert keyframes.moved(hello, Places.of(JOY), 0.1)[0].duration == hello.duration
-
-
 def test_moving_there_and_back_changes_nothing(hello: Script) -> None:
     """All keys later by odd times and back again: the same script, without a crumb."""
     script, places = hello, keyframes.places_of(hello)
     for seconds in (0.1, 0.7, 1.0 / 3.0, -0.1, -1.0 / 3.0, -0.7):
         script, places = keyframes.moved(script, places, seconds)
     assert replace(script, duration=hello.duration) == hello
-
-
-def test_easings_and_the_end(hello: Script) -> None:
-    """An easing is that of the chosen keys; the end may come earlier."""
-    eased = keyframes.eased(hello, Places.of(JOY, KeyPlace("blink", 2.0)), "hold")
-    assert eased.poses[1].easing == "hold" == eased.tracks["blink"].keys[0].easing
-    assert eased.poses[2].easing == "smooth"
-    assert keyframes.lasting(hello, 2.0).duration == 2.0
-    assert keyframes.lasting(replace(hello, poses=()), -5.0).duration == pytest.approx(FRAME)
 
 
 def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene) -> None:
@@ -104,24 +73,6 @@ def test_a_key_in_a_recording(scene: FaceScene) -> None:
     assert len(held.tracks["joy"].keys) == 3 and len(held.tracks["jaw_open"].keys) == 2
     for time in np.linspace(0.0, 2.0, 9):
         assert held.at(time) == pytest.approx(script.at(time))
-
-
-def test_edited_scripts_survive_a_file(session: Session, tmp_path: Path) -> None:
-    """Load, edit in every way, save, load: exactly the same, with the comment at its head."""
-    session.seek(0.77)
-    session.set("jaw_open", 0.123456789)
-    session.set_key()
-    script, _ = keyframes.moved(session.script, Places.of(JOY, KeyPlace("blink", 2.0)), 0.07)
-    script, _ = keyframes.copied(script, keyframes.places_of(script), 1.0 / 3.0)
-    script = keyframes.eased(script, Places.of(KeyPlace(POSES, 3.0)), "hold")
-    session.edit(script)
-    target = tmp_path / "edited.toml"
-    session.save_script(target)
-    read = load_script(target)
-    assert read == session.script and read.preface.startswith("# A smile with a blink")
-    save_script(tmp_path / "again.toml", read)
-    assert (tmp_path / "again.toml").read_bytes() == target.read_bytes()
-    assert load_script(HELLO) == parse_script(script_text(load_script(HELLO)), source="x")
 
 
 def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) -> None:
@@ -165,19 +116,6 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
     assert session.script.title == 'No. #1 " # 2' and session.file.objection == ""
     path.unlink()
     assert session.file.objection == ""
-
-
-def test_rows_of_the_timeline(hello: Script) -> None:
-    """Poses with their names and a row for each control, all tracks in one row and each in one."""
-    poses, jaw, joy, tracks, blink = all_tracks(hello, {"Lids": ["blink", "wink"]})
-    assert [place.time for place in poses.places] == [0.0, 1.0, 3.0, 4.0]
-    assert poses.names == ((1.0, "joy"),) and tracks.is_sum
-    assert (jaw.control, joy.control) == ("jaw_open", "joy")
-    assert joy.channel.values.tolist() == [0.0, 1.0, 0.6, 0.0] and joy.parents == ("Whole poses",)
-    assert blink.channel == hello.tracks["blink"] and blink.parents == ("Tracks",)
-    assert poses.places.near(1.2, 0.3) == {JOY} and not poses.places.near(2.0, 0.3)
-    assert described(hello, Places.of(JOY)) == "joy, 1.00 s, ease-out"
-    assert described(hello, Places.of(KeyPlace("blink", 2.12))) == "2.12 s, ease-in"
 
 
 @given(amount=st.floats(-3.0, 3.0), choice=st.lists(st.booleans(), min_size=8, max_size=8))

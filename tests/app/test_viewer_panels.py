@@ -127,7 +127,8 @@ def seen_labels(viewer: Viewer, page: np.ndarray, origin: tuple[int, int]) -> li
 def test_both_sides_have_captions_and_colours_a_bar(viewer: Viewer, tmp_path: Path) -> None:
     """In the window and in a screenshot alike; none where nothing is compared or coloured."""
     assert not viewer.surface.labels
-    viewer.settings.display.colours = "tension"
+    only_open(viewer, "Style")
+    in_panel(viewer, ("Colours", "tension"))
     xdotool(viewer, "key", "d")
     assert until(viewer, lambda: viewer.is_idle)
     assert len(viewer.surface.labels) == 3

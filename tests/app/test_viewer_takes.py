@@ -231,36 +231,6 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert np.abs(session.scene.positions - wanted).max() < 0.01
 
 
-@pytest.mark.slow
-def test_a_recording_beside_a_sound_is_in_step_with_it(session: Session, tmp_path: Path) -> None:
-    """The script plays meanwhile, and what is heard at a time was recorded at that time."""
-    played = replace(session.script, sound=tmp_path / "sound.wav")
-    session.edit(played)
-    session.seek(0.5)
-    session.toggle_recording()
-    assert session.is_playing
-    run(session, 30)  # to 1 s
-    session.toggle_playing()
-    run(session, 30)  # paused
-    session.toggle_playing()
-    session.set("jaw_open", 0.8)
-    run(session, 30)  # to 1.5 s
-    at, session.is_looping = session.time, True
-    while session.time >= at:
-        session.advance(STEP)
-    session.set("jaw_open", 0.1)
-    run(session, 30)  # heard before
-    whole = session.script.duration
-    session.toggle_recording()
-    script = session.script
-    assert script.sound == tmp_path / "sound.wav"
-    assert script.duration == pytest.approx(whole, abs=0.02)
-    for time in (0.6, 0.97):
-        heard = {**dict.fromkeys(script.tracks, 0.0), **played.at(time)}
-        assert any(heard.values()) and script.at(time) == pytest.approx(heard, abs=0.05)
-    assert script.at(1.05)["jaw_open"] == pytest.approx(0.8, abs=2e-3)
-
-
 def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
     session: Session, tmp_path: Path
 ) -> None:

@@ -284,24 +284,6 @@ def values(viewer: Viewer, control: str) -> list[float]:
 
 
 @pytest.mark.usefixtures("curves")
-def test_a_key_is_dragged_in_value(viewer: Viewer) -> None:
-    """The pose's value of that curve alone goes along, the face follows, one undo takes it back."""
-    before = viewer.session.script
-    viewer.session.seek(1.0)
-    drag(viewer, at(viewer, 1.0, 1.0), (0, 10))
-    move(viewer, 0, 20)
-    assert [pose.time for pose in viewer.session.script.poses] == [0.0, 1.0, 3.0, 4.0]
-    joy = values(viewer, "joy")[1]
-    assert joy == round(joy, 2) < 0.95 and viewer.session.values["joy"] == joy
-    assert values(viewer, "jaw_open") == [0.0, 0.1, 0.0, 0.0]
-    assert viewer.session.script.tracks is not before.tracks
-    assert viewer.session.script.tracks == before.tracks
-    assert viewer.selection.places == {KeyPlace(POSES, 1.0)}
-    xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script == before
-
-
-@pytest.mark.usefixtures("curves")
 def test_a_key_is_dragged_in_time_and_value(viewer: Viewer) -> None:
     """Both at once, to frames and within limits; Escape puts it back."""
     before = viewer.session.script

@@ -1,18 +1,15 @@
 """What hands do to a script, without a window; and small parts of the window."""
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from risorius.app.controls.mirror import mirrored
 from risorius.app.controls.vocabulary import readable
 from risorius.app.scenes import FaceScene
 from risorius.app.script import load_script
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer.panels.rows import rows_of, search_rows
-from risorius.app.viewer.picture import skin
 from risorius.app.viewer.picture.painter import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.session.physics import MOST_STEPS, STEP, Clock
 from risorius.app.viewer.session.scene_controls import change_of
@@ -20,9 +17,6 @@ from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 
 from .driving import HELLO, run
-
-from risorius import render  # isort: skip - after the viewer, see app/viewer/gui.py
-
 
 SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
@@ -156,22 +150,6 @@ def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -
     assert places_of(session.script) == {KeyPlace(POSES, 0.0)}
 
 
-SMILE = "zygomaticus_major"
-STEPS = 90
-
-
-def test_mirror_and_links(session: Session) -> None:
-    """Left becomes right, sideways turns round; a linked slider moves both sides."""
-    session.set(f"{SMILE}_left", 0.7)
-    session.set("jaw_sideways", 0.4)
-    session.mirror()
-    assert session.values[f"{SMILE}_right"] == 0.7 and not session.values[f"{SMILE}_left"]
-    assert session.values["jaw_sideways"] == -0.4
-    session.set(f"{SMILE}_left", 5.0, linked=True)
-    assert session.values[f"{SMILE}_left"] == session.values[f"{SMILE}_right"] == 1.0
-    assert mirrored(mirrored(session.values)) == session.values
-
-
 def test_rows_join_sides() -> None:
     """Twins share a row; a control for both sides stands for them unless they differ."""
     names = ["AU12", "AU12_left", "AU12_right", "lid_left", "lid_right", "procerus"]
@@ -216,22 +194,3 @@ def test_detail_falls_once_and_does_not_flicker() -> None:
     for _ in range(100):
         chosen.note(0.08)
     assert chosen.detail == LEVELS[-1]
-
-
-@pytest.mark.parametrize("is_orthographic", [False, True])
-def test_the_point_under_the_mouse(scene: FaceScene, is_orthographic: bool) -> None:
-    """The ray through the tip of the nose meets it; one through a corner meets nothing."""
-    camera = render.OrbitCamera.framing(scene.rest_positions)
-    camera.is_orthographic = is_orthographic
-    viewport = (30, 20, 400, 500)
-    tip = scene.rest_positions[scene.rest_positions[:, 2].argmax()]
-    clip = np.append(tip, 1.0) @ np.asarray(
-        camera.view_matrix() @ camera.projection_matrix(400 / 500)
-    )
-    x, y = clip[:2] / clip[3]
-    place = 30 + 200 * (x + 1), 20 + 250 * (y + 1)
-    ray = skin.Ray.through(camera, viewport, place)
-    point = skin.skin_under(ray, scene.rest_positions, scene.faces)
-    assert point is not None and np.linalg.norm(point - tip) < 0.5
-    missed = skin.Ray.through(camera, viewport, (31, 21))
-    assert skin.skin_under(missed, scene.rest_positions, scene.faces) is None

@@ -1,6 +1,5 @@
 """Wrinkles that follow the simulated skin: when, where, which way, and on which heads."""
 
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import assets, render
-from risorius.app.capture import Capture, CaptureOptions
+from risorius import assets
 from risorius.app.refining.wrinkling import Compression, on_rows
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import fit_head
@@ -121,55 +119,6 @@ def test_lines_lie_across_the_muscles(scene: FaceScene) -> None:
                     found.append(abs(across[:2] @ way) / np.linalg.norm(across[:2]))
                     assert (abs(across[0]) > abs(across[1])) == level
         assert len(found) > 3 and np.median(found) > 0.8, muscle
-
-
-def draw_images(
-    scene: FaceScene, pose: dict[str, float], camera: str
-) -> tuple[Array, Array, Capture]:
-    """The pose without and with wrinkles."""
-    options = CaptureOptions(size=(260, 300), camera=camera)
-    with Capture(scene, options) as capture:
-        scene.reset()
-        scene.pose(pose)
-        scene.step(SETTLED)
-        frames = []
-        for strength in (0.0, 1.0):
-            capture.options = replace(options, style=render.Style(bumps=strength))
-            frames.append(capture.draw_image().astype(np.float64))
-    return frames[0], frames[1], capture
-
-
-def test_only_skin_that_wrinkles_is_drawn_differently(scene: FaceScene) -> None:
-    """Neither eyes nor the red of the lips, nor ears, scalp or background."""
-    pose = {"AU1": 1.0, "AU2": 1.0, "AU6": 1.0, "AU9": 0.6, "AU18": 0.7}
-    smooth, wrinkled, capture = draw_images(scene, pose, "0,0,1.1")
-    differs = np.abs(wrinkled - smooth).max(axis=2) > 6
-    assert 0.004 < differs.mean() < 0.15
-    assert isinstance(scene.head, assets.Head)
-    head, size = scene.head, (260, 300)
-    camera = capture.camera
-    matrix = camera.view_matrix() @ camera.projection_matrix(size[0] / size[1])
-
-    def pixels(points: Array) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-        clip = np.column_stack([points, np.ones(len(points))]) @ np.asarray(matrix, np.float64)
-        place = (0.5 + 0.5 * clip[:, :2] / clip[:, 3:]) * size
-        return size[1] - 1 - place[:, 1].astype(int), place[:, 0].astype(int)
-
-    def shown(points: Array) -> npt.NDArray[np.bool_]:
-        return differs[pixels(points)]
-
-    now = scene.positions
-    rings = [
-        head.rings[f"{ring}_{side}"] for ring in ("ear_1", "mouth_4") for side in ("left", "right")
-    ]
-    for ring in rings:
-        assert not shown(now[ring]).any()
-    for eye in head.eyes:
-        assert not shown(eye.centre[None] + [0.0, 0.0, eye.radius]).any()
-    rows, columns = pixels(now[forehead(scene).astype(bool)])
-    between = differs[rows.min() : rows.max(), columns.min() : columns.max()]
-    assert 0.05 < between.mean() < 0.6
-    assert not differs[:8].any() and not differs[:, :4].any()  # background
 
 
 @pytest.mark.slow

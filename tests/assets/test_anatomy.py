@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from risorius import assets
 from risorius.assets.model import Head
 
 # The right-hand partner of every left-hand landmark, read from the iBug figure.
@@ -14,12 +13,6 @@ PAIRS = (
     + [(48, 54), (49, 53), (50, 52), (59, 55), (58, 56), (60, 64), (61, 63), (67, 65)]
 )
 ON_MIDLINE = (8, 27, 28, 29, 30, 33, 51, 57, 62, 66)
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 def test_landmarks_are_68_different_vertices(head: Head) -> None:

@@ -32,12 +32,6 @@ ANGLES = st.floats(DARKEST, LIGHTEST)
 Light = npt.NDArray[np.float64]
 
 
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
-
-
 def light_at(head: Head, image: npt.NDArray[np.uint8], *names: str) -> Light:
     """Linear light around anatomical points, the median, shape (3,)."""
     height, width = image.shape[:2]

@@ -21,12 +21,6 @@ MOST_FINER_DATA = 1_500_000  # bytes
 Points = npt.NDArray[np.float64]
 
 
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
-
-
 @pytest.fixture(scope="module", params=[1, 2])
 def fine(request: pytest.FixtureRequest, head: Head) -> FineMesh:
     """Its finer meshes, one after the other."""

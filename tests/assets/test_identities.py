@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from risorius import assets, sim
+from risorius import sim
 from risorius.app.cli.parameters import PERSON_NAMES
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings
@@ -30,12 +30,6 @@ from tests.sim.poses import inverted_triangles
 SEEDS = st.integers(0, 2**32 - 1)
 PERSONS = (0, 5, 10, 1039)
 QUICK = 0, 1039
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 @pytest.fixture(

@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import assets
 from risorius.assets.intersections import self_intersections
 from risorius.assets.model import Head
 from risorius.assets.topology import boundary_loops, smallest_angles
@@ -14,12 +13,6 @@ from risorius.geometry.normals import cross_products, vertex_normals
 from tests.assets import checks
 
 TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 def test_triangle_count_is_that_of_the_paper(head: Head) -> None:

@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius import assets
 from risorius.assets.model import Head
 from risorius.assets.norms import NORMS, Sample, measures_of
 
@@ -25,12 +24,6 @@ Each was read in the abstract of its study: "Facial soft tissue of Lebanese adul
 well-balanced faces", cephalograms; soft tissue of the lower anterior face by cone-beam tomography,
 Angle Orthodontist 85:211-217, persons with a normal vertical pattern.
 """
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 @pytest.fixture(scope="module")

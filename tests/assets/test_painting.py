@@ -15,12 +15,6 @@ from risorius.assets.model import Head
 LARGEST_IMAGE_FILE = 1_250_000  # bytes
 
 
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
-
-
 def test_albedo_is_a_picture(head: Head) -> None:
     """Square, 8 bits, three channels, read-only, light on disk, and read only once."""
     assert head.albedo.dtype == np.uint8 and head.albedo.ndim == 3

@@ -4,18 +4,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import assets
 from risorius.assets.model import Head, Part
 from risorius.geometry.normals import cross_products
 
 BONES = {"cranium", "mandible", "eye_left", "eye_right", "neck"}
 IN_MOUTH = ("teeth", "gums", "tongue", "oral_cavity")
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 def part(head: Head, name: str) -> Part:

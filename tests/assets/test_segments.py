@@ -21,12 +21,6 @@ PLACES = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def head() -> assets.Head:
-    """The built-in head."""
-    return assets.load("head")
-
-
 def at(head: assets.Head, vertices: object) -> list[int]:
     """The classes of vertices."""
     size = len(head.segments)

@@ -2,19 +2,11 @@
 
 import numpy as np
 import numpy.typing as npt
-import pytest
 
-from risorius import assets
 from risorius.assets.model import Head
 
 Points = npt.NDArray[np.float64]
 TUCKED_ROWS = ("mouth_0", "mouth_1", "eye_0")  # behind lips and lids: never seen at rest
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 def signed_areas(flat: Points, faces: npt.NDArray[np.int32]) -> Points:

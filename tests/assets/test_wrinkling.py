@@ -13,12 +13,6 @@ from risorius.assets.loading import HEAD_FILE, load_head
 STEEPEST_FURROW = 0.7  # slope: about 35 degrees
 
 
-@pytest.fixture(scope="module")
-def head() -> assets.Head:
-    """The built-in head."""
-    return assets.load("head")
-
-
 def texels(head: assets.Head, vertices: npt.NDArray[np.intp]) -> npt.NDArray[np.uint8]:
     """The map's texels at vertices, shape (n, 4)."""
     size = len(head.wrinkles.map)

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius import assets
 from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import load_head
 from risorius.assets.model import Head
@@ -23,12 +22,6 @@ from risorius.bench.form import (
 from risorius.bench.form_parts import lids_and_eyes
 from risorius.bench.registration import MIRROR
 from risorius.geometry.normals import vertex_normals
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in one."""
-    return assets.load("head")
 
 
 def test_a_drawn_person_is_ordinary_and_always_the_same() -> None:

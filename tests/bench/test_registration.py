@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from risorius import assets
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.model import FloatArray, Head
 from risorius.assets.topology import smallest_angles
@@ -26,12 +25,6 @@ def row_vertices(head: Head, names: tuple[str, ...]) -> list[int]:
     """Numbers of the vertices of some rows of both sides."""
     sides = ("left", "right")
     return sorted({int(v) for n in names for s in sides for v in head.rings[f"{n}_{s}"]})
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in one."""
-    return assets.load("head")
 
 
 @pytest.fixture(scope="module")

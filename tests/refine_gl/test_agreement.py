@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import assets, refine, sim
+from risorius import refine, sim
 from risorius.assets.model import Head
 from risorius.refine_gl import KahlerGl
 from tests import meshes
@@ -23,12 +23,6 @@ VIEW = refine.View((3.0, 2.0, 20.0), 60.0)
 FAR = np.array([700.0, -300.0, 900.0])
 QUICK = ("joy", "kiss far away")
 both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])
-
-
-@pytest.fixture(scope="module")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 @pytest.fixture(scope="module")

@@ -2,14 +2,8 @@
 
 import pytest
 
-from risorius import assets, sim
+from risorius import sim
 from risorius.assets.model import Head
-
-
-@pytest.fixture(scope="session")
-def head() -> Head:
-    """The built-in head."""
-    return assets.load("head")
 
 
 @pytest.fixture(scope="session")

@@ -167,25 +167,10 @@ def test_wrong_heads_are_told(attribute: str, begins: str, values: tuple[Any, ..
         refused(lambda head=head: sim.create(head), begins)  # type: ignore[misc]
 
 
-@pytest.mark.parametrize("name", [3, None, "", "A", "a b", ("a",), "left_left", HUGE])
-def test_names_of_muscles_are_words(name: object) -> None:
-    """Lower case, without side."""
-    lid = {"kind": "lid", "action": "moves", "group": "Group"}
-    refused(lambda: sim.read_rig({"muscle": {name: lid}}), "rig, 'muscle'")  # type: ignore[dict-item]
-
-
 @pytest.mark.parametrize("given", LISTS)
 def test_what_is_no_layer_is_told(given: Any) -> None:
     """A head's layers are a list of objects with titles and rows."""
     refused(lambda: read_layers(given, ["a"]), "head.layers")
-
-
-@pytest.mark.parametrize("rows", [*TABLES, {"A": 3}, {"A": {"a": HUGE}}, {"A": {3: 1.0}}])
-def test_wrong_rows_are_told(rows: Any) -> None:
-    """With the layer's file."""
-    layer = SimpleNamespace(title="Layer", source="layer.toml", rows=rows)
-    with pytest.raises(ValueError, match=r"^layer\.toml.*(must be|no layer below)"):
-        read_layers([layer], ["a"])
 
 
 @pytest.mark.parametrize("head", [None, 3, "head", [], {}, object(), SimpleNamespace(vertices=1)])
@@ -193,13 +178,6 @@ def test_what_is_no_head_is_told(head: object) -> None:
     """Without vertices and faces there is nothing to simulate."""
     with pytest.raises(ValueError, match=r"head: .* has no attribute '(vertices|faces)'; give any"):
         sim.create(head)
-
-
-@pytest.mark.parametrize("document", [*TABLES, {"format": 2}, {"muscle": {"a": HUGE}}])
-def test_what_is_no_rig_is_told(document: Any) -> None:
-    """`read_rig` on its own."""
-    with pytest.raises(ValueError, match=r"^rig.*(must be|reads 1)"):
-        sim.read_rig(document)
 
 
 @pytest.mark.parametrize(
