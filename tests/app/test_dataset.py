@@ -2,13 +2,8 @@
 
 import csv
 import json
-import os
-import random
 import re
 import shutil
-import signal
-import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +22,7 @@ from risorius.app.dataset.table import load_table
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 
-from .command_line import refusal, risorius, started
+from .command_line import refusal, risorius
 
 COUNT, SEED, SIZE, PASSES = 5, 11, (80, 64), ("depth", "normal", "segmentation")
 ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
@@ -273,42 +268,6 @@ def test_apertures_grow_with_what_opens(face: FaceScene) -> None:
     assert turned["mouth"] == pytest.approx(parted[-1], abs=0.1)
     assert turned["eye_left"] == pytest.approx(0.5 * turned["eye_right"], abs=0.5)
     assert apertures_of(face, {"AU27": 1.0})["mouth"] > 20.0
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-def test_killed_at_any_moment_nothing_half_written_has_its_name(made: Path, tmp_path: Path) -> None:
-    """A dozen times, by SIGKILL or Ctrl-C, to the first process alone."""
-    chance = random.Random(7)
-    begun = time.monotonic()
-    assert run(tmp_path / "whole", "--jobs", "2").exit_code == 0
-    usual = time.monotonic() - begun
-    folder = tmp_path / "killed"
-    whole = content(made)
-    for attempt in range(12):
-        if attempt % 4 == 0:
-            shutil.rmtree(folder, ignore_errors=True)
-        words = ("-m", "risorius", "dataset", "--count", COUNT, "--jobs", "2", "-o", folder)
-        resume = ["--resume"] if folder.exists() else []
-        process = started(*words, *OPTIONS, *resume, start_new_session=True)
-        time.sleep(chance.uniform(0.2, 1.0) * usual)
-        number = chance.choice([signal.SIGKILL, signal.SIGINT])
-        os.kill(process.pid, number)
-        process.communicate(timeout=60)
-        for path in folder.glob("[!.]*"):
-            assert path.read_bytes() == whole[path.name], f"{path.name} after {number!r}"
-    folder.mkdir(exist_ok=True)
-    wait_for_workers(folder)
-    assert run(folder, "--resume").exit_code == 0
-    assert content(folder) == whole
-
-
-def wait_for_workers(folder: Path) -> None:
-    """Until processes that lost their first one have ended: nothing new is written any more."""
-    before = None
-    while (now := sorted(path.name for path in folder.rglob("*"))) != before:
-        before = now
-        time.sleep(3.0)
 
 
 def test_speech_is_told_in_units(face: FaceScene) -> None:

@@ -1,12 +1,8 @@
 """Films of every kind: their frames, in order and complete, at any size, transparent or not."""
 
-import contextlib
 import errno
 import os
-import signal
 import subprocess
-import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,12 +21,11 @@ from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import parse_script
 
-from .command_line import risorius, started
+from .command_line import risorius
 
 Image = npt.NDArray[np.uint8]
 WIDTH, HEIGHT, COUNT, RATE = 97, 63, 12, 25.0
 SMALL = CaptureOptions(size=(64, 48), samples=0)
-linux = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 
 
 def numbered_frames(*, is_transparent: bool = False) -> list[Image]:
@@ -199,50 +194,6 @@ def test_what_fails_in_a_process_is_told(tmp_path: Path, monkeypatch: pytest.Mon
     options = replace(SMALL, camera="nowhere")
     with pytest.raises(UserError, match="camera 'nowhere': allowed are"):
         capture(script_for(None, "plane"), options, output=tmp_path / "film.mp4", progress=False)
-    assert list(tmp_path.iterdir()) == []
-
-
-def children(process: int) -> dict[int, str]:
-    """The processes that one began and that are still there, and their command lines."""
-    lines = {}
-    for each in Path(f"/proc/{process}/task/{process}/children").read_text().split():
-        with contextlib.suppress(OSError):  # it has just ended
-            lines[int(each)] = Path(f"/proc/{each}/cmdline").read_text()
-    return lines
-
-
-@pytest.mark.slow
-@linux
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
-def test_a_film_whose_processes_end(tmp_path: Path, number: signal.Signals) -> None:
-    """One of those that draw is killed: one line. The command is stopped: none of them goes on."""
-    code = (
-        "from risorius.app.capture import processes\n"
-        "from risorius.__main__ import run\n"
-        "processes.worthwhile = lambda *_: 2\nrun()"
-    )
-    arguments = ["capture", "--scene", "face", "--size", "160x120", "--quiet"]
-    process = started("-c", code, *arguments, "-o", tmp_path / "film.mp4")
-    begun: dict[int, str] = {}
-    drawing: list[int] = []
-    while process.poll() is None and len(drawing) < 2:
-        time.sleep(0.01)
-        begun = children(process.pid)
-        drawing = [each for each, line in begun.items() if "serve" in line]
-    assert len(begun) == 3  # and the encoder
-    os.kill(drawing[1] if number == signal.SIGKILL else process.pid, number)
-    _, told = process.communicate(timeout=60)
-    lines = [each for each in told.decode().splitlines() if not each.startswith("Compiling")]
-    assert len(lines) == 1, lines
-    if number == signal.SIGKILL:
-        assert process.returncode == 2
-        assert "a process that draws the film ended (SIGKILL)" in lines[0]
-    else:
-        assert (process.returncode, lines[0]) == (-number, "risorius: stopped")
-    end = time.monotonic() + 10.0
-    while any(Path(f"/proc/{each}/cmdline").exists() for each in begun) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert not any(Path(f"/proc/{each}/cmdline").exists() for each in begun)
     assert list(tmp_path.iterdir()) == []
 
 

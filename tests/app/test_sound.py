@@ -392,21 +392,3 @@ def test_a_real_device_asks_and_the_position_goes_on(monkeypatch: pytest.MonkeyP
     played.play(5.0)
     assert played.position == pytest.approx(5.0, abs=1.0)
     played.close()
-
-
-def test_without_a_device_all_is_silent_and_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No library, or no device: no error, and the waveform is there."""
-    monkeypatch.setattr("risorius.app.viewer.session.soundtrack.load_sound", lambda file: ramp(3.0))
-    session = Session(PlaneScene(), Script("", 2.0, "s", "plane", sound=Path("ramp")))
-    for name, value in (("backends", lambda: []), ("miniaudio", None)):
-        with monkeypatch.context() as lacking:
-            lacking.setattr(player, name, value)
-            with pytest.raises(player.NoDeviceError):
-                player.open_device(48_000, 2)
-            soundtrack = Soundtrack(session)
-            soundtrack.refresh()
-            session.is_playing = True
-            assert soundtrack.elapsed(0.5) == 0.5 and soundtrack.sound is not None
-            assert not soundtrack.is_heard
-            soundtrack.rest()
-            soundtrack.close()

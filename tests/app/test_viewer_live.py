@@ -162,24 +162,6 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     assert viewer.live.face is None and viewer.session.current == viewer.session.values
 
 
-@pytest.mark.slow
-def test_a_live_face_is_recorded_into_a_script(viewer: Viewer) -> None:
-    """What it did becomes tracks; the script plays it without anybody who sends."""
-    face = listen(viewer)
-    hold(viewer, face, 0.5)
-    click(viewer, "record")
-    assert viewer.session.is_recording
-    hold(viewer, face, 0.5, jawOpen=0.7)
-    hold(viewer, face, 0.5)
-    click(viewer, "record")
-    script = viewer.session.script
-    viewer.live.stop()
-    assert max(key.value for key in script.tracks["jawOpen"].keys) == pytest.approx(0.7)
-    assert viewer.session.unsaved == "the script"
-    viewer.session.toggle_playing()
-    assert until(viewer, lambda: viewer.session.values["jawOpen"] > 0.6)
-
-
 def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
     """It sleeps while nothing comes, and does not wait for its time when something does."""
     face = listen(viewer)

@@ -1,17 +1,27 @@
 """What the tests of refine/ share: forced splits, names of output points, generated meshes."""
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 from hypothesis import strategies as st
 
 from risorius import refine
 from risorius.refine.beyond.blending import RAMP
+from tests import meshes
 from tests.refine import plain_twin
 
 
 def configuration_of(splits: tuple[int, int, int]) -> int:
     """The number of the table entry for 0, 1 or 2 splits on each of the three edges."""
     return splits[0] + 3 * splits[1] + 9 * splits[2]
+
+
+def kahler(mesh: meshes.Mesh, **options: Any) -> refine.Kahler:
+    """The paper's refiner of a mesh, with its texture coordinates if it has any."""
+    bound = refine.create("kahler", mesh.faces, mesh.vertices, mesh.uv, mesh.face_uv, **options)
+    assert isinstance(bound, refine.Kahler)
+    return bound
 
 
 class GivenMetric(refine.Criterion):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, as_lists, soups
+from tests.refine.cases import Forced, as_lists, kahler, soups
 from tests.refine.plain_twin import (
     Surroundings,
     Vector,
@@ -96,13 +96,11 @@ def test_equals_kahler_at_one_level() -> None:
     deformed = meshes.wrinkled(mesh, 10)
     loop = refine.create("loop", mesh.faces, mesh.vertices).refine(deformed)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
-    kahler = refine.create(
-        "kahler", mesh.faces, mesh.vertices, criterion=Forced(np.ones(edge_count))
-    ).refine(deformed)
-    assert loop.positions.tobytes() == kahler.positions.tobytes()
-    assert loop.normals.tobytes() == kahler.normals.tobytes()
+    adaptive = kahler(mesh, criterion=Forced(np.ones(edge_count))).refine(deformed)
+    assert loop.positions.tobytes() == adaptive.positions.tobytes()
+    assert loop.normals.tobytes() == adaptive.normals.tobytes()
     assert {tuple(sorted(t)) for t in loop.triangles.tolist()} == {
-        tuple(sorted(t)) for t in kahler.triangles.tolist()
+        tuple(sorted(t)) for t in adaptive.triangles.tolist()
     }
 
 

@@ -1,6 +1,5 @@
 """The window: the same interface and the same pictures as offscreen. Needs a screen, or Xvfb."""
 
-import inspect
 import time
 
 import numpy as np
@@ -11,18 +10,6 @@ from risorius import render
 from .scenes import draw_image, sphere
 
 pytestmark = pytest.mark.window
-
-
-def test_same_interface(window: render.WindowSurface) -> None:
-    """Whatever an offscreen frame can do, a window can."""
-    with render.open_offscreen((8, 8)) as offscreen:
-        for name, value in inspect.getmembers(offscreen):
-            if name.startswith("_"):
-                continue
-            counterpart = getattr(window, name)
-            assert callable(value) == callable(counterpart)
-            if callable(value):
-                assert inspect.signature(value) == inspect.signature(counterpart)
 
 
 def test_same_picture(window: render.WindowSurface) -> None:

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, GivenMetric, surface_at
+from tests.refine.cases import Forced, GivenMetric, kahler, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
 QUICK_SCHEMES = [
@@ -35,17 +35,7 @@ def jumps(
     mesh = mesh or meshes.irregular(4, 4, 3, 0)
     wave = meshes.wrinkled(mesh, 5, 0.5) - mesh.vertices
     detail = {"detail": (mesh.vertices + 0.02, mesh.faces)} if scheme == "detail" else {}
-    refiner = refine.create(
-        "kahler",
-        mesh.faces,
-        mesh.vertices,
-        uv=mesh.uv,
-        face_uv=mesh.face_uv,
-        scheme=scheme,
-        blend=blend,
-        criterion=criterion,
-        **detail,
-    )
+    refiner = kahler(mesh, scheme=scheme, blend=blend, criterion=criterion, **detail)
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
     before, most, turn = None, 0.0, 0.0
     positions_before = mesh.vertices
@@ -171,9 +161,7 @@ def test_folds_have_no_scales() -> None:
     grid = meshes.open_grid(9, 9)
     angle, along = 0.5 * grid.vertices[:, 0], grid.vertices[:, 1]
     rolled = np.stack([2.0 * np.sin(angle), along, 2.0 * np.cos(angle)], axis=1)
-    refiner = refine.create(
-        "kahler", grid.faces, grid.vertices, scheme="cubic", criterion=GivenMetric(_across(grid))
-    )
+    refiner = kahler(grid, scheme="cubic", criterion=GivenMetric(_across(grid)))
     refined = refiner.refine(rolled)
     corners = refined.positions[refined.triangles].astype(np.float64)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -205,10 +193,13 @@ def test_begins_at_the_unrefined_surface(scheme: str) -> None:
     places = np.random.default_rng(9).dirichlet([1, 1, 1], 8)
 
     def surface(metric: float) -> npt.NDArray[np.float64]:
-        refiner = refine.create(
-            "kahler", mesh.faces, mesh.vertices, scheme=scheme, blend=True,
-            criterion=GivenMetric(np.full(edge_count, metric)), **detail,
-        )  # fmt: skip
+        refiner = kahler(
+            mesh,
+            scheme=scheme,
+            blend=True,
+            criterion=GivenMetric(np.full(edge_count, metric)),
+            **detail,
+        )
         return surface_at(refiner, refiner.refine(deformed), mesh.faces, places)[..., :3]
 
     np.testing.assert_allclose(surface(1e-6), surface(-1.0), rtol=0, atol=1e-5)
@@ -220,6 +211,4 @@ def test_needs_a_measure() -> None:
     """A criterion that only counts splits cannot be blended."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match="blend=True needs a criterion that measures, but Forced"):
-        refine.create(
-            "kahler", mesh.faces, mesh.vertices, blend=True, criterion=Forced(np.zeros(12))
-        )
+        kahler(mesh, blend=True, criterion=Forced(np.zeros(12)))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from risorius import assets, refine, sim
 from tests import meshes
-from tests.refine.cases import soups
+from tests.refine.cases import kahler, soups
 from tests.refine.plain_schemes import is_corner
 from tests.refine.plain_twin import Surroundings
 
@@ -22,7 +22,7 @@ EDGES = refine.connect(SLIT.faces, len(SLIT.vertices)).edges
 
 def splits_of(mesh: meshes.Mesh, deformed: np.ndarray, criterion: object = "border") -> np.ndarray:
     """Splits of every edge."""
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refiner = kahler(mesh, criterion=criterion)
     refine.check(refiner, refiner.refine(deformed), deformed)
     return refiner.splits.copy()
 
@@ -193,9 +193,7 @@ def outline(
 def test_round_outline_of_a_slit(scheme: str) -> None:
     """Between its corners an opened slit turns less than half as much; by loop not beside them."""
     deformed = meshes.opened(SLIT, 1.2)
-    refiner = refine.create(
-        "kahler", SLIT.faces, SLIT.vertices, criterion="border", scheme=scheme, blend=False
-    )
+    refiner = kahler(SLIT, criterion="border", scheme=scheme, blend=False)
     mesh = refiner.refine(deformed)
     middle = np.zeros(3)
     coarse = outline(deformed, SLIT.faces, middle, 3.1)

@@ -7,14 +7,14 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced
+from tests.refine.cases import Forced, kahler
 
 
 def splits_of(
     mesh: meshes.Mesh, deformed: np.ndarray, criterion: object, **view: object
 ) -> tuple[np.ndarray, np.ndarray]:
     """Splits of every edge, and the edges."""
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refiner = kahler(mesh, criterion=criterion)
     refiner.refine(deformed, **view)
     return refiner.splits.copy(), refiner.edges
 
@@ -55,10 +55,7 @@ def test_rest_is_grown_at_once() -> None:
     sphere = ball(1)
     points = []
     for blend in (False, True):
-        refiner = refine.create(
-            "kahler", sphere.faces, sphere.vertices,
-            criterion="rest", scheme="cubic", blend=blend,
-        )  # fmt: skip
+        refiner = kahler(sphere, criterion="rest", scheme="cubic", blend=blend)
         mesh = refiner.refine(sphere.vertices)
         points.append({tuple(row) for row in mesh.positions.round(5).tolist()})
     assert len(points[0]) > len(sphere.vertices)
@@ -68,7 +65,7 @@ def test_rest_is_grown_at_once() -> None:
 def test_view_is_needed() -> None:
     """A criterion that depends on the eye says so."""
     mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion="silhouette")
+    refiner = kahler(mesh, criterion="silhouette")
     with pytest.raises(ValueError, match=r"needs to know where the eye is; pass view=refine.View"):
         refiner.refine(mesh.vertices)
     for view in (
@@ -105,9 +102,7 @@ def test_blended_splits_are_the_same(criterion: str) -> None:
     deformed = meshes.wrinkled(mesh, 3)
     splits = []
     for blend in (False, True):
-        refiner = refine.create(
-            "kahler", mesh.faces, mesh.vertices, criterion=criterion, blend=blend
-        )
+        refiner = kahler(mesh, criterion=criterion, blend=blend)
         refiner.refine(deformed)
         splits.append(refiner.splits.copy())
     assert (splits[0] == splits[1]).mean() > 0.998
@@ -118,9 +113,7 @@ def test_blended_splits_are_the_same(criterion: str) -> None:
 def test_one_level_only(blend: bool) -> None:
     """An infinite second threshold switches the second level off, blended or not."""
     mesh = meshes.irregular(2)
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, threshold_twice=np.inf, blend=blend
-    )
+    refiner = kahler(mesh, threshold_twice=np.inf, blend=blend)
     refiner.refine(meshes.wrinkled(mesh, 3, 1.0))
     assert refiner.splits.max() == 1
 
@@ -200,18 +193,19 @@ def test_bulge(scheme: str) -> None:
     deformed = meshes.wrinkled(mesh, 3)
     detail = {"detail": (mesh.vertices + 0.01, mesh.faces)} if scheme == "detail" else {}
     edges = refine.connect(mesh.faces, len(mesh.vertices)).edges
-    full = refine.create(
-        "kahler", mesh.faces, mesh.vertices, scheme=scheme, blend=False,
-        criterion=Forced(np.ones(len(edges))), **detail,
-    ).refine(deformed)  # fmt: skip
+    full = kahler(
+        mesh, scheme=scheme, blend=False, criterion=Forced(np.ones(len(edges))), **detail
+    ).refine(deformed)
     middles = full.positions[len(mesh.vertices) :]
     heights = np.linalg.norm(middles - deformed[edges].mean(axis=1), axis=1)
     unit = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
     once, twice = np.quantile(heights, [0.4, 0.8])
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, scheme=scheme,
-        criterion=[refine.Displacement(once / unit, twice / unit, turning=0.0)], **detail,
-    )  # fmt: skip
+    refiner = kahler(
+        mesh,
+        scheme=scheme,
+        criterion=[refine.Displacement(once / unit, twice / unit, turning=0.0)],
+        **detail,
+    )
     refine.check(refiner, refiner.refine(deformed), deformed)
     expected = (heights > once).astype(int) + (heights > twice)
     assert (refiner.splits == expected).mean() > 0.99
@@ -222,14 +216,8 @@ def test_bulge_needs_measures() -> None:
     """The paper's scheme does not tell how far it moves edges; its refined normals know."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme tells with normals="refined" only'):
-        refine.create("kahler", mesh.faces, mesh.vertices, criterion="displacement")
-    refiner = refine.create(
-        "kahler",
-        mesh.faces,
-        mesh.vertices,
-        criterion=refine.Displacement(0.05, 0.5),
-        normals="refined",
-    )
+        kahler(mesh, criterion="displacement")
+    refiner = kahler(mesh, criterion=refine.Displacement(0.05, 0.5), normals="refined")
     refiner.refine(mesh.vertices)
     assert (refiner.splits > 0).all()
 
@@ -243,7 +231,7 @@ def test_a_rule_of_ones_own_is_asked() -> None:
             splits[:] = 2
 
     for criterion in (Everything(), ["rest", Everything()]):
-        refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+        refiner = kahler(mesh, criterion=criterion)
         refiner.refine(mesh.vertices)
         assert (refiner.splits == 2).all()
 
@@ -258,6 +246,6 @@ def test_a_rule_of_ones_own_is_asked() -> None:
 def test_a_rule_that_says_nothing(options: dict[str, Any], text: str) -> None:
     """A criterion or scheme without its one method says which that is, when a frame asks it."""
     mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, **options)
+    refiner = kahler(mesh, **options)
     with pytest.raises(NotImplementedError, match=text):
         refiner.refine(mesh.vertices)

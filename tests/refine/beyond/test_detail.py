@@ -10,7 +10,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from tests import meshes
 from tests.refine import plain_twin
-from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, point_names
+from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, point_names
 from tests.refine.plain_detail import DetailRules, Seen
 from tests.refine.plain_normals import RefinedNormals
 
@@ -42,10 +42,9 @@ def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.Ref
     edge_count = len(refine.connect(COARSE.faces, len(COARSE.vertices)).edges)
     if scheme == "detail":
         options["detail"] = (FINE.vertices, FINE.faces)
-    refiner = refine.create(
-        "kahler", COARSE.faces, COARSE.vertices, scheme=scheme,
-        criterion=GivenMetric(np.full(edge_count, 9.0)), **options,
-    )  # fmt: skip
+    refiner = kahler(
+        COARSE, scheme=scheme, criterion=GivenMetric(np.full(edge_count, 9.0)), **options
+    )
     mesh = refiner.refine(positions)
     refine.check(refiner, mesh, positions)
     return mesh
@@ -88,10 +87,9 @@ def test_no_stars_in_folds() -> None:
     edge_count = len(refine.connect(flat.faces, len(folded)).edges)
     shown, off = {}, {}
     for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat.vertices, flat.faces)})):
-        refiner = refine.create(
-            "kahler", flat.faces, flat.vertices, scheme=scheme,
-            criterion=GivenMetric(np.full(edge_count, 9.0)), **detail,
-        )  # fmt: skip
+        refiner = kahler(
+            flat, scheme=scheme, criterion=GivenMetric(np.full(edge_count, 9.0)), **detail
+        )
         mesh = refiner.refine(folded)
         is_middle = refiner.origins().weights.max(axis=1) < 0.4
         shown[scheme] = mesh.normals[~is_middle].copy()
@@ -133,11 +131,14 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bo
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
 
     def refiner_of(metric: np.ndarray, blend: bool) -> refine.Refiner:
-        return refine.create(
-            "kahler", mesh.faces, mesh.vertices, scheme="detail", blend=blend,
-            detail=(mesh.vertices + lift, mesh.faces), criterion=GivenMetric(metric),
+        return kahler(
+            mesh,
+            scheme="detail",
+            blend=blend,
+            detail=(mesh.vertices + lift, mesh.faces),
+            criterion=GivenMetric(metric),
             normals=normals,
-        )  # fmt: skip
+        )
 
     def seen_with(metric: float) -> Seen:
         everything = refiner_of(np.full(edge_count, metric), True)

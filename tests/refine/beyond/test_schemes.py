@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from risorius import refine
 from tests import meshes
 from tests.refine import plain_schemes
-from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, soups
+from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, soups
 from tests.refine.plain_normals import RefinedNormals
 from tests.refine.plain_twin import PaperRules, Rules, Twin, edge_name
 from tests.refine.plain_twin import refine as refine_plainly
@@ -27,17 +27,7 @@ def bound(
     """A refiner whose edges have given metrics; the finer mesh of `detail` is the mesh itself."""
     if scheme == "detail":
         options["detail"] = (mesh.vertices + np.array([0.0, 0.0, 0.01]), mesh.faces)
-    return refine.create(
-        "kahler",
-        mesh.faces,
-        mesh.vertices,
-        uv=mesh.uv,
-        face_uv=mesh.face_uv,
-        scheme=scheme,
-        blend=blend,
-        criterion=GivenMetric(metric),
-        **options,
-    )
+    return kahler(mesh, scheme=scheme, blend=blend, criterion=GivenMetric(metric), **options)
 
 
 def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, normals: str, blend: bool,

@@ -9,7 +9,7 @@ from scipy.spatial import KDTree
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import GivenMetric, surface_at
+from tests.refine.cases import GivenMetric, kahler, surface_at
 
 SCHEMES = ("loop", "cubic", "detail")
 STEPS = 800
@@ -22,11 +22,14 @@ def bound(
 ) -> refine.Refiner:
     """A refiner; the finer mesh of `detail` is the mesh itself, a little higher."""
     options = {"detail": (mesh.vertices + np.array([0.0, 0.0, 0.02]), mesh.faces)}
-    return refine.create(
-        "kahler", mesh.faces, mesh.vertices, uv=mesh.uv, face_uv=mesh.face_uv, scheme=scheme,
-        criterion=criterion, normals=normals, blend=blend,
-        **(options if scheme == "detail" else {}),
-    )  # fmt: skip
+    return kahler(
+        mesh,
+        scheme=scheme,
+        criterion=criterion,
+        normals=normals,
+        blend=blend,
+        **options if scheme == "detail" else {},
+    )
 
 
 def metrics(

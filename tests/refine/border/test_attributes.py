@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import GivenMetric
+from tests.refine.cases import GivenMetric, kahler
 
 REFINERS = [
     ("none", {}),
@@ -91,7 +91,7 @@ def test_own_stream_grows(blend: bool) -> None:
     mesh = meshes.irregular(8, 30, 30)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     needed = GivenMetric(np.full(edge_count, -1.0))
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=needed, blend=blend)
+    refiner = kahler(mesh, criterion=needed, blend=blend)
     unsplit = room(refiner.refine(mesh.vertices))
     assert unsplit < 1.5 * (24 * len(mesh.vertices) + 16 * len(mesh.faces))
     needed.metric[:] = 2.0
@@ -106,42 +106,6 @@ def test_own_stream_grows(blend: bool) -> None:
     none_split = refiner.refine(mesh.vertices)
     refine.check(refiner, none_split, mesh.vertices)
     assert room(none_split) == most
-
-
-class Growing:
-    """A lent stream that grows when it is asked to, and counts."""
-
-    def __init__(self, columns: int) -> None:
-        self.columns, self.asked = columns, 0
-        self.make(0, 0)
-
-    def make(self, vertex_count: int, triangle_count: int) -> None:
-        """Arrays of exactly this size."""
-        self.vertices = np.zeros((vertex_count, self.columns), dtype=np.float32)
-        self.triangles = np.zeros((triangle_count, 3), dtype=np.uint32)
-        self.source = np.zeros(triangle_count, dtype=np.int32)
-
-    def reserve(self, vertex_count: int, triangle_count: int) -> None:
-        """Make room."""
-        self.asked += 1
-        if len(self.vertices) < vertex_count or len(self.triangles) < triangle_count:
-            self.make(vertex_count, triangle_count)
-
-
-def test_lent_stream_that_stops_growing() -> None:
-    """Arrays that took the frame before are refused when they are too small for this one."""
-    mesh = meshes.irregular(9)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
-    stream = Growing(refiner.vertex_columns)
-    refiner.refine(mesh.vertices, out=stream)
-    stream.make = lambda *_: None  # type: ignore[method-assign]
-    with pytest.raises(ValueError, match=r"stream.vertices must be .* shape \(>= \d+, 6\), got"):
-        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
-    before = len(stream.vertices)
-    stream.vertices = np.zeros((refiner.vertex_capacity, 6), dtype=np.float32)
-    with pytest.raises(ValueError, match=r"stream.triangles must be .* shape \(>= \d+, 3\), got"):
-        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
-    assert len(refiner.refine(mesh.vertices, out=stream).positions) == before
 
 
 @pytest.mark.parametrize("name", ["none", "loop", "kahler"])

@@ -9,6 +9,7 @@ import pytest
 from risorius import refine
 from risorius.refine.border.checker import PARTS
 from tests import meshes
+from tests.refine.cases import kahler
 
 Mutation = Callable[[refine.RefinedMesh], refine.RefinedMesh]
 
@@ -34,7 +35,7 @@ def frame() -> tuple[Wrapped, refine.RefinedMesh, np.ndarray]:
     """A refined frame in arrays of its own, its refiner, and the deformed positions."""
     mesh = meshes.irregular(11)
     deformed = meshes.wrinkled(mesh, 12, amplitude=0.3)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refiner = kahler(mesh)
     refined = refiner.refine(deformed)
     assert set(refiner.splits.tolist()) == {0, 1, 2}
     copied = refined._replace(
@@ -186,7 +187,7 @@ def test_crack_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> 
 def test_edge_flip_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
     """Subtriangles that overlap and miss the same area are told by their inner sub-edges."""
     mesh = meshes.triangle()
-    refiner = Wrapped(refine.create("kahler", mesh.faces, mesh.vertices))
+    refiner = Wrapped(kahler(mesh))
     refined = refine.create("none", mesh.faces, mesh.vertices).refine(mesh.vertices)
     # Halves of the triangle on one side of its median, both times the same half.
     origins = refine.Origins(

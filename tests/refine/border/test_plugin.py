@@ -13,6 +13,7 @@ from risorius import refine
 from risorius.refine.border import registry
 from risorius.refine.kahler.smoothing import LoopScheme
 from tests import meshes
+from tests.refine.cases import kahler
 
 FINE = meshes.octahedron()
 
@@ -212,9 +213,7 @@ def test_units_of_length(unit: float, scheme: str) -> None:
 
 def test_frames_can_be_kept() -> None:
     """Deep copies and pickles of a frame have arrays of their own, which no later frame touches."""
-    refiner = refine.create(
-        "kahler", FINE.faces, FINE.vertices, attributes={"rest": FINE.vertices}, threshold_once=0.0
-    )
+    refiner = kahler(FINE, attributes={"rest": FINE.vertices}, threshold_once=0.0)
     refined = refiner.refine(FINE.vertices * [1.0, 1.0, 4.0])
     kept = [copy.deepcopy(refined), pickle.loads(pickle.dumps(refined))]
     expected = refined.positions.copy(), refined.attributes["rest"].copy()
@@ -261,7 +260,7 @@ def test_frames_can_be_kept() -> None:
 def test_bad_options(options: dict[str, object], text: str) -> None:
     """What is of another kind, does not exist or does not fit together is refused with what is."""
     with pytest.raises(ValueError, match=text):
-        refine.create("kahler", FINE.faces, FINE.vertices, **options)
+        kahler(FINE, **options)
 
 
 @pytest.mark.parametrize("name", ["criterion", "scheme"])

@@ -12,6 +12,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
+from tests.refine.cases import kahler
 
 REFINERS = [("none", {}), ("kahler", {}), ("loop", {"levels": 1}), ("loop", {"levels": 2})]
 
@@ -71,7 +72,7 @@ def test_lent_stream(name: str, options: dict[str, int], textured: bool, spare: 
 def test_bad_stream(change: dict[str, object], text: str) -> None:
     """A stream that cannot take the worst case is refused before anything is written."""
     grid = meshes.open_grid(10, 6)
-    refiner = refine.create("kahler", grid.faces, grid.vertices)
+    refiner = kahler(grid)
     assert refiner.triangle_capacity == 1200
     stream = stream_for(refiner)
     for name, array in change.items():
@@ -84,7 +85,7 @@ def test_bad_stream(change: dict[str, object], text: str) -> None:
 def test_stream_that_becomes_read_only(name: str) -> None:
     """Arrays that are closed between two frames are not written any more."""
     mesh = meshes.irregular(2)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refiner = kahler(mesh)
     stream = stream_for(refiner)
     refiner.refine(mesh.vertices, out=stream)
     array = getattr(stream, name)
@@ -113,11 +114,11 @@ class Growing:
 def test_any_row_of_streams() -> None:
     """Whoever was written to before, a frame goes where it should, and nowhere else."""
     mesh = meshes.irregular(3)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refiner = kahler(mesh)
     frames = [mesh.vertices + amount * (meshes.wrinkled(mesh, 4) - mesh.vertices)
               for amount in (0.0, 0.3, 1.0)]  # fmt: skip
     streams = [None, stream_for(refiner), stream_for(refiner), Growing(refiner)]
-    fresh = [refine.create("kahler", mesh.faces, mesh.vertices).refine(frame) for frame in frames]
+    fresh = [kahler(mesh).refine(frame) for frame in frames]
     assert len({len(frame.triangles) for frame in fresh}) == 3
     rng = np.random.default_rng(5)
     kept: dict[int, list[bytes]] = {}
@@ -139,11 +140,27 @@ def test_any_row_of_streams() -> None:
     assert streams[3].asked == asked + 2
 
 
+def test_lent_stream_that_stops_growing() -> None:
+    """Arrays that took the frame before are refused when they are too small for this one."""
+    mesh = meshes.irregular(9)
+    refiner = kahler(mesh)
+    stream = Growing(refiner)
+    refiner.refine(mesh.vertices, out=stream)
+    stream.reserve = lambda *_: None  # type: ignore[method-assign]
+    with pytest.raises(ValueError, match=r"stream.vertices must be .* shape \(>= \d+, 6\), got"):
+        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
+    before = len(stream.vertices)
+    stream.vertices = np.zeros((refiner.vertex_capacity, 6), dtype=np.float32)
+    with pytest.raises(ValueError, match=r"stream.triangles must be .* shape \(>= \d+, 3\), got"):
+        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
+    assert len(refiner.refine(mesh.vertices, out=stream).positions) == before
+
+
 def test_stream_may_be_the_input() -> None:
     """Positions that live in the lent stream are read before they are overwritten."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3).astype(np.float32)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refiner = kahler(mesh)
     expected = refiner.refine(deformed).positions.copy()
     stream = stream_for(refiner)
     stream.vertices[: len(deformed), 0:3] = deformed
@@ -190,7 +207,7 @@ def test_bad_positions(positions: np.ndarray) -> None:
 def test_masked_positions() -> None:
     """What is masked is not known, and is not taken from under the mask."""
     mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refiner = kahler(mesh)
     expected = refiner.refine(mesh.vertices).positions.copy()
     nothing_hidden = np.ma.masked_array(mesh.vertices, mask=False)
     assert (refiner.refine(nothing_hidden).positions == expected).all()
@@ -205,7 +222,7 @@ def test_masked_positions() -> None:
 def test_refiners_stay_where_they_are(copied: Callable[[refine.Refiner], object]) -> None:
     """A copy would share buffers with the original, or point to nowhere in another process."""
     mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices)
+    refiner = kahler(mesh)
     with pytest.raises(TypeError, match=r"make one there with refine\.create"):
         copied(refiner)
 
@@ -230,7 +247,7 @@ def test_anything_below_the_limit_is_finite(scheme: str) -> None:
     """A mesh that has blown up comes out as finite numbers, so nothing downstream sees a NaN."""
     mesh = meshes.double_cone(60)
     detail = {"detail": (mesh.vertices, mesh.faces)} if scheme == "detail" else {}
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, scheme=scheme, **detail)
+    refiner = kahler(mesh, scheme=scheme, **detail)
     blown = np.random.default_rng(5).uniform(-0.99e15, 0.99e15, mesh.vertices.shape)
     refined = refiner.refine(blown)
     assert np.isfinite(refined.positions).all()

@@ -4,8 +4,6 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from risorius.refine import Coherent
 from risorius.refine.kahler import coherence, table
@@ -129,16 +127,6 @@ def test_new_splits_make_the_shortest_lines(length: int) -> None:
         for configuration, shortest in best.items():
             taken = int(TABLES.transitions[state, configuration])
             assert lengths[taken] == pytest.approx(shortest, abs=1e-9)
-
-
-@given(st.lists(st.sampled_from(ALL_SPLITS), max_size=30))
-def test_any_history(history: list[tuple[int, int, int]]) -> None:
-    """Whatever came before, a triangle has the splits that are wanted, and all gone is all new."""
-    state = 0
-    for splits in history:
-        state = int(TABLES.transitions[state, configuration_of(splits)])
-        assert coherence._splits_of(TABLES.sequences[state]) == splits
-    assert TABLES.transitions[state, 0] == 0
 
 
 def test_states_follow_the_tables() -> None:

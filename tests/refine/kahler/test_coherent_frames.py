@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from risorius import refine
 from risorius.bench.reproduce.coherence import Line, inner_lines, point_rows, turned
 from tests import meshes
-from tests.refine.cases import Forced
+from tests.refine.cases import Forced, kahler
 
 Positions = npt.NDArray[np.float64]
 Frames = list[Positions]
@@ -64,9 +64,7 @@ def test_geomorph_turns_no_line(seed: int) -> None:
     counts = {}
     for is_coherent in (False, True):
         criterion, chances = splitting(mesh, seed)
-        refiner = refine.create(
-            "kahler", mesh.faces, mesh.vertices, criterion=criterion, coherent=is_coherent
-        )
+        refiner = kahler(mesh, criterion=criterion, coherent=is_coherent)
         counts[is_coherent] = sum(turned_per_frame(refiner, played(mesh, criterion, chances)))
         if is_coherent:
             assert history_of(refiner).removals_out_of_order == 0
@@ -81,7 +79,7 @@ def test_any_history_is_crack_free(seed: int, history: list[int]) -> None:
     mesh = meshes.irregular(seed % 20, 4, 4, 1)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     criterion = Forced(np.zeros(edge_count))
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion, coherent=True)
+    refiner = kahler(mesh, criterion=criterion, coherent=True)
     for number in history:
         criterion.wanted = np.random.default_rng(number).integers(0, 3, edge_count, dtype=np.uint8)
         refined = refiner.refine(mesh.vertices)
@@ -96,10 +94,10 @@ def test_states_are_all_the_memory() -> None:
     """One number per triangle, carried over to a new refiner, is all that the past was."""
     mesh = meshes.irregular(3)
     frames = [*growing(mesh, 8), *growing(mesh, 9)[::-1]]
-    old = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
+    old = kahler(mesh, coherent=True)
     for positions in frames[:30]:
         old.refine(positions)
-    new = refine.create("kahler", mesh.faces, mesh.vertices, coherent=True)
+    new = kahler(mesh, coherent=True)
     history_of(new).states[:] = history_of(old).states
     for positions in frames[30:]:
         for ours, theirs in zip(old.refine(positions)[:4], new.refine(positions)[:4], strict=True):

@@ -6,7 +6,7 @@ import pytest
 from risorius import refine
 from risorius.refine.kahler.criterion import ROUNDING
 from tests import meshes
-from tests.refine.cases import Forced
+from tests.refine.cases import Forced, kahler
 from tests.refine.plain_twin import edge_dots, edge_name
 
 
@@ -14,16 +14,14 @@ from tests.refine.plain_twin import edge_dots, edge_name
 def test_undeformed_equals_pass_through(seed: int) -> None:
     """At threshold 0 the undeformed mesh comes out as from `none`, to the last bit."""
     mesh = meshes.irregular(seed)
-    kahler = refine.create(
-        "kahler", mesh.faces, mesh.vertices, threshold_once=0.0, threshold_twice=0.0
-    )
+    refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.0)
     plain = refine.create("none", mesh.faces, mesh.vertices)
     for ours, theirs in zip(
-        kahler.refine(mesh.vertices)[:4], plain.refine(mesh.vertices)[:4], strict=True
+        refiner.refine(mesh.vertices)[:4], plain.refine(mesh.vertices)[:4], strict=True
     ):
         assert ours.tobytes() == theirs.tobytes()
         assert (ours.shape, ours.dtype) == (theirs.shape, theirs.dtype)
-    assert not kahler.splits.any()
+    assert not refiner.splits.any()
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -31,9 +29,7 @@ def test_undeformed_equals_pass_through(seed: int) -> None:
 def test_rigid_motion(seed: int, distance: float) -> None:
     """Turning and moving the undeformed mesh splits nothing, even at threshold 0 and far away."""
     mesh = meshes.irregular(seed)
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, threshold_once=0.0, threshold_twice=0.0
-    )
+    refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.0)
     moved = mesh.vertices @ meshes.rotation(seed).T + distance * np.array([1.0, -0.7, 0.4])
     refiner.refine(moved)
     assert not refiner.splits.any()
@@ -57,9 +53,7 @@ def test_splits_follow_drops(seed: int) -> None:
     faces = [tuple(int(v) for v in face) for face in mesh.faces]
     rest = edge_dots([tuple(p) for p in mesh.vertices], faces)
     now = edge_dots([tuple(p) for p in deformed], faces)
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, threshold_once=0.1, threshold_twice=0.3
-    )
+    refiner = kahler(mesh, threshold_once=0.1, threshold_twice=0.3)
     refiner.refine(deformed)
     seen = set()
     for (a, b), split in zip(refiner.edges, refiner.splits, strict=True):
@@ -96,7 +90,7 @@ def test_thresholds_between_frames() -> None:
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4)
     criterion = refine.NormalDrop(0.02, 0.08)
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=criterion)
+    refiner = kahler(mesh, criterion=criterion)
     refiner.refine(deformed)
     assert set(refiner.splits.tolist()) == {0, 1, 2}
     criterion.thresholds.twice = np.float32(np.inf)
@@ -110,8 +104,8 @@ def test_thresholds_between_frames() -> None:
 def test_criterion_from_outside() -> None:
     """Another criterion decides in place of the thresholds, but not on more than two splits."""
     mesh = meshes.octahedron()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced([1] * 12))
+    refiner = kahler(mesh, criterion=Forced([1] * 12))
     assert len(refiner.refine(mesh.vertices).triangles) == 4 * 8
-    wrong = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced([1, 3] * 6))
+    wrong = kahler(mesh, criterion=Forced([1, 3] * 6))
     with pytest.raises(ValueError, match=r"Forced.mark must write 0, 1 or 2 .* edge 1 got 3"):
         wrong.refine(mesh.vertices)

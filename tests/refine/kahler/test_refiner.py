@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import Forced, as_lists, assert_equals_twin, soups
+from tests.refine.cases import Forced, as_lists, assert_equals_twin, kahler, soups
 from tests.refine.plain_twin import edge_name
 from tests.refine.plain_twin import refine as refine_plainly
 
@@ -18,9 +18,7 @@ def refine_and_check(
     """Refine one frame, run the checker, and see that nothing that was passed has changed."""
     inputs = [mesh.faces, mesh.vertices, deformed]
     before = [array.tobytes() for array in inputs]
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, uv=mesh.uv, face_uv=mesh.face_uv, **options
-    )
+    refiner = kahler(mesh, **options)
     refined = refiner.refine(deformed)
     refine.check(refiner, refined, deformed)
     assert [array.tobytes() for array in inputs] == before
@@ -110,9 +108,9 @@ def test_frames_are_independent() -> None:
     """A frame does not depend on the frames before it (section 3: no history)."""
     mesh = meshes.irregular(5)
     frames = [meshes.wrinkled(mesh, seed) for seed in range(4)]
-    reused = refine.create("kahler", mesh.faces, mesh.vertices)
+    reused = kahler(mesh)
     for deformed in [*frames, mesh.vertices, frames[0]]:
-        fresh = refine.create("kahler", mesh.faces, mesh.vertices)
+        fresh = kahler(mesh)
         for ours, theirs in zip(
             reused.refine(deformed)[:4], fresh.refine(deformed)[:4], strict=True
         ):

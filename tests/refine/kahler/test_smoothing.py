@@ -1,20 +1,11 @@
 """The weights of Figs. 3 and 4, worked out by hand."""
 
 import numpy as np
-import pytest
 
 from risorius import refine
-from risorius.refine.mesh.rings import Rings, vertex_rings, warren_weight
+from risorius.refine.mesh.rings import warren_weight
 from tests import meshes
-from tests.refine.cases import Forced
-
-
-def weights_around(rings: Rings, v: int) -> dict[int, float]:
-    """Weight of every vertex in the rule of vertex v, its own included."""
-    weights = {v: float(rings.own[v])}
-    for u in [*rings.near[v], *rings.others[rings.starts[v] : rings.starts[v + 1]]]:
-        weights[int(u)] = weights.get(int(u), 0.0) + float(rings.ring[v])
-    return weights
+from tests.refine.cases import Forced, kahler
 
 
 def test_warren_weights() -> None:
@@ -22,31 +13,11 @@ def test_warren_weights() -> None:
     assert warren_weight(np.array([3, 4, 6])).tolist() == [3 / 16, 3 / 32, 1 / 16]
 
 
-@pytest.mark.parametrize("valence", [8, 9, 16])
-def test_large_rings(valence: int) -> None:
-    """Vertices that have no place in the table of a ring count as much as those that have."""
-    rings = vertex_rings(refine.connect(meshes.fan(valence).faces, valence + 1))
-    around = weights_around(rings, 0)
-    assert around.pop(0) == pytest.approx(5 / 8)
-    assert around == pytest.approx({v: 3 / 8 / valence for v in range(1, valence + 1)})
-    assert len(rings.others) == valence - 8
-
-
-@pytest.mark.parametrize(("name", "vertex"), [("bow_tie", 0), ("with_debris", 15)])
-def test_vertices_that_stay(name: str, vertex: int) -> None:
-    """A vertex where two borders meet, or without triangles, never moves."""
-    mesh = meshes.NAMED[name]()
-    rings = vertex_rings(refine.connect(mesh.faces, len(mesh.vertices)))
-    assert weights_around(rings, vertex) == {vertex: 1.0}
-
-
 def test_first_level_by_hand() -> None:
     """One inner edge split once: 3/8, 3/8, 1/8, 1/8, and its ends follow the border rule."""
     mesh = meshes.two_triangles()
     connectivity = refine.connect(mesh.faces, 4)
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, criterion=Forced(connectivity.around.is_interior)
-    )
+    refiner = kahler(mesh, criterion=Forced(connectivity.around.is_interior))
     lifted = mesh.vertices + np.array([[0, 0, 0], [0, 0, 8], [0, 0, 16], [0, 0, 32]])
     refined = refiner.refine(lifted)
     assert refined.positions[4].tolist() == [0.5, 0.5, 3 + 6 + 4]
@@ -59,9 +30,7 @@ def test_second_level_by_hand() -> None:
     """The same edge split twice: quarter points lean on midpoints of edges that are not split."""
     mesh = meshes.two_triangles()
     connectivity = refine.connect(mesh.faces, 4)
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, criterion=Forced(2 * connectivity.around.is_interior)
-    )
+    refiner = kahler(mesh, criterion=Forced(2 * connectivity.around.is_interior))
     lifted = mesh.vertices + np.array([[0, 0, 0], [0, 0, 64], [0, 0, 128], [0, 0, 256]])
     height = refiner.refine(lifted).positions[:, 2]
     a, b, c, d = 64.0, 128.0, 0.0, 256.0

@@ -7,7 +7,7 @@ import pytest
 from risorius import refine
 from risorius.refine.kahler import table
 from tests import meshes
-from tests.refine.cases import Forced, as_lists, assert_equals_twin, configuration_of
+from tests.refine.cases import Forced, as_lists, assert_equals_twin, configuration_of, kahler
 from tests.refine.plain_twin import refine as refine_plainly
 
 ALL_SPLITS = list(itertools.product(range(3), repeat=3))
@@ -32,7 +32,7 @@ def _as_set(triangles: list[tuple[int, ...]]) -> set[tuple[int, ...]]:
 def test_one_triangle(splits: tuple[int, int, int]) -> None:
     """A single triangle comes out as the pattern drawn by hand, through the whole refiner."""
     mesh = meshes.triangle()
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Forced(splits))
+    refiner = kahler(mesh, criterion=Forced(splits))
     refined = refiner.refine(mesh.vertices)
     refine.check(refiner, refined, mesh.vertices)
     assert len(refined.triangles) == table.CONFIGURATIONS.counts[configuration_of(splits)]

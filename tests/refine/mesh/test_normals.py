@@ -8,6 +8,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
+from tests.refine.cases import kahler
 
 OPTIONS: dict[str, dict[str, Any]] = {
     "paper": {},
@@ -33,9 +34,7 @@ def test_unit_or_zero(name: str) -> None:
     if options.get("scheme") == "detail":
         finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
         options["detail"] = (finer.positions, finer.triangles)
-    refiner = refine.create(
-        "kahler", mesh.faces, mesh.vertices, threshold_once=0.0, threshold_twice=0.01, **options
-    )
+    refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.01, **options)
     for scale in SCALES:
         for flattened in FLATTENED:
             deformed = scale * meshes.wrinkled(mesh, 2, 0.3) * [1.0, 1.0, flattened]
