@@ -1,22 +1,16 @@
 """The finer meshes: the same head, more triangles, and the map between them."""
 
-from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import assets
 from risorius.assets.intersections import self_intersections
-from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import FineMesh, Head
 from risorius.assets.topology import boundary_loops, quarter
 from risorius.geometry.normals import cross_products
 from tests.assets import checks
-
-MOST_FINER_DATA = 1_500_000  # bytes
 
 Points = npt.NDArray[np.float64]
 
@@ -134,45 +128,8 @@ def test_normals_are_unit_and_agree_with_the_faces(fine: FineMesh) -> None:
     assert cosine.min() > 0.0
 
 
-def test_quartering_follows_the_picture() -> None:
-    """Two triangles with one edge in common: five edges, eight children."""
-    faces = np.array([[0, 1, 2], [2, 1, 3]], dtype=np.int32)
-    cut = quarter(faces, 4)
-    assert cut.edges.tolist() == [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]
-    assert cut.faces[:4].tolist() == [[0, 4, 5], [4, 1, 6], [5, 6, 2], [4, 6, 5]]
-
-
-def test_arrays_cannot_be_written(fine: FineMesh) -> None:
-    """Two users of a finer mesh must not disturb each other."""
-    with pytest.raises(ValueError, match="read-only"):
-        fine.vertices[0] = 0.0
-    with pytest.raises(ValueError, match="read-only"):
-        fine.faces[0] = 0
-
-
 def test_other_levels_are_refused(head: Head) -> None:
     """What there is is in the message."""
     for level in (0, 3):
         with pytest.raises(ValueError, match=rf"level was {level}; allowed are 1 .* and 2"):
             head.finer(level)
-
-
-def test_missing_file_is_no_matter_until_it_is_needed(tmp_path: Path, head: Head) -> None:
-    """A head alone loads without it; then the cure is in the message."""
-    (tmp_path / "head.npz").write_bytes(HEAD_FILE.read_bytes())
-    lonely = load_head(tmp_path / "head.npz")
-    assert np.array_equal(lonely.vertices, head.vertices)
-    with pytest.raises(assets.AssetError, match=r"head_finer\.npz is missing; install"):
-        lonely.finer(1)
-
-
-def test_file_of_another_head_is_refused(head: Head) -> None:
-    """A finer mesh must never be laid over a head that it was not made from."""
-    other = replace(head, vertices=head.vertices * 1.01)
-    with pytest.raises(assets.AssetError, match="made for another head; install"):
-        other.finer(1)
-
-
-def test_finer_data_stay_small(head: Head) -> None:
-    """Connectivity and map are counted, not stored."""
-    assert head.finer_file.stat().st_size < MOST_FINER_DATA

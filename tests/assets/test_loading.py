@@ -1,15 +1,18 @@
 """Loading: what `assets.load` promises, and what it says when it cannot keep it."""
 
+import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from risorius import assets
-from risorius.assets import loading
+from risorius.assets import AssetError, loading
 from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.model import Head
 from risorius.assets.sheets import COLOURS
 
 COLOURS_OF_BALL = np.array(COLOURS, np.float32)
@@ -25,7 +28,7 @@ def test_available_names_can_be_loaded() -> None:
 
 def test_unknown_name_is_refused_with_the_known_ones() -> None:
     """A typing error is answered with what there is."""
-    with pytest.raises(assets.AssetError, match=r"'haed'; available: head, plane, cloth"):
+    with pytest.raises(AssetError, match=r"'haed'; available: head, plane, cloth"):
         assets.load("haed")
 
 
@@ -77,34 +80,48 @@ def test_arrays_cannot_be_written() -> None:
         head.vertices[0] = 0.0
     with pytest.raises(ValueError, match="read-only"):
         head.parts[0].vertices[0] = 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        head.finer(1).vertices[0] = 0.0
 
 
-def test_missing_data_file_says_how_to_build_it(tmp_path: Path) -> None:
-    """The cure is in the message."""
-    with pytest.raises(assets.AssetError, match=r"missing; install risorius again"):
-        load_head(tmp_path / "head.npz")
+ASKED: dict[str, Callable[[Head], object]] = {
+    "head.npz": lambda head: head.vertices,
+    "head.png": lambda head: head.albedo,
+    "head_finer.npz": lambda head: head.finer(1),
+    "head_segments.png": lambda head: head.segments,
+    "head_wrinkles.npz": lambda head: head.wrinkles,
+}
 
 
-def test_broken_data_file_says_how_to_rebuild_it(tmp_path: Path) -> None:
-    """Neither garbage nor a half-written file ends in a traceback of numpy."""
-    broken = tmp_path / "head.npz"
-    broken.write_bytes(b"not an archive")
-    with pytest.raises(assets.AssetError, match="not a readable npz file"):
-        load_head(broken)
-    whole = HEAD_FILE.read_bytes()
-    for content in (whole[:5000], whole[:5000] + bytes(500) + whole[5500:]):
-        broken.write_bytes(content)
-        with pytest.raises(assets.AssetError, match="not a readable npz file"):
-            load_head(broken)
+@pytest.mark.parametrize("name", ASKED)
+def test_missing_and_broken_files_are_told_when_they_are_needed(name: str, tmp_path: Path) -> None:
+    """The cure is in the message; neither garbage nor half a file is a traceback of a library."""
+    folder = shutil.copytree(HEAD_FILE.parent, tmp_path / "data")
+    whole = (folder / name).read_bytes()
+    for content in (b"nothing", whole[:5000], b""):
+        (folder / name).write_bytes(content)
+        with pytest.raises(AssetError, match=r"not a readable (npz file|picture) .*; install"):
+            ASKED[name](load_head(folder / "head.npz"))
+    (folder / name).unlink()
+    if name != "head.npz":
+        load_head(folder / "head.npz")  # which can still be simulated
+    with pytest.raises(AssetError, match=rf"{name} is missing; install risorius again"):
+        ASKED[name](load_head(folder / "head.npz"))
 
 
-def test_incomplete_data_file_names_what_is_missing(tmp_path: Path) -> None:
-    """A file of an older version is told from a broken one."""
-    with np.load(HEAD_FILE) as file:
-        kept = {name: file[name] for name in file.files if name != "jaw_axis"}
-    np.savez(tmp_path / "old.npz", allow_pickle=False, **kept)
-    with pytest.raises(assets.AssetError, match=r"no array 'jaw_axis'; install"):
-        load_head(tmp_path / "old.npz")
+@pytest.mark.parametrize("name", [name for name in ASKED if name.endswith("npz")])
+def test_files_of_another_head_or_version_are_told(name: str, tmp_path: Path) -> None:
+    """What is laid over a head was made from it; what is missing is named."""
+    folder = shutil.copytree(HEAD_FILE.parent, tmp_path / "data")
+    arrays = dict(np.load(folder / name))
+    if "made_from" in arrays:
+        np.savez(folder / name, **{**arrays, "made_from": np.array(1)})
+        with pytest.raises(AssetError, match="made for another head; install"):
+            ASKED[name](load_head(folder / "head.npz"))
+    missing = max(arrays.keys() - {"made_from"})
+    np.savez(folder / name, **{key: arrays[key] for key in arrays if key != missing})
+    with pytest.raises(AssetError, match=f"has no array '{missing}'; install"):
+        ASKED[name](load_head(folder / "head.npz"))
 
 
 def test_text_files_are_optional_but_must_be_toml(
@@ -118,7 +135,7 @@ def test_text_files_are_optional_but_must_be_toml(
     assert head.rig == {} and head.layers == () and head.expressions == {}
     broken = tmp_path / "rig.toml"
     broken.write_text("[muscle\n", encoding="utf-8")
-    with pytest.raises(assets.AssetError, match=r"rig\.toml is not readable as TOML"):
+    with pytest.raises(AssetError, match=r"rig\.toml is not readable as TOML"):
         monkeypatch.setattr(loading, "RIG_FILE", broken)
         load_head()
 
@@ -140,10 +157,10 @@ def test_data_stay_small() -> None:
     assert sum(file.stat().st_size for file in HEAD_FILE.parent.iterdir()) < MOST_DATA
 
 
-def test_loading_needs_no_scipy() -> None:
-    """Nor what fits and persons import: `load` must stay fast."""
+def test_loading_is_light() -> None:
+    """It needs neither SciPy, as fits and persons do, nor a picture: `load` must stay fast."""
     code = (
         "import sys; from risorius import assets; assets.load('head');"
-        "assert not any(name.startswith('scipy') for name in sys.modules)"
+        "assert not any(name.startswith(('scipy', 'PIL')) for name in sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

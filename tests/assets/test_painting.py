@@ -1,15 +1,8 @@
 """The picture of the skin: where it is red, dark and hairy, in every tone, and how it is read."""
 
-import shutil
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from risorius import assets
-from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Head
 
 LARGEST_IMAGE_FILE = 1_250_000  # bytes
@@ -48,26 +41,3 @@ def test_picture_goes_on_outside_the_skin(head: Head) -> None:
         for place in (inside, beyond)
     )
     assert np.abs(near - far).mean() < 12.0
-
-
-def test_missing_or_broken_picture_is_told_when_it_is_asked_for(tmp_path: Path) -> None:
-    """A head without its picture can still be simulated."""
-    shutil.copy(HEAD_FILE, tmp_path / "head.npz")
-    head = load_head(tmp_path / "head.npz")
-    with pytest.raises(assets.AssetError, match="missing; install risorius again"):
-        _ = head.albedo
-    head.albedo_file.write_bytes(b"no picture")
-    with pytest.raises(assets.AssetError, match="not a readable picture"):
-        _ = head.albedo
-    head.albedo_file.write_bytes(HEAD_FILE.with_suffix(".png").read_bytes()[:9000])
-    with pytest.raises(assets.AssetError, match="not a readable picture"):
-        _ = head.albedo
-
-
-def test_loading_reads_no_picture() -> None:
-    """Who only simulates waits for no PNG."""
-    code = (
-        "import sys; from risorius import assets; assets.load('head');"
-        "assert 'PIL' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)

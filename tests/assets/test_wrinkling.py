@@ -1,14 +1,10 @@
 """The map of wrinkles: furrows where skin wrinkles, and nothing where it does not."""
 
-import shutil
-from pathlib import Path
-
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 from risorius import assets
-from risorius.assets.loading import HEAD_FILE, load_head
 
 STEEPEST_FURROW = 0.7  # slope: about 35 degrees
 
@@ -92,25 +88,3 @@ def test_left_and_right_are_not_alike(head: assets.Head) -> None:
     left, right = depth[:, half:], depth[:, :half][:, ::-1]
     assert 0.5 < left.sum() / right.sum() < 2.0
     assert np.abs(left - right).sum() > 0.3 * (left + right).sum()
-
-
-def test_a_file_that_is_missing_broken_or_of_another_head_is_named(tmp_path: Path) -> None:
-    """One error for each, with the cure."""
-    for name in ("head.npz", "head.png", "head_wrinkles.npz"):
-        shutil.copy(HEAD_FILE.with_name(name), tmp_path)
-    copy = tmp_path / "head.npz"
-    assert load_head(copy).wrinkles.map.size
-    file = load_head(copy).wrinkles_file
-    arrays = dict(np.load(file))
-    np.savez(file, **{**arrays, "made_from": np.array(1)})
-    with pytest.raises(assets.AssetError, match="made for another head"):
-        _ = load_head(copy).wrinkles
-    np.savez(file, **{name: arrays[name] for name in ("made_from", "map")})
-    with pytest.raises(assets.AssetError, match="has no array"):
-        _ = load_head(copy).wrinkles
-    file.write_bytes(b"nothing")
-    with pytest.raises(assets.AssetError, match="not a readable npz"):
-        _ = load_head(copy).wrinkles
-    file.unlink()
-    with pytest.raises(assets.AssetError, match="is missing"):
-        _ = load_head(copy).wrinkles
