@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import trimesh
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,15 @@ def octahedron() -> Mesh:
     """A closed surface whose vertices have valence four."""
     vertices = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
     faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    return _mesh(vertices, faces)
+
+
+def ball(levels: int = 2) -> Mesh:
+    """A sphere of radius 1: an octahedron, split `levels` times and blown up."""
+    vertices, faces = octahedron().vertices, octahedron().faces
+    for _ in range(levels):
+        vertices, faces = trimesh.remesh.subdivide(vertices, faces)
+        vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
     return _mesh(vertices, faces)
 
 

@@ -11,6 +11,7 @@ from risorius.bench import quality, subjects
 from risorius.bench.quality import BEST, STATIC
 from risorius.bench.subjects import PosePair, Subject
 from risorius.geometry.closest import closest_points
+from tests.meshes import open_grid
 
 Points = npt.NDArray[np.float64]
 
@@ -25,12 +26,8 @@ def rolled_plane() -> Subject:
     """A flat plane, coarse and dense, and both rolled up: the truth is a cylinder."""
     meshes = []
     for cells in (6, 48):
-        x, y = np.meshgrid(np.linspace(0.0, 3.0, cells + 1), np.linspace(0.0, 2.0, cells + 1))
-        points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
-        a = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
-        lower = np.stack([a, a + 1, a + cells + 2], axis=1)
-        upper = np.stack([a, a + cells + 2, a + cells + 1], axis=1)
-        meshes.append((points, np.concatenate([lower, upper]).astype(np.int32)))
+        grid = open_grid(cells, cells)
+        meshes.append((grid.vertices * [3.0 / cells, 2.0 / cells, 1.0], grid.faces))
     (coarse, coarse_faces), (dense, dense_faces) = meshes
     poses = {
         f"roll {angle:g}": PosePair(bent(dense, angle), bent(coarse, angle)) for angle in (0.5, 1)

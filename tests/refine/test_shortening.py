@@ -12,13 +12,10 @@ Array = npt.NDArray[np.float64]
 ALONG, ACROSS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 
 
-def grid(count: int = 9) -> tuple[npt.NDArray[np.int64], Array]:
+def grid(count: int = 9) -> tuple[npt.NDArray[np.int32], Array]:
     """Triangles and vertices of a flat grid, 10 long and wide."""
-    place = np.linspace(-5.0, 5.0, count)
-    vertices = np.stack([*np.meshgrid(place, place), np.zeros((count, count))], axis=-1)
-    corner = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
-    faces = [[corner, corner + 1, corner + count + 1], [corner, corner + count + 1, corner + count]]
-    return np.concatenate([np.stack(each, axis=1) for each in faces]), vertices.reshape(-1, 3)
+    mesh = meshes.open_grid(count - 1, count - 1)
+    return mesh.faces, mesh.vertices * (10.0 / (count - 1)) - [5.0, 5.0, 0.0]
 
 
 def both_ways(count: int) -> Array:

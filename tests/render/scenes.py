@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import render
+from tests.meshes import ball
 
 Floats = npt.NDArray[np.float32]
 SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from another, (H, W, 3)
@@ -32,28 +33,10 @@ class Shape:
 
 
 def sphere(levels: int = 2, radius: float = 50.0) -> Shape:
-    """An octahedron, split `levels` times and blown up to a sphere; smooth normals."""
-    points = [(1.0, 0, 0), (-1.0, 0, 0), (0, 1.0, 0), (0, -1.0, 0), (0, 0, 1.0), (0, 0, -1.0)]
-    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
-    unit = [np.array(point) for point in points]
-    for _ in range(levels):
-        middles: dict[tuple[int, int], int] = {}
-
-        def middle(a: int, b: int, known: dict[tuple[int, int], int] = middles) -> int:
-            key = (min(a, b), max(a, b))
-            if key not in known:
-                total = unit[a] + unit[b]
-                unit.append(total / np.linalg.norm(total))
-                known[key] = len(unit) - 1
-            return known[key]
-
-        split = []
-        for a, b, c in faces:
-            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-            split += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-        faces = split
-    normals = np.array(unit, np.float32)
-    return Shape(normals * np.float32(radius), normals, np.array(faces, np.uint32))
+    """A sphere with smooth normals."""
+    unit = ball(levels)
+    normals = unit.vertices.astype(np.float32)
+    return Shape(normals * np.float32(radius), normals, unit.faces.astype(np.uint32))
 
 
 def square(half: float = 50.0, *, z: float = 0.0, bulge: float = 0.0) -> Shape:

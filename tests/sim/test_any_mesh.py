@@ -9,17 +9,14 @@ import trimesh
 
 from risorius import sim
 from risorius.assets.model import Head
+from tests.meshes import open_grid
 from tests.sim.poses import FRAME, both_sides, moved_landmarks, settled_displacement, without
 
 
-def _grid(columns: int = 8, rows: int = 6) -> SimpleNamespace:
+def _grid() -> SimpleNamespace:
     """A flat open grid."""
-    x, y = np.meshgrid(np.arange(columns, dtype=float), np.arange(rows, dtype=float))
-    vertices = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
-    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
-    lower = np.stack([corner, corner + 1, corner + columns], axis=1)
-    upper = np.stack([corner + 1, corner + columns + 1, corner + columns], axis=1)
-    return SimpleNamespace(vertices=vertices, faces=np.vstack([lower, upper]))
+    grid = open_grid(7, 5)
+    return SimpleNamespace(vertices=grid.vertices, faces=grid.faces)
 
 
 def _with_flaws() -> SimpleNamespace:

@@ -11,6 +11,7 @@ import pytest
 from risorius import sim
 from risorius.sim.checked import numbers, vertex_numbers
 from risorius.sim.layers import read_layers
+from tests.meshes import open_grid
 
 HUGE = 10**400
 NAN, INF = float("nan"), float("inf")
@@ -71,10 +72,8 @@ RIGHT: dict[str, dict[str, Any]] = {
 
 def grid() -> SimpleNamespace:
     """A small mesh without anything else."""
-    x, y = np.meshgrid(np.arange(3.0), np.arange(3.0))
-    vertices = np.stack([10.0 * x.ravel(), 10.0 * y.ravel(), np.zeros(COUNT)], axis=1)
-    faces = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [3, 4, 7], [3, 7, 6], [4, 5, 8], [4, 8, 7]]
-    return SimpleNamespace(vertices=vertices, faces=np.array(faces))
+    mesh = open_grid(2, 2)
+    return SimpleNamespace(vertices=10.0 * mesh.vertices, faces=mesh.faces)
 
 
 @pytest.fixture(scope="module")

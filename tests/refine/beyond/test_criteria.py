@@ -19,15 +19,6 @@ def splits_of(
     return refiner.splits.copy(), refiner.edges
 
 
-def ball(levels: int = 2) -> meshes.Mesh:
-    """A unit sphere."""
-    octahedron = meshes.octahedron()
-    finer = refine.create("loop", octahedron.faces, octahedron.vertices, levels=levels)
-    refined = finer.refine(octahedron.vertices)
-    positions = refined.positions / np.linalg.norm(refined.positions, axis=1, keepdims=True)
-    return meshes.Mesh(positions.astype(np.float64), refined.triangles.astype(np.int32))
-
-
 def test_rest_by_hand() -> None:
     """Where a tube is curved, by height and length; the same edges however it is bent and seen."""
     tube = meshes.tube(24, 4)
@@ -52,7 +43,7 @@ def test_rest_by_hand() -> None:
 
 def test_rest_is_grown_at_once() -> None:
     """Blended points that are there at rest stand where they stand without blending."""
-    sphere = ball(1)
+    sphere = meshes.ball(1)
     points = []
     for blend in (False, True):
         refiner = kahler(sphere, criterion="rest", scheme="cubic", blend=blend)
