@@ -14,17 +14,7 @@ from Xlib import Xatom, display
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
 
-from .driving import (
-    click,
-    drag,
-    middle,
-    moved,
-    nose,
-    settle,
-    show_controls,
-    until,
-    xdotool,
-)
+from .driving import click, drag, middle, moved, nose, settle, show_controls, until, xdotool
 
 DOTS_PER_INCH = 192
 SIZE = (1200, 800)

@@ -79,6 +79,13 @@ def run(session: Session, steps: int) -> None:
         session.advance(STEP)
 
 
+def set_by_hand(session: Session, **values: float) -> None:
+    """Move sliders, and let them go."""
+    for name, value in values.items():
+        session.set(name, value)
+    session.note()
+
+
 def wait_for(condition: Callable[[], object]) -> None:
     """Wait until another process has done something; AssertionError after too long."""
     end = time.monotonic() + DEADLINE

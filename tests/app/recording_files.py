@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from risorius.app.recordings import Take
 from risorius.app.recordings.names import ARKIT
 
 Array = npt.NDArray[np.float64]
@@ -20,6 +21,18 @@ ANGLES = (
 def told(notes: tuple[str, ...], words: str) -> bool:
     """Whether a note has these words."""
     return any(words in note for note in notes)
+
+
+def take_of(
+    kind: str = "Live Link Face", *, seconds: float = 4.0, rate: float = 10.0, **channels: object
+) -> Take:
+    """A take; a channel is a number that it keeps, or its values."""
+    times = np.arange(round(seconds * rate) + 1) / rate
+    arrays = {
+        name: np.broadcast_to(np.asarray(values, float), times.shape).copy()
+        for name, values in channels.items()
+    }
+    return Take(kind, "take.csv", times, arrays)
 
 
 def table(columns: Columns, delimiter: str = ",") -> str:

@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.errors import UserError
-from risorius.app.recordings import Take
 from risorius.app.recordings.calibration import (
     BLINK_GAIN,
     OPENFACE_GAIN,
@@ -18,6 +17,8 @@ from risorius.app.recordings.calibration import (
 )
 from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 
+from .recording_files import take_of
+
 Frame = dict[str, float]
 SHAPES = (*ARKIT, "AU12", "AU12_left", "AU4_right")
 ANGLES = (*HEAD_ANGLES, *EYE_ANGLES)
@@ -25,16 +26,6 @@ ANGLES = (*HEAD_ANGLES, *EYE_ANGLES)
 shapes = st.dictionaries(st.sampled_from(SHAPES), st.floats(0.0, 1.0), min_size=1)
 angles = st.dictionaries(st.sampled_from(ANGLES), st.floats(-90.0, 90.0))
 frames = st.builds(lambda of_shapes, of_angles: {**of_shapes, **of_angles}, shapes, angles)
-
-
-def take_of(kind: str = "Live Link Face", seconds: float = 4.0, **channels: object) -> Take:
-    """A take at 10 frames a second; a channel is a number that it keeps, or its values."""
-    times = np.arange(round(seconds * 10) + 1) / 10.0
-    arrays = {
-        name: np.broadcast_to(np.asarray(values, float), times.shape).copy()
-        for name, values in channels.items()
-    }
-    return Take(kind, "take.csv", times, arrays)
 
 
 def test_a_mirror_swaps_sides_and_turns_the_head() -> None:

@@ -3,12 +3,7 @@
 import numpy as np
 
 from risorius import render
-from risorius.app.capture.captions import (
-    LEAST_CAPTION,
-    captioned,
-    contact_sheet,
-    labels,
-)
+from risorius.app.capture.captions import LEAST_CAPTION, captioned, contact_sheet, labels
 
 STYLE = render.Style()
 GREY = np.full((200, 400, 3), 128, np.uint8)

@@ -9,11 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.dataset.sampling import MOST_UNITS, Sample, draw
-from risorius.app.dataset.table import (
-    SampleTable,
-    load_table,
-    paired_units,
-)
+from risorius.app.dataset.table import SampleTable, load_table, paired_units
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 

@@ -149,7 +149,7 @@ def test_the_mesh_at_rest_is_read_by_trimesh(clip: Clip, glb: Path) -> None:
 
 
 def test_the_file_is_as_validators_want_it(glb: Path) -> None:
-    """Chunks, alignment, bounds and counts; unit normals and shares that add up to 1."""
+    """Chunks, alignment, bounds, counts, weights; unit normals, shares that add up to 1."""
     data = glb.read_bytes()
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
@@ -187,6 +187,10 @@ def test_the_file_is_as_validators_want_it(glb: Path) -> None:
         assert np.array_equal(np.float32(accessor["max"]), np.atleast_1d(values.max(axis=0)))
     for accessor in parts["accessors"]:
         assert accessor["count"] > 0 and np.isfinite(accessor.get("max", [0.0])).all()
+    for name in ("skin", "tongue"):
+        weights = player.weights(name)
+        assert 1 <= len(player.target_names(name)) == weights.shape[1] <= 250
+        assert weights.min() >= 0.0 and weights.max() <= 1.0
 
 
 def test_the_texture_is_the_right_way_up(clip: Clip, glb: Path) -> None:
@@ -344,17 +348,6 @@ def test_bytes_are_the_same_on_any_number_of_cores(tmp_path: Path) -> None:
         with threadpool_limits(threads):
             written(clip, path)
     assert paths[0].read_bytes() == paths[1].read_bytes()
-
-
-def test_weights_are_such_as_every_reader_takes(glb: Path) -> None:
-    """None is negative, none above 1, and the targets are not too many."""
-    player = Player(glb)
-    for name in ("skin", "tongue"):
-        weights = player.weights(name)
-        count = weights.shape[1]
-        assert count == len(player.target_names(name)) == len(player.primitive(name).targets)
-        assert 1 <= count <= 250
-        assert weights.min() >= 0.0 and weights.max() <= 1.0
 
 
 def test_what_targets_cannot_follow_is_told(

@@ -1,5 +1,6 @@
 """Recordings as scripts: in time, in few keys, with a report; and the commands that take them."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,20 +18,12 @@ from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene
 from risorius.app.script import TOLERANCE, load_script
 
+from . import recording_files
 from .command_line import risorius
 
 RATE = 60
 Curve = npt.NDArray[np.float64]
-
-
-def take_of(kind: str = "Live Link Face", seconds: float = 3.0, **channels: object) -> Take:
-    """A take at 60 frames a second; a channel is a number that it keeps, or its values."""
-    times = np.arange(round(seconds * RATE) + 1) / RATE
-    arrays = {
-        name: np.broadcast_to(np.asarray(values, float), times.shape).copy()
-        for name, values in channels.items()
-    }
-    return Take(kind, "take.csv", times, arrays)
+take_of = partial(recording_files.take_of, seconds=3.0, rate=RATE)
 
 
 def wave(seconds: float = 3.0) -> Curve:

@@ -18,14 +18,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices
 from risorius.render import LIGHT, LIGHTS, Style
 
-from .driving import (
-    NEEDS_A_SCREEN,
-    click,
-    settle,
-    until,
-    write,
-    xdotool,
-)
+from .driving import NEEDS_A_SCREEN, click, settle, until, write, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 

@@ -10,12 +10,7 @@ from hypothesis import strategies as st
 
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script import (
-    Script,
-    keyframes,
-    load_script,
-    parse_script,
-)
+from risorius.app.script import Script, keyframes, load_script, parse_script
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.viewer.session.session import Session

@@ -11,15 +11,7 @@ from imgui_bundle import imgui
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import load_settings, save_settings
 
-from .driving import (
-    NEEDS_A_SCREEN,
-    clear_search,
-    click,
-    middle,
-    show_controls,
-    until,
-    xdotool,
-)
+from .driving import NEEDS_A_SCREEN, clear_search, click, middle, show_controls, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 

@@ -8,13 +8,7 @@ import pytest
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import ASLEEP_AFTER
 
-from .driving import (
-    NEEDS_A_SCREEN,
-    moved,
-    settle,
-    until,
-    xdotool,
-)
+from .driving import NEEDS_A_SCREEN, moved, settle, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("alive")]
 

@@ -15,16 +15,9 @@ from risorius.app.script.recorder import Recorder
 from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.session import Session
 
-from .driving import run
+from .driving import run, set_by_hand
 
 MAJOR = "zygomaticus_major_left"
-
-
-def set_by_hand(session: Session, **values: float) -> None:
-    """Move sliders, and let them go."""
-    for name, value in values.items():
-        session.set(name, value)
-    session.note()
 
 
 def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -> None:

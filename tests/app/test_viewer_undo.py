@@ -16,16 +16,9 @@ from risorius.app.viewer.session.scene_controls import change_of
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 
-from .driving import HELLO, run
+from .driving import HELLO, run, set_by_hand
 
 SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
-
-
-def set_by_hand(session: Session, **values: float) -> None:
-    """Move sliders, and let them go."""
-    for name, value in values.items():
-        session.set(name, value)
-    session.note()
 
 
 @pytest.mark.parametrize("how", ["seek", "key", "play", "button"])

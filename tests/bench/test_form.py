@@ -9,16 +9,7 @@ import pytest
 from risorius.assets.intersections import self_intersections
 from risorius.assets.loading import load_head
 from risorius.assets.model import Head
-from risorius.bench.form import (
-    MOST_WEIGHT,
-    RMS,
-    Form,
-    drawn,
-    save,
-    settled,
-    turned,
-    without_cuts,
-)
+from risorius.bench.form import MOST_WEIGHT, RMS, Form, drawn, save, settled, turned, without_cuts
 from risorius.bench.form_parts import lids_and_eyes
 from risorius.bench.registration import MIRROR
 from risorius.geometry.normals import vertex_normals

@@ -2,12 +2,7 @@
 
 import pytest
 
-from risorius.bench.gaps import (
-    LIDS_MOST,
-    LIPS_MOST,
-    PoseGaps,
-    measure,
-)
+from risorius.bench.gaps import LIDS_MOST, LIPS_MOST, PoseGaps, measure
 
 
 @pytest.fixture(scope="module")
