@@ -104,7 +104,7 @@ def _assemble(
         for name, array in arrays.items()
         if name.startswith("ring_")
     }
-    names = arrays["anatomy_names"].tolist()
+    names, eyes = arrays["anatomy_names"].tolist(), _eyes(arrays)
     return Head(
         vertices=arrays["vertices"],
         faces=arrays["faces"],
@@ -115,8 +115,8 @@ def _assemble(
         mirror=arrays["mirror"],
         anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
         rings=rings,
-        eyes=_eyes(arrays),
-        parts=_parts(arrays),
+        eyes=eyes,
+        parts=with_irises(_parts(arrays), eyes),
         uv=arrays["uv"],
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         albedo_file=head_file.with_suffix(".png"),
@@ -161,4 +161,4 @@ def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
                 strand_radius=float(arrays["part_hair"][i]),
             )
         )
-    return with_irises(parts)
+    return tuple(parts)

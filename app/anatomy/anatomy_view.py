@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from risorius import render
+from risorius.assets.fitting.skull import build_skull, neck_sections
 from risorius.assets.identities import HAIR
-from risorius.assets.skull import build_skull
-from risorius.assets.throat import build_throat
 
 from ..scenes import FaceScene, Scene
 from .muscle_bands import Muscles
@@ -66,7 +65,7 @@ class Anatomy:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self._skull: dict[str, Any] = {}
-        self._throat: list[Any] = []
+        self._necks: list[Any] = []
         self._muscles: Muscles | None = None
         self._followed = np.empty(0)  # what they were shaped by
         self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
@@ -94,17 +93,15 @@ class Anatomy:
 
     def _structures(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
         """Throat, bones and muscles, which no skin leaves bare."""
-        names = list[str]()
+        names = ["throat"]
         if "skull" in view.structures:
             names += ["cranium", "mandible", "spine"]
         if "muscles" in view.structures:
             names.append("nose")
-        missing = [name for name in names if name not in self._skull]
-        pivots = scene.simulation.pivots()
-        self._skull |= build_skull(scene.head, pivots, missing)
-        self._throat = self._throat or build_throat(scene.head, pivots)
+        self._skull = self._skull or build_skull(scene.head, scene.simulation.pivots())
+        self._necks = self._necks or neck_sections(scene.head)
         muscles = [self._muscles_now(scene)] if "muscles" in view.structures else []
-        return [*self._throat, *(self._skull[name] for name in names), *muscles]
+        return [*self._necks, *(self._skull[name] for name in names), *muscles]
 
     def _muscles_now(self, scene: FaceScene) -> Muscles:
         """The muscles, shaped anew unless nothing has moved: a camera that turns is no reason."""

@@ -6,6 +6,7 @@
 Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
 """
 
+from .brows import Brows
 from .complexion import (
     DARKEST,
     LIGHTEST,
@@ -18,7 +19,7 @@ from .complexion import (
     recoloured,
     typology_angle,
 )
-from .hair import CUTS, HAIR
+from .hair import CUTS, HAIR, Fall, Hairline
 from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
 from .space import PersonSpace, Sex, person_space
@@ -30,7 +31,10 @@ __all__ = [
     "HAIR",
     "LIGHTEST",
     "NAMED",
+    "Brows",
+    "Fall",
     "Features",
+    "Hairline",
     "Identity",
     "Person",
     "PersonSpace",

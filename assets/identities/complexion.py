@@ -15,7 +15,7 @@ the 19 at 52 ("Proposed shade guide for human facial skin", IADR 2009, abstract 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from typing import TypeVar
 
@@ -32,7 +32,9 @@ from ..fitting.head import FittedHead
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
-from .hair import CUTS, HAIR, hair_of, scalp_of
+from .brows import Brows, drawn_brows, lid_lines, painted
+from .hair import CUTS, HAIR, Fall, Hairline, drawn_hairline, hair_of, scalp_of
+from .long_hair import falling_hair
 from .person import Person
 from .space import Sex
 from .traits import Identity
@@ -50,6 +52,7 @@ LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
 BEARD_SHADOW = 0.12  # density of shaved hair in the shipped picture
 BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the hairline back
 GROWN = 0.94  # of a scalp, that is covered by long hair
+BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin is called brow
 DETAIL = 9  # [texels] below which relief is told from colour
 AnyHead = TypeVar("AnyHead", bound=FittedHead)
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
@@ -63,19 +66,21 @@ WHITE = TO_XYZ.sum(axis=1)
 class Features:
     """What sex and age make of the picture of a face; the default is the built-in head's.
 
-    brows: their width, as a share of the widest. beard, lips: density of its shadow, and of blood
-    in them, beside that of the built-in head. relief: of pores and patches, as a share beside its
-    own. fair, grey: shares of such hair. baldness: how far the hairline has receded [mm]. grown:
-    whether hair stands so long that no scalp shines through.
+    brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
+    lids, 0 to 1. beard, lips: density of its shadow, and of blood in them, beside that of the
+    built-in head. relief: of pores and patches, as a share beside its own. fair, grey: shares of
+    such hair. hairline: where hair begins. grown: whether hair stands so long that no scalp shines
+    through.
     """
 
-    brows: float = 1.0
+    brows: Brows | None = None
+    lid_line: float = 0.0
     beard: float = 0.0
     lips: float = 0.0
     relief: float = 0.0
     fair: float = 0.0
     grey: float = 0.0
-    baldness: float = 0.0
+    hairline: Hairline = field(default_factory=Hairline)
     grown: bool = False
 
 
@@ -172,15 +177,16 @@ def _hair_colour(angle: float, features: Features) -> FloatArray:
 
 
 def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
-    """How much of hair's colour is left on each texel where brows are thinned, hairlines recede."""
+    """How much of hair's colour is on each texel, with a person's brows, lids and hairline."""
     kept = tints.hair
-    if features.brows < 1.0:
-        share = np.clip((features.brows + 0.2 - tints.brow) / 0.35, 0.0, 1.0)
-        kept = kept * np.where(tints.brow < 1.99, share, 1.0).astype(np.float32)
-    if features.baldness > 0.0:
-        share = np.clip(_behind(tints, features) / 14.0, 0.0, 1.0)
-        kept = kept * np.where(tints.scalp > 0.01, share, 1.0).astype(np.float32)
-    return kept
+    if features.brows is not None:
+        kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
+        np.maximum(kept, painted(features.brows, len(kept)), out=kept)
+    if features.lid_line > 0.0:
+        kept = np.maximum(kept, np.float32(features.lid_line) * lid_lines(len(kept)))
+    receded = features.hairline.shift(len(kept))
+    share = np.clip(_behind(tints, features) / np.clip(2.0 * receded, 0.1, 14.0), 0.0, 1.0)
+    return np.where((tints.scalp > 0.01) & (receded > 0.0), kept * share, kept)
 
 
 def _grown_over(tints: _Tints, features: Features) -> SingleArray:
@@ -201,12 +207,10 @@ def coloured(
 
     With a tone, a person gets the hair of its cut, too, and keeps it in other tones (`in_tone`).
     """
-    parts = head.parts if irises is None else with_irises(head.parts, irises)
+    parts = head.parts if irises is None else with_irises(head.parts, head.eyes, irises)
     segments = head.segments
-    if features.baldness > 0.0:
-        tints = _tints()
-        is_bald = (segments == Segment.HAIR) & (_kept_hair(tints, features) < 0.5 * tints.hair)
-        segments = np.where(is_bald, np.uint8(Segment.SKIN), segments)
+    if features is not PLAIN:
+        segments = _haired_segments(segments, features)
     if angle is None:
         return replace(head, parts=parts, segments=segments)
     in_tone = partial(recoloured, blood=blood, features=features)
@@ -214,6 +218,21 @@ def coloured(
         in_tone = partial(in_tone, haired_as=angle)  # hair stays, whatever the skin
         parts, head = _with_hair(head, parts, angle, features), replace(head, in_tone=in_tone)
     return replace(head, albedo=in_tone(angle), parts=parts, segments=segments)
+
+
+def _haired_segments(segments: Image, features: Features) -> Image:
+    """What texels belong to, with brows and the hairline of a person."""
+    tints, brows = _tints(), (Segment.RIGHT_BROW, Segment.LEFT_BROW)
+    kept = _kept_hair(tints, features)
+    is_bald = (segments == Segment.HAIR) & (kept < 0.5 * tints.hair)
+    found = np.where(is_bald, np.uint8(Segment.SKIN), segments)
+    if features.brows is not None:
+        found[np.isin(found, brows)] = Segment.SKIN
+        covered = scipy.ndimage.gaussian_filter(painted(features.brows, len(found)), BROW_BLUR)
+        left = np.arange(found.shape[1]) > found.shape[1] / 2
+        sides = np.where(left, np.uint8(Segment.LEFT_BROW), np.uint8(Segment.RIGHT_BROW))
+        found = np.where((covered > BROW_COVER) & (found == Segment.SKIN), sides, found)
+    return found
 
 
 def _with_hair(
@@ -227,12 +246,17 @@ def _with_hair(
     uv = np.zeros((len(person.vertices), 2))
     uv[person.faces] = person.uv[person.face_uv]
     scalp = scalp_of(person.vertices, person.faces, uv, _behind(_tints(), features))
-    return (*others, hair_of(cut, scalp, _hair_colour(angle, features), person.identity.hair))
+    colour, length = _hair_colour(angle, features), person.identity.hair
+    if isinstance(cut, Fall):
+        return (*others, falling_hair(cut, scalp, person, colour, length))
+    return (*others, hair_of(cut, scalp, colour, length))
 
 
 def _behind(tints: _Tints, features: Features) -> SingleArray:
     """How far texels lie behind somebody's hairline [mm]."""
-    return np.asarray(BEHIND * tints.scalp - IN_FRONT - features.baldness)
+    lies = BEHIND * tints.scalp - IN_FRONT
+    moved = lies - features.hairline.shift(len(tints.scalp))
+    return np.where(tints.scalp > 0.01, moved, lies).astype(np.float32)
 
 
 def drawn_irises(
@@ -245,19 +269,27 @@ def drawn_irises(
 
 
 def features_of(identity: Identity, angle: float, random: np.random.Generator) -> Features:
-    """Brows, beard, lips, hair and relief of somebody of that sex and age, chosen by eye."""
+    """Brows, beard, lips, hair and relief of somebody of that sex and age, chosen by eye.
+
+    Women's eyes and lips are darker beside their skin (Russell 2009, "A sex difference in facial
+    contrast and its exaggeration by cosmetics", Perception 38:1211-1219).
+    """
     is_man = identity.sex is Sex.MAN
     years = identity.age
-    brows, beard, lips, fair, grey, bald = random.uniform(0.0, 1.0, 6)
+    beard, lips, fair, grey, line = random.uniform(0.0, 1.0, 5)
+    is_grown = CUTS[identity.cut] is not None
     return Features(
-        brows=0.85 + 0.15 * brows if is_man else 0.50 + 0.25 * brows,
-        beard=0.05 + 0.55 * beard**1.5 if is_man else -BEARD_SHADOW,
-        lips=-0.08 if is_man else 0.08 + 0.22 * lips,
-        relief=(0.15 if is_man else -0.45) + 0.02 * (years - 30.0),
+        brows=drawn_brows(is_man, years, random),
+        lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
+        beard=0.1 + 0.8 * beard**1.3 if is_man else -BEARD_SHADOW,
+        lips=-0.12 + 0.1 * lips
+        if is_man
+        else (0.25 + 0.45 * lips) * (1.0 - 0.006 * (years - 20.0)),
+        relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),
         fair=fair if angle > FAIR_SKIN else 0.0,
         grey=_share_of_grey(years, angle, grey),
-        grown=CUTS[identity.cut] is not None,
-        baldness=0.9 * max(years - 28.0, 0.0) * bald**2 if is_man else 0.0,
+        grown=is_grown,
+        hairline=drawn_hairline(is_man, years, random),
     )
 
 

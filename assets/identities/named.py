@@ -32,7 +32,7 @@ class _Known:
 NAMED: Mapping[str, _Known] = MappingProxyType(
     {
         "ada": _Known(
-            27, Sex.WOMAN, 27.0, 34.0, "hazel", "fringed",
+            27, Sex.WOMAN, 27.0, 34.0, "hazel", "parted",
             {"go-go": -0.8, "zy-zy": -0.2, "ls-sto": 1.0, "sto-li": 1.0, "al-al": -0.6},
         ),
         "kofi": _Known(
@@ -40,8 +40,8 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
             {"al-al": 2.2, "ls-sto": 1.8, "sto-li": 1.8, "zy-zy": 0.9, "n-prn": -0.6, "ch-ch": 0.8},
         ),
         "maria": _Known(
-            47, Sex.WOMAN, 66.0, 56.0, "blue", "brushed",
-            {"go-go": 0.2, "zy-zy": 0.5, "n-gn": -0.9, "ls-sto": -0.6, "sto-li": -0.4},
+            13, Sex.WOMAN, 66.0, 56.0, "blue", "waved",
+            {"go-go": -0.3, "zy-zy": 0.2, "ls-sto": 0.0, "sto-li": 0.2, "sn-prn": 0.0},
         ),
     }
 )  # fmt: skip

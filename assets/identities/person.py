@@ -13,10 +13,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy
 
 from risorius.geometry.normals import cross_products, vertex_normals
 
-from ..around import STRIP, direction_coordinates, neck_relief
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
@@ -26,6 +26,7 @@ from ..intersections import self_intersections
 from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
 from ..norms import measures_of
+from ..smooth import smooth_step
 from .space import Sex, person_space, scores_of
 from .traits import Identity
 
@@ -33,8 +34,11 @@ NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the weights, tried in turn
 MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own side
 EAR_ROUNDS, EAR_STEP = 8, 0.5  # of standing out, by so much each [mm]
 GIVE = 0.2  # of the warp of what lies in the head
-MOST_RESTING = 0.65
-NECK_OF_WOMEN = 0.85  # of the relief of the neck, which they have not
+MOST_RESTING = {Sex.WOMAN: 0.5, Sex.MAN: 0.65}
+NARROWER_NECK, NECK_AXIS = 0.07, np.array([0.0, 0.0, 5.0])  # share, of women's; [mm]
+LOWER = -0.96  # of the iris' radius, that the lower lid lies at
+ROWS_OF_LIDS = (1.0, 1.0, 1.0, 0.7, 0.25)  # how far rows around the eye go with the lid's edge
+CORNER, BROW = 9.0, 11.0  # [mm] about corners of the mouth and brows, that go with them
 LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
 
 
@@ -90,10 +94,12 @@ def _made(identity: Identity) -> Person:
     askew = space.moved(np.array(identity.unevenness)) * beside / np.hypot(beside, MIDDLE)
     bent = space.mean + space.moved(np.array(identity.weights)) + askew
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
+    bent = _resting_face(known, bent, eyes, identity)
     vertices = ears_off_head(known, lids_on_eyes(known, bent, eyes, LID_SHARES))
-    normals = vertex_normals(vertices, known.faces)
     if identity.sex is Sex.WOMAN:
-        vertices = vertices - (NECK_OF_WOMEN * _neck(known))[:, None] * normals
+        chin = vertices[known.anatomy["menton"], 1]
+        narrower = NARROWER_NECK * smooth_step(-chin, 30.0 - chin, -vertices[:, 1])
+        vertices[:, ::2] -= narrower[:, None] * (vertices - NECK_AXIS)[:, ::2]
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
         raise AssetError("nobody is so: a triangle of the skin is turned over, or cuts another")
@@ -116,7 +122,7 @@ def _made(identity: Identity) -> Person:
         face_uv=known.face_uv,
         albedo=known.albedo,
         segments=known.segments,
-        wrinkles=replace(known.wrinkles, resting=_resting(identity.age)),
+        wrinkles=replace(known.wrinkles, resting=_resting(identity)),
         rig=known.rig,
         layers=known.layers,
         to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
@@ -128,6 +134,34 @@ def _made(identity: Identity) -> Person:
         ambient_occlusion=known.ambient_occlusion,
         identity=identity,
     )
+
+
+def _resting_face(
+    known: Head, vertices: FloatArray, eyes: tuple[Eye, ...], identity: Identity
+) -> FloatArray:
+    """Vertices with the lids, the corners of the mouth, and the brows of an identity at rest."""
+    x = vertices.copy()
+    for eye in eyes:
+        upper = 1.0 - identity.covered / eye.iris_radius
+        for lid, height in (("superius", upper), ("inferius", LOWER)):
+            middle = vertices[known.anatomy[f"palpebrale_{lid}_{eye.name}"]]
+            moved = eye.centre[1] + height * eye.iris_radius - middle[1]
+            for row, share in enumerate(ROWS_OF_LIDS):
+                ring = known.rings[f"eye_{row}_{eye.name}"]
+                inner, outer = vertices[ring[[0, len(ring) // 2]]]
+                along = (vertices[ring, 0] - inner[0]) / (outer[0] - inner[0])
+                is_above = vertices[ring, 1] > inner[1] + along * (outer[1] - inner[1])
+                open_ = np.sqrt(np.clip(1.0 - (2.0 * along - 1.0) ** 2, 0.0, 1.0))
+                x[ring, 1] += share * moved * open_ * (is_above == (lid == "superius"))
+    # Brows slide over the forehead; lips, which touch, go one way.
+    normals, up = vertex_normals(vertices, known.faces), np.array([0.0, 1.0, 0.0])
+    for points, way, wide in (
+        (known.landmarks[48:55:6], identity.corners * up, CORNER),
+        (known.landmarks[17:27], identity.brows * (up - normals[:, 1:2] * normals), BROW),
+    ):
+        away = scipy.spatial.cKDTree(vertices[points]).query(vertices)[0]
+        x += np.exp(-((away / wide) ** 2))[:, None] * way
+    return x
 
 
 def ears_off_head(known: Head, vertices: FloatArray) -> FloatArray:
@@ -144,15 +178,10 @@ def ears_off_head(known: Head, vertices: FloatArray) -> FloatArray:
     return x
 
 
-def _resting(years: float) -> float:
+def _resting(identity: Identity) -> float:
     """How far furrows show in a face at rest, 0 to 1."""
-    past = float(np.clip((years - 30.0) / 45.0, 0.0, 1.0))
-    return MOST_RESTING * past * past
-
-
-def _neck(known: Head) -> FloatArray:
-    """How far muscles and larynx stand out of the neck [mm], shape (V,)."""
-    return np.asarray(neck_relief(*direction_coordinates(known.vertices), strip=STRIP))
+    past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
+    return MOST_RESTING[identity.sex] * past * past
 
 
 def _named(known: Head) -> IndexArray:

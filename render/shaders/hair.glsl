@@ -53,6 +53,7 @@ const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each othe
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const float SIDEWAYS = 6.0;              // how soon layers are whole, from their side to their front
 const float DARK = 0.45;                 // of the light, at roots
+const float FULL = 0.42;                 // more, where they lie close
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 
 // A number for each place of a grid, 0 to 1, by a hash without sine; two grids at once.
@@ -73,10 +74,12 @@ void main() {
     vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
     vec2 share = clamp(1.5 - fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
-    float far = (0.65 + 0.5 * tones.x + 0.4 * tones.y) * smoothstep(0.0, 1.0, surface.dense);
+    float close = clamp(surface.dense - 2.0, 0.0, 1.0);
+    float far = (0.65 + (1.0 - 0.6 * close) * (0.5 * tones.x + 0.4 * tones.y)) * smoothstep(0.0, 1.0, surface.dense)
+        + FULL * close;
     float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(4.0 * far, 0.0, 1.0);
     // Seen from the side, upper layers are lines with gaps between them.
-    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), min(3.0 * surface.layer, 1.0));
+    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), min(3.0 * surface.layer, 1.0) * (1.0 - close));
     if (cover < 0.02) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;
     // Tilted toward the root and toward the tip.

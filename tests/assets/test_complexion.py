@@ -1,6 +1,7 @@
 """Skin of any tone and eyes of any colour: as the painter would paint them, from one number."""
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +14,9 @@ from risorius.assets.eyeballs import IRISES
 from risorius.assets.identities import (
     DARKEST,
     LIGHTEST,
+    Brows,
     Features,
+    Hairline,
     coloured,
     drawn_irises,
     features_of,
@@ -156,23 +159,28 @@ def test_irises_follow_the_shares_where_skin_is_light(angle: float) -> None:
 
 @pytest.mark.slow
 def test_features_do_what_their_names_say(head: Head) -> None:
-    """Thin brows show skin, beards darken, lips redden, hair is grey or gone."""
+    """Brows have their own form, beards darken, lips redden, hair is grey or gone."""
     plain = recoloured(40.0).astype(int)
 
-    def changed(**features: float) -> Light:
+    def changed(**features: Any) -> Light:
         """Mean change of the picture in each segment, by its number; shape (16, 3)."""
         off = recoloured(40.0, features=Features(**features)).astype(int) - plain
         return np.array([off[head.segments == n].mean(axis=0) for n in range(1, 14)])
 
     brow, lip = Segment.LEFT_BROW - 1, Segment.TOP_LIP - 1
-    assert changed(brows=0.6)[brow].mean() > 4.0 and not changed(brows=0.6)[lip].any()
+    thin, thick = (Brows(wide, 11.0, 3.0, 8.0, 40.0, 1.0, 0.2, 1) for wide in (4.0, 9.0))
+    assert changed(brows=thin)[brow].mean() > 4.0 + changed(brows=thick)[brow].mean()
+    assert not changed(brows=thin)[lip].any()
     assert changed(beard=0.5)[Segment.NECK - 1].mean() < changed(beard=0.5)[brow].mean()
     reddened = changed(lips=0.3)[lip]
     assert reddened[1] < -7.0 and reddened[0] > -4.0
     assert changed(grey=0.9)[Segment.HAIR - 1].mean() > 15.0
-    assert changed(baldness=20.0)[Segment.HAIR - 1].mean() > 8.0
-    bald = coloured(make_person(sample_identity(1)), angle=40.0, features=Features(baldness=20.0))
-    assert (bald.segments == Segment.HAIR).sum() < (head.segments == Segment.HAIR).sum()
+    receded = Features(hairline=Hairline(front=20.0), brows=thick)
+    assert changed(hairline=receded.hairline)[Segment.HAIR - 1].mean() > 1.0
+    bald = coloured(make_person(sample_identity(1)), angle=40.0, features=receded).segments
+    assert (bald == Segment.HAIR).sum() < (head.segments == Segment.HAIR).sum()
+    for side in (Segment.LEFT_BROW, Segment.RIGHT_BROW):
+        assert 0.4 < (bald == side).sum() / (head.segments == side).sum() < 2.5
 
 
 def test_hair_turns_grey_as_in_the_survey() -> None:

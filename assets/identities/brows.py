@@ -1,0 +1,186 @@
+"""Brows of persons, painted hair by hair on the texture of the built-in head.
+
+A brow runs from its inner end over its peak to its tail. The peak of women's lies 0.93 of the
+eye's width from the inner corner of the eye (Roth, Metzinger 2003, "Quantifying the arch position
+of the female eyebrow", Arch. Facial Plast. Surg. 5:235-239); men's are lower, with a lower tail and
+a weaker peak (Sclafani, Jung 2010, "Desired position, shape, and dynamic range of the normal adult
+eyebrow", the same 12:123-127). All else is chosen by eye.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from ..loading import load
+from ..model import FloatArray, IndexArray, SingleArray
+from ..smooth import smooth_step
+
+FINER = 4  # times finer than the texture, hairs are drawn
+AROUND = 24.0  # [mm] about a brow, vertices that say where it lies on the texture
+DENSITY = 1.6  # hairs for each square millimetre
+HAIR = 0.22  # [mm] thickness of the thickest
+LID_LINE = 3.0  # [texels] that the lashes' roots are wide along the upper lid
+SOFT = 5.0  # of hairs' thickness, by which what is between them is blurred
+# Along a brow, its thickness as a share of the greatest.
+PROFILE = (0.0, 0.65), (0.1, 0.95), (0.3, 1.0), (0.62, 0.9), (0.85, 0.62), (1.0, 0.2)
+UNDER = 1.4  # of a brow's darkness, that is left between its hairs
+
+
+@dataclass(frozen=True)
+class Brows:
+    """Both brows of somebody.
+
+    thickness: of the thickest place [mm].
+    inner: from the middle of the face to the inner end [mm].
+    rise, fall: from the inner end up to the peak, and from there down to the tail [mm].
+    peak: from the middle of the face to it [mm].
+    density: of hairs, beside the usual one. unruly: how far they stand out of line, 0 to 1.
+    seed: of single hairs.
+    """
+
+    thickness: float
+    inner: float
+    rise: float
+    fall: float
+    peak: float
+    density: float
+    unruly: float
+    seed: int
+
+
+def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brows:
+    """Brows of somebody of a sex and age."""
+    thick, inner, rise, fall, peak, density = np.clip(random.normal(size=6), -2.0, 2.0)
+    late = float(np.clip((years - 45.0) / 30.0, 0.0, 1.0))
+    seed = int(random.integers(2**31))
+    if is_man:
+        return Brows(
+            thickness=8.0 + 1.4 * thick,
+            inner=10.5 + 1.6 * inner,
+            rise=2.6 + 1.2 * rise,
+            fall=8.0 + 1.6 * fall,
+            peak=39.0 + 2.5 * peak,
+            density=(0.95 + 0.22 * density) * (1.0 - 0.25 * late),
+            unruly=0.35 + 0.5 * late,
+            seed=seed,
+        )
+    return Brows(
+        thickness=(5.6 + 0.9 * thick) * (1.0 - 0.15 * late),
+        inner=12.5 + 1.2 * inner,
+        rise=5.0 + 1.2 * rise,
+        fall=8.0 + 1.4 * fall,
+        peak=42.0 + 2.0 * peak,
+        density=(0.95 + 0.15 * density) * (1.0 - 0.3 * late),
+        unruly=0.1,
+        seed=seed,
+    )
+
+
+def painted(brows: Brows, size: int) -> SingleArray:
+    """How much of each texel is covered by hairs of brows, 0 to 1, shape (size, size)."""
+    random = np.random.default_rng(brows.seed)
+    cover = np.zeros((size, size), np.float32)
+    for side in (-1.0, 1.0):
+        hairs = _hairs(brows, random)
+        _paint(cover, hairs, side, random.uniform(120.0, 250.0, len(hairs)).astype(int))
+    return cover
+
+
+def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
+    """Root, middle and tip of each hair, seen from the front [mm], shape (n, 3, 2)."""
+    first, base, last = brows.inner, *_ends()
+    middle = 0.45 * first + 0.55 * brows.peak
+    rises = np.array([0.0, 0.72 * brows.rise, brows.rise, brows.rise - brows.fall])
+    line = scipy.interpolate.PchipInterpolator([first, middle, brows.peak, last], base + rises)
+    length = last - first
+    count = round(DENSITY * brows.density * length * brows.thickness)
+    along, across = random.uniform(0.0, 1.0, count), random.uniform(-0.5, 0.5, count)
+    x, wide = first + length * along, brows.thickness * np.interp(along, *np.array(PROFILE).T)
+    # Hairs stand up at the inner end, and lie along the brow from its middle on; those above the
+    # middle lean down to it.
+    slope = np.arctan(line(x, 1))
+    rising = np.radians(72.0) * (1.0 - smooth_step(0.0, 0.42, along)) + np.radians(16.0)
+    lean = rising - np.radians(44.0) * smooth_step(0.1, 0.6, along) * (across > 0.0)
+    lean += (0.12 + 0.45 * brows.unruly * (1.0 - 0.6 * along)) * random.normal(size=count)
+    long = (4.6 + 2.0 * brows.unruly) * random.uniform(0.7, 1.2, count) * (1.0 - 0.6 * along)
+    long *= 0.5 * np.clip(brows.thickness / 7.0, 0.65, 1.15)
+    root = np.stack([x, line(x) + across * wide], axis=-1)
+    ways = [
+        np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+        for turn in (slope + lean, slope + 0.45 * lean)
+    ]
+    middles = root + long[:, None] * ways[0]
+    return np.stack(
+        [root - 0.2 * long[:, None] * ways[0], middles, middles + long[:, None] * ways[1]], axis=1
+    )
+
+
+def _paint(cover: SingleArray, hairs: FloatArray, side: float, tones: IndexArray) -> None:
+    """Paint hairs into the texture, on one side, 1 the subject's left."""
+    from PIL import Image, ImageDraw
+
+    fine_size = FINER * len(cover)
+    places = fine_size * _on_texture(hairs.reshape(-1, 2), side).reshape(hairs.shape)
+    low = np.floor(places.min(axis=(0, 1)) / FINER).astype(int) - 8
+    wide, high = np.ceil(places.max(axis=(0, 1)) / FINER).astype(int) + 8 - low
+    image = Image.new("L", (FINER * int(wide), FINER * int(high)))
+    pen = ImageDraw.Draw(image)
+    lengths = [np.linalg.norm(each[:, 1] - each[:, 0], axis=1).mean() for each in (places, hairs)]
+    thick = HAIR * lengths[0] / lengths[1]
+    for (root, middle, tip), tone in zip(places - FINER * low, tones, strict=True):
+        pen.line([*root, *middle], fill=int(tone), width=max(round(thick), 1))
+        pen.line([*middle, *tip], fill=int(0.85 * tone), width=max(round(0.6 * thick), 1))
+    fine = np.asarray(image, np.float32).reshape(high, FINER, wide, FINER).mean(axis=(1, 3)) / 255.0
+    soft = scipy.ndimage.gaussian_filter(fine, SOFT * thick / FINER)
+    part = cover[low[1] : low[1] + high, low[0] : low[0] + wide]
+    np.maximum(part, np.clip(fine + UNDER * soft, 0.0, 0.92), out=part)
+
+
+@lru_cache(maxsize=1)
+def _ends() -> tuple[float, float]:
+    """How high brows begin on the built-in head, and x of their tails [mm]."""
+    head = load("head")
+    inner, outer = (head.vertices[head.landmarks[k]] for k in (22, 26))
+    return float(inner[1]) - 2.0, float(outer[0]) - 1.5
+
+
+def _on_texture(places: FloatArray, side: float) -> npt.NDArray[np.float64]:
+    """Column and row on the texture, 0 to 1, of places (x, y) [mm] seen from the front, (n, 2)."""
+    across, down = _map()(places).T
+    return np.stack([0.5 + side * (across - 0.5), 1.0 - down], axis=-1)
+
+
+@lru_cache(maxsize=1)
+def _map() -> scipy.interpolate.RBFInterpolator:
+    """From places (x, y) about the left brow to texture coordinates."""
+    head = load("head")
+    brow = scipy.spatial.cKDTree(head.vertices[head.landmarks[22:27]])
+    near = np.flatnonzero(brow.query(head.vertices)[0] < AROUND)
+    hidden = np.concatenate([head.rings[f"eye_{row}_left"] for row in range(3)])
+    near = near[~np.isin(near, hidden) & (head.vertices[near, 2] > 30.0)]
+    return scipy.interpolate.RBFInterpolator(head.vertices[near, :2], head.uv[near].astype(float))
+
+
+@lru_cache(maxsize=1)
+def lid_lines(size: int) -> SingleArray:
+    """Where roots of lashes darken the edges of lids, 0 to 1, shape (size, size)."""
+    from PIL import Image, ImageDraw
+
+    head = load("head")
+    image = Image.new("L", (FINER * size, FINER * size))
+    pen = ImageDraw.Draw(image)
+    for side in ("left", "right"):
+        ring = head.rings[f"eye_1_{side}"]
+        closed = np.append(ring, ring[:1])
+        upper = head.vertices[closed, 1] > head.vertices[ring[[0, len(ring) // 2]], 1].min()
+        places = FINER * size * np.stack([head.uv[closed, 0], 1.0 - head.uv[closed, 1]], axis=-1)
+        for start, end, above in zip(places[:-1], places[1:], upper[:-1] & upper[1:], strict=True):
+            width = FINER * (LID_LINE if above else 0.4 * LID_LINE)
+            pen.line([*start, *end], fill=255, width=round(width))
+    fine = np.asarray(image, np.float32).reshape(size, FINER, size, FINER) / 255.0
+    return np.asarray(scipy.ndimage.gaussian_filter(fine.mean(axis=(1, 3)), 0.8))
