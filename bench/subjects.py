@@ -20,9 +20,9 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit
-from risorius.assets.fitting.decimation import decimated
 from risorius.assets.meshes import Mesh
 from risorius.assets.model import FineMesh
+from risorius.assets.topology import decimated
 from risorius.geometry.closest import closest_points
 
 Points = npt.NDArray[np.float64]

@@ -26,9 +26,9 @@ import numpy.typing as npt
 import scipy
 
 from risorius import assets, sim
-from risorius.assets.fitting.decimation import decimated
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.topology import decimated
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.texels import Texels
 from risorius.jit import njit

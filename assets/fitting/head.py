@@ -38,15 +38,19 @@ from ..model import (
     SingleArray,
     Wrinkles,
 )
-from ..topology import boundary_loops
+from ..topology import boundary_loops, decimated
 from ..user_files import named
-from .decimation import decimated
-from .eyelid_rim import with_eyelid_rims
-from .landmark_file import COUNT, nearest_vertices, read_landmarks
-from .landmark_order import check_counting, check_lips, groups_in_disorder
+from .landmark_file import (
+    COUNT,
+    check_counting,
+    check_lips,
+    groups_in_disorder,
+    nearest_vertices,
+    read_landmarks,
+)
 from .layouts import Layout, drawn_over, maps_in, own_picture
 from .mesh_validation import SkinPiece, check_manifold, check_openings, skin_of, without_bag
-from .organs import FittedSkin, place_eyes, place_parts
+from .organs import FittedSkin, place_eyes, place_parts, with_eyelid_rims
 from .painting import plain_picture, spread_uv
 from .warp import Similarity, ThinPlateSpline, nearest_on
 

@@ -22,8 +22,7 @@ from .complexion import (
 from .hair import CUTS, HAIR, Fall, Hairline
 from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
-from .space import PersonSpace, Sex, person_space
-from .traits import Identity, sample_identity
+from .space import Identity, PersonSpace, Sex, person_space, sample_identity
 
 __all__ = [
     "CUTS",

@@ -30,6 +30,12 @@ SOFT = 5.0  # of hairs' thickness, by which what is between them is blurred
 PROFILE = (0.0, 0.65), (0.1, 0.95), (0.3, 1.0), (0.62, 0.9), (0.85, 0.62), (1.0, 0.2)
 UNDER = 1.4  # of a brow's darkness, that is left between its hairs
 
+# Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
+DRAWN = (
+    np.array([(5.6, 12.5, 5.0, 8.0, 42.0, 0.95), (0.9, 1.2, 1.2, 1.4, 2.0, 0.15)]),
+    np.array([(8.0, 10.5, 2.6, 8.0, 39.0, 0.95), (1.4, 1.6, 1.2, 1.6, 2.5, 0.22)]),
+)
+
 
 @dataclass(frozen=True)
 class Brows:
@@ -55,30 +61,13 @@ class Brows:
 
 def drawn_brows(is_man: bool, years: float, random: np.random.Generator) -> Brows:
     """Brows of somebody of a sex and age."""
-    thick, inner, rise, fall, peak, density = np.clip(random.normal(size=6), -2.0, 2.0)
+    mean, deviation = DRAWN[is_man]
+    values = mean + deviation * np.clip(random.normal(size=len(mean)), -2.0, 2.0)
     late = float(np.clip((years - 45.0) / 30.0, 0.0, 1.0))
-    seed = int(random.integers(2**31))
-    if is_man:
-        return Brows(
-            thickness=8.0 + 1.4 * thick,
-            inner=10.5 + 1.6 * inner,
-            rise=2.6 + 1.2 * rise,
-            fall=8.0 + 1.6 * fall,
-            peak=39.0 + 2.5 * peak,
-            density=(0.95 + 0.22 * density) * (1.0 - 0.25 * late),
-            unruly=0.35 + 0.5 * late,
-            seed=seed,
-        )
-    return Brows(
-        thickness=(5.6 + 0.9 * thick) * (1.0 - 0.15 * late),
-        inner=12.5 + 1.2 * inner,
-        rise=5.0 + 1.2 * rise,
-        fall=8.0 + 1.4 * fall,
-        peak=42.0 + 2.0 * peak,
-        density=(0.95 + 0.15 * density) * (1.0 - 0.3 * late),
-        unruly=0.1,
-        seed=seed,
-    )
+    values[[0, 5]] *= 1.0 - late * np.array([0.0 if is_man else 0.15, 0.3])
+    thickness, inner, rise, fall, peak, density = values.tolist()
+    unruly, seed = 0.35 + 0.5 * late if is_man else 0.1, int(random.integers(2**31))
+    return Brows(thickness, inner, rise, fall, peak, density, unruly, seed)
 
 
 def painted(brows: Brows, size: int) -> SingleArray:

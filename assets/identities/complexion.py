@@ -36,8 +36,7 @@ from .brows import Brows, drawn_brows, lid_lines, painted
 from .hair import CUTS, HAIR, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair
 from .person import Person
-from .space import Sex
-from .traits import Identity
+from .space import Identity, Sex
 
 LIGHTEST, DARKEST = 70.0, -55.0  # ITA [deg]
 LEAST, MOST = 0.05, 3.4  # of melanin, among which a tone is looked for

@@ -99,15 +99,13 @@ class Hairline:
 
     def shift(self, size: int) -> SingleArray:
         """How far it lies behind the built-in head's [mm], (size, size)."""
-        across = np.linspace(-0.5, 0.5, size, dtype=np.float32)
-        up = np.linspace(1.0, 0.0, size, dtype=np.float32)[:, None]
+        across, up = np.linspace(-0.5, 0.5, size), np.linspace(1.0, 0.0, size)[:, None]
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
         row -= self.peak * np.exp(-((across / 0.022) ** 2))
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
         top = np.exp(-((across / 0.13) ** 4) - ((up - 0.78) / 0.14) ** 4)
-        shift: SingleArray = row * ahead + np.float32(self.crown * BALD) * top
-        return shift
+        return (row * ahead + self.crown * BALD * top).astype(np.float32)
 
 
 def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> Hairline:

@@ -22,7 +22,7 @@ STRANDS, SAMPLES = 44, 34  # of one side, and along each
 ABOVE_EARS, BEHIND_EARS = 22.0, 8.0  # [mm] that the middle of the head lies so
 WIDEST = np.radians(-6.0)  # how far below it strands leave the head
 ROUNDED = np.radians(12.0)  # beside that edge, as far as hair is thinner
-EDGE = np.radians(58.0)  # from the face's middle, from where on hair hangs beside it
+EDGE = np.radians(60.0)  # from the face's middle, from where on hair hangs beside it
 FRINGE = np.radians(38.0)  # up to where it ends above the brows
 SHARP, HIGHEST = 120.0, 12.0  # of the mean over directions that tells how far the skin is
 CLEAR = 1.5  # [mm] of the inner side, off the skin
@@ -33,6 +33,7 @@ FULL = 3.0  # density where no layer is thin
 SWING = 46.0  # [mm] of a wave
 CURVED_IN = 0.10  # of the radius, at the tips
 SLEEK = 0.45  # how much it shines
+AT_A_POINT = 0.01  # share of the way out in normals: where strands meet there is no triangle
 DARK = 0.5  # of the light, within
 
 
@@ -63,7 +64,7 @@ def falling_hair(cut: Fall, scalp: Scalp, head: Any, colour: FloatArray, length:
         mean = (weights * far**HIGHEST).sum(axis=-1) / weights.sum(axis=-1)
         return np.asarray(mean ** (1.0 / HIGHEST))
 
-    ends = ear[1] - cut.below * length, vertices[head.landmarks[24]][1] + 7.0
+    ends = ear[1] - cut.below * length, vertices[head.landmarks[24]][1] + 13.0
     sides = []
     for side in (-1.0, 1.0):
         strands = _strands(cut, side, head, middle, skin, ends)
@@ -165,10 +166,11 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     if is_inside:
         way, places = -0.1 * (high - low) + 0.2 * thickness * ahead, low
     points = places.reshape(-1, 3)
-    rows = np.arange(len(points)).reshape(along.shape).tolist()
+    rows = [row.tolist() for row in np.arange(len(points)).reshape(along.shape)]
     faces = halved(points, quads_between(rows, closed=False))
     if (side > 0.0) != is_inside:
         faces = faces[:, ::-1]
+    out = unit((high - low).reshape(-1, 3)) * (-1.0 if is_inside else 1.0)
     striation = np.concatenate(
         [
             np.broadcast_to(across[:, None, None], (*along.shape, 1)),
@@ -181,7 +183,7 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     return Part(
         name=HAIR,
         vertices=points.astype(np.float32),
-        normals=vertex_normals(points, faces).astype(np.float32),
+        normals=unit(vertex_normals(points, faces) + AT_A_POINT * out).astype(np.float32),
         faces=faces,
         colours=np.tile(colour, (len(points), 1)).astype(np.float32),
         bone="cranium",

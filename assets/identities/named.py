@@ -9,8 +9,7 @@ import numpy as np
 
 from .complexion import in_own_colours
 from .person import Person, make_person
-from .space import Sex, person_space
-from .traits import sample_identity
+from .space import Sex, person_space, sample_identity
 
 
 @dataclass(frozen=True)

@@ -27,8 +27,7 @@ from ..loading import load
 from ..model import Eye, FloatArray, Head, IndexArray
 from ..norms import measures_of
 from ..smooth import smooth_step
-from .space import Sex, person_space, scores_of
-from .traits import Identity
+from .space import Identity, Sex, person_space, scores_of
 
 NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the weights, tried in turn
 MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own side

@@ -93,14 +93,6 @@ def _texel(head: Head, image: npt.NDArray[np.uint8], vertex: int) -> tuple[int, 
     return int((1.0 - v) * image.shape[0]), int(u * image.shape[1])
 
 
-def test_blood_reddens(head: Head) -> None:
-    """More blood, redder skin; lips above all."""
-    pale, flushed = (recoloured(50.0, blood=share) for share in (0.7, 1.3))
-    for names in (("cheek_left",), ("metopion",)):
-        less, more = light_at(head, pale, *names), light_at(head, flushed, *names)
-        assert more[0] / more[1] > 1.03 * less[0] / less[1]
-
-
 @pytest.mark.parametrize("angle", [DARKEST - 1.0, LIGHTEST + 1.0, float("nan")])
 def test_no_other_tones(angle: float) -> None:
     """One line with what is allowed."""
@@ -116,7 +108,7 @@ def test_eyes_have_their_colours(head: Head) -> None:
         eyed = coloured(person, irises=name)
         assert eyed.albedo is person.albedo
         for old, new in zip(person.parts, eyed.parts, strict=True):
-            changed = (old.colours != new.colours).any(axis=1)
+            changed = (np.abs(old.colours - new.colours) > 1e-4).any(axis=1)
             assert changed.any() == old.name.startswith("eyeball")
             if changed.any():
                 eye = next(each for each in person.eyes if old.bone == f"eye_{each.name}")
@@ -196,8 +188,3 @@ def test_hair_turns_grey_as_in_the_survey() -> None:
     assert 0.2 < grey(50.0, (45.0, 65.0)) < 0.34
     assert grey(-40.0, (45.0, 65.0)) < 0.6 * grey(50.0, (45.0, 65.0))
     assert grey(50.0, (20.0, 30.0)) == 0.0 and grey(50.0, (72.0, 75.0)) > 0.7
-
-
-def test_own_angle_is_very_light() -> None:
-    """That of the picture that is shipped."""
-    assert 55.0 < own_angle() < LIGHTEST

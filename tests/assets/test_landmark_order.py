@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from risorius import assets
 from risorius.assets import AssetError
 from risorius.assets.fitting import fit
-from risorius.assets.fitting.landmark_order import GROUPS, Group, groups_in_disorder
+from risorius.assets.fitting.landmark_file import GROUPS, Group, groups_in_disorder
 from tests.heads import Stranger, shape, stranger
 
 HEAD = assets.load("head")
