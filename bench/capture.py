@@ -1,10 +1,8 @@
 """What `risorius bench capture` prints: frames a second of a film, and where its time goes.
 
 The film is the face's script, as the mesh is and refined, side by side; of a head of one's own
-refined alone. It is made by one process and by as many as `capture` takes here, in turn: on a
-shared machine only cases of one run can be compared. Stages are those of one process that waits for
-OpenGL after each of them, in frames that are drawn: where the face is still, a film shows its last
-picture again.
+refined alone. Stages are those of one process that waits for OpenGL after each of them, in frames
+that are drawn: where the face is still, a film shows its last picture again.
 """
 
 from __future__ import annotations
@@ -19,7 +17,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
-from unittest import mock
 
 import numpy as np
 
@@ -45,29 +42,22 @@ def report(size: tuple[int, int], seconds: float, head: FittedHead | None = None
     beside = (Refinement(refiner=STATIC),) if head is None else ()
     options = CaptureOptions(size=size, beside=beside, camera=script.camera, head=head)
     frame_count = round(script.duration * options.frames_per_second) + 1
-    usual = processes.worthwhile(options, frame_count)
-    counts = sorted({1, usual})
-    taken: dict[int, list[tuple[float, float]]] = {count: [] for count in counts}
     milliseconds: dict[str, list[float]] = {stage: [] for stage in STAGES}
     with tempfile.TemporaryDirectory() as folder:
         film = Path(folder) / "film.mp4"
-        for turn in range(ROUNDS):
-            for count in counts if turn % 2 == 0 else reversed(counts):
-                with mock.patch.object(processes, "worthwhile", lambda *_, n=count: n):
-                    taken[count].append(_timed(script, options, film))
+        wall, spent = np.median([_timed(script, options, film) for _ in range(ROUNDS)], axis=0)
         name, drawn_count = _time_stages(script, options, film, milliseconds)
     width, height = size
-    medians = {count: np.median(each, axis=0) for count, each in taken.items()}
-    rows = [(f"{n} process(es)", frame_count / each[0], *each) for n, each in medians.items()]
     stages = [(stage, float(np.median(each))) for stage, each in milliseconds.items()]
     return "\n".join(
         [
             f"A film of {frame_count} frames of {1 + len(beside)}, {width}x{height}, 4 samples,",
             f"{drawn_count} of them drawn, the others still, on",
             f"{name}, {os.cpu_count()} cores of {processor()};",
-            f"{ROUNDS} interleaved rounds, medians; processor time with that of the encoder.",
+            f"median of {ROUNDS}; processor time with that of the encoder.",
             "",
-            *table("drawn by:<16|frames/s:9.1f|wall [s]:9.1f|processor [s]:14.1f", rows),
+            f"{frame_count / wall:.1f} frames/s by {processes.worthwhile(options, frame_count)} "
+            f"process(es): {wall:.1f} s, and {spent:.1f} s of processor time",
             "",
             "Where the time of one process goes, in a frame that is drawn:",
             *table("stage:<20|ms a frame:11.2f", [*stages, ("all", sum(ms for _, ms in stages))]),

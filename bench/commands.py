@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -62,10 +61,10 @@ def bench() -> None:
 )
 def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str) -> None:
     """Time refinement on the face and on meshes of up to a million triangles."""
-    from . import refine, refine_gl
+    from . import refine
 
-    room: Any = refine_gl if refiner == "kahler-gl" else refine
-    click.echo(room.report(room.measure(sizes or refine.SIZES, seconds, say_progress)))
+    told = sizes or refine.SIZES, seconds, say_progress
+    click.echo(refine.report(refine.measure(*told, on_card=refiner == "kahler-gl")))
 
 
 @bench.command("quality")
@@ -153,44 +152,22 @@ def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> Non
     required=True,
     help="face_landmarker.task, the model of MediaPipe's face landmarker.",
 )
-@click.option("--pictures", type=PATH, help="A folder for all that the tracker is shown.")
-def bench_seen(model: Path, pictures: Path | None) -> None:
+def bench_seen(model: Path) -> None:
     """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
     from . import seen
 
     with seen.FaceTracker(model) as tracker:
-        click.echo(seen.report(seen.measure(tracker, pictures)))
+        click.echo(seen.report(seen.measure(tracker)))
 
 
 @bench.command("gaps")
-def bench_gaps() -> None:
-    """Look through lips and lids that ought to be shut, in every action unit."""
+@click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
+def bench_gaps(mixtures: int) -> None:
+    """Look for gaps in shut lips and lids, torn skin and failing contacts, in every pose."""
     from . import gaps
 
-    poses = gaps.measure()
+    poses = gaps.measure(mixtures)
     conclude(gaps.report(poses), gaps.targets(poses))
-
-
-@bench.command("soak")
-@click.option(
-    "--minutes", type=FiniteRange(0.01, 1e4), default=60.0, show_default=True, help="Simulated."
-)
-def bench_soak(minutes: float) -> None:
-    """Drive the face with random input for a simulated hour: does it stay sound, and come back."""
-    from . import soak
-
-    found = soak.measure(minutes)
-    conclude(soak.report(found), soak.targets(found))
-
-
-@bench.command("tearing")
-@click.option("--mixtures", type=click.IntRange(0, 100_000), default=500, show_default=True)
-def bench_tearing(mixtures: int) -> None:
-    """Look for torn skin and for contacts that fail, in all expressions and random mixtures."""
-    from . import tearing
-
-    poses = tearing.measure(mixtures)
-    conclude(tearing.report(poses), tearing.targets(poses))
 
 
 @bench.command("window")

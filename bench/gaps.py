@@ -1,14 +1,17 @@
-"""Do closed lips stay closed, and do lids close?
+"""Do closed lips stay closed, do lids close, and does the skin tear?
 
-Every action unit at full strength, the left, the right and both sides where it has sides, and the
-expressions in which the mouth or an eye is shut, settled on the built-in head. Of each are told
-the widest slit between the lips, where nothing opens them, and the greatest height at which one
-sees each eyeball that it shuts, or past it. Looked at from the whole front, 60 degrees to either
-side and 40 up and down, at the mesh and at what refinement makes of it, because smoothing thins a
-folded lip a little; whichever is worse.
+Looked at is every row of each layer alone at full strength, and hundreds of random mixtures of
+muscles, settled on the built-in head. Of each are counted the inverted triangles, those that turned
+by more than a right angle against the skin around them, and how deep skin sits in the other lip, an
+eyeball or the teeth.
 
-Measured by lines of sight, not by distances between vertices: a gap that nobody can look through
-is none, and one between two vertices that lie on each other may be one.
+Of action units and the expressions in which the mouth or an eye is shut are told, besides, the
+widest slit between the lips, where nothing opens them, and the greatest height at which one sees
+each eyeball that is shut, or past it. Looked at from the whole front, 60 degrees to either side and
+40 up and down, at the mesh and at what refinement makes of it, because smoothing thins a folded lip
+a little; whichever is worse. Measured by lines of sight, not by distances between vertices: a gap
+that nobody can look through is none, and one between two vertices that lie on each other may be
+one.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ import numpy.typing as npt
 from risorius import assets, refine, sim
 from risorius.app.dataset.openings import LOWER_EDGES, around, cut_by, opening, to_viewer
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
+from risorius.geometry.normals import cross_products
 
 from .report import Target, at_most, table
 from .subjects import settled_positions
@@ -38,7 +42,7 @@ MOUTH_SHUT = ("sadness", "anger", "contempt", "wink", "kiss", "blink", "viseme_s
 EYES_SHUT = ("yawn",)  # beside those above
 SHUT = 0.99  # of the muscle that closes a lid
 CLOSER = "orbicularis_oculi_palpebral_upper"
-LIPS_MOST, LIDS_MOST = 0.2, 0.2  # mm: what may stay open, less than a pixel of a whole face
+MOST = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
 YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
 PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
 VIEWS = tuple(  # the whole front, as far as cameras go round it
@@ -52,52 +56,76 @@ LID_COLUMNS, LID_END = 23, 1.5  # planes across an eye; mm beside its corners no
 LID_STEP = 0.05  # mm between lines of sight in a plane
 LID_WINDOW = 12.0  # mm above and below the eye's middle
 EYE = 100.0  # mm around the eye's middle in which skin may cover it
+SEED = 2001
+MOST_CONTROLS = 8  # in a mixture
+MOST_TORN, MOST_IN_A_POSE = 2.0, 3  # [% of poses]; triangles
+AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
-class PoseGaps(NamedTuple):
-    """What stays open in one pose; None where nothing ought to be shut."""
+class Pose(NamedTuple):
+    """What is wrong with one pose; None where nothing ought to be shut."""
 
     name: str
-    lips: float | None  # mm, widest slit
-    lids: float | None  # mm, greatest height at which an eye that is shut is seen
+    slit: float | None  # mm, widest between the lips
+    eye: float | None  # mm, greatest height at which an eye that is shut is seen
+    inverted: int  # triangles
+    lips: float  # mm deep in the other lip
+    lids: float  # mm deep in an eyeball
+    teeth: float  # mm deep in the teeth
 
 
-def measure(head: Any = None) -> list[PoseGaps]:
-    """Measure every pose, of the built-in head unless told."""
-    head = assets.load("head") if head is None else head
+def measure(mixtures: int) -> list[Pose]:
+    """Put the built-in head into each pose, and into so many random mixtures."""
+    head = assets.load("head")
     simulation = sim.create(head)
     told = PRESETS[FIRST_PRESET]["face"].told("kahler")
     refiner = refine.create("kahler", head.faces, head.vertices, **told)
     poses = []
-    for name, is_shut in _rows(simulation):
-        landmarks = settled_positions(simulation, {name: 1.0}, SETTLE)[head.landmarks]
-        shut = [side for side in ("right", "left") if simulation.sums[f"{CLOSER}_{side}"] >= SHUT]
-        lips, lids = [], []
-        for positions, triangles in meshes_of(simulation, refiner).values():
-            if is_shut:
-                lips.append(widest_slit(positions, triangles, landmarks))
-            if shut:
-                gaps = lid_gaps(positions, triangles, landmarks, eyeballs_of(head, simulation))
-                lids += [gaps[side] for side in shut]
-        poses.append(PoseGaps(name, max(lips, default=None), max(lids, default=None)))
+    for name, values in _values(simulation, mixtures, np.random.default_rng(SEED)):
+        now = settled_positions(simulation, values, SETTLE)
+        gaps = _gaps(head, simulation, refiner, name)
+        inverted = _inverted(simulation.rest_positions, now, head.faces)
+        deep = simulation.penetrations()
+        poses.append(Pose(name, *gaps, inverted, deep["lips"], deep["lids"], deep["teeth"]))
     return poses
 
 
-def worst(poses: Sequence[PoseGaps], part: str) -> tuple[float, PoseGaps]:
-    """The greatest value of `part`, "lips" or "lids" [mm], and the pose that has it."""
-    found = [(value, pose) for pose in poses if (value := getattr(pose, part)) is not None]
-    return max(found, key=lambda pair: pair[0])
+def _gaps(
+    head: Any, simulation: sim.Simulation, refiner: refine.Refiner, name: str
+) -> tuple[float | None, float | None]:
+    """The slit between the lips and the height of an eye that are shut in a pose [mm]."""
+    moved = {control for control, value in simulation.sums.items() if value != 0.0}
+    is_turned = moved and all(control.startswith("head_") for control in moved)  # and nothing else
+    if is_turned or name not in (*simulation.layers[UNITS], *MOUTH_SHUT, *EYES_SHUT):
+        return None, None
+    is_shut = name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING + EYES_SHUT
+    landmarks = simulation.positions[head.landmarks]
+    shut = [side for side in ("right", "left") if simulation.sums[f"{CLOSER}_{side}"] >= SHUT]
+    slits, eyes = [], []
+    for positions, triangles in meshes_of(simulation, refiner).values():
+        if is_shut:
+            slits.append(widest_slit(positions, triangles, landmarks))
+        if shut:
+            gaps = lid_gaps(positions, triangles, landmarks, eyeballs_of(head, simulation))
+            eyes += [gaps[side] for side in shut]
+    return max(slits, default=None), max(eyes, default=None)
 
 
-def _rows(simulation: sim.Simulation) -> Iterator[tuple[str, bool]]:
-    """Name of each row to look at, and whether its mouth is shut."""
-    for name in simulation.layers[UNITS]:
-        simulation.pose({name: 1.0})
-        sums = simulation.sums
-        if any(value != 0.0 for control, value in sums.items() if not control.startswith("head_")):
-            yield name, name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING
-    for name in MOUTH_SHUT + EYES_SHUT:
-        yield name, name in MOUTH_SHUT
+def _values(
+    simulation: sim.Simulation, mixtures: int, generator: np.random.Generator
+) -> Iterator[tuple[str, dict[str, float]]]:
+    """Name and values of every action unit, expression and so on, then of random mixtures."""
+    for names_of_layer in simulation.layers.values():
+        yield from ((name, {name: 1.0}) for name in names_of_layer)
+    # The pose of the head turns all triangles alike; it is left out.
+    limits = {n: simulation.limits[n] for n in simulation.controls if not n.startswith("head_")}
+    names = np.array(list(limits))
+    for number in range(mixtures):
+        chosen = generator.choice(
+            names, size=generator.integers(2, MOST_CONTROLS + 1), replace=False
+        )
+        values = {str(name): float(generator.uniform(*limits[str(name)])) for name in chosen}
+        yield f"mixture {number}: {', '.join(values)}", values
 
 
 def meshes_of(
@@ -194,27 +222,50 @@ def _front(triangles: Array, x: float, heights: Array) -> Array:
     return reach
 
 
-def report(poses: Sequence[PoseGaps]) -> str:
-    """The text to print."""
-    rows = [
-        (part, value, f" {pose.name}")
-        for part in ("lips", "lids")
-        for value, pose in [worst(poses, part)]
-    ]
+def _inverted(rest: Array, now: Array, faces: Triangles) -> int:
+    """How many triangles turned by more than a right angle against the skin around them."""
+    before, after = cross_products(rest, faces), cross_products(now, faces)
+    count = 0
+    for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
+        away = np.linalg.norm(rest - rest[faces[face]].mean(axis=0), axis=1)
+        near = away < max(AROUND, 2.0 * away[faces[face]].max())  # never the triangle alone
+        a, b = rest[near] - rest[near].mean(axis=0), now[near] - now[near].mean(axis=0)
+        left, _, right = np.linalg.svd(a.T @ b)
+        turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(right.T @ left.T)]) @ left.T
+        count += int((turn @ before[face]) @ after[face] < 0.0)
+    return count
+
+
+def _worst(poses: Sequence[Pose], what: str) -> tuple[float, str]:
+    """The greatest value of a column, and the pose that has it."""
+    values = [(getattr(pose, what), pose.name) for pose in poses]
+    return max((value for value in values if value[0] is not None), key=lambda pair: pair[0])
+
+
+def report(poses: Sequence[Pose]) -> str:
+    """The text to print: how many poses, and which is the worst in each way."""
+    torn = [pose for pose in poses if pose.inverted]
+    rows = [(what, *_worst(poses, what)) for what in Pose._fields[1:]]
     return "\n".join(
         [
-            f"{len(poses)} poses of the built-in head, as simulated and as refined, the worse:",
-            "lips  widest slit between lips that nothing opens, from any side in front [mm]",
-            "lids  greatest height at which an eye that is shut is seen, from there, too [mm]",
+            f"{len(poses)} poses: every row of the layers, and random mixtures of muscles;",
+            f"{sum(pose.inverted for pose in torn)} triangles turned over, in {len(torn)} poses.",
             "",
-            *table("pose:<14|lips:6.2f|lids:6.2f", poses, empty="-"),
+            "slit      widest between lips that nothing opens, from any side in front [mm]",
+            "eye       greatest height at which an eye that is shut is seen, from there, too [mm]",
+            "inverted  triangles turned by more than a right angle against the skin around them",
+            "lips, lids, teeth: how deep skin is in them [mm]",
             "",
-            *table("worst:<6|mm:6.2f| in:<1", rows),
+            *table("worst:<9|:6.2f|in:<1", rows),
         ]
     )
 
 
-def targets(poses: Sequence[PoseGaps]) -> list[Target]:
-    """What closed lips and lids are held to."""
-    most = {"lips": LIPS_MOST, "lids": LIDS_MOST}
-    return [at_most(part, worst(poses, part)[0], each, " mm") for part, each in most.items()]
+def targets(poses: Sequence[Pose]) -> list[Target]:
+    """What skin and contacts are held to; a triangle turns over in a wink or a yawn."""
+    torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
+    return [
+        at_most("poses with a triangle turned", 100.0 * torn, MOST_TORN, " %"),
+        at_most("triangles turned in one pose", _worst(poses, "inverted")[0], MOST_IN_A_POSE),
+        *(at_most(what, _worst(poses, what)[0], most, " mm") for what, most in MOST.items()),
+    ]

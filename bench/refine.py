@@ -11,6 +11,9 @@ is as many triangles long in a small mesh as in a large one, and edges bend alik
 The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
 off, and medians are reported: on a shared machine times drift by a third within a run, and so only
 rows of one mesh can be compared. The best time is reported beside the median for the same reason.
+
+On the graphics card a frame lasts from the upload of positions until OpenGL has finished; whoever
+draws by arrays uploads rows and triangles besides, which is not in the times of the processor.
 """
 
 from __future__ import annotations
@@ -19,13 +22,19 @@ import gc
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, refine, sim
+from risorius.app.errors import UserError
+from risorius.refine_gl import KahlerGl
+from risorius.refine_gl.context import own_context
+from risorius.refine_gl.refined import GpuBuffers
+from risorius.render.surface import is_software
 
 from .report import processor, table
 from .subjects import SETTLE, settled_positions
@@ -51,6 +60,7 @@ METHODS: Mapping[str, Mapping[str, Any]] = {
     "detail, no blend": {"scheme": "detail", "blend": False},
 }
 """Our methods on the face: the paper's, and what each scheme and each option costs."""
+WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
 SEED = 2003
 WAVES = ((13.0, 0.4), (29.0, 1.1), (9.0, 2.5))  # length [cells], direction [radians]
 HEIGHT = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
@@ -68,8 +78,7 @@ class Load:
     frames: Sequence[Points]
 
 
-@dataclass(frozen=True)
-class Row:
+class Row(NamedTuple):
     """One method on one mesh."""
 
     mesh: str
@@ -82,15 +91,9 @@ class Row:
     best_milliseconds: float
     """Time of a frame, shortest of all rounds [ms]."""
 
-    @property
-    def nanoseconds_per_triangle(self) -> float:
-        """Median time per output triangle [ns]."""
-        return 1e6 * self.milliseconds / max(self.triangles_out, 1.0)
 
-
-@dataclass(frozen=True)
-class _Case:
-    """A method and the mean number of its triangles."""
+class _Case(NamedTuple):
+    """A method, the mean number of its triangles, and what refines positions by it."""
 
     method: str
     triangles: float
@@ -101,13 +104,19 @@ def measure(
     sizes: Sequence[str] = SIZES,
     seconds: float = 7.0,
     progress: Callable[[str], object] = lambda _: None,
+    *,
+    on_card: bool = False,
 ) -> list[Row]:
-    """Measure each of `sizes`, "face" or a key of TRIANGLE_COUNTS, for about `seconds` each."""
+    """Measure each of `sizes`, "face" or a key of TRIANGLE_COUNTS, for about `seconds` each.
+
+    on_card: processor and graphics card side by side. Raises UserError without OpenGL 4.3.
+    """
     rows = []
     for size in sizes:
         progress(size)
         load = load_of(size)
-        cases = _face_cases(load) if size == "face" else _waving_cases(load)
+        of_size = _face_cases if size == "face" else _waving_cases
+        cases = _card_cases(load) if on_card else of_size(load)
         rows += _timed(load, cases, seconds)
     return rows
 
@@ -194,11 +203,32 @@ def _waving_cases(load: Load) -> list[_Case]:
 
     at_rest = cosines(load.rest)
     drops = np.concatenate([at_rest - cosines(frame) for frame in load.frames])
-    cases = [_own("smooth", load, "kahler", scheme="cubic", criterion="displacement+rest")]
+    cases = [_own("smooth", load, "kahler", **WINDOWS_LOOK)]
     for share, quantiles in SHARES.items():
         once, twice = (max(0.0, float(np.quantile(drops, q))) for q in quantiles)
         title = f"kahler {share} %"
         cases.append(_own(title, load, "kahler", threshold_once=once, threshold_twice=twice))
+    return cases
+
+
+def _card_cases(load: Load) -> list[_Case]:
+    """The paper's rule and the window's look, by the processor and on the graphics card."""
+    cases = []
+    for title, options in {"paper's rule": {}, "window's look": WINDOWS_LOOK}.items():
+        card = refine.create("kahler-gl", load.faces, load.rest, **options)
+        if not isinstance(card, KahlerGl):
+            raise UserError("--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` tells more")
+        own = own_context()
+        room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
+        buffers = own.run(GpuBuffers, own.gl, *room)
+
+        def frame(positions: Points, card: KahlerGl = card, out: GpuBuffers = buffers) -> None:
+            card.refine(positions, out=out)
+            own_context().gl.finish()
+
+        serial = _own(f"kahler, {title}", load, "kahler", **options)
+        on_card = _Case(f"kahler-gl, {title}", serial.triangles, partial(own.run, frame))
+        cases += [serial, on_card]
     return cases
 
 
@@ -261,16 +291,15 @@ def report(found: Sequence[Row]) -> str:
         "positions in, filled render buffers out (normals, criterion, points, table, output).",
         "Compare rows of one mesh only. Uniform ones make 4 or 16 of every triangle.",
     ]
-    columns = "method:<27|out:9.0f|ms:9.4f|best:9.4f|ns/tri:7.1f"
+    if any(row.method.startswith("kahler-gl") for row in found):
+        own = own_context()
+        card = str(own.run(own.gl.info.__getitem__, "GL_RENDERER"))
+        kind = "software, which is no card: its times tell nothing" if is_software(card) else "card"
+        lines.append(f"kahler-gl: on {card} ({kind})")
     for mesh, group in groupby(found, key=lambda row: row.mesh):
         rows = list(group)
-        cells = [
-            (
-                *(row.method, row.triangles_out, row.milliseconds, row.best_milliseconds),
-                row.nanoseconds_per_triangle,
-            )
-            for row in rows
-        ]
+        cells = [(*row[1:2], *row[3:], 1e6 * row[4] / max(row[3], 1.0)) for row in rows]
+        columns = "method:<27|out:9.0f|ms:9.4f|best:9.4f|ns/tri:7.1f"
         title = f"{mesh}, {rows[0].triangles_in} triangles"
         lines += ["", title, *table(columns, cells, indent="  ")]
     return "\n".join(lines)

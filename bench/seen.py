@@ -28,7 +28,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.cameras import camera_for
 from risorius.app.controls.mirror import parted, twin_of
 from risorius.app.errors import UserError, needed
-from risorius.app.files import Image, save_png
+from risorius.app.files import Image
 from risorius.app.motion import SETTLING
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene
@@ -117,38 +117,21 @@ class Shape(NamedTuple):
         return "seen" if self.own >= self.score else f"as {self.highest}"
 
 
-class Sitting:
-    """The built-in head before the tracker; a context manager."""
-
-    def __init__(self, tracker: FaceTracker, pictures: Path | None = None) -> None:
-        """pictures: a folder for all that the tracker is shown."""
-        self.scene = FaceScene()
-        self._tracker, self._pictures = tracker, pictures
-        self._capture = Capture(self.scene, CaptureOptions(size=SIZE))
-
-    def __enter__(self) -> Sitting:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._capture.surface.close()
-
-    def pose(self, name: str, controls: Sequence[str]) -> Scores:
-        """Scores with some controls at 1: mean over VIEWS and their mirror images."""
-        self.scene.reset()
-        self.scene.pose(dict.fromkeys(controls, 1.0))
-        self.scene.step(SETTLING)
-        found = []
-        for number, view in enumerate(VIEWS, start=1):
-            self._capture.camera = camera_for(self.scene, view)
-            image = self._capture.draw_image()
-            if self._pictures is not None:
-                save_png(self._pictures / f"{name}_{number}.png", image)
-            found.append(self._tracker.scores(image))
-            mirrored = self._tracker.scores(image[:, ::-1])
-            found.append({twin_of(shape): score for shape, score in mirrored.items()})
-        if not all(found):
-            raise UserError(f"the tracker finds no face in the pictures of '{name}'")
-        return {shape: float(np.mean([each[shape] for each in found])) for shape in found[0]}
+def pose_scores(tracker: FaceTracker, studio: Capture, controls: Sequence[str]) -> Scores:
+    """Scores with some controls of a face at 1: mean over VIEWS and their mirror images."""
+    scene = studio.scene
+    scene.reset()
+    scene.pose(dict.fromkeys(controls, 1.0))
+    scene.step(SETTLING)
+    found = []
+    for view in VIEWS:
+        studio.camera = camera_for(scene, view)
+        image = studio.draw_image()
+        mirrored = tracker.scores(image[:, ::-1])
+        found += [tracker.scores(image), {twin_of(name): mirrored[name] for name in mirrored}]
+    if not all(found):
+        raise UserError(f"the tracker finds no face with {', '.join(controls) or 'nothing'} at 1")
+    return {shape: float(np.mean([each[shape] for each in found])) for shape in found[0]}
 
 
 def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -181,19 +164,17 @@ def compared(
     return Shape(mean, highest, others[highest])
 
 
-def measure(tracker: FaceTracker, pictures: Path | None = None) -> dict[str, Shape]:
-    """Show every shape of the built-in head to the tracker; what it sees, by base name.
-
-    pictures: a folder for all that it is shown.
-    """
+def measure(tracker: FaceTracker) -> dict[str, Shape]:
+    """Show every shape of the built-in head to the tracker; what it sees, by base name."""
     shapes = {}
-    with Sitting(tracker, pictures) as sitting:
-        neutral = sitting.pose("neutral", ())
+    with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
+        neutral = pose_scores(tracker, studio, ())
         for base, names in bases():
             own, beside = names, TO_ONE_SIDE.get(base, ())
             if base in TO_ONE_SIDE:
                 own = names[:1]
-            shapes[base] = compared(sitting.pose(base, (*own, *beside)), neutral, own, beside)
+            scores = pose_scores(tracker, studio, (*own, *beside))
+            shapes[base] = compared(scores, neutral, own, beside)
     return shapes
 
 

@@ -61,12 +61,6 @@ class Frames:
         for name in rules.passes[: rules.passes.index("mark") + 1]:
             self._dispatch(name, is_rest=True)
 
-    @property
-    def room_bytes(self) -> int:
-        """Of all buffers but those of the stream."""
-        held = self._sizes, self._mesh, self._positions, self._fields, self._work
-        return sum(int(each.size) for each in held)
-
     def run(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> None:
         """Refine a frame into the buffers of a stream.
 

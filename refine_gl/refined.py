@@ -34,11 +34,6 @@ class GpuBuffers:
         self.source_buffer = gl.buffer(reserve=max(NUMBER * triangle_capacity, 16))
         self.command_buffer = gl.buffer(reserve=NUMBER * COMMAND_WORDS)
 
-    @property
-    def room_bytes(self) -> int:
-        """Of all four."""
-        return sum(int(each.size) for each in vars(self).values() if each is not self.context)
-
 
 class GpuMesh:
     """Triangles of one frame, in buffers that the next frame overwrites.

@@ -114,8 +114,6 @@ class KahlerGl(BaseRefiner):
         self._own(told.criterion, *told.criterion.parts)
         self.find_normals()
         self._rules = Rules(self.connectivity, self.rest_positions, self.normals, told)
-        self.passes = self._rules.passes
-        """The dispatches of a frame, by name, in their order."""
         none = np.zeros((len(self.rest_positions), 0), np.float32)
         table = none if self._values is None else self._values.values
         self._tables = tables_of(self.connectivity, table, self._rules)
@@ -189,11 +187,6 @@ class KahlerGl(BaseRefiner):
         out.triangles[:triangle_count] = mesh.triangles
         out.source[:triangle_count] = mesh.source
         return vertex_count, triangle_count
-
-    @property
-    def room_bytes(self) -> int:
-        """Of all buffers on the card: none before the first frame."""
-        return sum(each.room_bytes for each in (self._frames, self._own_buffers) if each)
 
     def _refine_own(self, view: View | None) -> GpuMesh:
         own = self._own_context

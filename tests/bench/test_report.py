@@ -7,15 +7,11 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from risorius.bench import commands, gaps, motion, quality, soak, subjects, tearing
-from risorius.bench.gaps import PoseGaps
+from risorius.bench import commands, gaps, motion, quality, subjects
+from risorius.bench.gaps import Pose
 from risorius.bench.quality import BEST, STATIC, Score
-from risorius.bench.soak import Soak
-from risorius.bench.tearing import PoseDefects
 
-SOUND = Soak(60.0, 3600, True, 94.0, 0.0, 0.0, True, 1e-12)
-CLOSED = PoseGaps("blink", 0.1, 0.0)
-WHOLE = PoseDefects("joy", 0, 0.01, 0.0, 0.0)
+WHOLE = Pose("blink", 0.1, 0.0, 0, 0.01, 0.0, 0.0)
 ALIKE = motion.Row("joy", 0.96, 1.0, 0.1)
 NEARER = [Score(STATIC, "joy", 1.0, 1.0, 10.0, 9.0), Score(BEST, "joy", 2.0, 0.6, 6.0, 9.0)]
 
@@ -31,17 +27,9 @@ def run(
     return ended.exit_code, ended.output
 
 
-def of_soak(**change: Any) -> tuple[int, str]:
-    return run(commands.bench_soak, {(soak, "measure"): SOUND._replace(**change)})
-
-
 def of_gaps(**change: Any) -> tuple[int, str]:
-    return run(commands.bench_gaps, {(gaps, "measure"): [CLOSED, CLOSED._replace(**change)]})
-
-
-def of_tearing(**change: Any) -> tuple[int, str]:
     poses = [*[WHOLE] * 99, WHOLE._replace(**change)]
-    return run(commands.bench_tearing, {(tearing, "measure"): poses})
+    return run(commands.bench_gaps, {(gaps, "measure"): poses})
 
 
 def of_motion(**change: Any) -> tuple[int, str]:
@@ -58,16 +46,10 @@ def of_quality(**change: Any) -> tuple[int, str]:
 @pytest.mark.parametrize(
     ("bench", "broken"),
     [
-        (of_soak, {"finite": False}),
-        (of_soak, {"furthest": 500.0}),
-        (of_soak, {"rest_error": 0.1}),
-        (of_soak, {"growth": 1e-3}),
-        (of_soak, {"same_bytes": False}),
-        (of_soak, {"mirror_error": float("nan")}),
-        (of_gaps, {"lips": 0.3}),
-        (of_gaps, {"lids": 0.3}),
-        (of_tearing, {"inverted": 4}),
-        (of_tearing, {"teeth": 0.2}),
+        (of_gaps, {"slit": 0.3}),
+        (of_gaps, {"eye": 0.3}),
+        (of_gaps, {"inverted": 4}),
+        (of_gaps, {"teeth": 0.2}),
         (of_motion, {"cosine": 0.87}),
         (of_motion, {"cosine": 0.1}),
         (of_quality, {"distance": 0.9}),
@@ -85,16 +67,8 @@ def test_a_missed_target_is_told_and_ends_with_one(
 
 
 @pytest.mark.slow
-def test_soak_table() -> None:
-    """A few seconds of wild input are reported, and the face stays sound."""
-    found = soak.measure(0.05)
-    assert all(target.is_met for target in soak.targets(found))
-    assert "simulated minutes" in soak.report(found)
-
-
-@pytest.mark.slow
-def test_tearing_table() -> None:
-    """Expressions and mixtures are looked at, and the worst is named."""
-    text = tearing.report(poses := tearing.measure(3))
+def test_table_of_gaps() -> None:
+    """Every row and mixtures are looked at, and the worst is named."""
+    text = gaps.report(poses := gaps.measure(3))
     assert f"{len(poses)} poses" in text and len(poses) > 203
-    assert text.splitlines()[-1].startswith("most teeth: ")
+    assert text.splitlines()[-1].startswith("teeth")

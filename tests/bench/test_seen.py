@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.recordings.names import ARKIT
+from risorius.app.scenes import FaceScene
 from risorius.bench import seen
 from risorius.bench.seen import FaceTracker, Scores
 from tests.app.command_line import risorius
@@ -71,14 +73,13 @@ def test_what_is_no_model_is_named(tmp_path: Path, content: bytes) -> None:
 
 
 @needs_model
-def test_the_tracker_sees_an_open_jaw(tmp_path: Path) -> None:
-    """Our face looks to it like one; an empty picture does not; pictures are kept."""
+def test_the_tracker_sees_an_open_jaw() -> None:
+    """Our face looks to it like one; an empty picture does not."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     with FaceTracker(MODEL) as tracker:
         assert tracker.scores(np.zeros((64, 64, 3), dtype=np.uint8)) == {}
-        with seen.Sitting(tracker, tmp_path) as sitting:
-            neutral = sitting.pose("neutral", ())
-            opened = sitting.pose("jawOpen", ("jawOpen",))
+        with Capture(FaceScene(), CaptureOptions(size=seen.SIZE)) as studio:
+            neutral = seen.pose_scores(tracker, studio, ())
+            opened = seen.pose_scores(tracker, studio, ("jawOpen",))
         own, _, score = seen.compared(opened, neutral, ("jawOpen",))
         assert own > 0.5 > score
-    assert len(list(tmp_path.glob("jawOpen_*.png"))) == len(seen.VIEWS)

@@ -17,13 +17,10 @@ LONG_WORK = (
     "risorius.app.viewer.window.splash_screen.SplashScreen",
     "risorius.bench.gaps.measure",
     "risorius.bench.motion.measure",
-    "risorius.bench.reproduce.coherence.outcome",
     "risorius.bench.quality.measure",
     "risorius.bench.refine.measure",
     "risorius.bench.reproduce.experiments.Experiment.run",
-    "risorius.bench.soak.measure",
     "risorius.bench.reproduce.table1.measure",
-    "risorius.bench.tearing.measure",
     "risorius.bench.window.measure",
 )
 
