@@ -61,9 +61,7 @@ class Canvas:
         self.renderer = render.Renderer(self.surface)
         self._scene = _Shown()
         self._pipeline = Pipeline(self._scene, self.renderer)
-        self._meshes: dict[refine.Refiner, DrawnMesh] = {}
-        self._streams: dict[refine.Refiner, render.Stream] = {}
-        self._room: render.Stream | None = None  # for surfaces that no refiner made
+        self._meshes: dict[refine.Refiner, tuple[DrawnMesh, render.Stream]] = {}
 
     def __enter__(self) -> Canvas:
         return self
@@ -73,13 +71,11 @@ class Canvas:
 
     def stream_for(self, refiner: refine.Refiner) -> render.Stream:
         """The buffers lent to a refiner, the same at every call."""
-        if refiner not in self._streams:
-            stream = self.renderer.lend_stream(
-                refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
-            )
-            self._streams[refiner] = stream
-            self._meshes[refiner] = DrawnMesh("", refiner, stream)
-        return self._streams[refiner]
+        if refiner not in self._meshes:
+            room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+            stream = self.renderer.lend_stream(*room)
+            self._meshes[refiner] = DrawnMesh("", refiner, stream), stream
+        return self._meshes[refiner][1]
 
     def draw(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
@@ -87,14 +83,11 @@ class Canvas:
         """Refine, upload and draw, without reading back; returns the number of triangles."""
         stream, scene = self.stream_for(refiner), self._scene
         scene.skin, scene.parts, scene.bones = positions, drawing.parts, drawing.bones
+        viewports = [Viewport(self._meshes[refiner][0], (0, 0, *self.surface.size))]
+        overlays = [drawing.lines] if drawing.lines else []
         self._pipeline.texture = drawing.texture
         self.surface.begin()
-        self._pipeline.draw(
-            drawing.camera,
-            drawing.style,
-            [Viewport(self._meshes[refiner], (0, 0, *self.surface.size))],
-            overlays=[drawing.lines] if drawing.lines else [],
-        )
+        self._pipeline.draw(drawing.camera, drawing.style, viewports, overlays=overlays)
         self.surface.end()
         return stream.triangle_count
 
@@ -113,14 +106,9 @@ class Canvas:
         drawing: Drawing,
     ) -> Image:
         """Draw a surface whose normals are known, and that no refiner made; read back."""
-        stream, sizes = self._room, (len(positions), len(faces))
-        if stream is None or not (
-            len(stream.vertices) >= sizes[0] and len(stream.triangles) >= sizes[1]
-        ):
-            stream = self.renderer.lend_stream(2 * sizes[0], 2 * sizes[1], POSITION_AND_NORMAL)
-            self._room = stream
-        stream.vertices[: len(positions)] = np.hstack([positions, normals])
-        stream.triangles[: len(faces)] = faces
+        stream = self.renderer.lend_stream(len(positions), len(faces), POSITION_AND_NORMAL)
+        stream.vertices[:] = np.hstack([positions, normals])
+        stream.triangles[:] = faces
         stream.upload(len(positions), len(faces))
         self.surface.begin()
         self.renderer.draw_background(drawing.style)

@@ -47,22 +47,19 @@ SEARCH_STEPS, SCALES = 18, (1e-5, 1e3)  # of thresholds: too many, too few trian
 LEAST_GAIN = 20.0  # [%] of the error of static
 STATIC, BEST = "static", "cubic displacement 2x"
 _TOLD = PRESETS[FIRST_PRESET]["face"].told("kahler")
+
+
+def _sliding(scheme: str, **more: Any) -> tuple[str, dict[str, Any]]:
+    return "sliding", {"scheme": scheme, "criterion": refine.Displacement, **more}
+
+
 METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
     STATIC: ("none", {}),
-    "loop normal 2x": ("sliding", {"scheme": "loop", "criterion": refine.NormalDrop}),
-    BEST: ("sliding", {"scheme": "cubic", "criterion": refine.Displacement, "blend": False}),
-    "cubic displacement, blended 2x": (
-        "sliding",
-        {"scheme": "cubic", "criterion": refine.Displacement, "blend": True},
-    ),
-    "detail displacement 2x": (
-        "sliding",
-        {"scheme": "detail", "criterion": refine.Displacement, "blend": False},
-    ),
-    "detail displacement, blended 2x": (
-        "sliding",
-        {"scheme": "detail", "criterion": refine.Displacement, "blend": True},
-    ),
+    "loop normal 2x": _sliding("loop", criterion=refine.NormalDrop),
+    BEST: _sliding("cubic", blend=False),
+    "cubic displacement, blended 2x": _sliding("cubic", blend=True),
+    "detail displacement 2x": _sliding("detail", blend=False),
+    "detail displacement, blended 2x": _sliding("detail", blend=True),
     f"{FIRST_PRESET}, as set": ("kahler", {name: _TOLD[name] for name in ("scheme", "criterion")}),
     "cubic once": ("everywhere", {"scheme": "cubic", "splits": 1}),
     "cubic twice": ("everywhere", {"scheme": "cubic", "splits": 2}),

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from risorius.app.performances import script_for
 from risorius.app.script import Pose, Script
@@ -30,17 +30,17 @@ ROUNDS = 3
 IDLE_SECONDS = 8.0
 
 
-@dataclass
-class _Case:
-    """A window in one state, and what was seen of it."""
+CASES = {
+    "smile": Display(),
+    "smile, unrefined": Display(is_refined=False),
+    "smile, wipe": Display(compare="wipe"),
+    "smile, side by side": Display(compare="side by side"),
+    "smile, muscles": Display(overlays=["muscles"]),
+}
+UNPROMISED = "smile, muscles"
 
-    name: str
-    compare: str = "off"
-    is_refined: bool = True
-    shows_muscles: bool = False
-    seconds: list[float] = field(default_factory=list)  # of each frame
-    stages: list[list[float]] = field(default_factory=list)  # [ms] of each frame
-    spent: list[float] = field(default_factory=list)  # [s] of processor time, of each frame
+Frames = list[list[float]]
+"""Of each: seconds, seconds of processor time, milliseconds of the stages."""
 
 
 def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
@@ -48,30 +48,24 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
 
     The text to print, and what the window is held to where software draws.
     """
-    cases = [
-        _Case("smile"),
-        _Case("smile, unrefined", is_refined=False),
-        _Case("smile, wipe", compare="wipe"),
-        _Case("smile, side by side", compare="side by side"),
-        _Case("smile, muscles", shows_muscles=True),
-    ]
+    seen: dict[str, Frames] = {name: [] for name in CASES}
     with Viewer(_smile(), size, Display()) as viewer:
         viewer.session.is_looping = True
         for turn in range(ROUNDS):
-            for case in cases if turn % 2 == 0 else reversed(cases):
-                _play(viewer, case, seconds / ROUNDS)
+            for name in CASES if turn % 2 == 0 else reversed(CASES):
+                seen[name] += _play(viewer, CASES[name], seconds / ROUNDS)
         idle, alive = (_idle_share(viewer, is_alive=each) for each in (False, True))
         is_software = viewer.surface.is_software
-        name = viewer.surface.gl.info["GL_RENDERER"]
+        driver = viewer.surface.gl.info["GL_RENDERER"]
         width, height = viewer.surface.size
     lines = [
-        f"The window at {width}x{height} on {name},",
+        f"The window at {width}x{height} on {driver},",
         f"{os.cpu_count()} cores of {processor()}; {ROUNDS} interleaved rounds.",
         "",
         *table(
             "case:<30|frames/s:8.1f|median:7.1f|95 %:7.1f|best:7.1f|processor:9.1f|"
             f"{PHASES[0]}:12.1f|{'|'.join(f'{stage}:10.1f' for stage in PHASES[1:])}|the rest:9.1f",
-            map(_cells, cases),
+            [_cells(name, np.array(frames)) for name, frames in seen.items()],
         ),
         "",
         "Times in ms: of a frame; processor: what all cores spend on one, which other programs",
@@ -79,8 +73,8 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
         "handing the picture over.",
         f"Nothing moves: {100.0 * idle:.1f} % of a core; the face lives: {100.0 * alive:.0f} %.",
     ]
-    promised = cases[:4] if is_software else []
-    rates = [at_least(each.name, _rate(each), PROMISED, " frames/s") for each in promised]
+    promised = [name for name in CASES if name != UNPROMISED] if is_software else []
+    rates = [at_least(n, _rate(np.array(seen[n])), PROMISED, " frames/s") for n in promised]
     return "\n".join(lines), rates
 
 
@@ -90,34 +84,27 @@ def _smile() -> Script:
     return replace(script_for(None, "face"), title="smile", duration=2.0, poses=poses)
 
 
-def _play(viewer: Viewer, case: _Case, seconds: float) -> None:
-    """Let the window play for a while, and note what its frames took."""
-    viewer.settings.display = Display(
-        compare=case.compare,
-        is_refined=case.is_refined,
-        overlays=["muscles"] * case.shows_muscles,
-    )
+def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
+    """Let the window play for a while; what its frames took."""
+    viewer.settings.display = replace(display)
     viewer.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
     if not viewer.session.is_playing:
         viewer.session.toggle_playing()
-    _run(viewer, WARM_UP, lambda *_: None)
-
-    def note(elapsed: float, spent: float) -> None:
-        case.seconds.append(elapsed)
-        case.spent.append(spent)
-        case.stages.append([viewer.times.milliseconds[stage][-1] for stage in PHASES])
-
-    _run(viewer, seconds, note)
+    _run(viewer, WARM_UP)
+    return _run(viewer, seconds)
 
 
-def _run(viewer: Viewer, seconds: float, note: Callable[[float, float], None]) -> None:
+def _run(viewer: Viewer, seconds: float) -> Frames:
+    frames = []
     last, used = time.perf_counter(), time.process_time()
     end = last + seconds
     while last < end:
         viewer.frame()
         now, spent = time.perf_counter(), time.process_time()
-        note(now - last, spent - used)
+        stages = [viewer.times.milliseconds[stage][-1] for stage in PHASES]
+        frames.append([now - last, spent - used, *stages])
         last, used = now, spent
+    return frames
 
 
 def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
@@ -132,15 +119,14 @@ def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
     return (time.process_time() - used) / (time.perf_counter() - begin)
 
 
-def _rate(case: _Case) -> float:
-    return len(case.seconds) / sum(case.seconds)
+def _rate(frames: npt.NDArray[np.float64]) -> float:
+    return len(frames) / float(frames[:, 0].sum())
 
 
-def _cells(case: _Case) -> list[object]:
+def _cells(name: str, frames: npt.NDArray[np.float64]) -> list[object]:
     """The row of a case."""
-    elapsed = 1e3 * np.array(case.seconds)
-    rest = np.median(elapsed - np.sum(case.stages, axis=1))
+    elapsed, stages = 1e3 * frames[:, 0], frames[:, 2:]
+    rest = np.median(elapsed - stages.sum(axis=1))
     times = [np.median(elapsed), np.percentile(elapsed, 95), elapsed.min()]
-    times.append(1e3 * np.median(case.spent))
-    stages = np.median(case.stages, axis=0)
-    return [case.name, _rate(case), *times, *stages, rest]
+    times.append(1e3 * np.median(frames[:, 1]))
+    return [name, _rate(frames), *times, *np.median(stages, axis=0), rest]

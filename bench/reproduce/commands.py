@@ -10,6 +10,7 @@ import os
 import platform
 import sys
 from collections.abc import Iterable, Sequence
+from functools import partial
 from html import escape
 from pathlib import Path
 
@@ -66,6 +67,9 @@ def reproduce_all(folder: Path) -> None:
     _end(results)
 
 
+_option = partial(click.Option, show_default=True)
+
+
 def _command(experiment: Experiment) -> click.Command:
     """The command of an experiment: a picture goes into out/NAME.png unless told."""
 
@@ -84,17 +88,11 @@ def _command(experiment: Experiment) -> click.Command:
 
     options: list[click.Parameter] = []
     if experiment.picture:
-        default = Path(f"out/{experiment.name}.png")
-        options.append(
-            click.Option(["-o", "--output"], type=PATH, default=default, show_default=True)
-        )
+        picture = Path(f"out/{experiment.name}.png")
+        options.append(_option(["-o", "--output"], type=PATH, default=picture))
     if experiment.rounds is not None:
-        rounds_type = click.IntRange(3, 10_000)
-        options.append(
-            click.Option(
-                ["--rounds"], type=rounds_type, default=experiment.rounds, show_default=True
-            )
-        )
+        most = click.IntRange(3, 10_000)
+        options.append(_option(["--rounds"], type=most, default=experiment.rounds))
     return click.Command(experiment.name, params=options, callback=make, help=experiment.about)
 
 
@@ -105,8 +103,8 @@ for _each in EXPERIMENTS:
 def _told(result: Result) -> str:
     """What an experiment has to say."""
     rows = [
-        (each.verdict.value, each.claim.value, each.claim.paper, each.ours, each.allowed)
-        for each in result.findings
+        (claim.judge(x).value, claim.value, claim.paper, claim.ours(x), claim.allowed(x))
+        for claim, x in result.findings
     ]
     width = max(len(name) for _, name, *_ in rows)
     columns = f":<7|:<{width}|paper:>14|here:>22|allowed:<1"
@@ -116,7 +114,7 @@ def _told(result: Result) -> str:
 def _page(results: Sequence[Result]) -> str:
     """All of it on one page for any browser, which loads the pictures beside it."""
     findings = [finding for result in results for finding in result.findings]
-    met = sum(finding.verdict is Verdict.MET for finding in findings)
+    met = sum(claim.judge(measured) is Verdict.MET for claim, measured in findings)
     made = (
         f"Risorius {__version__}, Python {platform.python_version()}, "
         f"{datetime.datetime.now().astimezone():%Y-%m-%d %H:%M %Z}, "
@@ -128,10 +126,10 @@ def _page(results: Sequence[Result]) -> str:
         f"<p>{met} of {len(findings)} statements are met. {escape(made)}</p>",
     ]
     for result in results:
-        each, statements = result.experiment, [finding.claim for finding in result.findings]
+        each = result.experiment
         lines.append(f"<h2>{escape(each.title)} ({each.place})</h2>")
         lines += [
-            f"<p>{escape(claim.value)}: {escape(claim.statement)}</p>" for claim in statements
+            f"<p>{escape(claim.value)}: {escape(claim.statement)}</p>" for claim in each.claims
         ]
         if result.outcome.picture is not None:
             lines.append(f'<img src="{each.name}.png" alt="{escape(each.about)}">')
@@ -144,8 +142,8 @@ def _page(results: Sequence[Result]) -> str:
 def _end(results: Iterable[Result]) -> None:
     """Say what is missed, and end with exit code 1 if anything is."""
     missed = [each for result in results for each in result.missed]
-    for each in missed:
-        text = f"{each.claim.value} is {each.ours}, allowed: {each.allowed}"
-        click.echo(f"risorius: {each.verdict.value}: {text}", err=True)
+    for claim, measured in missed:
+        text = f"{claim.value} is {claim.ours(measured)}, allowed: {claim.allowed(measured)}"
+        click.echo(f"risorius: {claim.judge(measured).value}: {text}", err=True)
     if missed:
         sys.exit(1)

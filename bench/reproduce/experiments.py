@@ -14,12 +14,9 @@ import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from risorius.app.files import Image
 
 
@@ -34,8 +31,7 @@ class Verdict(enum.StrEnum):
     """The measurement says what cannot be: the machine was busy with something else."""
 
 
-@dataclass(frozen=True)
-class Measured:
+class Measured(NamedTuple):
     """A number, and how far it can be trusted."""
 
     value: float
@@ -43,14 +39,6 @@ class Measured:
     """Half of what was seen lies between these; None for what is counted."""
     least: float = -math.inf
     """Nothing below this is possible."""
-
-    @classmethod
-    def median(cls, values: npt.NDArray[np.floating], *, least: float = -math.inf) -> Measured:
-        """The median of what was seen, with its quartiles."""
-        import numpy
-
-        low, middle, high = numpy.percentile(values, (25, 50, 75)).tolist()
-        return cls(middle, (low, high), least)
 
 
 @dataclass(frozen=True)
@@ -65,14 +53,6 @@ class Claim:
     style: str = "g"
     differs: bool = False
 
-    @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> Claim:
-        """One of the table."""
-        told = dict(entry)
-        if "exactly" in told:
-            told["low"] = told["high"] = told.pop("exactly")
-        return cls(**told)
-
     def judge(self, measured: Measured) -> Verdict:
         """Whether it is so; what is no number misses, too."""
         if measured.value < measured.least:
@@ -81,38 +61,23 @@ class Claim:
             return Verdict.MISSED
         return Verdict.DIFFERS if self.differs else Verdict.MET
 
-
-@dataclass(frozen=True)
-class Finding:
-    """A claim beside what was measured."""
-
-    claim: Claim
-    measured: Measured
-
-    @property
-    def verdict(self) -> Verdict:
-        """What becomes of the claim."""
-        return self.claim.judge(self.measured)
-
-    @property
-    def allowed(self) -> str:
+    def allowed(self, measured: Measured) -> str:
         """What is allowed, and below what it cannot be."""
-        low, high, style = self.claim.low, self.claim.high, self.claim.style
+        low, high, least = (f"{x:{self.style}}" for x in (self.low, self.high, measured.least))
         if low == high:
-            return f"exactly {low:{style}}"
-        bounds = [f"at least {low:{style}}"] if low > -math.inf else []
-        bounds += [f"at most {high:{style}}"] if high < math.inf else []
-        least = self.measured.least
-        return ", ".join(bounds) + (f"; possible from {least:{style}}" if least > -math.inf else "")
+            return f"exactly {low}"
+        bounds = [f"at least {low}"] if self.low > -math.inf else []
+        bounds += [f"at most {high}"] if self.high < math.inf else []
+        return ", ".join(bounds) + (
+            f"; possible from {least}" if measured.least > -math.inf else ""
+        )
 
-    @property
-    def ours(self) -> str:
+    def ours(self, measured: Measured) -> str:
         """Our number, with its quartiles."""
-        text = f"{self.measured.value:{self.claim.style}}"
-        if self.measured.quartiles is not None:
-            low, high = (f"{each:{self.claim.style}}" for each in self.measured.quartiles)
-            text += f" ({low} to {high})"
-        return text
+        value, *quartiles = (
+            f"{x:{self.style}}" for x in (measured.value, *(measured.quartiles or ()))
+        )
+        return f"{value} ({' to '.join(quartiles)})" if quartiles else value
 
 
 @dataclass(frozen=True)
@@ -124,21 +89,6 @@ class Outcome:
     picture: Image | None = None
     text: str = ""
     """A table of more than the claims."""
-
-
-@dataclass(frozen=True)
-class Result:
-    """An experiment that was made."""
-
-    experiment: Experiment
-    outcome: Outcome
-    findings: list[Finding]
-
-    @property
-    def missed(self) -> list[Finding]:
-        """Those that are not met."""
-        expected = (Verdict.MET, Verdict.DIFFERS)
-        return [each for each in self.findings if each.verdict not in expected]
 
 
 @dataclass(frozen=True)
@@ -167,17 +117,35 @@ class Experiment:
         """Do it. KeyError for a claim that was not measured."""
         timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
         outcome = self.callable(**timing)
-        findings = []
-        for claim in self.claims:
-            value = outcome.values[claim.value]
-            measured = value if isinstance(value, Measured) else Measured(float(value))
-            findings.append(Finding(claim, measured))
+        found = [(claim, outcome.values[claim.value]) for claim in self.claims]
+        findings = [(c, x if isinstance(x, Measured) else Measured(float(x))) for c, x in found]
         return Result(self, outcome, findings)
+
+
+class Result(NamedTuple):
+    """An experiment that was made, and what was measured for each of its claims."""
+
+    experiment: Experiment
+    outcome: Outcome
+    findings: list[tuple[Claim, Measured]]
+
+    @property
+    def missed(self) -> list[tuple[Claim, Measured]]:
+        """Those that are not met."""
+        expected = Verdict.MET, Verdict.DIFFERS
+        return [(claim, x) for claim, x in self.findings if claim.judge(x) not in expected]
+
+
+def _claim(entry: dict[str, Any]) -> Claim:
+    """One of the table."""
+    if "exactly" in entry:
+        entry["low"] = entry["high"] = entry.pop("exactly")
+    return Claim(**entry)
 
 
 _TABLE = tomllib.loads((Path(__file__).parent / "paper.toml").read_text(encoding="utf-8"))
 EXPERIMENTS = tuple(
-    Experiment(**entry, claims=list(map(Claim.of, claims)))
+    Experiment(**entry, claims=list(map(_claim, claims)))
     for entry in _TABLE["experiment"]
     for claims in [entry.pop("claim")]
 )

@@ -9,20 +9,20 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from itertools import islice
 
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from risorius import assets, refine
-from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import CONFIGURATIONS
 
 from ..quality import Everywhere
 from .experiments import Measured, Outcome
-from .table1 import papers_refiner
+from .table1 import papers_refiner, played
 
 Points = npt.NDArray[np.float64]
 
@@ -76,13 +76,8 @@ def outcome() -> Outcome:
 
 def _moments(scene: Scene) -> Iterator[Points]:
     """Positions in moments of the scene's own script."""
-    script = script_for(None, scene.name)
-    scene.reset()
-    for number in range(round(script.duration * FRAMES_PER_SECOND) + 1):
-        scene.pose(script.at(number / FRAMES_PER_SECOND))
-        scene.step(1.0 / FRAMES_PER_SECOND)
-        if number % EVERY == EVERY // 2:
-            yield scene.positions.copy()
+    for positions in islice(played(scene, FRAMES_PER_SECOND), EVERY // 2, None, EVERY):
+        yield positions.copy()
 
 
 def _moved(positions: Points) -> Points:

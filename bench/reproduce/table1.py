@@ -16,7 +16,7 @@ below that of the static one cannot be: then c_rt < static / refined triangles, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -66,7 +66,9 @@ class Row:
     def of(cls, title: str, static: int, dynamic: int, seconds: npt.NDArray[np.float64]) -> Row:
         """A row of ours. seconds: of static and refined in each round, shape (rounds, 2)."""
         fewer = static / dynamic
-        ratio = Measured.median(fewer * seconds[:, 1] / seconds[:, 0], least=fewer)
+        ratios = fewer * seconds[:, 1] / seconds[:, 0]
+        low, middle, high = np.percentile(ratios, (25, 50, 75)).tolist()
+        ratio = Measured(middle, (low, high), least=fewer)
         static_time, dynamic_time = (1e3 * np.median(seconds, axis=0)).tolist()
         return cls(title, static, dynamic, static_time, dynamic_time, ratio)
 
@@ -75,14 +77,6 @@ PAPER = {
     "face": Row("face, the paper", 2030, 3120, 1.3, 3.5, Measured(1.75)),
     "plane": Row("plane, the paper", 154, 1328, 0.09, 2.0, Measured(2.58)),
 }
-
-
-def measure(*, rounds: int = 60) -> tuple[dict[str, list[Row]], str]:
-    """Measure our rows for face and plane, by scene; returns them and the name of what draws."""
-    with Canvas(SMALL) as canvas:
-        renderer = driver(canvas.surface.gl.info)
-    scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
-    return {scene.name: _measured(scene, rounds) for scene in scenes}, renderer
 
 
 def papers_refiner(scene: Scene, **options: Any) -> refine.Refiner:
@@ -120,35 +114,44 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
 
 
-def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
-    """Play the scene's own script; the frame with the most triangles."""
+def played(scene: Scene, frames_per_second: float) -> Iterator[Points]:
+    """Positions of the scene in each frame of its own script; the next overwrites them."""
     script = script_for(None, scene.name)
     scene.reset()
-    best, positions = -1, scene.positions.copy()
-    for index in range(round(script.duration * FRAMES_PER_SECOND) + 1):
-        scene.pose(script.at(index / FRAMES_PER_SECOND))
-        scene.step(1.0 / FRAMES_PER_SECOND)
-        count = len(refiner.refine(scene.positions).triangles)
+    for number in range(round(script.duration * frames_per_second) + 1):
+        scene.pose(script.at(number / frames_per_second))
+        scene.step(1.0 / frames_per_second)
+        yield scene.positions
+
+
+def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
+    """The frame of the scene's own script with the most triangles, and how many these are."""
+    best, fullest = -1, scene.positions
+    for positions in played(scene, FRAMES_PER_SECOND):
+        count = len(refiner.refine(positions).triangles)
         if count > best:
-            best, positions = count, scene.positions.copy()
-    return positions, best
+            best, fullest = count, positions.copy()
+    return fullest, best
 
 
 def outcome(*, rounds: int) -> Outcome:
-    """Measure the table, for the page and the command."""
-    measured, renderer = measure(rounds=rounds)
+    """Measure our rows for face and plane, beside the paper's."""
+    with Canvas(SMALL) as canvas:
+        renderer = driver(canvas.surface.gl.info)
+    scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
+    measured = {scene.name: _measured(scene, rounds) for scene in scenes}
     values: dict[str, Measured | float] = {}
-    for scene, ours in measured.items():
-        values[f"{scene}, static triangles"] = ours[0].static
-        values[f"{scene}, most triangles"] = ours[0].dynamic
+    for name, ours in measured.items():
+        values[f"{name}, static triangles"] = ours[0].static
+        values[f"{name}, most triangles"] = ours[0].dynamic
         values.update({row.title: row.ratio for row in ours})
     rows = [
         (
             *(row.title, row.static, row.dynamic, row.static_time, row.dynamic_time),
             *(row.ratio.value, *(row.ratio.quartiles or (None, None))),
         )
-        for scene, ours in measured.items()
-        for row in (PAPER[scene], *ours)
+        for name, ours in measured.items()
+        for row in (PAPER[name], *ours)
     ]
     columns = ":<26|static:7d|dynamic:8d|t static:9.3f|t dynamic:9.3f|c_rt:6.2f|25 %:6.2f|75 %:6.2f"
     lines = [

@@ -20,7 +20,6 @@ LONG_WORK = (
     "risorius.bench.quality.measure",
     "risorius.bench.refine.measure",
     "risorius.bench.reproduce.experiments.Experiment.run",
-    "risorius.bench.reproduce.table1.measure",
     "risorius.bench.window.measure",
 )
 
