@@ -51,11 +51,9 @@ def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
     """All views of a control at full value, side by side."""
     is_turned = name.removesuffix("_left") in TURNING
     target = None if is_turned else scene.focus + np.array([0.0, RAISED, 0.0])
-    options = CaptureOptions(size)
+    pose = SHOWN_OVER.get(name, {name: 1.0})
     images = [
-        figures.shoot(
-            scene, SHOWN_OVER.get(name, {name: 1.0}), figures.seen_from(options, view), target
-        )
+        figures.shoot(scene, pose, CaptureOptions(size, camera=view), target)
         for view in (FAR_VIEWS if is_turned else VIEWS)
     ]
     return np.concatenate(images, axis=1)

@@ -10,7 +10,6 @@ import argparse
 import io
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -47,11 +46,6 @@ def shoot(
         if target is not None:
             capture.camera.target = np.asarray(target, dtype=np.float64)
         return capture.draw_image()
-
-
-def seen_from(options: CaptureOptions, view: str) -> CaptureOptions:
-    """The same from another view."""
-    return replace(options, camera=view)
 
 
 def sheet(cells: Sequence[tuple[str, Image]], columns: int) -> Image:

@@ -49,10 +49,10 @@ def views(size: tuple[int, int] = CELL) -> Image:
     scene = FaceScene()
     cells = []
     for title, style in STYLES.items():
-        options = CaptureOptions(size, refinement=Refinement(refiner=STATIC), style=style)
         for view in VIEWS:
-            image = figures.shoot(scene, {}, figures.seen_from(options, view))
-            cells.append((f"{view}, {title}", image))
+            static = Refinement(refiner=STATIC)
+            options = CaptureOptions(size, refinement=static, style=style, camera=view)
+            cells.append((f"{view}, {title}", figures.shoot(scene, {}, options)))
     return figures.sheet(cells, len(VIEWS))
 
 

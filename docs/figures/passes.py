@@ -1,7 +1,8 @@
-"""Draw the pictures of docs/passes.md and of strain: `python docs/figures/passes.py [FOLDER]`."""
+"""Draw the pictures of passes, strain and data sets: `python docs/figures/passes.py [FOLDER]`."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import figures
@@ -12,6 +13,8 @@ from PIL import ImageDraw
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.dataset.request import request_of
+from risorius.app.dataset.studio import Shot, Studio
 from risorius.app.files import Image
 from risorius.app.passes.labelled import labelled
 from risorius.app.passes.passes import NAMES, Passes
@@ -24,6 +27,10 @@ TURN = (-24.0, 4.0)  # [degrees] of the camera
 SETTLED = 1.0  # [s]
 MARGIN = 0.04  # of the picture, free on each side
 FULL = 0.3  # stretch or compression that has the full colour
+# Samples of a seed as `risorius dataset` makes them; of some their labels are shown, too.
+SEED, CELL, COLUMNS, ROWS = 21, 192, 6, 4
+LABELLED = (2, 3, 10, 11, 14, 22)  # numbers of samples
+EDGE = np.array((255, 255, 255), np.uint8)
 SEEN, HIDDEN = (40, 230, 60), (235, 60, 40)
 COLOURS = {
     Segment.SKIN: (221, 176, 152), Segment.NOSE: (240, 145, 45), Segment.RIGHT_EYE: (40, 85, 225),
@@ -122,5 +129,23 @@ def dotted(picture: Image, labels: dict[str, Any], radius: float) -> Image:
     return np.asarray(page)
 
 
+def dataset() -> Image:
+    """Samples row by row, and below them some of these with landmarks and classes."""
+    studio = Studio(request_of(Path(), seed=SEED, size=(CELL, CELL), passes=("segmentation",)))
+    shots = [studio.shoot(index) for index in range(COLUMNS * ROWS)]
+    images = [shot.image for shot in shots] + [_labelled(shots[index]) for index in LABELLED]
+    rows = [np.hstack(images[k : k + COLUMNS]) for k in range(0, len(images), COLUMNS)]
+    return np.vstack(rows)
+
+
+def _labelled(shot: Shot) -> Image:
+    """A picture with the borders of its classes, and its landmarks: hidden ones red."""
+    classes = shot.known.images["segmentation"]
+    is_edge = np.zeros(classes.shape, bool)
+    is_edge[1:] |= classes[1:] != classes[:-1]
+    is_edge[:, 1:] |= classes[:, 1:] != classes[:, :-1]
+    return dotted(np.where(is_edge[..., None], EDGE, shot.image), shot.known.labels, 1.5)
+
+
 if __name__ == "__main__":
-    figures.run(__doc__, {"passes": passes, "refine_tension": tension})
+    figures.run(__doc__, {"passes": passes, "refine_tension": tension, "dataset": dataset})

@@ -54,15 +54,11 @@ def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
     viewer.session.toggle_alone("disgust")
     viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
-    show_refinement(viewer)
+    # Of the panel show what says how the mesh is refined, and its colours.
+    viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
     viewer.settings.display = Display(compare="wipe", wireframe=True, colours="splits", skin="clay")
     viewer.view.camera = camera_for(viewer.session.scene, "front")
     viewer.view.camera.zoom(1.08)
-
-
-def show_refinement(viewer: Viewer) -> None:
-    """Of the panel Mechanism show what says how the mesh is refined, and its colours."""
-    viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
 
 
 def timeline(viewer: Viewer) -> None:
@@ -103,16 +99,6 @@ def landmarks(viewer: Viewer) -> None:
     viewer.frame()
 
 
-STOPS: dict[str, Callable[[Viewer], None]] = {
-    "viewer": face,
-    "viewer_controls": controls,
-    "viewer_wipe": wipe,
-    "viewer_timeline": timeline,
-    "viewer_curves": curves,
-    "viewer_landmarks": landmarks,
-}
-
-
 def draw_image(stop: Callable[[Viewer], None]) -> Image:
     """A window, brought to a stop of the tour."""
     with Viewer(script_for(None, "face"), SIZE) as viewer:
@@ -127,4 +113,6 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
 
 
 if __name__ == "__main__":
-    figures.run(__doc__, {name: partial(draw_image, stop) for name, stop in STOPS.items()})
+    stops = controls, wipe, timeline, curves, landmarks
+    named = {"viewer": face, **{f"viewer_{stop.__name__}": stop for stop in stops}}
+    figures.run(__doc__, {name: partial(draw_image, stop) for name, stop in named.items()})
