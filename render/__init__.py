@@ -21,7 +21,6 @@ from .camera import VIEWS, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
 from .geometry_buffer import Geometry
-from .light import LIGHTS, Light, toward
 from .lines import Lines
 from .parts import Part
 from .probe import Finding, probe
@@ -33,14 +32,17 @@ from .style import (
     CLAY,
     DARK,
     LIGHT,
+    LIGHTS,
     SKIN,
     SPLIT_PALETTE,
     WHITE,
     Background,
     Colour,
     ColourBy,
+    Light,
     Shading,
     Style,
+    toward,
 )
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
 from .texture import BumpMap, Texture

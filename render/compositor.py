@@ -1,4 +1,4 @@
-"""What a window shows: the scene, enlarged where it was drawn smaller, and panels over it.
+"""What lies under the scene, a background, and what a window shows of it, with panels over it.
 
 Software OpenGL pays for every pixel, so a scene that moves may be drawn with fewer (`Detail`) and
 is enlarged here. The scene's own pixels stay as they are: when only a panel changes, the scene is
@@ -12,6 +12,7 @@ import moderngl
 
 from .programs import compile_program
 from .render_target import Rectangle, RenderTarget
+from .style import Background
 
 _UNIT = 4  # texture unit while enlarging
 
@@ -95,3 +96,62 @@ class Compositor:
     def read(self) -> bytes:
         """The pixels, bottom row first, three bytes each."""
         return bytes(self.frame.read(components=3, alignment=1))
+
+
+class Backdrop:
+    """Paints backgrounds into the frame of a surface's target: once, and copied into every frame.
+
+    On software OpenGL a copy of the whole frame costs a fiftieth of painting it (measured: 0.16 ms
+    against 8 ms at 1280 x 720), and a tenth of a copy of a part, which is no plain copying.
+    """
+
+    def __init__(self, gl: moderngl.Context) -> None:
+        self._gl = gl
+        self._program = compile_program(gl, "background.glsl")
+        self._triangle = gl.vertex_array(self._program, [])
+        self._store: moderngl.Framebuffer | None = None
+        self._stored: tuple[tuple[Rectangle, ...], Background] | None = None
+
+    def paint(
+        self, target: RenderTarget, viewports: tuple[Rectangle, ...], background: Background | None
+    ) -> None:
+        """Paint the background over each viewport; what was drawn there is gone.
+
+        None: nothing is there, not even black.
+        """
+        if background is None:
+            for viewport in viewports:
+                target.use_frame(viewport)
+                target.frame.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=viewport)
+            target.is_empty = False
+            return
+        if self._store is None or self._store.size != target.size:
+            self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
+            self._stored = None
+        if self._stored != (viewports, background):
+            self._store.use()
+            self._gl.scissor = None
+            self._store.clear(0.0, 0.0, 0.0, 1.0)  # around them, as an empty frame
+            for viewport in viewports:
+                self._paint(viewport, background)
+            self._stored = viewports, background
+        if target.is_empty:
+            target.use_frame((0, 0, *target.size))
+            self._gl.scissor = None
+            self._gl.copy_framebuffer(target.frame, self._store)
+            target.is_empty = False
+            return
+        for viewport in viewports:
+            target.use_frame(viewport)  # its scissor restricts the copy to the viewport
+            self._gl.copy_framebuffer(target.frame, self._store)
+            if not target.samples:  # the frame has depth, and it was drawn on
+                target.frame.color_mask = False, False, False, False
+                target.frame.clear(depth=1.0, viewport=viewport)
+                target.frame.color_mask = True, True, True, True
+
+    def _paint(self, viewport: Rectangle, background: Background) -> None:
+        gl = self._gl
+        gl.viewport = gl.scissor = viewport
+        self._program["centre"] = background.centre
+        self._program["edge"] = background.edge
+        self._triangle.render(moderngl.TRIANGLES, vertices=3)

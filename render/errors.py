@@ -8,6 +8,7 @@ Source of the texts: moderngl 5.13, glcontext 3.1 and GLFW 3.4 / 3.5 on Linux, p
 import os
 import re
 
+OFFSCREEN = "offscreen OpenGL"
 _MESA = "apt install libegl1 libgl1-mesa-dri"
 _SOFTWARE = "set LIBGL_ALWAYS_SOFTWARE=1"
 
@@ -15,11 +16,7 @@ _SOFTWARE = "set LIBGL_ALWAYS_SOFTWARE=1"
 _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     (r"invalid literal for int", "a GLCONTEXT_ variable is not a whole number", "unset it"),
     (r"found 0 devices", "no OpenGL driver offers itself to EGL", "apt install libgl1-mesa-dri"),
-    (
-        r"requested device index",
-        "there is no EGL device of that number",
-        "unset GLCONTEXT_DEVICE_INDEX",
-    ),
+    (r"requested device index", "there is no EGL device of that number", "unset it"),
     (r"libGL\S* not loaded", "the OpenGL library is missing", "apt install libgl1 libgl1-mesa-dri"),
     (r"not loaded", "the EGL library is missing", _MESA),
     (r"egl\w+ not found|gl\w+ not found", "that library is not OpenGL", _MESA),
@@ -45,14 +42,6 @@ _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     (r"No module named 'glfw'", "GLFW is not installed", "pip install 'risorius[window]'"),
 )
 
-_DRIVER_VARIABLES = (
-    "GLCONTEXT_LINUX_LIBEGL",
-    "GLCONTEXT_LINUX_LIBGL",
-    "GLCONTEXT_LINUX_LIBX11",
-    "GLCONTEXT_WIN_LIBGL",
-    "GLCONTEXT_GLVERSION",
-)
-
 
 class GLError(RuntimeError):
     """OpenGL is missing, too old or refuses; one line says what, why, the raw text and the cure."""
@@ -61,25 +50,9 @@ class GLError(RuntimeError):
 def diagnose(what: str, raw: object) -> GLError:
     """Return the GLError for a failed attempt: `what` was tried, `raw` is what the library said."""
     text = " ".join(str(raw).split()) or "no reason given"
+    set_by_hand = [name for name in os.environ if name.startswith("GLCONTEXT_")]
+    unset = f"unset {', '.join(set_by_hand)}" if what.startswith(OFFSCREEN) and set_by_hand else ""
     for pattern, why, cure in _DIAGNOSES:
         if re.search(pattern, text):
-            return GLError(
-                f'{what} failed: {why} ("{text}"). Cure: {_variable_to_unset(text) or cure}'
-            )
+            return GLError(f'{what} failed: {why} ("{text}"). Cure: {unset or cure}')
     return GLError(f'{what} failed ("{text}"). Cure: `risorius doctor` shows what there is')
-
-
-def _variable_to_unset(text: str) -> str:
-    """The cure when a glcontext variable of the environment, and not the machine, is at fault."""
-    for variable in _DRIVER_VARIABLES:
-        value = os.environ.get(variable)
-        if not value:
-            continue
-        is_version = variable == "GLCONTEXT_GLVERSION" and "Context" in text
-        if (
-            is_version
-            or (variable != "GLCONTEXT_GLVERSION" and value in text)
-            or "not found" in text
-        ):
-            return f"unset {variable} (it is '{value}')"
-    return ""

@@ -12,7 +12,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import CameraView
+from .camera import CameraView
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
 from .stream import MeshBuffers

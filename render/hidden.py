@@ -14,7 +14,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import CameraView
+from .camera import CameraView
 from .materials import set_inside
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
@@ -184,8 +184,8 @@ def draw_sides(
     if is_free and occluder is not None and occluder.target.samples:
         covered = view.covered_pixels(stream.corners)
         occluder.look(view, covered)
-        positions = stream.drawn_rows[:, :3]
-        triangles = stream.drawn_triangles
+        positions = stream.frame.vertices[:, :3]
+        triangles = stream.frame.triangles
         is_seen = occluder.may_be_seen(positions, triangles, away=True)
         is_inner = np.zeros_like(is_seen)
         if style.shading is Shading.PIXEL and not style.wireframe:
@@ -205,7 +205,7 @@ def draw_sides(
 
 def _shows_inside(stream: MeshBuffers, view: CameraView) -> npt.NDArray[np.bool_]:
     """Which triangles turn so far away that they show their inner side alone, (triangle_count,)."""
-    rows = stream.drawn_rows
+    rows = stream.frame.vertices
     with np.errstate(all="ignore"):
         to_eye, normal = view.camera.eye.astype(np.float32) - rows[:, :3], rows[:, 3:6]
         facing, *squares = (
@@ -213,7 +213,7 @@ def _shows_inside(stream: MeshBuffers, view: CameraView) -> npt.NDArray[np.bool_
             for each in ((to_eye, normal), (to_eye, to_eye), (normal, normal))
         )
         is_inner = facing < -INWARD * np.sqrt(squares[0] * squares[1])
-    shows: npt.NDArray[np.bool_] = is_inner[stream.drawn_triangles].all(axis=1)
+    shows: npt.NDArray[np.bool_] = is_inner[stream.frame.triangles].all(axis=1)
     return shows
 
 

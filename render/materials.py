@@ -6,11 +6,10 @@ import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
-from .camera_view import CameraView
-from .light import Light
+from .camera import CameraView
 from .parts import LAYERS, Part
 from .programs import write_uniform
-from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Style
+from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Light, Style
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 STRAND_PIXELS = 1.4  # that a strand is wide at least: a triangle seen from its side is narrower

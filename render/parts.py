@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
-from .camera_view import box_corners
+from .camera import box_corners
 
 OF_HAIR = "in_strand", "in_way", "in_dense"
 # What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.

@@ -15,12 +15,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .backdrop import Backdrop
-from .camera import OrbitCamera
-from .camera_view import CameraView, box_corners
+from .camera import CameraView, OrbitCamera, box_corners
+from .compositor import Backdrop
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .lines import Lines
+from .lines import Lines, draw_fringes, fringes
 from .materials import (
     mesh_shader,
     part_shader,
@@ -29,7 +28,6 @@ from .materials import (
     set_part,
     value_texture,
 )
-from .outline import draw_fringes, fringes
 from .parts import Part, PartStore
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, scaled
@@ -205,7 +203,7 @@ class Renderer:
         if not is_smooth or style.colour_by is not ColourBy.NONE or not stream.triangle_count:
             return
         view = self._camera_view(camera, viewport, clip)
-        rows = fringes(stream.drawn_rows, stream.drawn_triangles, view)
+        rows = fringes(stream.frame.vertices, stream.frame.triangles, view)
         if not len(rows):
             return
         if self._use_layer(view, stream.corners):

@@ -14,11 +14,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import CameraView
-from .light import Vector
+from .camera import CameraView
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
 from .stream import MeshBuffers
+from .style import Vector
 
 RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
 REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose

@@ -7,13 +7,13 @@ Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and
 """
 
 from enum import Enum
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .camera_view import box_corners
+from .camera import box_corners
 
 
 class Share(Enum):
@@ -31,12 +31,49 @@ COMMAND_WORDS = 7
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
 
 
+class Frame(Protocol):
+    """What was made last; of one that lies on the graphics card all is fetched when it is read."""
+
+    @property
+    def vertex_count(self) -> int:
+        """How many vertices it has."""
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles."""
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float32]:
+        """x y z, nx ny nz[, u v], shape (vertex_count, columns); may be written."""
+
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]:
+        """Shape (triangle_count, 3)."""
+
+
+class _Uploaded(NamedTuple):
+    """A frame of a `Stream`."""
+
+    vertices: npt.NDArray[np.float32]
+    triangles: npt.NDArray[np.uint32]
+
+    @property
+    def vertex_count(self) -> int:
+        return len(self.vertices)
+
+    @property
+    def triangle_count(self) -> int:
+        return len(self.triangles)
+
+
 class MeshBuffers:
     """One mesh of at most so many vertices and triangles, rewritten every frame, to be drawn.
 
     columns: of its rows, 6 (position, normal) or 8 (and texture u, v).
+    frame: what it was last rewritten with.
     has_bumps: whether its last frame came with amounts of a bump map.
     corners: of a box that holds its vertices, shape (8, 3), float64.
+    places: where its vertices are, or some near them, shape (n, 3).
     """
 
     def __init__(
@@ -53,16 +90,17 @@ class MeshBuffers:
             )
         self.context = gl
         self.columns = columns
+        none = np.zeros((0, columns), np.float32)
+        self.frame: Frame = _Uploaded(none, np.zeros((0, 3), np.uint32))
+        self.places: npt.NDArray[np.float32] = none[:, :3]
         self.corners = np.zeros((8, 3))
         self.has_bumps = False
         self._room = vertex_capacity, triangle_capacity
         self.vertex_buffer = gl.buffer(reserve=NUMBER * columns * vertex_capacity, dynamic=True)
         self.index_buffer = gl.buffer(reserve=3 * NUMBER * triangle_capacity, dynamic=True)
-        # Made when a mesh first has bumps: their amounts, and its triangles parted by them. Then
-        # vertices and triangles are kept on this side, too.
-        self._bump_buffers: tuple[moderngl.Buffer, moderngl.Buffer] | None = None
-        self._value_buffer: moderngl.Buffer | None = None
-        self._chosen_buffer: moderngl.Buffer | None = None
+        # Made when they are first needed: amounts of bumps and values by vertex; and triangles
+        # parted by bumps, and chosen.
+        self._more: dict[str, moderngl.Buffer] = {}
         self._ranges: _Ranges = {}
         self._vertex_arrays: dict[
             tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray
@@ -71,45 +109,30 @@ class MeshBuffers:
     @property
     def vertex_count(self) -> int:
         """How many vertices its last frame has."""
-        raise NotImplementedError
+        return self.frame.vertex_count
 
     @property
     def triangle_count(self) -> int:
         """How many triangles."""
-        raise NotImplementedError
+        return self.frame.triangle_count
 
-    @property
-    def drawn_rows(self) -> npt.NDArray[np.float32]:
-        """Its vertices, x y z, nx ny nz[, u v], shape (vertex_count, columns)."""
-        raise NotImplementedError
-
-    @property
-    def drawn_triangles(self) -> npt.NDArray[np.uint32]:
-        """Its triangles, shape (triangle_count, 3)."""
-        raise NotImplementedError
-
-    @property
-    def places(self) -> npt.NDArray[np.float32]:
-        """Where its vertices are, or some near them, shape (n, 3)."""
-        return self.drawn_rows[:, :3]
+    def _rewrite(self, name: str, array: npt.NDArray[Any]) -> None:
+        """Hand over what is there once for each vertex, or for each triangle (uint32)."""
+        if name not in self._more:
+            room = self._room[array.dtype == np.uint32] * array.shape[1]
+            self._more[name] = self.context.buffer(reserve=NUMBER * room, dynamic=True)
+        self._more[name].orphan()
+        self._more[name].write(np.ascontiguousarray(array))
 
     def _upload_bumps(self, bump_amounts: npt.NDArray[np.float32]) -> None:
         """Upload amounts, and the triangles anew: first those that have bumps."""
-        if self._bump_buffers is None:
-            vertices, triangles = self._room
-            self._bump_buffers = (
-                self.context.buffer(reserve=2 * NUMBER * vertices, dynamic=True),
-                self.context.buffer(reserve=3 * NUMBER * triangles, dynamic=True),
-            )
-        parts = self.drawn_triangles
+        parts = self.frame.triangles
         is_bumped = (bump_amounts.max(axis=1) > 0.0)[parts].any(axis=1)
-        parted = np.concatenate([parts[is_bumped], parts[~is_bumped]])
         count = int(is_bumped.sum())
         self._ranges[Share.BUMPED] = 0, count
         self._ranges[Share.SMOOTH] = count, len(parts) - count
-        for buffer, array in zip(self._bump_buffers, (bump_amounts, parted), strict=True):
-            buffer.orphan()
-            buffer.write(np.ascontiguousarray(array))
+        self._rewrite("in_bumps", bump_amounts)
+        self._rewrite("parted", np.concatenate([parts[is_bumped], parts[~is_bumped]]))
 
     def check_uv(self) -> None:
         """Raise ValueError where rows have no texture coordinates, but a texture comes."""
@@ -132,23 +155,14 @@ class MeshBuffers:
                 f"values has shape {values.shape}; it must be ({self.vertex_count}, 2), two "
                 "numbers for each uploaded vertex"
             )
-        if self._value_buffer is None:
-            room = 2 * NUMBER * self._room[0]
-            self._value_buffer = self.context.buffer(reserve=room, dynamic=True)
-        self._value_buffer.orphan()
-        self._value_buffer.write(np.ascontiguousarray(values, np.float32))
+        self._rewrite("in_values", values.astype(np.float32, copy=False))
 
     def choose(self, is_chosen: npt.NDArray[np.bool_], is_other: npt.NDArray[np.bool_]) -> None:
         """Choose among the uploaded triangles, twice (triangle_count,), for `draw`."""
-        if self._chosen_buffer is None:
-            room = 3 * NUMBER * self._room[1]
-            self._chosen_buffer = self.context.buffer(reserve=room, dynamic=True)
-        triangles = self.drawn_triangles
-        chosen, others = triangles[is_chosen], triangles[is_other]
+        chosen, others = self.frame.triangles[is_chosen], self.frame.triangles[is_other]
         self._ranges[Share.CHOSEN] = 0, len(chosen)
         self._ranges[Share.OTHERS] = len(chosen), len(others)
-        self._chosen_buffer.orphan()
-        self._chosen_buffer.write(np.concatenate([chosen, others]))
+        self._rewrite("chosen", np.concatenate([chosen, others]))
 
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
@@ -161,18 +175,14 @@ class MeshBuffers:
         first, count = self._ranges.get(share, (0, 0))
         if count == 0:
             return
-        if share in (Share.CHOSEN, Share.OTHERS):
-            assert self._chosen_buffer is not None
-            indices = self._chosen_buffer
-        else:
-            assert self._bump_buffers is not None
-            indices = self._bump_buffers[1]
+        indices = self._more["chosen" if share in (Share.CHOSEN, Share.OTHERS) else "parted"]
         array = self._vertex_array(program, indices)
         array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 
     def _draw_all(self, array: moderngl.VertexArray) -> None:
         """Draw all triangles, in their order."""
-        raise NotImplementedError
+        if self.vertex_count and self.triangle_count:
+            array.render(moderngl.TRIANGLES, vertices=3 * self.triangle_count)
 
     def _vertex_array(
         self, program: moderngl.Program, indices: moderngl.Buffer
@@ -182,14 +192,10 @@ class MeshBuffers:
         if array is None:
             names = ("in_position", "in_normal")
             layout = ("3f 3f", *names) if self.columns == 6 else ("3f 3f 2f", *names, "in_uv")
-            content: list[Any] = [(self.vertex_buffer, *layout)]
-            if self._bump_buffers is not None:
-                content.append((self._bump_buffers[0], "2f", "in_bumps"))
-            if self._value_buffer is not None:
-                content.append((self._value_buffer, "2f", "in_values"))
+            by_vertex = (name for name in ("in_bumps", "in_values") if name in self._more)
             array = self.context.vertex_array(
                 program,
-                content,
+                [(self.vertex_buffer, *layout), *((self._more[n], "2f", n) for n in by_vertex)],
                 index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # flat shading has no use for normals, plain skin none for uv
@@ -205,11 +211,7 @@ class Stream(MeshBuffers):
     triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
     source: number of the triangle that each one comes from, shape (triangle_capacity,), int32; the
         borrower writes; never uploaded.
-    vertex_count, triangle_count: what the last `upload` handed over.
     """
-
-    vertex_count: int = 0
-    triangle_count: int = 0
 
     def __init__(
         self, gl: moderngl.Context, vertex_capacity: int, triangle_capacity: int, columns: int
@@ -218,16 +220,6 @@ class Stream(MeshBuffers):
         self.vertices: npt.NDArray[np.float32] = np.zeros((vertex_capacity, columns), np.float32)
         self.triangles: npt.NDArray[np.uint32] = np.zeros((triangle_capacity, 3), np.uint32)
         self.source: npt.NDArray[np.int32] = np.zeros(triangle_capacity, np.int32)
-
-    @property
-    def drawn_rows(self) -> npt.NDArray[np.float32]:
-        """What was uploaded of the vertices."""
-        return self.vertices[: self.vertex_count]
-
-    @property
-    def drawn_triangles(self) -> npt.NDArray[np.uint32]:
-        """What was uploaded of the triangles."""
-        return self.triangles[: self.triangle_count]
 
     def upload(
         self,
@@ -252,43 +244,20 @@ class Stream(MeshBuffers):
                 f"bump_amounts has shape {bump_amounts.shape}; it must be ({vertex_count}, 2), two "
                 "amounts for each uploaded vertex"
             )
-        self.vertex_count, self.triangle_count = vertex_count, triangle_count
+        rows, triangles = self.vertices[:vertex_count], self.triangles[:triangle_count]
+        self.frame, self.places = _Uploaded(rows, triangles), rows[:, :3]
         self.has_bumps = bump_amounts is not None
         self._ranges = {}
         if vertex_count == 0 or triangle_count == 0:
             return
-        self.corners = box_corners(self.vertices[:vertex_count, :3])
+        self.corners = box_corners(self.places)
         # Orphaning gives the driver a fresh block while it may still draw from the old one.
         self.vertex_buffer.orphan()
-        self.vertex_buffer.write(self.vertices[:vertex_count])
+        self.vertex_buffer.write(rows)
         self.index_buffer.orphan()
-        self.index_buffer.write(self.triangles[:triangle_count])
+        self.index_buffer.write(triangles)
         if bump_amounts is not None:
             self._upload_bumps(bump_amounts)
-
-    def _draw_all(self, array: moderngl.VertexArray) -> None:
-        if self.vertex_count and self.triangle_count:
-            array.render(moderngl.TRIANGLES, vertices=3 * self.triangle_count)
-
-
-class Fetched(Protocol):
-    """A frame that lies on the graphics card: what it is made of is fetched when it is read."""
-
-    @property
-    def vertex_count(self) -> int:
-        """How many vertices it has."""
-
-    @property
-    def triangle_count(self) -> int:
-        """How many triangles."""
-
-    @property
-    def vertices(self) -> npt.NDArray[np.float32]:
-        """x y z, nx ny nz[, u v], shape (vertex_count, columns); may be written."""
-
-    @property
-    def triangles(self) -> npt.NDArray[np.uint32]:
-        """Shape (triangle_count, 3)."""
 
 
 class GpuStream(MeshBuffers):
@@ -315,52 +284,22 @@ class GpuStream(MeshBuffers):
         self.source_buffer = gl.buffer(reserve=NUMBER * triangle_capacity)
         self.command_buffer = gl.buffer(bytes(NUMBER * COMMAND_WORDS))
         self._margin = margin
-        self._frame: Fetched | None = None
-        self._positions = np.zeros((0, 3), np.float32)
-
-    @property
-    def vertex_count(self) -> int:
-        """How many vertices its last frame has; fetched."""
-        return 0 if self._frame is None else self._frame.vertex_count
-
-    @property
-    def triangle_count(self) -> int:
-        """How many triangles; fetched."""
-        return 0 if self._frame is None else self._frame.triangle_count
-
-    @property
-    def drawn_rows(self) -> npt.NDArray[np.float32]:
-        """Its vertices, fetched."""
-        assert self._frame is not None
-        return self._frame.vertices
-
-    @property
-    def drawn_triangles(self) -> npt.NDArray[np.uint32]:
-        """Its triangles, fetched."""
-        assert self._frame is not None
-        return self._frame.triangles
-
-    @property
-    def places(self) -> npt.NDArray[np.float32]:
-        """Vertices of the mesh that it was made of, shape (V, 3)."""
-        return self._positions
 
     def show(
         self,
-        frame: Fetched,
+        frame: Frame,
         positions: npt.NDArray[np.floating],
         bump_amounts: npt.NDArray[np.float32] | None = None,
     ) -> None:
         """Draw from now on what was made in these buffers.
 
-        frame: fetches it. positions: of the mesh that it was made of, (V, 3).
+        frame: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
         bump_amounts: as `Stream.upload` takes them; then fetched rows, which may have been changed,
             are handed over again.
         """
-        self._frame = frame
+        self.frame, self.places = frame, positions.astype(np.float32)
         self.has_bumps = bump_amounts is not None
         self._ranges = {}
-        self._positions = positions.astype(np.float32)
         box = np.stack([positions.min(axis=0) - self._margin, positions.max(axis=0) + self._margin])
         self.corners = box_corners(box)
         if bump_amounts is not None:

@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from .errors import GLError, diagnose
+from .errors import OFFSCREEN, GLError, diagnose
 from .render_target import RenderTarget
 
 Image = npt.NDArray[np.uint8]
@@ -198,7 +198,7 @@ def _offscreen_context() -> tuple[moderngl.Context, bool]:
         try:
             return _standalone_context(), True
         except Exception as error:
-            raise diagnose("offscreen OpenGL", error) from None
+            raise diagnose(OFFSCREEN, error) from None
     try:
         return _standalone_context(backend="egl"), True
     except Exception as error:
@@ -207,8 +207,8 @@ def _offscreen_context() -> tuple[moderngl.Context, bool]:
         try:
             return _standalone_context(), False
         except Exception as error:
-            raise diagnose("offscreen OpenGL (EGL)", f"{egl_error}; then X11: {error}") from None
-    raise diagnose("offscreen OpenGL (EGL)", egl_error) from None
+            raise diagnose(f"{OFFSCREEN} (EGL)", f"{egl_error}; then X11: {error}") from None
+    raise diagnose(f"{OFFSCREEN} (EGL)", egl_error) from None
 
 
 def _standalone_context(**how: Any) -> moderngl.Context:

@@ -7,7 +7,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from .camera_view import CameraView
+from .camera import CameraView
 from .stream import MeshBuffers, Share
 from .style import Style
 

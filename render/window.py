@@ -43,8 +43,7 @@ class WindowSurface(Surface):
     def __init__(self, glfw: ModuleType, handle: Any, gl: moderngl.Context, samples: int) -> None:
         self._glfw = glfw
         self.handle = handle
-        size = _framebuffer_size(glfw, handle)
-        super().__init__(gl, size, samples)
+        super().__init__(gl, size := self.frame_size, samples)
         self.detail = Detail(self.samples)
         self.area: Rectangle | None = None
         self.rules: Sequence[tuple[Rectangle, Colour]] = ()
@@ -60,9 +59,10 @@ class WindowSurface(Surface):
         return self._compositor.size
 
     @property
-    def is_resized(self) -> bool:
-        """Whether the window is no longer of the size that was drawn last."""
-        return _framebuffer_size(self._glfw, self.handle) != self.size
+    def frame_size(self) -> tuple[int, int]:
+        """Width and height that a frame which begins now will have [pixels]."""
+        width, height = self._glfw.get_framebuffer_size(self.handle)
+        return max(int(width), 1), max(int(height), 1)  # a minimised window counts as one pixel
 
     @property
     def should_close(self) -> bool:
@@ -76,7 +76,7 @@ class WindowSurface(Surface):
     def begin(self) -> None:
         """Start a frame in the size that the window has now, as finely as `detail` says."""
         self.make_current()
-        size = _framebuffer_size(self._glfw, self.handle)
+        size = self.frame_size
         if size != self.size:
             self._compositor = Compositor(self.gl, size)
             self.pixel_scale = max(self._glfw.get_window_content_scale(self.handle))
@@ -121,11 +121,6 @@ class WindowSurface(Surface):
             target.clear(*colour, viewport=rectangle)
         for label in self.labels:
             self._compositor.lay(*label)
-
-    @property
-    def frame_size(self) -> tuple[int, int]:
-        """Width and height that a frame which begins now will have [pixels]."""
-        return _framebuffer_size(self._glfw, self.handle)
 
     def show(self, image: Image) -> None:
         """Show a picture in place of a frame, (H, W, 3), uint8, of the frame's size."""
@@ -280,9 +275,3 @@ def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
         yield texts
     finally:
         glfw.set_error_callback(previous)
-
-
-def _framebuffer_size(glfw: ModuleType, handle: Any) -> tuple[int, int]:
-    """The frame of a window [pixels]; a minimised window counts as one pixel."""
-    width, height = glfw.get_framebuffer_size(handle)
-    return max(int(width), 1), max(int(height), 1)

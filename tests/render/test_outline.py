@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from risorius import render
-from risorius.render.camera_view import CameraView
-from risorius.render.outline import fringes
+from risorius.render.camera import CameraView
+from risorius.render.lines import fringes
 
 from .scenes import PLAIN, facing, fresh_frame, joined, lent, sphere, square
 

@@ -91,7 +91,7 @@ class Painter:
         surface.rules = self._view.divider()
         state = self._view.state
         painted, detail = self._painted
-        has_changed = state != painted or has_moved or surface.is_resized
+        has_changed = state != painted or has_moved or surface.frame_size != surface.size
         if has_changed and self._calm_for > CALM:
             self.level_of_detail.begin_motion()
         self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
