@@ -16,7 +16,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -85,32 +84,26 @@ def _time_stages(
     spent: dict[str, float] = defaultdict(float)
     drawn_count = 0
 
-    @contextmanager
-    def timed(stage: str) -> Iterator[None]:
-        begin = time.perf_counter()
-        yield
-        spent[stage] += 1e3 * (time.perf_counter() - begin)
-
     with (
         Capture(scene_of(script, options.head), options) as studio,
         outputs.film(film, options.size, options.frames_per_second) as add,
     ):
-        pipeline, gl = studio.pipeline, studio.surface.gl
-        step, draw = pipeline.step, partial(pipeline.draw, timer=timed)
+        gl = studio.surface.gl
 
-        def simulate(seconds: float) -> None:
-            with timed("simulate"):
-                step(seconds)
-
-        def draw_and_wait(*arguments: Any, **options: Any) -> None:
-            draw(*arguments, **options)
-            with timed("draw"):
+        @contextmanager
+        def timed(stage: str) -> Iterator[None]:
+            begin = time.perf_counter()
+            yield
+            if stage == "draw":
                 gl.finish()
+            spent[stage] += 1e3 * (time.perf_counter() - begin)
 
-        pipeline.step = simulate  # type: ignore[method-assign]
-        pipeline.draw = draw_and_wait  # type: ignore[method-assign]
-        frame = None
-        for _ in studio.play(script, progress=False):
+        studio.pipeline.draw = partial(studio.pipeline.draw, timer=timed)  # type: ignore[method-assign]
+        frame, frames = None, studio.play(script, progress=False)
+        while True:
+            with timed("simulate"):
+                if next(frames, None) is None:
+                    break
             before = frame
             with timed("whole"):
                 frame = studio.next_frame()

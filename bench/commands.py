@@ -156,7 +156,7 @@ def bench_seen(model: Path) -> None:
     """Show every shape of ARKit to a face tracker: is it seen under its own name?"""
     from . import seen
 
-    with seen.FaceTracker(model) as tracker:
+    with seen.face_tracker(model) as tracker:
         click.echo(seen.report(seen.measure(tracker)))
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -36,6 +36,7 @@ from risorius.app.scenes import FaceScene
 from .report import table
 
 Scores = dict[str, float]
+Tracker = Callable[[Image], Scores]
 
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
@@ -50,39 +51,36 @@ TO_ONE_SIDE: dict[str, tuple[str, ...]] = {
 }
 
 
-class FaceTracker:
-    """The tracker with one model loaded; a context manager: left open it fails as Python ends."""
+@contextlib.contextmanager
+def face_tracker(model: Path) -> Iterator[Tracker]:
+    """The tracker with a model file: every shape's score in a picture (H, W, 3); {} without a face.
 
-    def __init__(self, model: Path) -> None:
-        """Load a model file. UserError where it is none, and where MediaPipe is not installed."""
-        with _silent():
-            mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
-            from mediapipe.tasks.python import BaseOptions, vision
-        options = vision.FaceLandmarkerOptions(
-            base_options=BaseOptions(model_asset_path=str(model)), output_face_blendshapes=True
-        )
-        self._image, self._format = mediapipe.Image, mediapipe.ImageFormat.SRGB
-        try:
-            with _silent():
-                self._landmarker = vision.FaceLandmarker.create_from_options(options)
-                self.scores(np.zeros((64, 64, 3), dtype=np.uint8))  # what it does once, it does now
-        except (OSError, RuntimeError, ValueError) as error:
-            raise UserError(
-                f"{model}: is no model of MediaPipe's face landmarker, which is called "
-                f"face_landmarker.task: {error}"
-            ) from None
+    UserError where the file is no model, and where MediaPipe is not installed.
+    """
+    with _silent():
+        mediapipe = needed("mediapipe", "the face tracker", "mediapipe", package="MediaPipe")
+        from mediapipe.tasks.python import BaseOptions, vision
+    options = vision.FaceLandmarkerOptions(
+        base_options=BaseOptions(model_asset_path=str(model)), output_face_blendshapes=True
+    )
 
-    def __enter__(self) -> FaceTracker:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._landmarker.close()
-
-    def scores(self, image: Image) -> Scores:
-        """Every shape's score in a picture (H, W, 3); {} where it finds no face."""
-        picture = self._image(image_format=self._format, data=np.ascontiguousarray(image))
-        found = self._landmarker.detect(picture).face_blendshapes
+    def scores(image: Image) -> Scores:
+        array = np.ascontiguousarray(image)
+        picture = mediapipe.Image(image_format=mediapipe.ImageFormat.SRGB, data=array)
+        found = landmarker.detect(picture).face_blendshapes
         return {each.category_name: float(each.score) for each in found[0]} if found else {}
+
+    try:
+        with _silent():
+            landmarker = vision.FaceLandmarker.create_from_options(options)
+            scores(np.zeros((64, 64, 3), dtype=np.uint8))  # what it does once, it does now
+    except (OSError, RuntimeError, ValueError) as error:
+        raise UserError(
+            f"{model}: is no model of MediaPipe's face landmarker, which is called "
+            f"face_landmarker.task: {error}"
+        ) from None
+    with contextlib.closing(landmarker):  # left open it fails as Python ends
+        yield scores
 
 
 @contextlib.contextmanager
@@ -117,7 +115,7 @@ class Shape(NamedTuple):
         return "seen" if self.own >= self.score else f"as {self.highest}"
 
 
-def pose_scores(tracker: FaceTracker, studio: Capture, controls: Sequence[str]) -> Scores:
+def pose_scores(tracker: Tracker, studio: Capture, controls: Sequence[str]) -> Scores:
     """Scores with some controls of a face at 1: mean over VIEWS and their mirror images."""
     scene = studio.scene
     scene.reset()
@@ -127,8 +125,8 @@ def pose_scores(tracker: FaceTracker, studio: Capture, controls: Sequence[str]) 
     for view in VIEWS:
         studio.camera = camera_for(scene, view)
         image = studio.draw_image()
-        mirrored = tracker.scores(image[:, ::-1])
-        found += [tracker.scores(image), {twin_of(name): mirrored[name] for name in mirrored}]
+        mirrored = tracker(image[:, ::-1])
+        found += [tracker(image), {twin_of(name): mirrored[name] for name in mirrored}]
     if not all(found):
         raise UserError(f"the tracker finds no face with {', '.join(controls) or 'nothing'} at 1")
     return {shape: float(np.mean([each[shape] for each in found])) for shape in found[0]}
@@ -164,7 +162,7 @@ def compared(
     return Shape(mean, highest, others[highest])
 
 
-def measure(tracker: FaceTracker) -> dict[str, Shape]:
+def measure(tracker: Tracker) -> dict[str, Shape]:
     """Show every shape of the built-in head to the tracker; what it sees, by base name."""
     shapes = {}
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:

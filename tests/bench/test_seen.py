@@ -15,7 +15,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene
 from risorius.bench import seen
-from risorius.bench.seen import FaceTracker, Scores
+from risorius.bench.seen import Scores, face_tracker
 from tests.app.command_line import risorius
 
 MODEL = Path(os.environ.get("FACE_LANDMARKER", "not given"))
@@ -76,8 +76,8 @@ def test_what_is_no_model_is_named(tmp_path: Path, content: bytes) -> None:
 def test_the_tracker_sees_an_open_jaw() -> None:
     """Our face looks to it like one; an empty picture does not."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
-    with FaceTracker(MODEL) as tracker:
-        assert tracker.scores(np.zeros((64, 64, 3), dtype=np.uint8)) == {}
+    with face_tracker(MODEL) as tracker:
+        assert tracker(np.zeros((64, 64, 3), dtype=np.uint8)) == {}
         with Capture(FaceScene(), CaptureOptions(size=seen.SIZE)) as studio:
             neutral = seen.pose_scores(tracker, studio, ())
             opened = seen.pose_scores(tracker, studio, ("jawOpen",))
