@@ -167,45 +167,41 @@ class Pipeline:
             layers = self.anatomy.layers(anatomy)
             areas = dict.fromkeys(viewport.area for viewport in viewports)
             self.renderer.draw_background(style, *areas)
-            for viewport in viewports:
-                self._draw(viewport, camera, style, layers, values)
+            for drawn, area, clip in viewports:
+                view = self.renderer.view(camera, area, clip)
+                self._draw(drawn, view, style, layers, values)
                 for lines in overlays:
-                    self.renderer.draw_lines(lines, camera, viewport.area, viewport.clip)
+                    self.renderer.draw_lines(lines, view)
 
     def _draw(
         self,
-        viewport: Viewport,
-        camera: render.OrbitCamera,
+        drawn: DrawnMesh,
+        view: render.CameraView,
         style: render.Style,
         layers: Layers,
         values: SourceValues | None,
     ) -> None:
         """Draw the skin and all parts of the scene, below it and over it, into one viewport."""
-        drawn, renderer, bones = viewport.drawn, self.renderer, self.scene.bone_transforms()
-        place, stream = {"viewport": viewport.area, "clip": viewport.clip}, drawn.stream
+        stream, renderer, bones = drawn.stream, self.renderer, self.scene.bone_transforms()
         texture = self.texture if drawn.has_uv else None
-        bumps = self.wrinkle_map if drawn.has_uv else None
         if style.shadows:
             skin = None if layers.is_opened else stream
-            renderer.cast_shadows(layers.shadow_casters, bones, camera, style, stream=skin, **place)
+            renderer.cast_shadows(layers.shadow_casters, bones, view, style, stream=skin)
         for parts, cut in layers.under:
-            renderer.draw_parts(parts, bones, camera, style, cut=cut, **place)
+            renderer.draw_parts(parts, bones, view, style, cut=cut)
         renderer.draw_mesh(
             stream,
-            camera,
+            view,
             replace(style, opacity=style.opacity * layers.opacity),
             values=self._values(drawn, style, values),
             texture=texture,
-            bumps=bumps,
+            bumps=self.wrinkle_map if drawn.has_uv else None,
             cut=layers.cut,
             fade=self.scene.fade,
-            **place,
         )
-        renderer.draw_parts(layers.over, bones, camera, style, **place)
+        renderer.draw_parts(layers.over, bones, view, style)
         if not (renderer.surface.samples or layers.is_opened):
-            renderer.draw_outline(
-                stream, camera, style, texture=texture, fade=self.scene.fade, **place
-            )
+            renderer.draw_outline(stream, view, style, texture=texture, fade=self.scene.fade)
 
     def _values(
         self, drawn: DrawnMesh, style: render.Style, values: SourceValues | None

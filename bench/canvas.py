@@ -112,7 +112,7 @@ class Canvas:
         stream.upload(len(positions), len(faces))
         self.surface.begin()
         self.renderer.draw_background(drawing.style)
-        self.renderer.draw_mesh(stream, drawing.camera, drawing.style)
+        self.renderer.draw_mesh(stream, self.renderer.view(drawing.camera), drawing.style)
         self.surface.end()
         return self.surface.read()
 

@@ -10,14 +10,14 @@ Takes arrays and knows nothing of where they come from. OpenGL 3.3 core and GLSL
         camera = render.OrbitCamera.framing(vertices, view="three-quarter")
         surface.begin()
         renderer.draw_background(render.Style())
-        renderer.draw_mesh(stream, camera, render.Style())
+        renderer.draw_mesh(stream, renderer.view(camera), render.Style())
         surface.end()
         frame = surface.read()
 
 Source: Kähler et al. 2003, Fig. 1, the rendering stage.
 """
 
-from .camera import VIEWS, OrbitCamera
+from .camera import VIEWS, CameraView, OrbitCamera
 from .compositor import Detail
 from .errors import GLError
 from .geometry_buffer import Geometry
@@ -61,6 +61,7 @@ __all__ = [
     "WHITE",
     "Background",
     "BumpMap",
+    "CameraView",
     "Colour",
     "ColourBy",
     "Detail",

@@ -69,7 +69,6 @@ class OrbitCamera:
         *,
         view: str = "front",
         field_of_view: float = FIELD_OF_VIEW,
-        margin: float = MARGIN,
     ) -> "OrbitCamera":
         """Return a camera that sees all of `vertices`, shape (n, 3), from a named view.
 
@@ -94,7 +93,7 @@ class OrbitCamera:
             scene_radius=radius,
             field_of_view=field_of_view,
         )
-        camera.fit(points, margin)
+        camera.fit(points)
         return camera
 
     def copy(self) -> "OrbitCamera":

@@ -1,8 +1,8 @@
 """Draws meshes, rigid parts, lines and backgrounds on a surface.
 
-Every call takes a viewport, (x, y, width, height) in pixels from the lower left corner, and leaves
-all other pixels alone; None is the whole surface. The camera's aspect is that of the viewport. A
-`clip` draws only a part of what the viewport shows: two clips make one image of two meshes.
+Every call takes a view: a camera in a viewport, (x, y, width, height) in pixels from the lower left
+corner, whose aspect it takes on. All other pixels stay as they are. A `clip` draws only a part of
+what the viewport shows: two clips make one image of two meshes.
 Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
@@ -96,6 +96,24 @@ class Renderer:
         self.surface.make_current()
         return BumpMap(self._gl, texels, steepest)
 
+    def view(
+        self,
+        camera: OrbitCamera,
+        viewport: Rectangle | None = None,
+        clip: Rectangle | None = None,
+    ) -> CameraView:
+        """What a camera sees in a viewport, all of the frame unless told; drawing calls take it.
+
+        clip: the part of the viewport in which anything is drawn.
+        """
+        return CameraView(camera, self._viewport(viewport), clip and self._viewport(clip))
+
+    def _viewport(self, viewport: Rectangle | None) -> Rectangle:
+        self.surface.make_current()
+        if viewport is None:
+            return (0, 0, *self.surface.target.size)
+        return scaled(viewport, self.surface.scale)
+
     def draw_background(self, style: Style, *viewports: Rectangle) -> None:
         """Paint the style's background over viewports, and over what was drawn there; none: all."""
         areas = tuple(self._viewport(each) for each in viewports or (None,))
@@ -104,11 +122,9 @@ class Renderer:
     def draw_mesh(
         self,
         stream: MeshBuffers,
-        camera: OrbitCamera,
+        view: CameraView,
         style: Style,
         *,
-        viewport: Rectangle | None = None,
-        clip: Rectangle | None = None,
         values: npt.NDArray[np.uint8] | None = None,
         texture: Texture | None = None,
         bumps: BumpMap | None = None,
@@ -128,7 +144,6 @@ class Renderer:
         """
         if texture is not None or bumps is not None:
             stream.check_uv()
-        view = self._camera_view(camera, viewport, clip)
         if style.colour_by is not ColourBy.NONE:
             self._values = value_texture(self._gl, values, stream.triangle_count)
         if style.shadows and self._shadow_of is not stream:
@@ -163,18 +178,15 @@ class Renderer:
         self,
         parts: Iterable[Part],
         transforms: Mapping[str, npt.NDArray[np.float64]],
-        camera: OrbitCamera,
+        view: CameraView,
         style: Style,
         *,
         stream: MeshBuffers | None = None,
-        viewport: Rectangle | None = None,
-        clip: Rectangle | None = None,
     ) -> None:
         """Let parts, not the mesh, throw the shadow on parts that are drawn next.
 
         stream: a mesh that is drawn next; it throws the shadow, too, and takes that of the parts.
         """
-        view = self._camera_view(camera, viewport, clip)
         mesh = [] if stream is None else [stream]
         self._cast([*mesh, *self._parts.placed(parts, transforms)], view, style)
         self._shadow_of = stream
@@ -187,11 +199,9 @@ class Renderer:
     def draw_outline(
         self,
         stream: MeshBuffers,
-        camera: OrbitCamera,
+        view: CameraView,
         style: Style,
         *,
-        viewport: Rectangle | None = None,
-        clip: Rectangle | None = None,
         texture: Texture | None = None,
         fade: Plane | None = None,
     ) -> None:
@@ -202,7 +212,6 @@ class Renderer:
         is_smooth = style.shading is not Shading.FLAT and not style.wireframe
         if not is_smooth or style.colour_by is not ColourBy.NONE or not stream.triangle_count:
             return
-        view = self._camera_view(camera, viewport, clip)
         rows = fringes(stream.frame.vertices, stream.frame.triangles, view)
         if not len(rows):
             return
@@ -246,11 +255,9 @@ class Renderer:
         self,
         parts: Iterable[Part],
         transforms: Mapping[str, npt.NDArray[np.float64]],
-        camera: OrbitCamera,
+        view: CameraView,
         style: Style,
         *,
-        viewport: Rectangle | None = None,
-        clip: Rectangle | None = None,
         cut: Plane | None = None,
     ) -> None:
         """Draw coloured parts, each moved by the matrix of its bone (column vectors); hair last.
@@ -260,7 +267,6 @@ class Renderer:
         Raises ValueError for a bone without transform. What is not enclosed has smooth edges.
         cut: in front of it an opaque mesh will hide them, even where they come out of it.
         """
-        view = self._camera_view(camera, viewport, clip)
         shadow = self._shadow if style.shadows else None
         if shadow is not None and not shadow.is_of(view, self.surface.target.frame_number):
             shadow = None
@@ -301,7 +307,7 @@ class Renderer:
         stream: MeshBuffers,
         parts: Iterable[Part],
         transforms: Mapping[str, npt.NDArray[np.float64]],
-        camera: OrbitCamera,
+        view: CameraView,
         *,
         values: npt.NDArray[np.float32] | None = None,
         bumps: tuple[BumpMap, float] | None = None,
@@ -314,7 +320,6 @@ class Renderer:
         bumps: fine shape that tilts normals, and how much of it, 0 to 1; needs amounts that were
             uploaded, or counts for nothing.
         """
-        view = self._camera_view(camera, None, None)
         if self._geometry_buffer is None or self._geometry_buffer.size != self.surface.target.size:
             self._geometry_buffer = GeometryBuffer(self._gl, self.surface.target.size)
         placed = self._parts.placed(parts, transforms)
@@ -322,15 +327,8 @@ class Renderer:
             bumps = None
         return self._geometry_buffer.draw(stream, placed, view, values, bumps)
 
-    def draw_lines(
-        self,
-        lines: Lines,
-        camera: OrbitCamera,
-        viewport: Rectangle | None = None,
-        clip: Rectangle | None = None,
-    ) -> None:
+    def draw_lines(self, lines: Lines, view: CameraView) -> None:
         """Draw polylines over the scene; where something hides them they shine through."""
-        view = self._camera_view(camera, viewport, clip)
         program = self._program("lines.glsl")
         rows, segments = lines.segments()
         if not len(segments):
@@ -349,17 +347,6 @@ class Renderer:
                     self._gl.depth_func = depth_func
                     program["opacity"] = share
                     drawn.render(moderngl.LINES)
-
-    def _camera_view(
-        self, camera: OrbitCamera, viewport: Rectangle | None, clip: Rectangle | None
-    ) -> CameraView:
-        return CameraView(camera, self._viewport(viewport), clip and self._viewport(clip))
-
-    def _viewport(self, viewport: Rectangle | None) -> Rectangle:
-        self.surface.make_current()
-        if viewport is None:
-            return (0, 0, *self.surface.target.size)
-        return scaled(viewport, self.surface.scale)
 
     @property
     def _line_scale(self) -> float:

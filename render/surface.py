@@ -148,12 +148,9 @@ class OffscreenSurface(Surface):
         self.gl.release()
 
 
-def open_offscreen(
-    size: tuple[int, int], *, samples: int = 4, pixel_scale: float = 1.0
-) -> OffscreenSurface:
+def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurface:
     """Open a frame of `size` pixels that needs no screen, with up to `samples` samples per pixel.
 
-    pixel_scale: how many pixels wide a line of width 1 is; more than 1 for pictures to be printed.
     Raises ValueError for a size that no picture has, GLError where OpenGL 3.3 cannot be had.
     The environment variables of glcontext choose device and libraries: GLCONTEXT_DEVICE_INDEX,
     GLCONTEXT_GLVERSION, GLCONTEXT_LINUX_LIBEGL, GLCONTEXT_LINUX_LIBGL.
@@ -174,7 +171,6 @@ def open_offscreen(
                 f"had ({error}). Cure: ask for a smaller frame, or for fewer samples"
             ) from None
         raise
-    surface.pixel_scale = pixel_scale
     Surface._current = surface
     return surface
 

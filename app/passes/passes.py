@@ -71,7 +71,7 @@ class Passes:
             drawn.stream,
             self._parts,
             scene.bone_transforms(),
-            camera,
+            pipeline.renderer.view(camera),
             values=values,
             bumps=bumps,
         )

@@ -96,7 +96,8 @@ def test_numbers_of_each_pixel(pipeline: Pipeline) -> None:
     found = []
     for drawn in both(pipeline):
         image(pipeline, drawn, PLAIN)
-        found.append(pipeline.renderer.draw_geometry(drawn.stream, [], {}, camera))
+        view = pipeline.renderer.view(camera)
+        found.append(pipeline.renderer.draw_geometry(drawn.stream, [], {}, view))
     for ours, theirs in zip(*found, strict=True):
         np.testing.assert_array_equal(ours, theirs)
 

@@ -96,7 +96,7 @@ def draw_image(
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
     with fresh_frame(renderer, style):
-        renderer.draw_mesh(stream, camera or facing(), style, values=values)
+        renderer.draw_mesh(stream, renderer.view(camera or facing()), style, values=values)
     return surface.read().astype(np.int32)
 
 

@@ -31,7 +31,11 @@ def furrowed(
     with fresh_frame(renderer, style):
         values = np.zeros(len(shape.triangles), np.uint8)
         renderer.draw_mesh(
-            stream, facing(), style, values=values, bumps=renderer.load_bumps(texels, STEEP)
+            stream,
+            renderer.view(facing()),
+            style,
+            values=values,
+            bumps=renderer.load_bumps(texels, STEEP),
         )
     return surface.read().astype(np.int32)
 
@@ -95,7 +99,7 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(surface: render.Surface) -> No
         rows[: int(share * len(rows))] = 1.0
         stream.upload(len(shape.positions), len(shape.triangles), rows)
         with fresh_frame(renderer):
-            renderer.draw_mesh(stream, facing(), PLAIN, bumps=level)
+            renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, bumps=level)
         frames.append(surface.read().astype(np.int32))
     assert np.abs(frames[0] - frames[1]).max() <= 1
 
@@ -111,4 +115,4 @@ def test_what_does_not_fit_is_refused(surface: render.Surface) -> None:
         stream.upload(4, 2, np.zeros((3, 2), np.float32))
     level = renderer.load_bumps(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     with pytest.raises(ValueError, match="8 columns"):
-        renderer.draw_mesh(stream, facing(), PLAIN, bumps=level)
+        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, bumps=level)

@@ -33,7 +33,7 @@ def drawn(
     """The numbers of one shape and parts."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
-    return renderer.draw_geometry(stream, parts, STILL, camera, values=values)
+    return renderer.draw_geometry(stream, parts, STILL, renderer.view(camera), values=values)
 
 
 @settings(max_examples=15, deadline=None)
@@ -141,10 +141,10 @@ def test_a_picture_is_the_same_before_and_after(surface: render.Surface) -> None
     pictures = []
     for is_between in (False, True, False):
         with fresh_frame(renderer, style):
-            renderer.draw_mesh(stream, camera, style)
+            renderer.draw_mesh(stream, renderer.view(camera), style)
             if is_between:
-                renderer.draw_geometry(stream, [ball], STILL, camera)
-            renderer.draw_parts([ball], STILL, camera, style)
-        renderer.draw_geometry(stream, [ball], STILL, camera)
+                renderer.draw_geometry(stream, [ball], STILL, renderer.view(camera))
+            renderer.draw_parts([ball], STILL, renderer.view(camera), style)
+        renderer.draw_geometry(stream, [ball], STILL, renderer.view(camera))
         pictures.append(surface.read())
     assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[2])

@@ -20,9 +20,11 @@ def test_lines_before_and_behind(surface: render.Surface) -> None:
     frames = []
     for hidden_opacity in (0.5, 0.0):
         with fresh_frame(renderer):
-            renderer.draw_mesh(wall, facing(), PLAIN)
+            renderer.draw_mesh(wall, renderer.view(facing()), PLAIN)
             colours = np.array([(0, 0.8, 0), (0, 0, 0.9)])
-            renderer.draw_lines(Lines([over, under], colours, 4.0, hidden_opacity), facing())
+            renderer.draw_lines(
+                Lines([over, under], colours, 4.0, hidden_opacity), renderer.view(facing())
+            )
         frames.append(surface.read().astype(np.int32))
     skin = at(frames[0], 0.0, 0.0)
     for frame in frames:
@@ -37,8 +39,10 @@ def test_lines_are_not_joined(surface: render.Surface) -> None:
     left = np.array([(-40.0, -10, 0), (-40, 10, 0)])
     right = np.array([(40.0, -10, 0), (40, 10, 0)])
     with fresh_frame(renderer):
-        renderer.draw_lines(Lines([], RED), facing())
-        renderer.draw_lines(Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED), facing())
+        renderer.draw_lines(Lines([], RED), renderer.view(facing()))
+        renderer.draw_lines(
+            Lines([np.zeros((0, 3)), left, np.zeros((1, 3)), right], RED), renderer.view(facing())
+        )
     columns = np.nonzero(drawn(surface.read().astype(np.int32)).any(axis=0))[0]
     assert len(columns) > 2 and not ((columns > 20) & (columns < 76)).any()
 
@@ -46,5 +50,6 @@ def test_lines_are_not_joined(surface: render.Surface) -> None:
 def test_line_colours_must_fit(surface: render.Surface) -> None:
     """One colour, or one per line."""
     line = np.zeros((3, 3))
+    renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match=r"colour has shape \(2, 3\); it must be \(3,\), or one"):
-        render.Renderer(surface).draw_lines(Lines([line], np.zeros((2, 3))), facing())
+        renderer.draw_lines(Lines([line], np.zeros((2, 3))), renderer.view(facing()))

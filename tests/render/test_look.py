@@ -37,10 +37,10 @@ def scene(surface: render.Surface, style: render.Style) -> render.Image:
     ball[:3, 3] = (55.0, -30.0, 10.0)
     values = (np.arange(len(shape.triangles)) % 7).astype(np.uint8)
     with fresh_frame(renderer, style):
-        renderer.draw_mesh(stream, camera, style, values=values)
-        renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, camera, style)
+        renderer.draw_mesh(stream, renderer.view(camera), style, values=values)
+        renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, renderer.view(camera), style)
         line = np.array([(-60.0, 40, 20), (60, -40, -20)])
-        renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), camera)
+        renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), renderer.view(camera))
     return surface.read()
 
 

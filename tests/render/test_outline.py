@@ -26,9 +26,9 @@ def ball(
         stream = lent(renderer, shape)
         values = np.zeros(len(shape.triangles), np.uint8)
         with fresh_frame(renderer, style):
-            renderer.draw_mesh(stream, facing(), style, values=values)
+            renderer.draw_mesh(stream, renderer.view(facing()), style, values=values)
             if is_smoothed:
-                renderer.draw_outline(stream, facing(), style)
+                renderer.draw_outline(stream, renderer.view(facing()), style)
         assert surface.gl.error == "GL_NO_ERROR"
         return surface.read().astype(np.int32)
 
@@ -85,8 +85,8 @@ def test_skin_fades_toward_a_plane() -> None:
         pictures = []
         for fade in (None, (0.0, 1.0 / 60.0, 0.0, 0.5)):  # from the lower edge to the upper one
             with fresh_frame(renderer):
-                renderer.draw_mesh(stream, facing(), PLAIN, fade=fade)
-                renderer.draw_outline(stream, facing(), PLAIN, fade=fade)
+                renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, fade=fade)
+                renderer.draw_outline(stream, renderer.view(facing()), PLAIN, fade=fade)
             pictures.append(255.0 - surface.read().astype(np.float64).mean(axis=2))
     whole, faded = pictures
     rows = np.flatnonzero(whole[:, 48] > 1.0)

@@ -19,7 +19,7 @@ def test_parts_move_with_their_bones(surface: render.Surface) -> None:
         moved = np.eye(4)
         moved[:3, 3] = (x, 0.0, 0.0)
         with fresh_frame(renderer):
-            renderer.draw_parts([ball], {"eye_left": moved}, facing(), PLAIN)
+            renderer.draw_parts([ball], {"eye_left": moved}, renderer.view(facing()), PLAIN)
         frame = surface.read().astype(np.int32)
         assert at(frame, x, 0.0)[2] > at(frame, x, 0.0)[0] + 30
         places.append(np.nonzero(drawn(frame))[1].mean())
@@ -34,7 +34,9 @@ def test_what_is_not_enclosed_has_smooth_edges() -> None:
         with render.open_offscreen((96, 96), samples=0) as surface:
             renderer = render.Renderer(surface)
             with fresh_frame(renderer):
-                renderer.draw_parts([Ball(is_enclosed=is_enclosed)], STILL, facing(), PLAIN)
+                renderer.draw_parts(
+                    [Ball(is_enclosed=is_enclosed)], STILL, renderer.view(facing()), PLAIN
+                )
             assert surface.gl.error == "GL_NO_ERROR"
             frame = surface.read().astype(np.int32)
         lightest = frame[40:56, 40:56, 0].max()  # of the ball's red, before white
@@ -55,7 +57,7 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) ->
     for scale in (1.0, 0.5):
         part.vertices = (scale * ball.vertices).astype(np.float32)
         with fresh_frame(renderer):
-            renderer.draw_parts([part], STILL, facing(), PLAIN)
+            renderer.draw_parts([part], STILL, renderer.view(facing()), PLAIN)
         pixels.append(drawn(surface.read().astype(np.int32)).sum())
     assert 0.2 * pixels[0] < pixels[1] < 0.3 * pixels[0]
 
@@ -67,7 +69,10 @@ def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
     for shine in (0.0, 1.0):
         with fresh_frame(renderer, render.Style(background=render.DARK)):
             renderer.draw_parts(
-                [Ball(shine=shine, colour=(0.1, 0.1, 0.1))], STILL, facing(25.0), PLAIN
+                [Ball(shine=shine, colour=(0.1, 0.1, 0.1))],
+                STILL,
+                renderer.view(facing(25.0)),
+                PLAIN,
             )
         frames.append(surface.read().astype(int).sum(axis=2))
     dull, wet = frames
@@ -81,8 +86,8 @@ def test_parts_and_mesh_hide_each_other(surface: render.Surface) -> None:
     wall = lent(renderer, square(z=10.0))
     ball = Ball()
     with fresh_frame(renderer):
-        renderer.draw_mesh(wall, facing(), PLAIN)
-        renderer.draw_parts([ball], STILL, facing(), PLAIN)
+        renderer.draw_mesh(wall, renderer.view(facing()), PLAIN)
+        renderer.draw_parts([ball], STILL, renderer.view(facing()), PLAIN)
     frame = surface.read().astype(np.int32)
     assert at(frame, 0.0, 0.0)[2] > at(frame, 0.0, 0.0)[0]  # the ball's front comes through
     assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # its rim is behind the wall
@@ -98,7 +103,7 @@ def test_parts_have_one_side(surface: render.Surface) -> None:
     for triangles, normals in ((bowl, ball.normals), (bowl[:, ::-1], -ball.normals)):
         part = Ball(shape=Shape(ball.vertices, normals, triangles))
         with fresh_frame(renderer):
-            renderer.draw_parts([part], STILL, facing(), PLAIN)
+            renderer.draw_parts([part], STILL, renderer.view(facing()), PLAIN)
         shown.append(at(surface.read().astype(np.int32), 0.0, 0.0))
     assert shown[0].min() >= 254
     assert 60 < shown[1][2] < 250 and shown[1][2] > 2 * shown[1][0]
@@ -108,11 +113,11 @@ def test_part_errors(surface: render.Surface) -> None:
     """Unknown bones and misshapen parts are refused by name."""
     renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match="part 'ball' moves with bone 'tail'; transforms has only"):
-        renderer.draw_parts([Ball(bone="tail")], STILL, facing(), PLAIN)
+        renderer.draw_parts([Ball(bone="tail")], STILL, renderer.view(facing()), PLAIN)
     shape = sphere(0)
     broken = Ball(shape=Shape(shape.positions, shape.normals[:4], shape.triangles))
     with pytest.raises(ValueError, match=r"part 'ball': vertices \(6, 3\), normals \(4, 3\)"):
-        renderer.draw_parts([broken], STILL, facing(), PLAIN)
+        renderer.draw_parts([broken], STILL, renderer.view(facing()), PLAIN)
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -135,7 +140,7 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
                 faces=np.array(faces, np.int32),
             )  # fmt: skip
             with fresh_frame(renderer):
-                renderer.draw_parts([hair], STILL, facing(), PLAIN)
+                renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)
             darker = 255.0 - surface.read().mean(axis=2)
         columns = darker.sum(axis=0)
         middle = columns[int(0.35 * len(columns)) : int(0.65 * len(columns))]
@@ -157,7 +162,7 @@ def test_hair_thins_out_toward_its_tips(surface: render.Surface) -> None:
             vertices=ball.vertices + 6.0 * out, striation=striation.astype(np.float32),
         )  # fmt: skip
         with fresh_frame(renderer):
-            renderer.draw_parts([hair], STILL, facing(), PLAIN)
+            renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)
         row = 255 - surface.read().astype(np.int32)[48].mean(axis=1)
         covers.append(row[48:])
     assert not covers[1].any()
@@ -179,8 +184,8 @@ def test_hair_hides_what_is_drawn_after_it_behind(surface: render.Surface) -> No
     )  # fmt: skip
     surface.begin()
     renderer.draw_background(PLAIN)
-    renderer.draw_parts([hair], STILL, facing(), PLAIN)
-    renderer.draw_mesh(wall, facing(), PLAIN)
+    renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)
+    renderer.draw_mesh(wall, renderer.view(facing()), PLAIN)
     surface.end()
     frame = surface.read().astype(np.int32)
     assert at(frame, 0.0, 0.0).max() < 100 < at(frame, 30.0, 30.0).max()

@@ -62,10 +62,14 @@ def draw_all(surface: render.Surface) -> np.ndarray:
     ]
     for style in styles:
         with fresh_frame(renderer, style):
-            renderer.draw_mesh(stream, camera, style, values=values, texture=texture, bumps=bumps)
-            renderer.draw_parts([Ball()], STILL, camera, style)
-            renderer.draw_outline(stream, camera, style, texture=texture)
-            renderer.draw_lines(render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), camera)
+            renderer.draw_mesh(
+                stream, renderer.view(camera), style, values=values, texture=texture, bumps=bumps
+            )
+            renderer.draw_parts([Ball()], STILL, renderer.view(camera), style)
+            renderer.draw_outline(stream, renderer.view(camera), style, texture=texture)
+            renderer.draw_lines(
+                render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), renderer.view(camera)
+            )
     frame = surface.read()
     return frame
 

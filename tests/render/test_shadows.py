@@ -96,10 +96,16 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(
         with fresh_frame(renderer, style):
             if is_cast and shadows:
                 renderer.cast_shadows(
-                    [HairyBall()], {"cranium": before_wall}, facing(), style, stream=wall
+                    [HairyBall()],
+                    {"cranium": before_wall},
+                    renderer.view(facing()),
+                    style,
+                    stream=wall,
                 )
-            renderer.draw_mesh(wall, facing(), style)
-            renderer.draw_parts([HairyBall()], {"cranium": before_wall}, facing(), style)
+            renderer.draw_mesh(wall, renderer.view(facing()), style)
+            renderer.draw_parts(
+                [HairyBall()], {"cranium": before_wall}, renderer.view(facing()), style
+            )
         frames.append(surface.read().astype(np.int32))
     within, without = frames
     is_darker = at(within, 30.0, -33.0).sum() < 0.8 * at(without, 30.0, -33.0).sum()

@@ -25,7 +25,7 @@ def test_eight_columns_draw_the_same(surface: render.Surface) -> None:
     stream.vertices[:, 6:] = 1e6
     stream.upload(len(stream.vertices), len(stream.triangles))
     with fresh_frame(renderer):
-        renderer.draw_mesh(stream, facing(), PLAIN)
+        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN)
     assert (surface.read() == expected).all()
 
 
@@ -41,7 +41,7 @@ def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
     stream.triangles[:2] = shape.triangles
     stream.upload(4, 2)
     with fresh_frame(renderer):
-        renderer.draw_mesh(stream, facing(), PLAIN)
+        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN)
     assert (surface.read() == expected).all()
 
 
@@ -61,8 +61,10 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
         stream.vertices[:, :3] = shape.positions * np.float32(1.0 + 0.001 * frame)
         stream.upload(len(shape.positions), count)
         with fresh_frame(renderer, style):
-            renderer.draw_mesh(stream, facing(), style, values=np.zeros(count, np.uint8))
-            renderer.draw_lines(lines, facing())
+            renderer.draw_mesh(
+                stream, renderer.view(facing()), style, values=np.zeros(count, np.uint8)
+            )
+            renderer.draw_lines(lines, renderer.view(facing()))
         surface.read()
         peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert (stream.vertex_buffer, stream.index_buffer) == buffers
@@ -76,7 +78,7 @@ def test_mesh_without_triangles_draws_nothing(surface: render.Surface) -> None:
     stream = lent(renderer, square())
     stream.upload(0, 0)
     with fresh_frame(renderer):
-        renderer.draw_mesh(stream, facing(), render.Style(background=render.WHITE))
+        renderer.draw_mesh(stream, renderer.view(facing()), render.Style(background=render.WHITE))
     assert (surface.read() >= 254).all()
 
 
@@ -87,7 +89,7 @@ def test_positions_that_are_not_finite_are_survived(surface: render.Surface) -> 
     stream.vertices[3, 0], stream.vertices[4, 1] = np.inf, np.nan
     stream.upload(len(stream.vertices), len(stream.triangles))
     surface.begin()
-    renderer.draw_mesh(stream, facing(), render.Style(wireframe=True))
+    renderer.draw_mesh(stream, renderer.view(facing()), render.Style(wireframe=True))
     surface.end()
     assert surface.read().shape == (96, 96, 3)
 

@@ -31,7 +31,9 @@ def textured(
     stream.upload(len(shape.positions), len(shape.triangles))
     texture = renderer.load_texture(image, occlusion)
     with fresh_frame(renderer, style):
-        renderer.draw_mesh(stream, camera or facing(), style, values=values, texture=texture)
+        renderer.draw_mesh(
+            stream, renderer.view(camera or facing()), style, values=values, texture=texture
+        )
     return surface.read().astype(np.int32)
 
 
@@ -134,7 +136,7 @@ def test_texture_needs_eight_columns(surface: render.Surface) -> None:
     stream = lent(renderer, square())
     texture = renderer.load_texture(quarters())
     with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):
-        renderer.draw_mesh(stream, facing(), PLAIN, texture=texture)
+        renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, texture=texture)
 
 
 @pytest.mark.parametrize(

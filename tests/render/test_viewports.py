@@ -19,10 +19,10 @@ def test_viewports_are_apart(samples: int) -> None:
             camera = facing()
             camera.zoom(zoom)
             renderer.draw_background(style, viewport)
-            renderer.draw_mesh(stream, camera, style, viewport=viewport)
-            renderer.draw_parts([Ball()], STILL, camera, style, viewport=viewport)
+            renderer.draw_mesh(stream, renderer.view(camera, viewport), style)
+            renderer.draw_parts([Ball()], STILL, renderer.view(camera, viewport), style)
             renderer.draw_lines(
-                render.Lines([stream.vertices[:9, :3]], (1, 0, 0)), camera, viewport
+                render.Lines([stream.vertices[:9, :3]], (1, 0, 0)), renderer.view(camera, viewport)
             )
 
         surface.begin()
@@ -50,9 +50,9 @@ def test_background_covers_what_was_drawn(surface: render.Surface) -> None:
     renderer = render.Renderer(surface)
     near, far = lent(renderer, square(z=40.0)), lent(renderer, square(z=-40.0))
     with fresh_frame(renderer):
-        renderer.draw_mesh(near, facing(), PLAIN)
+        renderer.draw_mesh(near, renderer.view(facing()), PLAIN)
         renderer.draw_background(PLAIN, (20, 20, 50, 50))
-        renderer.draw_mesh(far, facing(), PLAIN, viewport=(20, 20, 50, 50))
+        renderer.draw_mesh(far, renderer.view(facing(), (20, 20, 50, 50)), PLAIN)
     inset = surface.read()[-70:-20, 20:70]
     assert (inset[:3] >= 254).all() and (inset[20:30, 20:30] < 250).any(axis=2).all()
 
