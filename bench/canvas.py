@@ -35,7 +35,6 @@ class Drawing:
     style: render.Style
     parts: tuple[Any, ...] = ()
     bones: Transforms = field(default_factory=dict)
-    texture: render.Texture | None = None
     lines: render.Lines | None = None
 
 
@@ -79,17 +78,16 @@ class Canvas:
 
     def draw(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing
-    ) -> int:
-        """Refine, upload and draw, without reading back; returns the number of triangles."""
-        stream, scene = self.stream_for(refiner), self._scene
+    ) -> None:
+        """Refine, upload and draw, without reading back."""
+        self.stream_for(refiner)
+        scene = self._scene
         scene.skin, scene.parts, scene.bones = positions, drawing.parts, drawing.bones
         viewports = [Viewport(self._meshes[refiner][0], (0, 0, *self.surface.size))]
         overlays = [drawing.lines] if drawing.lines else []
-        self._pipeline.texture = drawing.texture
         self.surface.begin()
         self._pipeline.draw(drawing.camera, drawing.style, viewports, overlays=overlays)
         self.surface.end()
-        return stream.triangle_count
 
     def draw_image(
         self, refiner: refine.Refiner, positions: npt.NDArray[np.float64], drawing: Drawing

@@ -19,6 +19,7 @@ split once or twice, and uniform Loop subdivision.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +31,7 @@ from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 from risorius.refine.kahler.criterion import Thresholds
 
-from .canvas import Canvas, Drawing
+from .canvas import CLAY, Canvas, Drawing
 from .report import Target, at_least, table
 from .subjects import Points, Subject
 
@@ -41,7 +42,7 @@ BUDGET = 2.0
 SIZE, FINER = 480, 2  # width and height of a picture [pixels]
 VIEWS = ("front", "three-quarter", "profile")
 BLACK = render.Background((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-CLAY = render.Style(textured=False, albedo=render.CLAY, shadows=False, bumps=0.0, background=BLACK)
+ON_BLACK = replace(CLAY, bumps=0.0, background=BLACK)
 LEVEL_BEHIND = 215.0  # grey level where there is no mesh, about that of the window's
 SEARCH_STEPS, SCALES = 18, (1e-5, 1e3)  # of thresholds: too many, too few triangles
 LEAST_GAIN = 20.0  # [%] of the error of static
@@ -169,7 +170,7 @@ def _shoot(
 
     The latter has shape (views, FINER * SIZE, FINER * SIZE).
     """
-    drawings = [Drawing(camera, CLAY) for camera in cameras]
+    drawings = [Drawing(camera, ON_BLACK) for camera in cameras]
     x, normals, faces = mesh[:3]
     fine = np.stack([canvas.draw_surface(x, normals, faces, each) for each in drawings]).mean(3)
     covered = fine > 0.0  # lit clay is nowhere black, an empty frame is

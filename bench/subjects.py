@@ -100,7 +100,6 @@ class PosePair:
 class Subject:
     """A face as a dense mesh, a coarse one, and expressions of both."""
 
-    name: str
     dense_faces: Faces
     coarse_faces: Faces
     rest: PosePair
@@ -114,7 +113,7 @@ def scanned(scans: Scans) -> Subject:
     place = closest_points(points, mesh.vertices, mesh.faces)
     poses = {"": mesh.vertices, **{name: mesh.vertices + by for name, by in scans.fields.items()}}
     pairs = {name: PosePair(moved, place.interpolate(moved)) for name, moved in poses.items()}
-    return Subject("scan", mesh.faces, faces, pairs.pop(""), pairs)
+    return Subject(mesh.faces, faces, pairs.pop(""), pairs)
 
 
 def built_in(level: int = 2) -> Subject:
@@ -130,7 +129,7 @@ def built_in(level: int = 2) -> Subject:
         moved = settled_positions(simulation, values, SETTLE)
         poses[name] = PosePair(moved, moved[:count])
     rest = PosePair(fine.vertices, fine.vertices[:count])
-    return Subject("built-in head", fine.faces, head.faces, rest, poses)
+    return Subject(fine.faces, head.faces, rest, poses)
 
 
 def fine_simulation(head: assets.Head, fine: FineMesh) -> sim.Simulation:

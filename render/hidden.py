@@ -14,8 +14,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.colour import to_linear
+
 from .camera import CameraView
-from .materials import set_inside
 from .parts import PlacedPart
 from .programs import compile_program, write_uniform
 from .render_target import Rectangle, RenderTarget
@@ -23,11 +24,9 @@ from .stream import MeshBuffers, Share
 from .style import ColourBy, Shading, Style
 
 TILE = 8  # [pixels] each way
-LARGEST = 16  # tiles: side of the largest squares of which the farthest depth is kept
+SIDES = 1, 2, 4, 8  # tiles: of squares of which the farthest depth is kept, and of twice them
 MARGIN = 1e-4  # of the range of depths: beyond the rounding of drivers, 0.05 mm on a head
 SLIVER = 0.5 / TILE**2  # [tiles**2], twice the area up to which a triangle may turn to either side
-# By tiles along a side: which power of 2 tiles go into it, at most.
-_LEVELS = np.array([min(max(n, 1), LARGEST).bit_length() - 1 for n in range(2 * LARGEST + 1)])
 INWARD = 0.4  # cosine to the eye from which on, by surface.glsl and a little, only insides show
 _UNIT = 1  # texture unit: the one of the layer
 
@@ -51,9 +50,7 @@ class Occluder:
     def is_of(self, view: CameraView, target: RenderTarget) -> bool:
         """Whether what it saw, through this view, is still on the target's layer."""
         return (
-            self._view is not None
-            and self._view.fingerprint == view.fingerprint
-            and self._view.viewport == view.viewport
+            self._view is view
             and self.target is target
             and self._layer_number == target.layer_number
         )
@@ -75,15 +72,19 @@ class Occluder:
         self._gl.enable_only(moderngl.DEPTH_TEST)
         read = np.frombuffer(self._tiles.read(components=1, dtype="f4"), np.float32)
         tables = [read.reshape(rows, columns)]
-        while 1 << len(tables) <= LARGEST:
-            tables.append(_doubled(tables[-1], 1 << (len(tables) - 1)))
-        self._farthest = np.stack(tables)
+        for side in SIDES:  # from squares of so many tiles to twice as large ones
+            padded = np.pad(tables[-1], ((0, side), (0, side)))
+            wider = np.maximum(padded[:, :-side], padded[:, side:])
+            tables.append(np.maximum(wider[:-side], wider[side:]))
+        self._farthest = np.stack(tables)  # each square is named by its lowest tile
 
     def prepare_inside(self, view: CameraView, style: Style) -> None:
         """Let `inside` draw what shows the inner side of skin alone."""
         write_uniform(self.inside, "model_view", view.world_to_view)
         write_uniform(self.inside, "projection", view.projection)
-        set_inside(self.inside, style)
+        self.inside["inner_albedo"] = tuple(to_linear(style.inside))
+        for name in ("to_key", "sky", "ground"):
+            self.inside[name] = getattr(style.light, name)
 
     def choose_parts(self, placed: Sequence[PlacedPart]) -> None:
         """Choose the faces of parts that are not surely hidden; all at once, which takes less."""
@@ -141,13 +142,14 @@ class Occluder:
     ) -> npt.NDArray[np.float32]:
         """The farthest depth of all tiles between two places [tiles]; 1 between distant ones."""
         rows, columns = self._farthest.shape[1:]
+        # What is no number may be in any tile.
         first, last = (
-            [_clipped(each, count - 1) for each, count in zip(ends, (columns, rows), strict=True)]
-            for ends in (low, high)
+            [np.fmin(np.fmax(at, 0.0), count - 1).astype(np.intp) for at, count in pairs]
+            for pairs in (zip(ends, (columns, rows), strict=True) for ends in (low, high))
         )
         # Squares as large as fit, one in each corner, hold all tiles that a triangle touches.
         reach = np.maximum(last[0] - first[0], last[1] - first[1]) + 1
-        level = _LEVELS[np.minimum(reach, 2 * LARGEST)]
+        level = np.clip(np.frexp(reach)[1] - 1, 0, len(SIDES))
         side = 1 << level
         ends = [np.maximum(last[axis] + 1 - side, first[axis]) for axis in (0, 1)]
         flat = self._farthest.ravel()
@@ -155,11 +157,6 @@ class Occluder:
         corners = [flat[row + column] for row in above for column in (first[0], ends[0])]
         farthest = np.maximum(np.maximum(*corners[:2]), np.maximum(*corners[2:]))
         return np.where(reach <= 2 * side, farthest, np.float32(1.0))
-
-
-def _clipped(place: npt.NDArray[np.float32], last: int) -> npt.NDArray[np.intp]:
-    """The number of the tile that holds a place [tiles], 0 to `last`; any, of what is no number."""
-    return np.fmin(np.fmax(place, 0.0), last).astype(np.intp)
 
 
 def draw_sides(
@@ -215,12 +212,3 @@ def _shows_inside(stream: MeshBuffers, view: CameraView) -> npt.NDArray[np.bool_
         is_inner = facing < -INWARD * np.sqrt(squares[0] * squares[1])
     shows: npt.NDArray[np.bool_] = is_inner[stream.frame.triangles].all(axis=1)
     return shows
-
-
-def _doubled(farthest: npt.NDArray[np.float32], side: int) -> npt.NDArray[np.float32]:
-    """From squares of `side` tiles to squares twice as large, each named by its lowest tile."""
-    wider = farthest.copy()
-    np.maximum(wider[:, :-side], farthest[:, side:], out=wider[:, :-side])
-    result = wider.copy()
-    np.maximum(result[:-side], wider[side:], out=result[:-side])
-    return result

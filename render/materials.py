@@ -72,12 +72,6 @@ def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_sca
         write_uniform(program, "ramp", _RAMPS[style.colour_by])
 
 
-def set_inside(program: moderngl.Program, style: Style) -> None:
-    """How the inner side of a mesh of this style takes light, for inside.glsl."""
-    program["inner_albedo"], program["to_key"] = tuple(to_linear(style.inside)), style.light.to_key
-    program["sky"], program["ground"] = style.light.sky, style.light.ground
-
-
 def set_part(
     program: moderngl.Program, kind: str, part: Part, light: Light, view: CameraView
 ) -> None:

@@ -24,24 +24,18 @@ from risorius.app.capture.captions import LANCZOS
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 
-from ..canvas import Canvas, Drawing, image_table, without_noise
+from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, without_noise
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
 from .experiments import Outcome
 
 SEEN = 8.0  # levels of 255: a change that is seen
 LEVEL = 2  # of the finer head: 16 times the triangles
 FINER = 2  # pixels are drawn so many times as fine
-SMOOTH = render.Style(
-    shading=render.Shading.GOURAUD, textured=False, albedo=render.SKIN, shadows=False,
-    background=render.WHITE,
-)  # fmt: skip
+SMOOTH = replace(GOURAUD, albedo=render.SKIN)
 SKIN, MOUTH, BACKGROUND = range(3)  # channels of a picture of kinds
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 GREEN = np.array([0.0, 1.0, 0.0], np.float32)
-KINDS = render.Style(
-    shading=render.Shading.FLAT, textured=False, albedo=(1.0, 0.0, 0.0), gloss=0.0, subsurface=0.0,
-    shadows=False, background=BLUE,
-)  # fmt: skip
+KINDS = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, subsurface=0.0, background=BLUE)
 OPENING = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)  # by kind
 WRONG = (225, 30, 30)
 

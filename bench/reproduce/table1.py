@@ -24,13 +24,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from risorius import refine, render
+from risorius import refine
 from risorius.app.capture.cameras import camera_for
 from risorius.app.performances import script_for
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 
-from ..canvas import Canvas, Drawing
+from ..canvas import GOURAUD, Canvas, Drawing
 from ..refine import interleaved
 from ..report import driver, table
 from .experiments import Measured, Outcome
@@ -41,9 +41,6 @@ FRAMES_PER_SECOND = 30.0
 SIZE = (1280, 720)  # [pixels] of what is drawn
 SMALL = (64, 36)  # where pixels cost next to nothing
 QUICK = 10  # rounds of a way that draws nothing, for one of the others
-GOURAUD = render.Style(
-    textured=False, albedo=render.CLAY, shadows=False, shading=render.Shading.GOURAUD
-)
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL))
 UPLOADED, ALONE = "without drawing", "refinement alone"
 WAYS = (DRAWN, DRAWN_SMALL, UPLOADED, ALONE)

@@ -32,7 +32,7 @@ def rolled_plane() -> Subject:
     poses = {
         f"roll {angle:g}": PosePair(bent(dense, angle), bent(coarse, angle)) for angle in (0.5, 1)
     }
-    return Subject("plane", dense_faces, coarse_faces, PosePair(dense, coarse), poses)
+    return Subject(dense_faces, coarse_faces, PosePair(dense, coarse), poses)
 
 
 @pytest.mark.slow
@@ -57,7 +57,7 @@ def test_error_of_the_truth_is_zero() -> None:
     rest, pose = subject.rest.coarse, subject.poses["roll 1"].coarse
     faces = subject.coarse_faces
     poses = {"same": PosePair(pose, pose), "wider": PosePair(pose * [1.1, 1.0, 1.0], pose)}
-    found = Subject("same", faces, faces, PosePair(rest, rest), poses)
+    found = Subject(faces, faces, PosePair(rest, rest), poses)
     same, wider = quality.measure(found, methods=[STATIC])
     assert same.method == STATIC
     assert same.distance < 1e-6 and same.picture < 0.1 and same.outline == 0.0
