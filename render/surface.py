@@ -7,7 +7,6 @@ hidden or covered, and a panel that is drawn after `resolve` is part of it.
 """
 
 import contextlib
-import os
 import sys
 from typing import Any, ClassVar, Self
 
@@ -131,17 +130,11 @@ class Surface:
 class OffscreenSurface(Surface):
     """A frame without a window; needs no screen."""
 
-    def __init__(
-        self, gl: moderngl.Context, size: tuple[int, int], samples: int, *, can_leave: bool
-    ) -> None:
-        self._can_leave = can_leave
-        super().__init__(gl, size, samples)
-
     def _bind(self) -> None:
         self.gl.__enter__()  # type: ignore[no-untyped-call]
 
     def _unbind(self) -> None:
-        _leave(self.gl, can_leave=self._can_leave)
+        self.gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
 
     def _close_context(self) -> None:
         self._unbind()  # a released context would stay current, and keep a window from its own
@@ -159,11 +152,11 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
     if Surface._current is not None:
         Surface._current._unbind()
         Surface._current = None
-    gl, can_leave = _offscreen_context()
+    gl = _offscreen_context()
     try:
-        surface = OffscreenSurface(gl, size, samples, can_leave=can_leave)
+        surface = OffscreenSurface(gl, size, samples)
     except Exception as error:
-        _leave(gl, can_leave=can_leave)
+        gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
         gl.release()
         if isinstance(error, moderngl.Error):
             raise GLError(
@@ -175,46 +168,20 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
     return surface
 
 
-def _leave(gl: moderngl.Context, *, can_leave: bool) -> None:
-    """Make no context current, where that is safe.
-
-    glcontext leaves a context for the one that was current before it; its X11 backend crashes when
-    there was none. Whoever binds a context next replaces this one anyway.
-    """
-    if can_leave:
-        gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
-
-
-def _offscreen_context() -> tuple[moderngl.Context, bool]:
-    """EGL on Linux, then a hidden X11 context where there is a screen; elsewhere the native way.
-
-    The second value tells whether the context can be left (see `_leave`).
-    """
-    if not sys.platform.startswith("linux"):
-        try:
-            return _standalone_context(), True
-        except Exception as error:
-            raise diagnose(OFFSCREEN, error) from None
-    try:
-        return _standalone_context(backend="egl"), True
-    except Exception as error:
-        egl_error = error
-    if os.environ.get("DISPLAY"):
-        try:
-            return _standalone_context(), False
-        except Exception as error:
-            raise diagnose(f"{OFFSCREEN} (EGL)", f"{egl_error}; then X11: {error}") from None
-    raise diagnose(f"{OFFSCREEN} (EGL)", egl_error) from None
-
-
-def _standalone_context(**how: Any) -> moderngl.Context:
+def _offscreen_context() -> moderngl.Context:
     """One of the newest OpenGL that we have a use for, else of the oldest that will do.
 
-    Some drivers give what they are asked for and no more.
+    By EGL on Linux, elsewhere the native way. Some drivers give what they are asked for and no
+    more.
     """
+    is_linux = sys.platform.startswith("linux")
+    how: dict[str, Any] = {"standalone": True, **({"backend": "egl"} if is_linux else {})}
     with contextlib.suppress(Exception):  # glcontext raises nothing better
-        return moderngl.create_context(require=NEWEST, standalone=True, **how)
-    return moderngl.create_context(require=OLDEST, standalone=True, **how)
+        return moderngl.create_context(require=NEWEST, **how)
+    try:
+        return moderngl.create_context(require=OLDEST, **how)
+    except Exception as error:
+        raise diagnose(f"{OFFSCREEN} (EGL)" if is_linux else OFFSCREEN, error) from None
 
 
 def image_of(pixels: bytes, size: tuple[int, int], components: int = 3) -> Image:
