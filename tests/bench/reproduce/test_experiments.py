@@ -165,11 +165,8 @@ def test_the_page_stands_alone(planted: None, tmp_path: Path) -> None:
     assert text.index("section 1") < text.index("section 2") < text.index("does not give")
 
 
-@pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda each: each.name)
-def test_every_experiment_is_a_command(experiment: Experiment) -> None:
-    """It has help, and the function that its entry names."""
-    result = risorius("reproduce", experiment.name, "--help")
-    assert result.exit_code == 0
-    assert ("--output" in result.output) == experiment.picture
-    assert ("--rounds" in result.output) == (experiment.rounds is not None)
-    assert callable(experiment.callable)
+def test_every_experiment_can_be_named() -> None:
+    """The command knows it, and its entry names a function that is there."""
+    told = risorius("reproduce", "--help").output
+    for experiment in EXPERIMENTS:
+        assert experiment.name in told and callable(experiment.callable)
