@@ -45,8 +45,8 @@ def mesh_shader(style: Style, has_texture: bool, has_bumps: bool, fades: bool) -
 
 def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
     """The file and the defines of the program of parts of a kind, see `PartBuffers`."""
-    if kind == "HAIR":
-        return ["hair.glsl", f"LAYERS {LAYERS}"]
+    if kind == "SHELLS":
+        return ["shells.glsl", f"LAYERS {LAYERS}"]
     shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
     sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
     return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
@@ -80,7 +80,7 @@ def set_part(
     `set_light` comes first; of it, light from behind does not reach what is enclosed, or fibres.
     """
     shine = part.shine
-    if kind == "HAIR":
+    if kind == "SHELLS":
         program["gloss"] = 2.0 * shine
         return
     is_rimless = part.is_enclosed or kind == "FIBRES"

@@ -11,10 +11,10 @@ from risorius.geometry.colour import to_linear
 
 from .camera import box_corners
 
-OF_HAIR = "in_strand", "in_way", "in_dense"
+OF_SHELLS = "in_strand", "in_way", "in_dense"
 # What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.
-STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("HAIR", " 2f 3f 1f", *OF_HAIR)}
-LAYERS = 9  # of hair; with more a picture takes longer, with fewer one sees between them
+STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
+LAYERS = 9  # of shells; with more a picture takes longer, with fewer one sees between them
 
 
 class Part(Protocol):
@@ -27,8 +27,8 @@ class Part(Protocol):
     bone: whose transform moves it. shine: 0 dull, 1 wet.
     is_enclosed: whether it lies within another surface, where light from behind does not get.
     strand_radius: half the thickness of the strands that it consists of; 0 where it is solid.
-    striation: place of each vertex across and along fibres [mm], (n, 2), or None; of hair also the
-        way from root to tip [mm], at 0.6 of which the vertices lie, and how dense it is, (n, 6).
+    striation: place of each vertex across and along fibres [mm], (n, 2), or None; of shells also
+        the way from root to tip [mm], at 0.6 of which vertices lie, and how dense it is, (n, 6).
     """
 
     @property
@@ -65,7 +65,7 @@ class PartBuffers:
                 f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
             )
         self._gl = gl
-        # What it is drawn with: a define of surface.glsl, or HAIR for hair.glsl.
+        # What it is drawn with: a define of surface.glsl, or SHELLS for shells.glsl.
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
         if columns:

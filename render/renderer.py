@@ -260,7 +260,7 @@ class Renderer:
         *,
         cut: Plane | None = None,
     ) -> None:
-        """Draw coloured parts, each moved by the matrix of its bone (column vectors); hair last.
+        """Draw coloured parts, each moved by the matrix of its bone (column vectors); shells last.
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
@@ -277,7 +277,7 @@ class Renderer:
         occluder = self._occluder
         if is_chosen := occluder is not None and occluder.is_of(view, self.surface.target):
             occluder.choose_parts(placed)
-        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind in ("STRANDS", "HAIR"))
+        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind in ("STRANDS", "SHELLS"))
         if not self.surface.samples and cut is None:
             drawn += [(*each, "FRINGE") for each in placed if each[0].is_outlined]
         programs = {}
@@ -294,13 +294,14 @@ class Renderer:
             program = programs[buffers.kind, *fringe]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
             set_part(program, buffers.kind, buffers.part, style.light, view)
-            is_hair, is_mixed = buffers.kind == "HAIR", buffers.kind == "STRANDS" or bool(fringe)
-            with blending(self._gl, hides=is_hair) if is_mixed or is_hair else nullcontext():
+            hides = buffers.kind == "SHELLS"
+            is_mixed = hides or buffers.kind == "STRANDS" or bool(fringe)
+            with blending(self._gl, hides=hides) if is_mixed else nullcontext():
                 if fringe:
                     rows = fringes(buffers.rows, buffers.part.faces, view, bone)
                     draw_fringes(self._gl, program, rows)
                 else:
-                    buffers.draw(program, chosen=is_chosen and not is_hair)
+                    buffers.draw(program, chosen=is_chosen and not hides)
 
     def draw_geometry(
         self,

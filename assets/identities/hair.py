@@ -1,4 +1,4 @@
-"""Hair that stands off the head: short, drawn as shells over the scalp (render/shaders/hair.glsl).
+"""Hair that stands off the head: short, shells over the scalp (render/shaders/shells.glsl).
 
 part = hair_of("short", head.vertices, head.faces, behind, colour)
 
@@ -194,8 +194,8 @@ def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArra
         texel = row.astype(int).clip(0, height - 1), column.astype(int).clip(0, width - 1)
         return np.asarray(behind[texel], np.float64)
 
-    is_haired = (far(uv) > 0.0)[faces].any(axis=1)
-    used, number = np.unique(faces[is_haired], return_inverse=True)
+    is_layereded = (far(uv) > 0.0)[faces].any(axis=1)
+    used, number = np.unique(faces[is_layereded], return_inverse=True)
     faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
     points, uv = vertices[used], uv[used].astype(np.float64)
     for _ in range(LEVELS):
