@@ -269,7 +269,6 @@ def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> npt.NDArr
     follows the same neighbours, so where two are compared closely they are timed as a pair.
     """
     seconds = np.zeros((rounds, len(calls)))
-    was_collecting = gc.isenabled()
     gc.disable()
     try:
         for turn in range(rounds):
@@ -279,8 +278,7 @@ def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> npt.NDArr
                 calls[k]()
                 seconds[turn, k] = time.perf_counter() - start
     finally:
-        if was_collecting:
-            gc.enable()
+        gc.enable()
     return seconds
 
 

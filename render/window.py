@@ -11,6 +11,7 @@ from types import ModuleType
 from typing import Any
 
 import moderngl
+import numpy as np
 
 from .compositor import Compositor, Detail
 from .errors import GLError, diagnose
@@ -125,15 +126,10 @@ class WindowSurface(Surface):
     def show(self, image: Image) -> None:
         """Show a picture in place of a frame, (H, W, 3), uint8, of the frame's size."""
         self.make_current()
-        size = image.shape[1], image.shape[0]
-        texture = self.gl.texture(size, 3, image[::-1].tobytes(), alignment=1)
-        frame = self.gl.framebuffer([texture])
         self.gl.screen.use()
-        self.gl.viewport, self.gl.scissor = (0, 0, *size), None
-        self.gl.copy_framebuffer(self.gl.screen, frame)
+        self.gl.scissor = None
+        self._compositor.lay(0, 0, np.dstack([image, np.full(image.shape[:2], 255, np.uint8)]))
         self._glfw.swap_buffers(self.handle)
-        frame.release()
-        texture.release()
 
     def read(self) -> Image:
         """Return the frame as it is seen, with the panels; see `Surface.read`."""

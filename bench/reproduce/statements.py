@@ -42,7 +42,7 @@ def outcome() -> Outcome:
             ("turned and shifted", _moved(scene.rest_positions)),
         ):
             refiner.refine(still)
-            counts[f"edges split {title}"] += np.count_nonzero(refiner.splits)
+            counts[f"edges split {title}"] += int(np.count_nonzero(refiner.splits))
         for positions in _moments(scene):
             before = [array.tobytes() for array in (positions, scene.faces)]
             mesh = refiner.refine(positions)
@@ -55,7 +55,7 @@ def outcome() -> Outcome:
             is_other = any(one.tobytes() != other.tobytes() for one, other in pairs)
             counts["frames that remember others"] += is_other
             is_inside = (refiner.origins().weights > 0.0).all(axis=1)
-            counts["points inside triangles"] += np.count_nonzero(is_inside)
+            counts["points inside triangles"] += int(np.count_nonzero(is_inside))
             counts["unsplit triangles that differ"] += _unsplit_that_differ(scene, refiner, mesh)
             counts["vertices moved without a split"] += _moved_unsplit(refiner, mesh, positions)
             counts["frames with cracks"] += _is_broken(refiner, mesh, positions)
