@@ -22,8 +22,8 @@ from PIL import Image
 COMMAND = Path(sys.executable).with_name("risorius")
 HEAD = Path(__file__).parents[1] / "assets" / "data"
 SCRIPTS = ("face", "plane", "cloth")
-FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit", "units", "muscles")
-SUFFIXES = {"gltf": "glb", "vtkhdf": "vtkhdf", "arkit": "csv", "units": "csv", "muscles": "csv"}
+FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit", "units")
+SUFFIXES = {"gltf": "glb", "vtkhdf": "vtkhdf", "arkit": "csv", "units": "csv"}
 POSES = ("joy", "anger", "fear", "disgust", "surprise", "sadness", "kiss", "AU43=1", "jawOpen=1")
 CAMERAS = ("three-quarter", "profile", "top", "0,0,3")
 LARGEST_STEP, FEW_PIXELS = 2, 0.001  # of 255; as a share of all
@@ -42,7 +42,6 @@ def commands() -> Iterator[tuple[str, list[str]]]:
         output = f"clip_{kind}.{SUFFIXES.get(kind, kind)}"
         yield kind, ["export", "--set", "joy", "--fps", "10", "--as", kind, "-o", output]
     yield "obj", ["export", "--set", "joy", "--fps", "2", "--as", "obj", "-o", "obj"]
-    yield "rig", ["export", "--set", "joy", "--rig", "arkit", "-o", "rig.glb"]
     for pose in POSES:
         yield pose, ["capture", "--set", pose, "--size", "640x480", "-o", f"{pose}.png"]
     for camera in CAMERAS:

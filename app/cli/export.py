@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..errors import in_one_line
-from ..export.formats import FORMATS, RIGS, Request, check_request, format_for
+from ..export.formats import FORMATS, Request, check_request, format_for
 from ..export.formats import export as write
 from ..recordings.conversion import Playback
 from .options import (
@@ -43,9 +43,6 @@ class Exporting:
         help="The skin as it is drawn: other triangles in each frame, as --look, --refiner and "
         "--option say.",
     )
-    rig: str | None = option(
-        type=click.Choice(list(RIGS)), help="Of a .glb: targets by name, as avatars have them."
-    )
     overwrite: bool = option(is_flag=True, help="Replace frames in a folder, or files beside -o.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
 
@@ -79,7 +76,6 @@ def export(
     check_apart(chosen.outputs(output), inputs)
     request = Request(
         subject.refinement() if exporting.refined else None,
-        exporting.rig,
         exporting.overwrite,
         not exporting.quiet,
     )

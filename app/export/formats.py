@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from .clip import Clip
 
 
-RIGS = {"arkit": "ARKit shapes", "units": "Action units"}  # titles of layers, by what --rig says
 Item = TypeVar("Item")
 
 FRAME = "frame_{:05d}"  # how files of a sequence are called, without their suffix
@@ -43,14 +42,11 @@ class Request:
     """What is asked for beside the clip.
 
     refinement: the refined skin is to be written, and not the mesh that is simulated.
-    rig: targets by name that can be posed anew, and not the motion of the script alone: one of
-        RIGS, or None.
     overwrite: frames in a folder, and files beside the output, may be replaced.
     progress: a bar is shown.
     """
 
     refinement: Refinement | None = None
-    rig: str | None = None
     overwrite: bool = False
     progress: bool = True
 
@@ -71,8 +67,8 @@ class Format:
     """One kind of file.
 
     name: what `--as` calls it. suffixes: of its files; () for a folder of one file a frame.
-    writer: "module:function" in this room, imported when it is used. refines, rigs: whether it can
-    carry what `Request` asks for. beside: how files end that lie beside the one that is named.
+    writer: "module:function" in this room, imported when it is used. refines: whether it can carry
+    a refined skin. beside: how files end that lie beside the one that is named.
     """
 
     name: str
@@ -80,7 +76,6 @@ class Format:
     suffixes: tuple[str, ...]
     writer: str
     refines: bool = False
-    rigs: bool = False
     beside: tuple[str, ...] = ()
 
     def outputs(self, output: Path) -> tuple[Path, ...]:
@@ -96,7 +91,7 @@ class Format:
 
 MESH = (".obj", ".mtl", "_skin.png")  # a mesh file, its materials, and their picture
 FORMATS = (
-    Format("gltf", "glTF", (".glb",), "gltf:write_gltf", rigs=True),
+    Format("gltf", "glTF", (".glb",), "gltf:write_gltf"),
     Format("usd", "USD", (".usdc", ".usda", ".usd"), "usd:write_usd", True, beside=("_skin.png",)),
     Format("usdz", "USD in one file", (".usdz",), "usd:write_usdz", True),
     Format("pc2", "PC2 point cache", (".pc2",), "obj:write_pc2", beside=MESH),
@@ -105,7 +100,6 @@ FORMATS = (
     Format("npz", "numpy arrays", (".npz",), "tables:write_npz"),
     Format("arkit", "ARKit shapes over time", (".csv",), "tables:write_arkit"),
     Format("units", "action units over time", (".csv",), "tables:write_units"),
-    Format("muscles", "muscles over time", (".csv",), "tables:write_muscles"),
 )
 
 
@@ -142,13 +136,9 @@ def _check_suffix(output: Path, chosen: Format, known: Container[str]) -> None:
 
 def check_request(output: Path, chosen: Format, request: Request) -> None:
     """UserError, before any work is done, where the output cannot be as it is asked for."""
-    for asked, can, option in (
-        (request.refinement is not None, [f for f in FORMATS if f.refines], "--refined"),
-        (request.rig is not None, [f for f in FORMATS if f.rigs], "--rig"),
-    ):
-        if asked and chosen not in can:
-            names = ", ".join(each.name for each in can)
-            raise UserError(f"{option} does not go with {chosen.title}; it goes with {names}")
+    if request.refinement is not None and not chosen.refines:
+        names = ", ".join(each.name for each in FORMATS if each.refines)
+        raise UserError(f"--refined does not go with {chosen.title}; it goes with {names}")
     chosen.load()
     if not chosen.suffixes:
         check_folder(output, overwrite=request.overwrite)

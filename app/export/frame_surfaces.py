@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,10 +98,3 @@ def _painted(clip: Clip, count: int, uv: Singles | None) -> Floats:
     row = np.clip(((1.0 - uv[:, 1]) * height).astype(int), 0, height - 1)
     colours: Floats = clip.scene.albedo[row, column] / 255.0
     return colours
-
-
-def joined(arrays: Sequence[Indices], counts: Sequence[int]) -> Indices:
-    """Indices into several arrays of these lengths as indices into all, one after the other."""
-    starts = np.cumsum([0, *counts[:-1]])
-    shifted = [array + start for array, start in zip(arrays, starts, strict=True)]
-    return np.concatenate(shifted).astype(np.int32)

@@ -7,12 +7,15 @@ targets. Every frame of the clip is a keyframe.
                      ├─ mandible ── lower teeth, tongue, ...
                      └─ upper teeth, ...
 
-The skin hangs on both cranium and neck, which stays where it is. docs/export.md says what is in a
-file, and what other programs make of it.
+The skin hangs on both cranium and neck, which stays where it is. What the pose of the head does to
+it is taken out of its shapes, since that bone does it again. docs/export.md says what is in a file,
+and what other programs make of it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,36 +25,96 @@ import scipy
 
 from risorius import render
 from risorius.geometry.colour import to_linear
+from risorius.geometry.normals import vertex_normals
 
-from ..scenes import FaceScene
+from ..scenes import FaceScene, Scene
 from .clip import METRES, Clip, Surface
 from .formats import Request
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
-from .morphs import TOLERANCE, Floats
-from .pieces import HEAD, Piece, moving_pieces
-from .rig import rigged_pieces
+from .morphs import TOLERANCE, Floats, Singles, decompose, follow, parts_of
 
 LONGEST_SHORT = 65535  # vertices that 16 bits can number
-NECK = "neck"
+HEAD, NECK = "cranium", "neck"  # names of bones
 STILL = 1e-7  # [m, or of a quaternion] by which a node that does not move may be off
 SKIN_ROUGHNESS, DULL, WET = 0.55, 0.75, 0.12  # chosen by eye; parts from dull to wet by their shine
 
 
+@dataclass(frozen=True)
+class Piece:
+    """A surface with its morph targets.
+
+    bone: what moves the whole of it; None: nothing, or the skin's own weights.
+    normals: at rest, of unit length, shape (V, 3).
+    targets, bends: what each target adds to vertices [mm] and normals, shape (K, V, 3).
+    weights: of each target in each frame, shape (N, K).
+    """
+
+    surface: Surface
+    bone: str | None
+    normals: Floats
+    targets: Floats
+    bends: Floats
+    weights: Floats
+
+
 def write_gltf(clip: Clip, part: Path, request: Request) -> str | None:
     """Write the file; return what there is to say of how near it comes to the clip."""
-    remark = None
-    if request.rig is None:
-        pieces, error = moving_pieces(clip)
-        if error > TOLERANCE:
-            count = max(len(piece.names) for piece in pieces)
-            remark = f"{count} morph targets do not suffice: up to {error:.2f} mm off"
-    else:
-        pieces, off = rigged_pieces(clip, request.rig)
-        mean = float(np.sqrt(np.square(off).mean()))
-        remark = f"the targets follow the motion to {mean:.2f} mm (rms), {off.max():.1f} mm at most"
-    content = _packed(clip, pieces)
-    part.write_bytes(content)
-    return remark
+    pieces, error = moving_pieces(clip)
+    part.write_bytes(_packed(clip, pieces))
+    if error <= TOLERANCE:
+        return None
+    count = max(len(piece.targets) for piece in pieces)
+    return f"{count} morph targets do not suffice: up to {error:.2f} mm off"
+
+
+def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
+    """The surfaces of a clip with the targets that its motion needs; how far off they are [mm]."""
+    pieces, error = [], 0.0
+    for surface, part in zip(clip.surfaces, [None, *clip.scene.parts], strict=True):
+        bone = None if part is None else part.bone
+        if surface.shapes is None:
+            none, normals = np.zeros((0, *surface.rest.shape)), part.normals.astype(np.float64)
+            pieces.append(Piece(surface, bone, normals, none, none, np.zeros((0, 0))))
+            continue
+        moved = _moved(clip, surface.rest, surface.shapes, is_skin=part is None)
+        morphs = decompose(moved)
+        normals = vertex_normals(surface.rest, surface.faces)
+        shapes = (surface.rest + moved[some] for some in parts_of(len(moved)))
+        bent = (
+            np.array([vertex_normals(shape, surface.faces) for shape in some]) - normals
+            for some in shapes
+        )
+        bends = follow(morphs.weights, bent)
+        pieces.append(Piece(surface, bone, normals, morphs.targets, bends, morphs.weights))
+        error = max(error, morphs.error)
+    return pieces, error
+
+
+def _moved(clip: Clip, rest: Floats, shapes: Singles, *, is_skin: bool) -> Singles:
+    """How far the vertices are from rest in each frame, before bones move them, shape (N, V, 3)."""
+    moved = np.empty_like(shapes)
+    for some in parts_of(len(shapes)):
+        there: npt.NDArray[np.floating] = shapes[some]
+        if is_skin:
+            bones = {name: matrices[some] for name, matrices in clip.bones.items()}
+            there = _without_pose(clip.scene, there, bones)
+        moved[some] = there - rest
+    return moved
+
+
+def _without_pose(
+    scene: Scene, shapes: npt.NDArray[np.floating], bones: Mapping[str, Floats]
+) -> Floats:
+    """Shapes of the skin, (N, V, 3), as the head's bone finds them; bones: matrices (N, 4, 4)."""
+    there = shapes.astype(np.float64)
+    if isinstance(scene, FaceScene):
+        share = scene.simulation.head_weight[:, None]
+        for shape, matrix in zip(there, bones[HEAD], strict=True):
+            if not np.array_equal(matrix, np.eye(4)):
+                turns = np.eye(3) + share[:, :, None] * (matrix[:3, :3] - np.eye(3))
+                unmoved = (shape - share * matrix[:3, 3])[:, :, None]
+                shape[:] = np.linalg.solve(turns, unmoved)[:, :, 0]
+    return there
 
 
 def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
@@ -71,7 +134,7 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
             roots.append(number)
         else:
             skeleton.hang(number, piece.bone)
-        if piece.names:
+        if len(piece.targets):
             glb.animate(number, "weights", piece.weights)
     return glb.to_bytes(clip.script.title or "motion", roots)
 
@@ -83,7 +146,7 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
     """
     surface = piece.surface
     faces: npt.NDArray[Any] = surface.faces
-    vertices = coordinates = np.arange(len(piece.vertices))
+    vertices = coordinates = np.arange(len(surface.rest))
     if surface.face_uv is not None:  # where there are seams, vertices are split
         corners = np.column_stack([faces.ravel(), surface.face_uv.ravel()]).astype(np.int64)
         pairs, numbers = np.unique(corners, axis=0, return_inverse=True)
@@ -94,7 +157,7 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         return glb.accessor(rows, ARRAY_BUFFER, is_bounded=is_bounded)
 
     attributes = {
-        "POSITION": of_vertices(METRES * (piece.vertices - origin), is_bounded=True),
+        "POSITION": of_vertices(METRES * (surface.rest - origin), is_bounded=True),
         "NORMAL": of_vertices(piece.normals),
     }
     if surface.uv is not None:
@@ -115,12 +178,13 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         "material": _add_material(glb, clip, surface),
     }
     mesh: dict[str, Any] = {"name": surface.name, "primitives": [primitive]}
-    if piece.names:
+    if len(piece.targets):
         primitive["targets"] = [
             {"POSITION": of_vertices(METRES * moved, is_bounded=True), "NORMAL": of_vertices(bent)}
             for moved, bent in zip(piece.targets, piece.bends, strict=True)
         ]
-        mesh["extras"] = {"targetNames": list(piece.names)}  # where all readers look for names
+        names = [f"motion {index + 1}" for index in range(len(piece.targets))]
+        mesh["extras"] = {"targetNames": names}  # where all readers look for names
     return glb.add("meshes", mesh)
 
 

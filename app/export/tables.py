@@ -1,8 +1,8 @@
 """Numbers: a clip as numpy arrays [mm], or its curves as CSV.
 
-Curves are muscles, action units, or the shapes of ARKit as Live Link Face writes them. They tell
-the face that is seen. Muscles, eyes and head follow late what they are asked, each in its
-own time, so that what was asked of them is written so much later.
+Curves are action units, or the shapes of ARKit as Live Link Face writes them. They tell the face
+that is seen. Muscles, eyes and head follow late what they are asked, each in its own time, so that
+what was asked of them is written so much later.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import UserError
 from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..recordings.conversion import LEAD, lead_of
 from ..recordings.names import ARKIT
@@ -73,16 +72,11 @@ def _rest_of(surface: Surface) -> dict[str, Any]:
     return {name: array for name, array in own.items() if array is not None}
 
 
-def write_muscles(clip: Clip, part: Path, _: Request) -> None:
-    """Write how far each muscle, the jaw, the eyes and the head are activated."""
-    if not clip.activations:
-        raise UserError(f"the scene '{clip.scene.name}' has no muscles; take the scene face")
-    _write_seconds(clip, part, clip.activations)
-
-
 def write_units(clip: Clip, part: Path, _: Request) -> None:
-    """Write the action units, 0 to 1, by side."""
-    _write_seconds(clip, part, solved(clip.scene, ACTION_UNITS, clip.activations, clip.controls))
+    """Write the action units, 0 to 1, by side, behind a column of seconds."""
+    units = solved(clip.scene, ACTION_UNITS, clip.activations, clip.controls)
+    stamps = ([f"{time:.6f}"] for time in clip.times)
+    _write(part, ["time"], stamps, _as_seen(clip, units))
 
 
 def write_arkit(clip: Clip, part: Path, _: Request) -> None:
@@ -90,16 +84,13 @@ def write_arkit(clip: Clip, part: Path, _: Request) -> None:
     shapes = _as_seen(clip, solved(clip.scene, ARKIT_SHAPES, clip.activations, clip.controls))
     lowest = _as_seen(clip, clip.activations)
     names = [OTHER_ORDER.get(name, name) for name in ARKIT]
-    columns = {_livelink(name): shapes.get(name, np.zeros(clip.frame_count)) for name in names}
+    still = np.zeros(clip.frame_count)
+    # As the app spells them: JawOpen.
+    columns = {name[0].upper() + name[1:]: shapes.get(name, still) for name in names}
     for name, (control, radians) in ANGLES.items():
-        columns[name] = radians * lowest.get(control, np.zeros(clip.frame_count))
+        columns[name] = radians * lowest.get(control, still)
     stamps = ([_timecode(time), len(columns)] for time in clip.times)
     _write(part, ["Timecode", "BlendShapeCount"], stamps, columns)
-
-
-def _livelink(shape: str) -> str:
-    """JawOpen, as the app spells jawOpen."""
-    return shape[0].upper() + shape[1:]
 
 
 def _timecode(time: float) -> str:
@@ -109,12 +100,6 @@ def _timecode(time: float) -> str:
     seconds, frame = divmod(frames, TIMECODE_RATE)
     minutes, second = divmod(seconds, 60)
     return f"{minutes // 60:02}:{minutes % 60:02}:{second:02}:{frame:02}.{fraction:03}"
-
-
-def _write_seconds(clip: Clip, part: Path, curves: Mapping[str, Floats]) -> None:
-    """Write curves behind a column of seconds."""
-    stamps = ([f"{time:.6f}"] for time in clip.times)
-    _write(part, ["time"], stamps, _as_seen(clip, curves))
 
 
 def _as_seen(clip: Clip, curves: Mapping[str, Floats]) -> dict[str, Floats]:

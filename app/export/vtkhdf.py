@@ -17,7 +17,7 @@ import numpy as np
 from ..errors import needed
 from .clip import Clip
 from .formats import Request
-from .frame_surfaces import FrameSurface, frame_surfaces, joined
+from .frame_surfaces import FrameSurface, frame_surfaces
 
 h5py = needed("h5py", "VTKHDF", "export")
 
@@ -65,7 +65,9 @@ class _Steps:
     def begin_mesh(self, frame: list[FrameSurface]) -> None:
         """Add the triangles that this frame has, and those after it until another call."""
         points = [len(surface.points) for surface in frame]
-        triangles = joined([surface.faces for surface in frame], points)
+        starts = np.cumsum([0, *points[:-1]])
+        shifted = [surface.faces + start for surface, start in zip(frame, starts, strict=True)]
+        triangles = np.concatenate(shifted)
         surfaces = np.repeat(np.arange(len(frame)), [len(surface.faces) for surface in frame])
         counts = {"NumberOfCells": len(triangles), "NumberOfConnectivityIds": triangles.size}
         self._begins = {

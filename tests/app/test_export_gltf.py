@@ -3,11 +3,9 @@
 import functools
 import io
 import json
-import re
 import struct
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import PIL.Image
@@ -15,8 +13,7 @@ import pytest
 import trimesh
 from threadpoolctl import threadpool_limits
 
-from risorius import assets, sim
-from risorius.app.export import pieces
+from risorius.app.export import gltf
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
@@ -25,7 +22,7 @@ from risorius.app.scenes import build_scene
 from risorius.app.script import parse_script
 from risorius.geometry.normals import vertex_normals
 
-from .command_line import positions_in_blender, risorius
+from .command_line import positions_in_blender
 from .glb_player import Player
 
 NEAR = 0.1e-3  # [m] what is promised
@@ -49,18 +46,6 @@ head_yaw = -1.0
 head_roll = 0.6
 gaze_vertical = -0.7
 """
-SHAPES = """
-[[pose]]
-time = 0.0
-[[pose]]
-time = 0.3
-jawOpen = 0.8
-mouthSmileLeft = 0.6
-head_yaw = 0.5
-[[pose]]
-time = 0.6
-mouthSmileLeft = 1.0
-"""
 
 
 @pytest.fixture(scope="module")
@@ -69,15 +54,9 @@ def clip() -> Clip:
     return record(parse_script(SCRIPT, source="test"), None, 24.0, progress=False)
 
 
-@pytest.fixture(scope="module")
-def rigged_clip() -> Clip:
-    """A face that is moved by ARKit's shapes alone."""
-    return record(parse_script(SHAPES, source="test"), None, 20.0, progress=False)
-
-
-def written(clip: Clip, path: Path, rig: str | None = None) -> str | None:
+def written(clip: Clip, path: Path) -> str | None:
     """Write the clip; what there is to say of it."""
-    return write(clip, path, format_for(path, None), Request(rig=rig))
+    return write(clip, path, format_for(path, None), Request())
 
 
 @pytest.fixture(scope="module")
@@ -86,16 +65,6 @@ def glb(clip: Clip, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("glb") / "face.glb"
     assert written(clip, path) is None
     return path
-
-
-@pytest.fixture(scope="module")
-def rigged(
-    rigged_clip: Clip, tmp_path_factory: pytest.TempPathFactory
-) -> tuple[Player, str | None]:
-    """The rig of ARKit's shapes, and what there was to say of it."""
-    path = tmp_path_factory.mktemp("glb") / "rig.glb"
-    remark = written(rigged_clip, path, "arkit")
-    return Player(path), remark
 
 
 def farthest(player: Player, clip: Clip, name: str) -> float:
@@ -251,82 +220,6 @@ def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
         assert farthest(player, clip, surface.name) < NEAR
 
 
-def settled(name: str) -> tuple[Any, Any]:
-    """The skin and the jaw's matrix with one control at 1, by a simulation of its own."""
-    simulation = sim.create(assets.load("head"))
-    simulation.set(name, 1.0)
-    for _ in range(60):
-        simulation.step(1 / 60)
-    return simulation.positions.copy(), simulation.bone_transforms()["mandible"]
-
-
-@pytest.mark.slow
-def test_a_rig_has_each_shape_by_its_name(
-    rigged: tuple[Player, str | None], rigged_clip: Clip
-) -> None:
-    """All 52 of ARKit on the skin, each as the face rests with it alone; the jaw's parts along."""
-    player, _ = rigged
-    names = player.target_names("skin")
-    assert sorted(names) == sorted(rigged_clip.scene.groups["ARKit shapes"]) and len(names) == 52
-    rest = rigged_clip.skin.rest
-    for name in ("jawOpen", "mouthSmileLeft", "eyeBlinkRight"):
-        positions, jaw = settled(name)
-        added = player.target("skin", names.index(name))
-        assert np.abs(added - (positions - rest) / 1000.0).max() < 1e-5
-        assert np.linalg.norm(added, axis=1).max() > 2e-3
-    teeth = next(part for part in assets.load("head").parts if part.name == "teeth_lower")
-    _, jaw = settled("jawOpen")
-    moved = teeth.vertices @ jaw[:3, :3].T + jaw[:3, 3] - teeth.vertices
-    index = player.target_names("teeth_lower").index("jawOpen")
-    assert np.abs(player.target("teeth_lower", index) - moved / 1000.0).max() < 1e-5
-    assert "tongueOut" in player.target_names("tongue")
-    assert not player.target_names("teeth_upper")
-
-
-@pytest.mark.slow
-def test_a_script_of_shapes_moves_these_alone(
-    rigged: tuple[Player, str | None], rigged_clip: Clip
-) -> None:
-    """Weights follow what the script sets, as late as the face does, and what remains is said."""
-    player, remark = rigged
-    names, weights = player.target_names("skin"), player.weights("skin")
-    assert {names[k] for k in np.flatnonzero(weights.any(axis=0))} == {"jawOpen", "mouthSmileLeft"}
-    assert 0.6 < weights[6, names.index("jawOpen")] < 0.85
-    assert weights[-1, names.index("mouthSmileLeft")] > 0.7
-    off = np.array([
-        np.linalg.norm(player.positions("skin", k) - rigged_clip.skin.at(k) / 1000.0, axis=1)
-        for k in range(rigged_clip.frame_count)
-    ])  # fmt: skip
-    assert remark is not None
-    told = [float(number) for number in re.findall(r"([0-9.]+) mm", remark)]
-    assert told == pytest.approx([1000 * np.sqrt((off**2).mean()), 1000 * off.max()], abs=0.06)
-
-
-@pytest.mark.slow
-def test_other_controls_are_followed_by_action_units(clip: Clip, tmp_path: Path) -> None:
-    """An expression moves the targets of units, each side by its own name."""
-    remark = written(clip, tmp_path / "units.glb", "units")
-    player = Player(tmp_path / "units.glb")
-    names = player.target_names("skin")
-    assert {"AU12_left", "AU12_right", "AU26", "AU17"} <= set(names)
-    assert "AU12" not in names and "AU51" not in names  # AU51 turns the head: its bone does
-    weights = player.weights("skin")
-    assert weights.min() >= 0.0 and weights.max() <= 1.0
-    assert weights[7, names.index("AU12_left")] > 0.3 and remark is not None
-    assert 1000.0 * farthest(player, clip, "skin") < 8.0
-
-
-@pytest.mark.slow
-def test_the_command_writes_it(tmp_path: Path) -> None:
-    """By its suffix; what is told of the rig goes to the error stream."""
-    script, output = tmp_path / "shapes.toml", tmp_path / "out.glb"
-    script.write_text(SHAPES)
-    result = risorius("export", script, "-o", output, "--fps", "15", "--quiet", "--rig", "arkit")
-    assert result.exit_code == 0 and "glTF, 10 frames" in result.stdout
-    assert "follow the motion to" in result.stderr and result.stderr.count("\n") == 1
-    assert "jawOpen" in Player(output).target_names("skin")
-
-
 @pytest.mark.blender
 def test_blender_sees_the_same(clip: Clip, glb: Path, tmp_path: Path) -> None:
     """Imported and stepped through in Blender, each vertex is where the clip has it."""
@@ -354,7 +247,7 @@ def test_what_targets_cannot_follow_is_told(
     clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A clip that needs more targets than may be is written, and the error that remains is said."""
-    monkeypatch.setattr(pieces, "decompose", functools.partial(decompose, most=4))
+    monkeypatch.setattr(gltf, "decompose", functools.partial(decompose, most=4))
     remark = written(clip, tmp_path / "rough.glb")
     player = Player(tmp_path / "rough.glb")
     error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))

@@ -150,16 +150,6 @@ def test_units_play_the_same_again(scene: FaceScene, tmp_path: Path) -> None:
     assert furthest < 0.4 and usual < 0.1
 
 
-def test_muscles_are_all_there(scene: FaceScene, tmp_path: Path) -> None:
-    """A column of seconds and one for each muscle, jaw, gaze, ..., with what it comes to."""
-    clip = record(script_of(UNITS), scene, RATE, progress=False)
-    columns = table(clip, tmp_path / "take.csv", "muscles")
-    assert list(columns) == ["time", *scene.simulation.controls]
-    assert np.allclose(columns["time"], clip.times, atol=1e-5)
-    late = np.interp(clip.times - LEAD, clip.times, clip.activations["zygomaticus_major_left"])
-    assert np.allclose(columns["zygomaticus_major_left"], late, atol=1e-5)
-
-
 @pytest.mark.parametrize("rate", [12.0, 24.0, 29.97, 120.0])
 def test_times_come_back_at_any_rate(scene: FaceScene, tmp_path: Path, rate: float) -> None:
     """The timecode counts sixtieths with a fraction, whatever the frame rate is."""
