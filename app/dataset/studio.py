@@ -16,6 +16,13 @@ import numpy as np
 import PIL.Image
 
 from risorius import render
+from risorius.assets.identities import (
+    coloured,
+    drawn_irises,
+    features_of,
+    make_person,
+    sample_identity,
+)
 
 from ..files import Image
 from ..motion import SETTLING
@@ -28,12 +35,12 @@ from ..refining.presets import Refinement
 from ..scenes import FaceScene
 from .folder import name_of
 from .labels import labels_of_face
-from .persons import person_of
 from .request import Request
 from .sampling import Sample, View, draw, gaze_controls
 from .surroundings import laid_over, light_of
 
 SAMPLES = 8  # of each pixel
+PERSONS = 1  # sets their seeds apart from those of samples
 MOST_PERSONS = 4  # that are kept, those that came last
 MARGIN = 0.03  # of the picture, free on each side of the head at zoom 1: the neck ends outside
 CHIN = 8  # the landmark
@@ -119,11 +126,29 @@ class Studio:
         return image, {"light": told, "background": name if colours is None else asdict(colours)}
 
     def _person_of(self, number: int) -> _Model:
-        """A person of the set before the frame."""
-        somebody = person_of(self._request, number)
-        pipeline = Pipeline(FaceScene(somebody.head), self._renderer)
+        """Person `number` of the set before the frame: head, tone of skin and colour of eyes.
+
+        The tone is an individual typology angle: 55 and more very light, below -30 dark.
+        """
+        table = self._request.table
+        seeds = np.random.SeedSequence([self._request.seed, number, PERSONS])
+        random = np.random.default_rng(seeds)
+        tone = round(float(random.uniform(*table.persons.tone)), 2)
+        irises = drawn_irises(random, tone, table.irises)
+        person = make_person(sample_identity(int(seeds.generate_state(1)[0])))
+        labels = {
+            "number": number,
+            "tone": tone,
+            "irises": irises,
+            "sex": person.identity.sex.value,
+            "age": round(person.identity.age, 1),
+            "measures": {code: round(value, 3) for code, value in person.measures.items()},
+        }
+        features = features_of(person.identity, tone, random)
+        head = coloured(person, angle=tone, irises=irises, features=features)
+        pipeline = Pipeline(FaceScene(head), self._renderer)
         drawn = pipeline.bind(Refinement(refiner=self._request.refiner))
-        return _Model(pipeline, Passes(pipeline, drawn), somebody.labels)
+        return _Model(pipeline, Passes(pipeline, drawn), labels)
 
 
 def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.OrbitCamera:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import colorsys
 import contextlib
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,9 @@ class Backgrounds:
         """What decides them, for JSON."""
         if not self.pictures:
             return self.colour if self.colour is None else list(self.colour)
-        return {"pictures": len(self.pictures), "content": digest(self.pictures)}
+        told = "".join(f"{path.name} {path.stat().st_size}\n" for path in self.pictures)
+        content = hashlib.sha256(told.encode()).hexdigest()[:16]  # tells files from others
+        return {"pictures": len(self.pictures), "content": content}
 
     def colours(self, random: np.random.Generator) -> Background:
         """The colours of one sample: not far from grey, the edge a little darker or lighter."""
@@ -96,7 +98,7 @@ def backgrounds_of(text: str | None) -> Backgrounds:
         return Backgrounds()
     folder = Path(text)
     if folder.is_dir():
-        pictures = files_in(folder, SUFFIXES)
+        pictures = tuple(sorted(p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES))
         if not pictures:
             raise UserError(f"--background {text}: no picture in it, {', '.join(SUFFIXES)}")
         for path in pictures:
@@ -120,14 +122,3 @@ def _readable(path: Path) -> Iterator[PIL.Image.Image]:
             yield opened
     except (OSError, ValueError, PIL.Image.DecompressionBombError) as error:
         raise UserError(f"{path}: cannot be read as a picture: {error}") from None
-
-
-def files_in(folder: Path, suffixes: Sequence[str]) -> tuple[Path, ...]:
-    """The files of a folder that end so, by name."""
-    return tuple(sorted(path for path in folder.iterdir() if path.suffix.lower() in suffixes))
-
-
-def digest(paths: Sequence[Path]) -> str:
-    """Tells files from others, by their names and sizes."""
-    told = "".join(f"{path.name} {path.stat().st_size}\n" for path in paths)
-    return hashlib.sha256(told.encode()).hexdigest()[:16]

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..recordings.calibration import Calibration, gains_of, neutral_now, usual_gains
+from ..recordings.calibration import Calibration, gains_of, neutral_now
 from ..recordings.mapping import controls_of
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
 from .frame import LiveFrame
@@ -41,14 +41,13 @@ class State(enum.Enum):
     LOST = "lost"  # frames came, and do no longer
 
 
-class LiveFace:
-    """What a receiver brings, as a face.
+class LiveFace(Receiver):
+    """What is received, as a face.
 
     calibration: what is done to the channels; may be replaced at any time.
     channels: those of the newest frame, and older ones that it did not name; as they came.
     subject: whose face it is, "" where nobody says so.
     presence: how far it leads our face, 0 to 1.
-    received, unusable: packets so far, and those of them that could not be read.
     """
 
     def __init__(
@@ -60,11 +59,9 @@ class LiveFace:
     ) -> None:
         """Listen from now on; UserError where that cannot be. wake: see `Receiver`."""
         listening.protocol.check()
-        self.listening, self._clock = listening, clock
-        usual = usual_gains(listening.protocol.title)
-        gains, default = gains_of(listening.gains, CHANNELS, usual)
+        gains, default = gains_of(listening.gains, CHANNELS)
+        super().__init__(listening, wake, clock)
         self.calibration = Calibration({}, gains, default, listening.mirror)
-        self._receiver = Receiver(listening, wake, clock)
         self.channels: dict[str, float] = {}
         self.subject = ""
         self.has_news = False  # a frame was taken in by the last `advance`
@@ -76,31 +73,7 @@ class LiveFace:
         self._neutral: list[dict[str, float]] = []
         self._neutral_until: float | None = None
 
-    def close(self) -> None:
-        """Stop listening."""
-        self._receiver.close()
-
     # What is told of it
-
-    @property
-    def port(self) -> int:
-        """The port that is listened on."""
-        return self._receiver.port
-
-    @property
-    def received(self) -> int:
-        """Packets so far."""
-        return self._receiver.received
-
-    @property
-    def unusable(self) -> int:
-        """Packets so far that could not be read."""
-        return self._receiver.unusable
-
-    @property
-    def has_frame(self) -> bool:
-        """Whether `advance` would find a frame that somebody was woken for."""
-        return self._receiver.has_frame
 
     @property
     def silence(self) -> float:
@@ -142,8 +115,8 @@ class LiveFace:
     def advance(self, seconds: float) -> None:
         """Take in what has come; `seconds` have passed since the last call."""
         self.has_news = False
-        for at, frame in self._receiver.take():
-            self._take(frame, at)
+        for at, frame in self.take():
+            self._take_in(frame, at)
         if self.state is State.RECEIVING:
             self._share = min(self._share + seconds / EASING_IN, 1.0)
         else:
@@ -151,7 +124,7 @@ class LiveFace:
         if self._neutral_until is not None and self._clock() >= self._neutral_until:
             self._end_calibration()
 
-    def _take(self, frame: LiveFrame, at: float) -> None:
+    def _take_in(self, frame: LiveFrame, at: float) -> None:
         self._pending.update(frame.channels)
         if not frame.is_complete:
             return

@@ -24,7 +24,7 @@ LOOK_AROUND = 0.1  # [s] after which the thread sees that it is to end
 class Receiver:
     """A socket and its thread; `close` ends both.
 
-    received, unusable: packets so far, and those of them that are none of the protocol.
+    listening: where. received, unusable: packets so far, and those that are none of the protocol.
     has_frame: whether a frame waits that somebody was woken for.
     """
 
@@ -38,7 +38,7 @@ class Receiver:
 
         Raises UserError where that cannot be.
         """
-        self._listening, self._wake, self._clock = listening, wake, clock
+        self.listening, self._wake, self._clock = listening, wake, clock
         self._waiting: deque[tuple[float, LiveFrame]] = deque(maxlen=MOST_WAITING)
         self.received = self.unusable = 0
         self.has_frame = False
@@ -77,7 +77,7 @@ class Receiver:
 
     def _read(self, packet: bytes, at: float) -> None:
         """Keep what a packet says, wake who waits for that, and count the packet as dealt with."""
-        frame = self._listening.protocol.parse(packet) if len(packet) <= MOST_BYTES else None
+        frame = self.listening.protocol.parse(packet) if len(packet) <= MOST_BYTES else None
         if frame is None:
             self.unusable += 1
         else:

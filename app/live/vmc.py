@@ -25,6 +25,8 @@ import re
 import struct
 from collections.abc import Iterator, Mapping
 
+from scipy.spatial.transform import Rotation
+
 with contextlib.suppress(ImportError):  # see Protocol.check
     from pythonosc.osc_message import OscMessage
     from pythonosc.osc_message import ParseError as MessageError
@@ -89,10 +91,8 @@ def _messages(packet: bytes, depth: int) -> Iterator[bytes]:
 
 def _put_bones(channels: dict[str, float], bones: Mapping[str, Quaternion]) -> None:
     if "Head" in bones:
-        turn = bones["Head"]
-        if "Neck" in bones:
-            turn = _product(bones["Neck"], turn)
-        for name, angle in zip(("yaw", "pitch", "roll"), _angles(turn), strict=True):
+        chain = [bones[name] for name in ("Neck", "Head") if name in bones]
+        for name, angle in zip(("yaw", "pitch", "roll"), _angles(*chain), strict=True):
             put_angle(channels, f"head_{name}", angle)
     for side in ("Left", "Right"):
         if f"{side}Eye" in bones:
@@ -101,26 +101,17 @@ def _put_bones(channels: dict[str, float], bones: Mapping[str, Quaternion]) -> N
             put_angle(channels, f"eye_pitch_{side.lower()}", pitch)
 
 
-def _product(first: Quaternion, second: Quaternion) -> Quaternion:
-    """The rotation `second`, and after it `first`."""
-    ax, ay, az, aw = first
-    bx, by, bz, bw = second
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
+def _angles(*turns: Quaternion) -> tuple[float, float, float]:
+    """Yaw, pitch and roll [degrees] as names.py counts them, of turns one upon the other.
 
-
-def _angles(turn: Quaternion) -> tuple[float, float, float]:
-    """Yaw, pitch and roll [degrees] as names.py counts them; NaN for what turns nothing."""
-    length = math.hypot(*turn)
-    if not 1e-6 < length < 1e6:
+    NaN for what turns nothing.
+    """
+    if not all(1e-6 < math.hypot(*turn) < 1e6 for turn in turns):
         return math.nan, math.nan, math.nan
-    x, y, z, w = (each / length for each in turn)
-    ahead = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
-    yaw = -math.atan2(ahead[0], ahead[2])
-    pitch = math.asin(min(max(ahead[1], -1.0), 1.0))
-    roll = math.atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z))
+    matrix = Rotation.from_quat(turns[0]).as_matrix()
+    for turn in turns[1:]:
+        matrix = matrix @ Rotation.from_quat(turn).as_matrix()
+    yaw = -math.atan2(matrix[0, 2], matrix[2, 2])
+    pitch = math.asin(min(max(matrix[1, 2], -1.0), 1.0))
+    roll = math.atan2(matrix[1, 0], matrix[1, 1])
     return math.degrees(yaw), math.degrees(pitch), math.degrees(roll)

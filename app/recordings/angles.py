@@ -1,14 +1,13 @@
-"""Angles of head and eyes as ARKit's writers give them; their unit comes from the data.
+"""Angles of head and eyes as ARKit's writers give them: Live Link Face in radians, some in degrees.
 
-ARKit's shapes eyeLookDown, eyeLookIn ... follow its eye angles, so they tell what the angles are.
-Live Link Face writes, fitted to a real take (correlation 0.98 to 0.999; [rad], + is down and to the
-subject's right):
+ARKit's shapes eyeLookDown, eyeLookIn ... follow its eye angles, so they tell where an eye looks
+ahead. Live Link Face writes, fitted to a real take (correlation 0.98 to 0.999; [rad], + is down and
+to the subject's right):
 
     pitch = 0.61 down - 0.44 up
     yaw = 0.62 in - 0.59 out - 0.07 of the left eye, the opposite of the right eye
 
 So its axes stand 4 degrees outwards of where the eyes look, as the axis of a real eyeball does.
-Other writers use degrees.
 """
 
 from __future__ import annotations
@@ -18,14 +17,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .names import EYE_ANGLES
 from .take import Array
 
-UNITS = {"radians": 180.0 / math.pi, "degrees": 1.0}  # in degrees
 LARGEST_DEGREES = 360.0  # what is larger is no angle in any unit
-LARGEST_RADIANS = 2.0 * math.pi
+LARGEST_RADIANS = 1.6  # no head that is seen turns further, nor an eye
 MOVES = 0.005  # [rad] standard deviation of a look that tells something
-AGREES = 0.5  # correlation
 FOLLOWS = 0.9  # correlation that tells where an eye looks ahead
 CENTRED = 0.01  # [rad] by which it may be off unnoticed
 
@@ -48,13 +44,16 @@ def in_degrees(
         notes.append(f"Always 0, as if switched off, and left out: {still}.")
     if not moving:
         return {}
+    size = max(float(np.nanpercentile(np.abs(values), 99)) for values in moving.values())
+    is_radians = size <= LARGEST_RADIANS
+    unit = "radians" if is_radians else "degrees"
+    notes.append(f"Angles reach {size:.2g} and were taken for {unit}.")
     looks = looks_of(shapes)
-    unit = _unit(moving, looks, notes)
     outward = {name: _outward(values, looks.get(name)) for name, values in moving.items()}
     if any(outward.values()):
         notes.append("The eyeballs' axes stand outwards of where the eyes look; that was undone.")
-    # ARKit's writers count down and to the right.
-    return {name: -UNITS[unit] * (values - outward[name]) for name, values in moving.items()}
+    scale = -180.0 / math.pi if is_radians else -1.0  # ARKit's writers count down and to the right
+    return {name: scale * (values - outward[name]) for name, values in moving.items()}
 
 
 def looks_of(shapes: Mapping[str, Array]) -> dict[str, Array]:
@@ -78,31 +77,6 @@ def _outward(values: Array, look: Array | None) -> float:
     angle, seen = _both_known(values, look)
     slope, offset = np.polyfit(seen, angle, 1)
     return float(offset) if abs(offset) > CENTRED * abs(slope) else 0.0
-
-
-def _unit(angles: Mapping[str, Array], looks: Mapping[str, Array], notes: list[str]) -> str:
-    """The unit by least squares of eye angles on looks; by size where the eyes do not tell."""
-    product = square = 0.0
-    for name in EYE_ANGLES:
-        if name in angles and _correlation(angles[name], looks.get(name)) > AGREES:
-            angle, look = _both_known(angles[name], looks[name])
-            product += float(np.dot(angle - angle.mean(), look - look.mean()))
-            square += float(np.dot(look - look.mean(), look - look.mean()))
-    if square > 0.0:
-        slope = product / square  # of the file's unit in radians
-        unit = min(UNITS, key=lambda each: abs(math.log(slope * UNITS[each] * math.pi / 180.0)))
-        if _size(angles) <= LARGEST_RADIANS or unit == "degrees":
-            notes.append(f"Angles are in {unit}, as the eyes' angles and the eyeLook shapes tell.")
-            return unit
-    size = _size(angles)
-    unit = "degrees" if size > LARGEST_RADIANS else "radians"
-    notes.append(f"Angles reach {size:.2g} and were taken for {unit}; the eyes do not tell.")
-    return unit
-
-
-def _size(angles: Mapping[str, Array]) -> float:
-    """How far angles go, a few wrong ones aside, in their own unit."""
-    return max(float(np.nanpercentile(np.abs(values), 99)) for values in angles.values())
 
 
 def _both_known(first: Array, second: Array) -> tuple[Array, Array]:

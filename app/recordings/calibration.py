@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -89,7 +89,7 @@ def calibration_for(
     neutral: "first:SECONDS", "percentile" or "none"; gains: "NAME=x" each, where NAME may be a
     pattern as mouth*. Raises UserError for anything else.
     """
-    own, default = gains_of(gains, take.channels, usual_gains(take.kind))
+    own, default = gains_of(gains, take.channels, kind=take.kind)
     return Calibration(neutral_of(take, neutral), own, default, mirror)
 
 
@@ -114,7 +114,7 @@ def neutral_of(take: Take, method: str | None = None) -> dict[str, float]:
     if method is None and take.is_calibrated:
         return neutral
     for name in names:
-        if name not in ANGLES and not _matches(name, _NEVER_NEUTRAL):
+        if name not in ANGLES and not any(_fitting([name], each) for each in _NEVER_NEUTRAL):
             neutral[name] = float(np.percentile(take.channels[name], LOW))
     return neutral
 
@@ -141,25 +141,19 @@ def _seconds_in(method: str) -> float:
     return seconds
 
 
-def usual_gains(kind: str) -> dict[str, float]:
-    """The gains, by pattern, that suit what wrote a take."""
-    if kind.startswith("OpenFace"):
-        return {"AU*": OPENFACE_GAIN}
-    return {"eyeBlink*": BLINK_GAIN}
-
-
 def gains_of(
-    settings: Iterable[str],
-    channels: Iterable[str],
-    usual: Mapping[str, float] | None = None,
+    settings: Iterable[str], channels: Iterable[str], *, kind: str = ""
 ) -> tuple[dict[str, float], float]:
     """What `--gain NAME=x ...` makes of channels: the gain of each named one, and of all others.
 
-    NAME is a channel, a pattern (mouth*, *Left), or all; what comes later counts. usual: gains by
-    pattern that hold where nothing else is said. Raises UserError for a name that fits no channel.
+    NAME is a channel, a pattern (mouth*, *Left), or all; what comes later counts. kind: what wrote
+    them, which tells the gains where nothing else is said. Raises UserError for a name that fits no
+    channel.
     """
     names = list(channels)
-    gains, default = _spread(usual or {}, names), 1.0
+    is_openface = kind.startswith("OpenFace")
+    pattern, usual = ("AU*", OPENFACE_GAIN) if is_openface else ("eyeBlink*", BLINK_GAIN)
+    gains, default = dict.fromkeys(_fitting(names, pattern), usual), 1.0
     for setting in settings:
         name, value = _gain_in(setting)
         if name == "all":
@@ -167,8 +161,8 @@ def gains_of(
             gains.clear()
             continue
         name = shape_of(name) or angle_of(name) or name  # also as a file spells it: JawOpen
-        fitting = [each for each in names if fnmatch.fnmatchcase(each, name)]
-        if not fitting and not any(fnmatch.fnmatchcase(each, name) for each in ARKIT):
+        fitting = _fitting(names, name)
+        if not fitting and not _fitting(ARKIT, name):
             raise UserError(
                 f"--gain {setting}: no channel of this recording is called '{name}'; "
                 "write a channel's name, a pattern as mouth*, or all"
@@ -191,15 +185,5 @@ def _gain_in(setting: str) -> tuple[str, float]:
     return name, value
 
 
-def _spread(by_pattern: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
-    """Gains by pattern as gains of channels."""
-    return {
-        name: gain
-        for pattern, gain in by_pattern.items()
-        for name in names
-        if fnmatch.fnmatchcase(name, pattern)
-    }
-
-
-def _matches(name: str, patterns: Iterable[str]) -> bool:
-    return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
+def _fitting(names: Iterable[str], pattern: str) -> list[str]:
+    return [name for name in names if fnmatch.fnmatchcase(name, pattern)]
