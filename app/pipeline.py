@@ -49,7 +49,7 @@ class DrawnMesh:
         area: render.Rectangle,
     ) -> None:
         """Fill the lent buffers with refined triangles, for whoever looks through the area."""
-        view = refine.View(camera.eye, camera.focal(area[2] / area[3], area[3]))
+        view = refine.View(camera.eye)
         out: Any = self.stream  # of the kind that `Pipeline.bind` has found it to take
         self.mesh, self.positions = self.refiner.refine(positions, out=out, view=view), positions
 

@@ -4,8 +4,8 @@
 
 It derives from `refine.BaseRefiner`, which binds the mesh, checks what goes in, and carries texture
 coordinates and attributes along. This one cuts all edges or none, and does not smooth. After
-`register` the whole program knows it by name. A package of its own needs no call; it says in its
-pyproject.toml
+`refiners.register` the whole program knows it by name. A package of its own needs no call; it says
+in its pyproject.toml
 
     [project.entry-points."risorius.refiners"]
     quarters = "my_package:Quarters"
@@ -24,10 +24,9 @@ from risorius.refine import (
     Stream,
     Values,
     View,
-    available,
     check,
     create,
-    register,
+    refiners,
 )
 
 
@@ -109,8 +108,8 @@ class Quarters(BaseRefiner):
 
 def main() -> list[int]:
     """Stretch a grid under the registered refiner; returns the triangles of each frame."""
-    if "quarters" not in available():
-        register("quarters", Quarters)
+    if "quarters" not in refiners.available():
+        refiners.register("quarters", Quarters)
     x, y = np.meshgrid(np.arange(5.0), np.arange(2.0))
     rest = np.stack([x.ravel(), y.ravel(), np.zeros(10)], axis=1)
     faces = [(k, k + 1, k + 6) for k in range(4)] + [(k, k + 6, k + 5) for k in range(4)]
@@ -126,4 +125,4 @@ def main() -> list[int]:
 
 if __name__ == "__main__":
     print(f"triangles of each frame: {main()}")
-    print(f"refiners now: {', '.join(available())}")
+    print(f"refiners now: {', '.join(refiners.available())}")

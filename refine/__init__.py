@@ -15,8 +15,8 @@ refined mesh breaks.
 `kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
 turns, `attributes` what rides along. Schemes, criteria and refiners of somebody else join by name:
-`schemes.register`, `criteria.register`, `register`, or an entry point; `Scheme`, `Criterion` and
-`BaseRefiner` are to derive from.
+`schemes.register`, `criteria.register`, `refiners.register`, or an entry point; `Scheme`,
+`Criterion` and `BaseRefiner` are to derive from.
 
 One room for each subject; each may import from those above it, and from jit.py, which compiles it
 all, and geometry/, which lie beside this folder:
@@ -24,7 +24,7 @@ all, and geometry/, which lie beside this folder:
     mesh/       what a refiner is bound to: connectivity, seams, normals
     border/     what goes in and out: plugin.py says what a refiner is
     kahler/     the paper: refiner.py is a frame, then sections 4.1 to 4.4, one file each
-    beyond/     other criteria and schemes, and blending
+    beyond/     its options (options.py), other criteria and schemes, blending
     others.py   refiners to compare with
     strain.py   how far the skin is stretched
     hosts.py    meshes as other programs keep them
@@ -44,7 +44,7 @@ from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
 from .border.corner_values import Values
 from .border.plugin import GpuStream, Origins, RefinedMesh, Refiner, Stream, View
-from .border.registry import Registry, available, create, parameters, refiners, register
+from .border.registry import Registry, create, parameters, refiners
 from .border.stream import StreamArrays
 from .hosts import TrimeshRefiner, WeldedRefiner
 from .kahler.coherence import Coherent
@@ -98,7 +98,6 @@ __all__ = [
     "Values",
     "View",
     "WeldedRefiner",
-    "available",
     "check",
     "connect",
     "create",
@@ -106,14 +105,13 @@ __all__ = [
     "criteria",
     "parameters",
     "refiners",
-    "register",
     "schemes",
     "weld",
 ]
 
-register("kahler", create_kahler)
-register("loop", Loop)
-register("none", PassThrough)
+refiners.register("kahler", create_kahler)
+refiners.register("loop", Loop)
+refiners.register("none", PassThrough)
 criteria.register("normal", NormalDrop)
 criteria.register("curvature", Curvature)
 criteria.register("rest", RestCurvature)

@@ -14,9 +14,8 @@ from pathlib import Path
 import numpy as np
 import PIL.Image
 
-from .clip import METRES, Clip, Floats, Indices
+from .clip import METRES, Clip, Floats, FrameSurface, Indices, frame_surfaces
 from .formats import FRAME, Request
-from .frame_surfaces import FrameSurface, frame_surfaces
 
 PC2_HEAD = "<12siiffi"  # signature, version, vertices, first frame, frames a sample, samples
 

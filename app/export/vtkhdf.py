@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import needed
-from .clip import Clip
+from .clip import Clip, FrameSurface, frame_surfaces
 from .formats import Request
-from .frame_surfaces import FrameSurface, frame_surfaces
 
 h5py = needed("h5py", "VTKHDF", "export")
 

@@ -130,8 +130,8 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
     Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
     drawn as it is.
     """
-    if refiner is not None and refiner not in refine.available():
-        there_are = ", ".join(refine.available())
+    if refiner is not None and refiner not in refine.refiners.available():
+        there_are = ", ".join(refine.refiners.available())
         raise UserError(f"refiner '{refiner}' is unknown; there are {there_are}")
     if refiner == STATIC and settings:
         raise UserError(
@@ -156,10 +156,10 @@ def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinem
     """
     beside: list[Refinement] = []
     for name in [] if names is None else names.split(","):
-        if name not in PRESETS and name not in refine.available():
+        if name not in PRESETS and name not in refine.refiners.available():
             raise UserError(
                 f"--compare: '{name}' is neither a look ({', '.join(PRESETS)}) nor a refiner "
-                f"({', '.join(refine.available())}); a SCRIPT goes before --compare"
+                f"({', '.join(refine.refiners.available())}); a SCRIPT goes before --compare"
             )
         other = named(name, refinement.preset)
         if other in (refinement, *beside):

@@ -105,7 +105,7 @@ def _option(value: Any) -> Any:
 
 def _refiners() -> list[str | None]:
     """All that do something and are there when somebody asks; None: that of the look."""
-    return [None, *(name for name in refine.available() if name != STATIC)]
+    return [None, *(name for name in refine.refiners.available() if name != STATIC)]
 
 
 _Pair = Annotated[tuple[int, int], Within(*SIDES_SHOWN)]

@@ -4,20 +4,12 @@ Kähler, Haber, Seidel 2003, section 4.1 ("More complex criteria can be used as 
 measuring discrete curvature on the mesh [19]") and section 6 ("refining the mesh along silhouette
 edges. To achieve this, appropriate splitting criteria have to be developed").
 
-    curvature   height of the arc over an edge      |k| L^2 / 8, k = 2 n . (b - a) / L^2 the
-                in mean edge lengths at rest        curvature along it (Taubin 1995, section 3)
-    rest        much the same at rest               the same edges in every frame (curvature.py)
-    silhouette  how far the surface turns along     (1 - n_a . n_b) x facing; facing is 1 where the
-                an edge that is seen edge-on        line of sight grazes the edge, 0 a BAND away;
-                                                    the turn counts up to where points have grown
-    border      angle by which the border turns     how an opened mouth differs from a shut one
-                otherwise than at rest
-    displacement                                    for schemes that tell: those with curved edges,
-                how far a split moves a middle      and all with refined normals (displacement.py)
-                and turns the normal there
-
 Each has two thresholds, above which an edge is split once and twice, and says how much an edge
 needs a split, so that all of them can be blended (blending.py) and any of them combined.
+`silhouette` is here, how far the surface turns along an edge that is seen edge-on:
+
+    (1 - n_a . n_b) x facing      facing is 1 where the line of sight grazes the edge, 0 a BAND
+                                  away; the turn counts up to where points have grown
 """
 
 import reprlib
@@ -115,16 +107,15 @@ class Silhouette(Measuring):
         if view is None:
             raise ValueError(
                 f"{type(self).__name__} needs to know where the eye is; pass "
-                "view=refine.View(eye, focal) to refine()"
+                "view=refine.View(eye) to refine()"
             )
         try:
-            eye, focal = np.asarray(view.eye, dtype=np.float64), float(view.focal)
+            eye = np.asarray(view.eye, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
-            eye, focal = np.zeros(0), 0.0
-        if eye.shape != (3,) or not np.isfinite(eye).all() or not 0.0 < focal < np.inf:
+            eye = np.zeros(0)
+        if eye.shape != (3,) or not np.isfinite(eye).all():
             raise ValueError(
-                "view must have an eye of shape (3,) and a focal length in pixels above 0, all "
-                f"finite, got {reprlib.repr(view.eye)} and {reprlib.repr(view.focal)}"
+                f"view must have a finite eye of shape (3,), got {reprlib.repr(view.eye)}"
             )
         self._eye = eye
 

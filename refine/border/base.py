@@ -186,7 +186,7 @@ class BaseRefiner(Refiner):
         if type(positions) is not np.ndarray:
             positions = as_array("positions", positions, f"floats of shape {self._shape}")
         if view is not None and not isinstance(view, View):
-            raise ValueError(f"view must be a refine.View(eye, focal), got {type(view).__name__}")
+            raise ValueError(f"view must be a refine.View(eye), got {type(view).__name__}")
         if positions.shape != self._shape or positions.dtype.kind != "f":
             raise ValueError(
                 f"positions must be floats of shape {self._shape} like the mesh that was bound, "

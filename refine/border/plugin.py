@@ -60,9 +60,6 @@ class View(NamedTuple):
 
     eye: npt.ArrayLike
     """Position of the eye [unit of the input], shape (3,)."""
-    focal: float = 1000.0
-    """Pixels that a length of 1 covers at distance 1: viewport height / (2 tan(angle of view / 2)).
-    """
 
 
 class Origins(NamedTuple):

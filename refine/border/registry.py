@@ -78,22 +78,11 @@ class Registry(Generic[Product]):
 
 
 refiners: Registry[Refiner] = Registry("refiner", "risorius.refiners")
-"""Refiners; a factory is called as factory(faces, rest_positions, uv=.., face_uv=.., **options)."""
+"""Refiners by name: built in, registered, then those of installed packages.
 
-
-def register(name: str, factory: Callable[..., Refiner]) -> None:
-    """Make a refiner known to `create`; raises ValueError if the name is empty or taken.
-
-    `factory`: called as factory(faces, rest_positions, uv=..., face_uv=..., **options).
-
-    An installed package announces an entry point of group `risorius.refiners` instead.
-    """
-    refiners.register(name, factory)
-
-
-def available() -> tuple[str, ...]:
-    """Names of refiners: built in, registered, then those of installed packages."""
-    return refiners.available()
+A factory is called as factory(faces, rest_positions, uv=..., face_uv=..., **options). An installed
+package announces an entry point of group `risorius.refiners` instead.
+"""
 
 
 def create(

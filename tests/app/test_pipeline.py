@@ -40,7 +40,7 @@ def test_rows_without_texture_coordinates_are_drawn(
 ) -> None:
     """A refiner from outside may hand out positions and normals alone: it is drawn untextured."""
     monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
-    refine.register("bare", lambda faces, rest, **_: refine.PassThrough(faces, rest))
+    refine.refiners.register("bare", lambda faces, rest, **_: refine.PassThrough(faces, rest))
     scene = FaceScene()
     pipeline = Pipeline(scene, render.Renderer(surface))
     assert image(pipeline, pipeline.bind(Refinement(refiner="bare"))).std() > 10.0

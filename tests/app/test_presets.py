@@ -39,7 +39,7 @@ def scenes() -> dict[str, Scene]:
     return built
 
 
-@pytest.mark.parametrize("refiner", [None, *refine.available()])
+@pytest.mark.parametrize("refiner", [None, *refine.refiners.available()])
 @pytest.mark.parametrize("look", PRESETS)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_look_is_drawn_by_every_refiner(

@@ -106,7 +106,7 @@ def test_rows_of_nan(tmp_path: Path) -> None:
     cells[20] = "two"
     take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
     assert take.channels["AU12"] == pytest.approx(0.4)
-    assert told(take.notes, "1 cells hold no number, the first in line 22, column 'AU12_r': 'two'")
+    assert told(take.notes, "5 cells hold no number, the first in line 12, column 'AU12_r'")
 
 
 def test_several_faces(tmp_path: Path) -> None:

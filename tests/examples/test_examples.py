@@ -71,10 +71,10 @@ def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
     from risorius.refine.border import registry
 
     monkeypatch.setattr(registry.refiners, "_factories", dict(registry.refiners._factories))
-    assert "quarters" not in refine.available()
+    assert "quarters" not in refine.refiners.available()
     module = example("own_refiner")
     assert module.main() == [8, 8, 32, 32]
-    assert "quarters" in refine.available()
+    assert "quarters" in refine.refiners.available()
     assert isinstance(
         module.Quarters([[0, 1, 2]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]]), refine.Refiner
     )

@@ -171,8 +171,6 @@ REFUSED = {
     "dataset --count 2 -o set --refiner mine": "refiner 'mine' is unknown; there are",
     # Exports.
     "export good.toml -o x.pc2 --refined": "it goes with usd, usdz, obj, vtkhdf",
-    "export good.toml -o x.usdc --rig arkit": "--rig does not go with USD; it goes with gltf",
-    "export --scene plane -o x.glb --rig units": "Action units",
     "export good.toml -o x.obj": "and folders with --as obj",
     "export good.toml -o x": "x: has no suffix. Allowed are .glb",
     "export good.toml -o x.glb --as obj": "leave out .glb or --as obj",

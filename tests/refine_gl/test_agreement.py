@@ -19,7 +19,7 @@ from tests import meshes
 from .agreement import LOOK, RULES, Points, assert_same, bound_twice
 
 POSES = ("rest", "joy", "anger", "yawn", "kiss")
-VIEW = refine.View((3.0, 2.0, 20.0), 60.0)
+VIEW = refine.View((3.0, 2.0, 20.0))
 FAR = np.array([700.0, -300.0, 900.0])
 QUICK = ("joy", "kiss far away")
 both_rules = pytest.mark.parametrize("rules", ["two levels", "window's look"])

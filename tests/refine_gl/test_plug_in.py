@@ -30,7 +30,7 @@ def bound(**options: Any) -> tuple[refine.Refiner, KahlerGl]:
 
 def test_it_joins_as_anybodys_would() -> None:
     """By an entry point, with options of its own; others are refused as ever."""
-    assert "kahler-gl" in refine.available() and "kahler-gl" in refine.refiners.installed()
+    assert "kahler-gl" in refine.refiners.available() and "kahler-gl" in refine.refiners.installed()
     names = [each.name for each in refine.parameters("kahler-gl")]
     assert {"threshold_once", "threshold_twice", "coherent"} <= set(names)
     with pytest.raises(ValueError, match="unknown option 'sharpness' for refiner 'kahler-gl'"):

@@ -106,7 +106,7 @@ class MechanismPanel:
         self._switch("Refine")
         look = display.preset_as_changed(stage.scene)
         self._choose("Look", look, tuple(PRESETS), display.choose_preset)
-        names = [name for name in refine.available() if name != STATIC]
+        names = [name for name in refine.refiners.available() if name != STATIC]
         put = partial(display.choose_refiner, stage.scene)
         self._choose("Refiner", display.refiner_on(stage.scene), names, put)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)

@@ -108,7 +108,7 @@ def test_outlines_do_not_pop(name: str, scheme: str) -> None:
         for step in range(STEPS):
             turn = Rotation.from_rotvec(np.array([0.3, 0.5, 0.1]) * step / STEPS)
             positions = turn.apply(body.vertices)
-            refined = refiner.refine(positions, view=refine.View(eye, 1000.0))
+            refined = refiner.refine(positions, view=refine.View(eye))
             points = surface_at(refiner, refined, body.faces, places)[..., :3]
             if before is not None:
                 moved = np.linalg.norm(positions - before[0], axis=1).max()

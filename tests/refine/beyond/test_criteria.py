@@ -62,12 +62,10 @@ def test_view_is_needed() -> None:
     for view in (
         refine.View([0, 0, np.nan]),
         refine.View([0, 0]),
-        refine.View([0, 0, 1], focal=0.0),
-        refine.View([0, 0, 5], "x"),
         refine.View("eye"),
         refine.View(5),
     ):
-        with pytest.raises(ValueError, match="an eye of shape"):
+        with pytest.raises(ValueError, match="a finite eye of shape"):
             refiner.refine(mesh.vertices, view=view)
 
 
@@ -75,7 +73,7 @@ def test_maximum() -> None:
     """A list splits each edge as often as the criterion that asks for most."""
     mesh = meshes.irregular(1)
     deformed = meshes.wrinkled(mesh, 2)
-    view = refine.View([0.0, 0.0, 50.0], 800.0)
+    view = refine.View([0.0, 0.0, 50.0])
     names = ["normal", "curvature", "silhouette"]
     single = [splits_of(mesh, deformed, name, view=view)[0] for name in names]
     together, _ = splits_of(mesh, deformed, names, view=view)
@@ -163,7 +161,7 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
 
     criterion = kind(once, twice if level == "both" else np.inf)
     criterion.bind(connectivity, mesh.vertices, at_rest)
-    criterion.set_view(refine.View(EYE, 500.0))
+    criterion.set_view(refine.View(EYE))
     metric = np.zeros(len(edges), dtype=np.float32)
     criterion.measure(deformed, now, metric)
     wanted = np.minimum((expected - once) / width, np.inf if level == "both" else 1.0)

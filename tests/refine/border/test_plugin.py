@@ -61,8 +61,8 @@ def clean_registry(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("clean_registry")
 def test_registered_refiner() -> None:
     """A registered refiner is created by name with its options, and passes the checker."""
-    refine.register("outside", Outside)
-    assert "outside" in refine.available()
+    refine.refiners.register("outside", Outside)
+    assert "outside" in refine.refiners.available()
     refiner = refine.create("outside", FINE.faces, FINE.vertices, offset=0.0)
     assert isinstance(refiner, refine.Refiner)
     refine.check(refiner, refiner.refine(FINE.vertices), FINE.vertices)
@@ -85,7 +85,7 @@ def test_registered_refiner() -> None:
 def test_bad_registration(name: object, factory: object, text: str) -> None:
     """Names cannot be taken twice, and factories have to be callable."""
     with pytest.raises(ValueError, match=text):
-        refine.register(name, factory)  # type: ignore[arg-type]
+        refine.refiners.register(name, factory)  # type: ignore[arg-type]
 
 
 def test_unknown_name() -> None:
