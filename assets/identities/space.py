@@ -39,7 +39,8 @@ MEANS, SPREADS = 4.0, 0.25  # how strongly published means, and deviations, coun
 FIRMLY = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5})  # more so: else noses come too far forward
 # How wide the first mode is drawn, and from the seventh on all: persons that are drawn from the law
 # alone deviate less in what is measured than published, and more in the size of the face.
-NARROW, WIDE, SIXTH = 0.8, 1.25, 6
+NARROW, WIDE, SIXTH = 0.7, 1.1, 6
+FARTHEST = 4.0  # [deviations] that any weight is drawn
 YOUNG = 30.0  # [years] from which on age is seen
 ASKED = 25.0  # how strongly measures that are asked for count beside the law of the modes
 # What ten years do to measures, in deviations.
@@ -159,7 +160,7 @@ class PersonSpace:
         chance = np.clip(random.normal(size=len(unit)), -MOST, MOST)
         wide = np.interp(np.arange(len(unit)), (0, SIXTH), (NARROW, WIDE))
         spread = np.linalg.cholesky(np.linalg.inv(np.diag(wide**-2.0) + SPREADS * told))
-        return np.asarray(mean + spread @ chance)
+        return np.clip(mean + spread @ chance, -FARTHEST, FARTHEST)
 
     def _measured(self, sex: Sex) -> tuple[FloatArray, FloatArray]:
         """What the norms ask of weights: rows (m, k), and the right side (m,), in deviations."""
