@@ -28,7 +28,7 @@ LID_LINE = 3.0  # [texels] that the lashes' roots are wide along the upper lid
 SOFT = 5.0  # of hairs' thickness, by which what is between them is blurred
 # Along a brow, its thickness as a share of the greatest.
 PROFILE = (0.0, 0.65), (0.1, 0.95), (0.3, 1.0), (0.62, 0.9), (0.85, 0.62), (1.0, 0.2)
-UNDER = 1.4  # of a brow's darkness, that is left between its hairs
+UNDER = 2.2  # of a brow's darkness, that is left between its hairs
 
 # Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
 DRAWN = (
@@ -76,7 +76,7 @@ def painted(brows: Brows, size: int) -> SingleArray:
     cover = np.zeros((size, size), np.float32)
     for side in (-1.0, 1.0):
         hairs = _hairs(brows, random)
-        _paint(cover, hairs, side, random.uniform(120.0, 250.0, len(hairs)).astype(int))
+        _paint(cover, hairs, side, random.uniform(90.0, 200.0, len(hairs)).astype(int))
     return cover
 
 

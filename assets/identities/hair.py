@@ -30,6 +30,7 @@ LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
 SUNK = 0.3  # [mm] under the skin, for each before the hairline
+CLOSE = 0.3  # how much denser curls are
 HEM = 13.0  # [mm] behind the hairline, from where hair is dense
 
 
@@ -74,6 +75,7 @@ CUTS: Mapping[str, Cut | Fall | None] = MappingProxyType(
         "cropped": None,  # as it is painted on the scalp
         "bob": Fall(None, 74.0, 11.0),
         "parted": Fall(26.0, 80.0, 11.5),
+        "centred": Fall(0.0, 86.0, 12.0, 1.0),
         "waved": Fall(-22.0, 76.0, 14.0, 3.0),
         "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5),
         "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=12.0),
@@ -165,9 +167,9 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     way = long[:, None] * (cut.lift * normals + np.sqrt(1.0 - cut.lift**2) * comb)
     # Outside the hairline it is under the skin.
     points = points + (SUNK * np.minimum(behind, 0.0))[:, None] * normals
-    striation = np.column_stack(
-        [radius * angle, radius * away * (1.0 + 5.0 * cut.curl), way, np.minimum(behind / HEM, 2.0)]
-    )
+    curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
+    dense = np.minimum(behind / HEM, 2.0 + CLOSE * cut.curl)
+    striation = np.column_stack([curled[1] * radius * angle, curled[0] * radius * away, way, dense])
     return Part(
         name=HAIR,
         vertices=(points + MEAN * way).astype(np.float32),

@@ -73,10 +73,13 @@ class Sex(Enum):
 
 CUT_SHARES: Mapping[Sex, Mapping[str, float]] = MappingProxyType(
     {
-        Sex.WOMAN: {"bob": 0.15, "parted": 0.35, "waved": 0.35, "curly": 0.1, "fringed": 0.05},
-        Sex.MAN: {"short": 0.4, "cropped": 0.25, "brushed": 0.15, "swept": 0.1, "curly": 0.1},
+        Sex.WOMAN: {"bob": 0.15, "parted": 0.3, "centred": 0.25, "waved": 0.3},
+        Sex.MAN: {
+            "short": 0.35, "cropped": 0.25, "brushed": 0.12, "swept": 0.1, "fringed": 0.1,
+            "curly": 0.08,
+        },
     }
-)
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
