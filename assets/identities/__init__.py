@@ -19,10 +19,10 @@ from .complexion import (
     recoloured,
     typology_angle,
 )
-from .hair import CUTS, HAIR, Fall, Hairline
+from .hair import CUTS, HAIR, Hairline
 from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
-from .space import Identity, PersonSpace, Sex, person_space, sample_identity
+from .space import Identity, Sex, person_space, sample_identity
 
 __all__ = [
     "CUTS",
@@ -31,12 +31,10 @@ __all__ = [
     "LIGHTEST",
     "NAMED",
     "Brows",
-    "Fall",
     "Features",
     "Hairline",
     "Identity",
     "Person",
-    "PersonSpace",
     "Sex",
     "coloured",
     "drawn_irises",

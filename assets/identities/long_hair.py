@@ -7,6 +7,7 @@ inside out, and a second one that is seen from within.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -196,12 +197,8 @@ def _joined(parts: list[Part]) -> Part:
     """One part of several alike."""
     starts = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
     faces = [part.faces + start for part, start in zip(parts, starts, strict=True)]
-    arrays = {
+    arrays: dict[str, Any] = {
         name: np.concatenate([getattr(part, name) for part in parts])
         for name in ("vertices", "normals", "colours", "striation")
     }
-    whole = parts[0]
-    return Part(
-        HAIR, arrays["vertices"], arrays["normals"], np.concatenate(faces).astype(np.int32),
-        arrays["colours"], whole.bone, whole.shine, striation=arrays["striation"],
-    )  # fmt: skip
+    return replace(parts[0], faces=np.concatenate(faces).astype(np.int32), **arrays)

@@ -105,13 +105,16 @@ def _made(identity: Identity) -> Person:
     vertices.flags.writeable = False
     normals = vertex_normals(vertices, known.faces)
     named = _named(known)
+    larger = float(
+        np.sqrt(np.var(vertices[named], 0).sum() / np.var(known.vertices[named], 0).sum())
+    )
     warp = ThinPlateSpline(known.vertices[named], vertices[named], GIVE)
     skin = FittedSkin(vertices, normals, vertices[known.landmarks], known.mandible_weight)
     return Person(
         vertices=vertices,
         faces=known.faces,
         landmarks=known.landmarks,
-        bone_depth=_scale(known.vertices[named], vertices[named]) * known.bone_depth,
+        bone_depth=larger * known.bone_depth,
         eyes=eyes,
         parts=tuple(
             old if old.bone == "neck" else new
@@ -187,12 +190,6 @@ def _named(known: Head) -> IndexArray:
     """Vertices that lead what lies in the head: landmarks, named points, rows of lips and lids."""
     rows = [row for name, row in known.rings.items() if name.startswith(("mouth_", "eye_1"))]
     return np.unique(np.concatenate([known.landmarks, list(known.anatomy.values()), *rows]))
-
-
-def _scale(before: FloatArray, now: FloatArray) -> float:
-    """How much larger points (n, 3) are spread."""
-    spreads = [np.linalg.norm(x - x.mean(axis=0)) for x in (before, now)]
-    return float(spreads[1] / spreads[0])
 
 
 def _eye(known: Head, eye: Eye, vertices: FloatArray) -> Eye:

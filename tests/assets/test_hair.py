@@ -18,7 +18,6 @@ from risorius.assets import Segment
 from risorius.assets.identities import (
     CUTS,
     HAIR,
-    Fall,
     Features,
     Hairline,
     Person,
@@ -27,6 +26,7 @@ from risorius.assets.identities import (
     person_called,
     sample_identity,
 )
+from risorius.assets.identities.hair import Fall
 from risorius.assets.model import Part
 
 GROWN = [name for name, cut in CUTS.items() if cut is not None]
