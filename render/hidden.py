@@ -14,20 +14,17 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from risorius.geometry.colour import to_linear
-
 from .camera import CameraView
 from .parts import PlacedPart
-from .programs import compile_program, write_uniform
+from .programs import compile_program
 from .render_target import Rectangle, RenderTarget
 from .stream import MeshBuffers, Share
-from .style import ColourBy, Shading, Style
+from .style import ColourBy, Style
 
 TILE = 8  # [pixels] each way
 SIDES = 1, 2, 4, 8  # tiles: of squares of which the farthest depth is kept, and of twice them
 MARGIN = 1e-4  # of the range of depths: beyond the rounding of drivers, 0.05 mm on a head
 SLIVER = 0.5 / TILE**2  # [tiles**2], twice the area up to which a triangle may turn to either side
-INWARD = 0.4  # cosine to the eye from which on, by surface.glsl and a little, only insides show
 _UNIT = 1  # texture unit: the one of the layer
 
 
@@ -40,7 +37,6 @@ class Occluder:
         program = compile_program(gl, "farthest.glsl", f"SAMPLES {target.samples}", f"TILE {TILE}")
         program["depths"] = _UNIT
         self._pass = gl.vertex_array(program, [])
-        self.inside = compile_program(gl, "inside.glsl")
         columns, rows = (-(-pixels // TILE) for pixels in target.size)
         self._tiles = gl.framebuffer([gl.texture((columns, rows), 1, dtype="f4")])
         self._farthest = np.ones((1, 1, 1), np.float32)  # level, row, column
@@ -77,14 +73,6 @@ class Occluder:
             wider = np.maximum(padded[:, :-side], padded[:, side:])
             tables.append(np.maximum(wider[:-side], wider[side:]))
         self._farthest = np.stack(tables)  # each square is named by its lowest tile
-
-    def prepare_inside(self, view: CameraView, style: Style) -> None:
-        """Let `inside` draw what shows the inner side of skin alone."""
-        write_uniform(self.inside, "model_view", view.world_to_view)
-        write_uniform(self.inside, "projection", view.projection)
-        self.inside["inner_albedo"] = tuple(to_linear(style.inside))
-        for name in ("to_key", "sky", "ground"):
-            self.inside[name] = getattr(style.light, name)
 
     def choose_parts(self, placed: Sequence[PlacedPart]) -> None:
         """Choose the faces of parts that are not surely hidden; all at once, which takes less."""
@@ -170,8 +158,7 @@ def draw_sides(
     """Draw shares of a mesh with software: what turns to the eye goes first.
 
     What turns away is mostly hidden: drawn last, it is not shaded at all, if nothing is
-    multisampled. Else it is left out where that is certain, which needs an occluder; and what shows
-    nothing but its inner side takes a shorter program.
+    multisampled. Else it is left out where that is certain, which needs an occluder.
     """
     gl.enable(moderngl.CULL_FACE)
     gl.cull_face = "back"
@@ -182,33 +169,13 @@ def draw_sides(
         covered = view.covered_pixels(stream.corners)
         occluder.look(view, covered)
         positions = stream.frame.vertices[:, :3]
-        triangles = stream.frame.triangles
-        is_seen = occluder.may_be_seen(positions, triangles, away=True)
-        is_inner = np.zeros_like(is_seen)
-        if style.shading is Shading.PIXEL and not style.wireframe:
-            is_inner = is_seen & _shows_inside(stream, view)
-        stream.choose(is_seen & ~is_inner, is_inner)
-        occluder.prepare_inside(view, style)
+        stream.choose(occluder.may_be_seen(positions, stream.frame.triangles, away=True))
         occluder.target.use_layer(view.viewport, covered)
         gl.enable(moderngl.CULL_FACE)
         # What turns away shows no bumps, so the last program does for it.
-        shares = [(shares[-1][0], Share.CHOSEN), (occluder.inside, Share.OTHERS)]
+        shares = [(shares[-1][0], Share.CHOSEN)]
     gl.cull_face = "front"
     for program, share in shares:
         stream.draw(program, share)
     gl.cull_face = "back"
     gl.disable(moderngl.CULL_FACE)
-
-
-def _shows_inside(stream: MeshBuffers, view: CameraView) -> npt.NDArray[np.bool_]:
-    """Which triangles turn so far away that they show their inner side alone, (triangle_count,)."""
-    rows = stream.frame.vertices
-    with np.errstate(all="ignore"):
-        to_eye, normal = view.camera.eye.astype(np.float32) - rows[:, :3], rows[:, 3:6]
-        facing, *squares = (
-            np.einsum("ij,ij->i", *each)
-            for each in ((to_eye, normal), (to_eye, to_eye), (normal, normal))
-        )
-        is_inner = facing < -INWARD * np.sqrt(squares[0] * squares[1])
-    shows: npt.NDArray[np.bool_] = is_inner[stream.frame.triangles].all(axis=1)
-    return shows

@@ -22,8 +22,7 @@ class Share(Enum):
     ALL = "all"  # in their order
     BUMPED = "bumped"  # those with a corner where the bump map shows
     SMOOTH = "smooth"  # all others
-    CHOSEN = "chosen"  # those that `choose` was told of first,
-    OTHERS = "others"  # and second
+    CHOSEN = "chosen"  # those that `choose` was told of
 
 
 NUMBER = 4  # bytes
@@ -157,12 +156,11 @@ class MeshBuffers:
             )
         self._rewrite("in_values", values.astype(np.float32, copy=False))
 
-    def choose(self, is_chosen: npt.NDArray[np.bool_], is_other: npt.NDArray[np.bool_]) -> None:
-        """Choose among the uploaded triangles, twice (triangle_count,), for `draw`."""
-        chosen, others = self.frame.triangles[is_chosen], self.frame.triangles[is_other]
+    def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
+        """Choose among the uploaded triangles, (triangle_count,), for `draw`."""
+        chosen = self.frame.triangles[is_chosen]
         self._ranges[Share.CHOSEN] = 0, len(chosen)
-        self._ranges[Share.OTHERS] = len(chosen), len(others)
-        self._rewrite("chosen", np.concatenate([chosen, others]))
+        self._rewrite("chosen", chosen)
 
     def draw(self, program: moderngl.Program, share: Share = Share.ALL) -> None:
         """Draw uploaded triangles; attributes in_position, in_normal, in_uv, as needed.
@@ -175,7 +173,7 @@ class MeshBuffers:
         first, count = self._ranges.get(share, (0, 0))
         if count == 0:
             return
-        indices = self._more["chosen" if share in (Share.CHOSEN, Share.OTHERS) else "parted"]
+        indices = self._more["chosen" if share is Share.CHOSEN else "parted"]
         array = self._vertex_array(program, indices)
         array.render(moderngl.TRIANGLES, vertices=3 * count, first=3 * first)
 

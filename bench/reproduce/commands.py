@@ -15,7 +15,7 @@ import click
 from risorius import __version__
 from risorius.app.errors import in_one_line
 
-from ..report import processor, table
+from ..report import processor, say_progress, table
 from .experiments import EXPERIMENTS, INFERRED, Result, Verdict
 
 PATH = click.Path(path_type=Path)
@@ -55,7 +55,7 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
         check_file(folder / name)
     results = []
     for experiment in chosen:
-        click.echo(f"... {experiment.title}", err=True)
+        say_progress(experiment.title)
         results.append(experiment.run(rounds=rounds))
     for result in results:
         if result.outcome.picture is not None:

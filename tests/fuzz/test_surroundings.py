@@ -101,7 +101,7 @@ def _limit(kind: int, most: int) -> Callable[[], None]:
         (IMAGE, resource.RLIMIT_FSIZE, 10, 2),
         (FILM, resource.RLIMIT_FSIZE, 100, 2),
         (IMAGE.replace("x.png", "frames"), resource.RLIMIT_FSIZE, 10, 2),
-        ("reproduce figure9 -o made", resource.RLIMIT_FSIZE, 1000, 2),
+        ("reproduce figure9 -o .", resource.RLIMIT_FSIZE, 1000, 2),
         (IMAGE, resource.RLIMIT_NOFILE, 8, 0),
         (IMAGE.replace("16x16", "8000x8000"), resource.RLIMIT_AS, 2 << 30, 2),
     ],
