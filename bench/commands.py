@@ -117,20 +117,6 @@ def bench_human(reference: Path, head_file: Path | None) -> None:
     conclude(human.report(found), human.targets(found))
 
 
-@bench.command("form")
-@needed_reference
-@click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
-@click.option("--seed", type=click.IntRange(0), default=7, show_default=True, help="Which person.")
-def bench_form(reference: Path, folder: Path, seed: int) -> None:
-    """Fit the form of the built-in head to a person of a reference, and write its data files."""
-    from . import form
-
-    with told():
-        lines = form.make(reference, folder, seed)
-    for line in lines:
-        click.echo(in_one_line(line))
-
-
 @bench.command("reference")
 @click.argument("checkout", type=FOLDER)
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")

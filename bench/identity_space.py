@@ -7,7 +7,7 @@ deviation of people.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,6 @@ Faces = npt.NDArray[np.int32]
 Labels = npt.NDArray[np.str_]
 
 MODES = "identity_modes.npz"
-MIRROR = np.array([-1.0, 1.0, 1.0])
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
 OPPOSITE = 12.0  # [mm] on a line of sight within which skin hides a vertex
 NEAR_TRIANGLES = 8  # that are asked at each millimetre on the way
@@ -60,15 +59,6 @@ class IdentitySpace:
     def person(self, weights: Points) -> Points:
         """The vertices of one person [mm], shape (V, 3)."""
         return np.asarray(self.mean + np.tensordot(weights, self.modes, 1), dtype=np.float64)
-
-    def symmetric(self) -> IdentitySpace:
-        """The same with both sides of the mean, and of each mode, made alike."""
-        image = scipy.spatial.cKDTree(self.mean).query(self.mean * MIRROR)[1]
-        return replace(
-            self,
-            mean=0.5 * (self.mean + self.mean[image] * MIRROR),
-            modes=0.5 * (self.modes + self.modes[:, image] * MIRROR),
-        )
 
     def regions(self) -> Labels:
         """The name of the region that each vertex is in, "" for what is hidden or no face, (V,)."""

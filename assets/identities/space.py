@@ -1,8 +1,8 @@
 """How people differ, on the vertices of the built-in head: modes, and who is drawn from them.
 
 A person is the mean with a weight for each mode; a weight of 1 is one deviation of people. The
-modes were fitted to those of ICT-FaceKit as the head's form was (`risorius bench form`), and turned
-so that the first ones move the face most (principal components). They know neither sex nor age.
+modes were fitted to those of ICT-FaceKit as the head's form was (docs/head.md), and turned so that
+the first ones move the face most (principal components). They know neither sex nor age.
 
 So weights are drawn under two laws at once: those of the modes, in which all have the mean 0 and
 the deviation 1, and those of a sex' published measures (`assets.norms`). Both are normal
