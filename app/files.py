@@ -179,15 +179,11 @@ def save_text(target: Path, text: str) -> None:
         part.write_text(text, encoding="utf-8")
 
 
-def save_png(target: Path, image: Image, *, is_small: bool = False) -> None:
-    """Write one picture; UserError for another suffix, and where it cannot be written.
-
-    is_small: take time, so that the file gets as small as it can.
-    """
+def save_png(target: Path, image: Image) -> None:
+    """Write one picture; UserError for another suffix, and where it cannot be written."""
     check_png(target)
     with written_atomically(target) as part:
-        page = PIL.Image.fromarray(image)
-        page.save(part, format="PNG", optimize=is_small, compress_level=QUICK)
+        PIL.Image.fromarray(image).save(part, format="PNG", compress_level=QUICK)
 
 
 def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:

@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import functools
 import math
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from importlib.resources import files
 from pathlib import Path
 
 from .errors import UserError
-from .recordings import is_recording, read_take
+from .recordings import read_take
 from .recordings.conversion import Playback, script_of
-from .recordings.reading import read_beginning
 from .recordings.report import Report
 from .scenes import SCENES
-from .script import POSE_SECONDS, Limits, Pose, Script, load_script
-
-TABLES = (".csv", ".tsv", ".json")  # how recordings are called that are not there
-SCRIPT = re.compile(
-    r"(\s|#[^\n]*\n)*(\[\[?[ \t]*[a-z]+[ \t]*[.\]]|[a-z]+[ \t]*=)"
-)  # how TOML begins
+from .script import POSE_SECONDS, Limits, Pose, Script
+from .script.script_file import load_script
 
 
 def script_for(
@@ -61,29 +55,19 @@ def script_for(
 def read_performance(
     path: Path, playback: Playback | None = None, limits: Limits | None = None
 ) -> tuple[Script, Report | None]:
-    """The script in a file, or the one that plays a recording, with what there is to say of that.
+    """The script in a .toml file, or the one that plays a recording, with what is to be said of it.
 
     limits: of the face, where one is there already. Raises UserError for a file that is neither,
     and for options of recordings for what is none.
     """
     playback = playback or Playback()
-    if is_recording(path) or not _is_script(path):
+    if path.suffix.lower() != ".toml":
         take = read_take(path, face=playback.face, rate=playback.rate)
         return script_of(take, playback, limits or limits_of("face"))
     script = load_script(path)
     if playback != Playback():
         raise UserError(f"{path}: is a script, and {options_in(playback)} is for recordings")
     return script, None
-
-
-def _is_script(path: Path) -> bool:
-    """Whether a file that is no recording is to be read as a script; else it is a broken recording.
-
-    It only decides which of the two the error speaks of.
-    """
-    if not path.is_file():
-        return path.suffix.lower() not in TABLES
-    return path.suffix.lower() == ".toml" or bool(SCRIPT.match(read_beginning(path)))
 
 
 def options_in(playback: Playback) -> str:

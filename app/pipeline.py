@@ -114,7 +114,8 @@ class Pipeline:
         refiner = refiner_for(self.scene, refinement)
         room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         stream: render.Stream | render.GpuStream
-        if self.renderer.lends_gpu_streams and getattr(refiner, "runs_on_gpu", False):
+        is_on_gpu = isinstance(refiner, refine.BaseRefiner) and refiner.runs_on_gpu
+        if self.renderer.lends_gpu_streams and is_on_gpu:
             ends = self.scene.rest_positions[refiner.edges]
             longest = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0)
             stream = self.renderer.lend_gpu_stream(*room, margin=float(longest))

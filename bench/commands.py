@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from risorius.app.cli.parameters import FiniteRange, Size
+from risorius.app.cli.options import FiniteRange, Size
 from risorius.app.errors import UserError, in_one_line
 
 from .report import conclude, say_progress

@@ -25,8 +25,8 @@ from typing import NamedTuple
 import numpy as np
 
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.capture.cameras import camera_for
-from risorius.app.controls.mirror import parted, twin_of
+from risorius.app.capture.drawing import camera_for
+from risorius.app.controls import parted, twin_of
 from risorius.app.errors import UserError, needed
 from risorius.app.files import Image
 from risorius.app.motion import SETTLING

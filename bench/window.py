@@ -18,8 +18,8 @@ import numpy.typing as npt
 from risorius.app.performances import script_for
 from risorius.app.script import Pose, Script
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.frame_times import PHASES
-from risorius.app.viewer.picture.painter import LevelOfDetail
+from risorius.app.viewer.picture.stage import LevelOfDetail
+from risorius.app.viewer.session.physics import PHASES
 from risorius.app.viewer.settings import Display
 
 from .report import Target, at_least, processor, table

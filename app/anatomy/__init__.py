@@ -1,5 +1,146 @@
-"""What lies under the skin, drawn through it: muscles and skull, as solids."""
+"""What lies under the skin, seen through it: what is asked for, and in which order it is drawn.
 
-from .anatomy_view import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, Anatomy, AnatomyView, Layers
+`AnatomyView` says what is shown. `Anatomy` makes muscles, skull and throat of one face when they
+are first asked for, and sorts them, the face's own parts and the skin into `Layers`.
+"""
 
-__all__ = ["OPACITY", "SIDES", "SKIN_ALONE", "STRUCTURES", "Anatomy", "AnatomyView", "Layers"]
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from risorius import render
+from risorius.assets.fitting.skull import build_skull, neck_sections
+from risorius.assets.identities import HAIR
+
+from ..scenes import FaceScene, Scene
+from .muscle_bands import Muscles
+
+STRUCTURES = ("muscles", "skull")
+SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's, whose skin is translucent
+OPACITY = 0.25  # of the skin unless told
+SOFT = ("oral_cavity", "gums")  # parts that line the mouth, by how their names begin
+
+
+@dataclass(frozen=True)
+class AnatomyView:
+    """What is shown under the skin, and how much of the skin."""
+
+    structures: tuple[str, ...] = ()
+    opacity: float = OPACITY
+    side: str = "both"
+
+
+SKIN_ALONE = AnatomyView()
+
+
+class Layers(NamedTuple):
+    """Parts in the order in which they are drawn, and the skin between them."""
+
+    shadow_casters: Sequence[Any]
+    """Parts that throw the shadow on parts; skin throws it, too, unless it is opened."""
+    under: Sequence[tuple[Sequence[Any], render.Plane | None]] = ()
+    """Parts before the skin; in front of the plane whole skin will hide them."""
+    over: Sequence[Any] = ()
+    """Parts after it: the skin throws its shadow on eyes and teeth, hairs blend with it."""
+    opacity: float = 1.0
+    """Of the skin."""
+    cut: render.Plane | None = None
+    """In front of it skin is opaque."""
+    is_opened: bool = False
+    """Whether anything is seen through the skin."""
+
+    @property
+    def parts(self) -> list[Any]:
+        """All of them."""
+        return [*(part for parts, _ in self.under for part in parts), *self.over]
+
+
+class Anatomy:
+    """Muscles and skull of a face; of other scenes there is the skin alone."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._skull: dict[str, Any] = {}
+        self._necks: list[Any] = []
+        self._muscles: Muscles | None = None
+        self._followed = np.empty(0)  # what they were shaped by
+        self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
+
+    def layers(self, view: AnatomyView) -> Layers:
+        """What is asked for as it is now, and the scene's parts that do not hide it."""
+        scene = self._scene
+        if not isinstance(scene, FaceScene) or not view.structures or view.opacity >= 1.0:
+            hair = [part for part in scene.parts if part.name.startswith(HAIR)]
+            return Layers(hair, over=scene.parts)
+        structures = self._structures(scene, view)
+        stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
+        others = stay + self._soft(scene, view)
+        strands = [part for part in others if part.strand_radius]
+        others = [part for part in others if not part.strand_radius]
+        cut = _cut(scene, view)
+        return Layers(
+            structures + others,
+            under=((structures, cut), (others, None)),
+            over=strands,
+            opacity=view.opacity,
+            cut=cut,
+            is_opened=True,
+        )
+
+    def _structures(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
+        """Throat, bones and muscles, which no skin leaves bare."""
+        names = ["throat"]
+        if "skull" in view.structures:
+            names += ["cranium", "mandible", "spine"]
+        if "muscles" in view.structures:
+            names.append("nose")
+        self._skull = self._skull or build_skull(scene.head, scene.simulation.pivots())
+        self._necks = self._necks or neck_sections(scene.head)
+        muscles = [self._muscles_now(scene)] if "muscles" in view.structures else []
+        return [*self._necks, *(self._skull[name] for name in names), *muscles]
+
+    def _muscles_now(self, scene: FaceScene) -> Muscles:
+        """The muscles, shaped anew unless nothing has moved: a camera that turns is no reason."""
+        bones, sums = scene.bone_transforms(), scene.simulation.sums
+        now = np.concatenate([scene.positions, *bones.values()], axis=None)
+        now = np.append(now, list(sums.values()))
+        if self._muscles is None:
+            self._muscles = Muscles.of(scene)
+        elif not np.array_equal(now, self._followed):
+            self._muscles.follow(scene)
+        self._followed = now
+        return self._muscles
+
+    def _soft(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
+        """What lines the mouth; where there are bones alone, only on the side that is whole."""
+        parts = [part for part in scene.parts if part.name.startswith(SOFT)]
+        side = SIDES[view.side]
+        if "muscles" in view.structures:
+            return parts
+        if not side:
+            return []
+        for part in parts:
+            if (side, part.name) not in self._halves:
+                aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(scene)[0]
+                self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
+        return [self._halves[side, part.name] for part in parts]
+
+
+def _middle(scene: FaceScene) -> Any:
+    """Where the midline is at rest, shape (3,)."""
+    return scene.rest_positions[scene.landmarks[27]]
+
+
+def _cut(scene: FaceScene, view: AnatomyView) -> render.Plane | None:
+    """The plane in front of which the skin is whole; None: there is none."""
+    side = SIDES[view.side]
+    if not side:
+        return None
+    bone = scene.bone_transforms()["cranium"]
+    at = bone[:3, :3] @ _middle(scene) + bone[:3, 3]
+    normal = bone[:3, :3] @ (-side, 0.0, 0.0)
+    return (*normal, -float(normal @ at))

@@ -1,11 +1,10 @@
-"""Offscreen, frame by frame: a surface with the whole pipeline behind it."""
+"""Offscreen, frame by frame: a surface with the whole pipeline behind it, and its camera."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -13,28 +12,66 @@ from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ..anatomy import SKIN_ALONE, AnatomyView
+from ..errors import UserError
 from ..files import Image
 from ..motion import play
-from ..passes.labelled import Labelled, labelled
+from ..passes.labels import Labelled, labelled
 from ..passes.passes import Passes
-from ..pipeline import Pipeline, side_by_side
+from ..pipeline import Pipeline, SourceValues, side_by_side
 from ..refining.presets import Refinement
 from ..scenes import Scene
 from ..script import Script
-from .cameras import camera_for
-from .captions import SPLITS_BAR, captioned, labels
+from .captions import SPLITS_BAR, ColourBar, captioned, labels
+
+DEFAULT_VIEW = "front"  # the face looks at whoever looks at it
+
+
+MARGIN = 0.05  # of the frame, free on each side of a whole scene
+
+
+def whole_scene(scene: Scene, view: str | None) -> render.OrbitCamera:
+    """A camera like that of `camera_for`, or further away, so that it sees the whole scene."""
+    camera = camera_for(scene, view)
+    wanted = camera.distance
+    camera.fit(scene.extent, MARGIN)
+    camera.distance = max(camera.distance, wanted)
+    return camera
+
+
+def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
+    """The camera of a named view of the whole scene, or of "yaw,pitch[,zoom]" around its focus.
+
+    Degrees; at zoom 1 the whole scene fits, at 2 all is twice as large.
+
+    Raises UserError with the views that there are.
+    """
+    view = view or DEFAULT_VIEW
+    if view in render.VIEWS:
+        return _framing(scene, view)
+    try:
+        yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
+        if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
+            raise ValueError
+    except ValueError:
+        raise UserError(
+            f"camera '{view}': allowed are {', '.join(render.VIEWS)}, "
+            "or yaw,pitch[,zoom] in degrees, zoom above 0"
+        ) from None
+    camera = _framing(scene, "front")
+    camera.orbit(yaw, pitch)
+    camera.target = scene.focus.copy()
+    camera.zoom(zoom)
+    return camera
+
+
+def _framing(scene: Scene, view: str) -> render.OrbitCamera:
+    """A camera that sees what the scene wants framed; the rest of it may go beyond the frame."""
+    camera = render.OrbitCamera.framing(scene.extent, view=view)
+    camera.fit(scene.framed)
+    return camera
+
 
 UNSEEN = 0.05  # [pixels] of motion: within that, the last picture is shown once more
-
-
-class Picture(Protocol):
-    """A scene on an offscreen surface, drawn in a way of its own, as a window shows it."""
-
-    def refine(self, camera: render.OrbitCamera) -> None:
-        """Refine a frame that nobody draws."""
-
-    def draw_image(self, camera: render.OrbitCamera) -> Image:
-        """Draw it as it is now, (H, W, 3), or (H, W, 4) and premultiplied."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +86,10 @@ class CaptureOptions:
     camera: str | render.OrbitCamera | None = None  # a view, or yaw,pitch[,zoom] in degrees
     is_turntable: bool = False  # the camera goes round once, by the last frame
     span: tuple[float, float] | None = None  # [s] of the script that is seen; None: all of it
-    # What draws it instead of these refinements and this style.
-    picture: Callable[[Scene, render.OffscreenSurface], Picture] | None = None
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
+    tone: float | None = None  # of the skin [deg]; None: its own
+    values: SourceValues | None = None  # by which triangles are coloured, as the style says
+    bar: ColourBar | None = None  # of these colours
     anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
@@ -87,7 +125,8 @@ class Capture:
         self.viewports = side_by_side(self.surface.size, meshes)
         self._frame: Frame | None = None  # the last one
         self._shown = np.zeros(0)  # what it was drawn of
-        self._picture = None if options.picture is None else options.picture(scene, self.surface)
+        if options.tone is not None:
+            self.pipeline.set_tone(options.tone)
         view = options.camera
         self.camera = (
             view.copy() if isinstance(view, render.OrbitCamera) else camera_for(scene, view)
@@ -101,27 +140,28 @@ class Capture:
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
-        if self._picture is not None:
-            image = self._picture.draw_image(self.camera)
-            return straight(image) if self.options.is_transparent else image
         self.surface.begin()
         options = self.options
-        self.pipeline.draw(self.camera, options.style, self.viewports, anatomy=options.anatomy)
+        self.pipeline.draw(
+            self.camera,
+            options.style,
+            self.viewports,
+            anatomy=options.anatomy,
+            values=options.values,
+        )
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
-        if self.options.beside and self.options.captions:
-            texts, style = [drawn.caption for drawn, *_ in self.viewports], options.style
-            areas = [viewport.area for viewport in self.viewports]
-            bar = SPLITS_BAR if style.colour_by is render.ColourBy.SPLITS else None
+        if options.captions and (options.beside or options.bar):
+            style, areas = options.style, [viewport.area for viewport in self.viewports]
+            texts = [drawn.caption for drawn, *_ in self.viewports if options.beside]
+            is_split = style.colour_by is render.ColourBy.SPLITS
+            bar = SPLITS_BAR if is_split else options.bar
             image = captioned(image, labels(texts, areas, bar, style), [left for left, *_ in areas])
         return straight(image) if self.options.is_transparent else image
 
     def refine(self) -> None:
         """Refine a frame that nobody draws: a refiner may remember it in the next one."""
-        if self._picture is None:
-            self.pipeline.refine(self.camera, self.viewports)
-        else:
-            self._picture.refine(self.camera)
+        self.pipeline.refine(self.camera, self.viewports)
 
     def is_still(self) -> bool:
         """Whether nothing has moved so far that anybody could see it, since this last said no.

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import UserError
-from ..ffmpeg import program, sound_form, sound_input
+from ..sound.decoding import ffmpeg, sound_form, sound_input
 
 # AAC and Opus, as players want them, at a quality that nobody tells from the source.
 AAC = "-acodec aac -b:a 192k"
@@ -152,7 +152,7 @@ class Encoder:
         sound = ["-an"]
         if soundtrack is not None and form.sound is not None:
             sound = soundtrack.options(form.sound)
-        name = program()
+        name = ffmpeg()
         self._messages = tempfile.TemporaryFile()
         try:  # in a session of its own: Ctrl-C is for us alone
             self._process = subprocess.Popen(

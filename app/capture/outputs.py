@@ -21,7 +21,7 @@ from ..files import (
     folder_atomically,
     written_atomically,
 )
-from ..passes.labelled import ENDS, Labelled
+from ..passes.labels import ENDS, Labelled
 from ..stopping import cleaned_up_if_stopped
 from ..workers import share_of_cores
 from .encoder import Encoder, Soundtrack, check_format, size_of_film

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..errors import UserError
 from ..files import Image, check_file, check_png, save_png
 from ..motion import scene_of
-from ..passes.labelled import beside, check_wanted, save_labelled
+from ..passes.labels import beside, check_wanted, save_labelled
 from ..script import Script
 from ..sound import load_sound
 from . import outputs, processes

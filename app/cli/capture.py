@@ -17,13 +17,15 @@ from .options import (
     SCRIPT,
     SETTINGS,
     SOUND,
+    BackgroundName,
     Drawing,
+    FiniteRange,
+    Size,
     option,
     packed,
     played,
     with_playback,
 )
-from .parameters import BackgroundName, FiniteRange, Size
 
 if TYPE_CHECKING:
     from risorius import render
@@ -134,7 +136,7 @@ def capture(
     from ..capture import capture as film_of
     from ..capture.encoder import HEARD
     from ..files import check_apart
-    from ..passes.labelled import beside
+    from ..passes.labels import beside
 
     written = [output, sheet, *(beside(output) if output and filming.passes is not None else ())]
     check_apart(written, (script, sound, drawing.head, drawing.landmarks))
@@ -155,20 +157,6 @@ def capture(
     )
     made = in_one_line(" and ".join(str(path) for path in (output, sheet) if path))
     click.echo(f"{made}: {most} triangles at most")
-    if output is not None and not filming.quiet:
-        _tell_size(output, options)
-
-
-def _tell_size(output: Path, options: CaptureOptions) -> None:
-    """Say where a film is larger than was asked for."""
-    from ..capture.encoder import size_of_film
-
-    width, height = size_of_film(output, options.size, is_transparent=options.is_transparent)
-    if (width, height) != options.size:
-        click.echo(
-            f"The film has {width}x{height} pixels, the last row or column twice: films of this "
-            "kind have even sizes."
-        )
 
 
 @click.command()

@@ -28,12 +28,12 @@ from .options import (
     SILENT,
     SOUND,
     Drawing,
+    Size,
     option,
     packed,
     played,
     with_playback,
 )
-from .parameters import Size
 
 if TYPE_CHECKING:
     from risorius.assets.fitting import FittedHead
@@ -171,7 +171,7 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
     Live Link Face, OpenFace, py-feat, MediaPipe and others write recordings.
     """
     from ..files import check_apart, check_file
-    from ..script import save_script
+    from ..script.script_file import save_script
 
     check_apart((output,), (recording,))
     check_file(output)

@@ -8,8 +8,7 @@ from typing import Any
 import click
 
 from ..errors import counted, in_one_line
-from .options import PATH, SILENT, printing
-from .parameters import Size
+from .options import PATH, SILENT, Size, printing
 
 MOST = 1_000_000  # samples; their names have six digits
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from risorius import __version__, render
 
-from .. import ffmpeg
 from ..errors import UserError, in_one_line
+from ..sound.decoding import ffmpeg
 
 PATIENCE = 20.0  # [s] for ffmpeg to say which it is
 EXTRAS = {
@@ -107,7 +107,7 @@ def _films() -> tuple[bool, str]:
         cure = "unset IMAGEIO_FFMPEG_EXE"
     try:
         said = subprocess.run(
-            [ffmpeg.program(), "-version"],
+            [ffmpeg(), "-version"],
             capture_output=True,
             text=True,
             errors="replace",

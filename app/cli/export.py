@@ -16,13 +16,13 @@ from .options import (
     SCENE,
     SCRIPT,
     SETTINGS,
+    FiniteRange,
     Subject,
     option,
     packed,
     played,
     with_playback,
 )
-from .parameters import FiniteRange
 
 
 @dataclass(frozen=True)

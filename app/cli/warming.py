@@ -42,7 +42,7 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     from ..refining.refiners import parse_options
     from ..scenes import ClothScene, FaceScene, PlaneScene
     from ..scenes.ambient_occlusion import ambient_occlusion
-    from ..script import thinned
+    from ..script.thinning import thinned
 
     face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()
     yield "muscles and springs", partial(_simulate, face)

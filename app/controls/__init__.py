@@ -1,1 +1,153 @@
-"""Names of controls: what they are called in plain words, and what a mirror makes of them."""
+"""Names of controls: what a mirror makes of them, and what they are called in plain words.
+
+A mirror turns sides and values round, of controls and of the channels of recordings alike. Plain
+words, and other words by which a control is found, are in assets, `words.toml`.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Collection, Mapping
+from functools import cache
+from typing import Any
+
+from risorius.assets.loading import read_words
+
+SIDES = (("_left", "_right"), ("Left", "Right"))  # how names end: ours, ARKit's
+TURNED = (  # to one side where their value is above 0, to the other below
+    "jaw_sideways", "gaze_horizontal", "gaze_horizontal_left", "gaze_horizontal_right",
+    "eye_yaw_left", "eye_yaw_right", "head_yaw", "head_roll",
+)  # fmt: skip
+# Sides of a motion, not of the face: both at once stand still.
+OPPOSITE = ("AU30", "lips_sideways", "jaw", "mouth")
+SIDEWAYS = ("gaze_horizontal", "eye_yaw", "eyeLookIn", "eyeLookOut")  # copied, eyes would cross
+KNOWN = 4096  # names that are taken apart once: panels ask for all of theirs in each frame
+_TWINS = {  # action units that are each other's image without saying so: eyes turn left, right ...
+    "AU61": "AU62", "AU62": "AU61", "AU51": "AU52", "AU52": "AU51", "AU55": "AU56", "AU56": "AU55",
+    "wink": "wink_right", "wink_right": "wink", "contempt": "contempt_right",
+    "contempt_right": "contempt",
+}  # fmt: skip
+
+
+@functools.lru_cache(maxsize=KNOWN)
+def parted(name: str) -> tuple[str, str]:
+    """A name without its side, and the side as it is spelled; "" for the middle."""
+    for side in (side for pair in SIDES for side in pair):
+        if name.endswith(side):
+            return name.removesuffix(side), side
+    return name, ""
+
+
+@functools.lru_cache(maxsize=KNOWN)
+def twin_of(name: str) -> str:
+    """The name on the other side; itself for one of the middle."""
+    if name in _TWINS:
+        return _TWINS[name]
+    base, side = parted(name)
+    for left, right in SIDES:
+        if side in (left, right):
+            return base + (right if side == left else left)
+    return name
+
+
+def mirrored(values: Mapping[str, float]) -> dict[str, float]:
+    """What is left becomes right; the middle turns round."""
+    result = dict(values)
+    for name, value in values.items():
+        if twin_of(name) in values:
+            result[twin_of(name)] = -value if name in TURNED else value
+    return result
+
+
+def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
+    """One side ("left" or "right") becomes the other, too; the middle and the gaze stay."""
+    result = dict(values)
+    for name, value in values.items():
+        base, side = parted(name)
+        twin = twin_of(name)
+        is_whole = not side and parted(twin)[0] != name  # of both sides, or a direction
+        if is_whole or base in OPPOSITE or base.startswith(SIDEWAYS) or twin not in values:
+            continue
+        if (side.strip("_").lower() or "left") == source:
+            result[twin] = value
+    return result
+
+
+VISEME = "viseme_"
+ENDINGS, LEAST_STEM = ("ing", "ed", "s"), 3  # of a word that is looked for; letters before them
+
+
+def readable(name: str) -> str:
+    """A name in words, in sentence case; codes such as jawOpen stay as they are."""
+    is_word = name.partition("_")[0].partition(" ")[0].islower()
+    return (name[:1].upper() + name[1:] if is_word else name).replace("_", " ")
+
+
+def sentence(text: str) -> str:
+    """A text with a capital, unless it begins with a code or a file, as "a.b: opened"."""
+    name, colon, _ = text.partition(":")
+    is_plain = text.partition(" ")[0].islower() and not (colon and "." in name)
+    return text[:1].upper() + text[1:] if is_plain else text
+
+
+def called(name: str, *twin: str) -> str:
+    """A control by its plain name and its side, or with its twin both sides of it."""
+    plain = title_of(name)[1] or readable(parted(name)[0])
+    side = "both sides" if twin else parted(name)[1].strip("_")
+    return f"{plain}, {side}" if side else plain
+
+
+@cache
+def _table(kind: str) -> Mapping[str, Any]:
+    found: Mapping[str, Any] = read_words().get(kind, {})
+    return found
+
+
+@cache
+def _synonyms() -> tuple[tuple[str, frozenset[str]], ...]:
+    return tuple(
+        (word, frozenset(found))
+        for words, found in _table("synonyms").items()
+        for word in words.split()
+    )
+
+
+def title_of(name: str, action: str = "") -> tuple[str, str]:
+    """The code that a control is known by, "" for none, and its plain name, "" for a code alone.
+
+    name: without its side, where both sides are called alike. action: what it does, in words.
+    """
+    stem = parted(name)[0]
+    plain = str(_table("names").get(name) or _table("names").get(stem) or "")
+    first = action.partition(":")[0]
+    if name.startswith("AU"):
+        return stem, plain or first[:1].upper() + first[1:]
+    if plain:
+        return "", plain
+    if name.startswith(VISEME):
+        return name.removeprefix(VISEME), first
+    if name != name.lower():  # as ARKit spells it
+        return name, ""
+    return "", readable(name).capitalize()
+
+
+def is_found(words: str, text: str, names: Collection[str]) -> bool:
+    """Whether each of the words is in the text, or begins another word for one of the names.
+
+    names: of controls, with their sides.
+    """
+    stems = {*names, *(parted(name)[0] for name in names)}
+    return all(
+        any(
+            form in text.lower()
+            or any(other.startswith(form) and found & stems for other, found in _synonyms())
+            for form in _forms(word)
+        )
+        for word in words.lower().split()
+    )
+
+
+def _forms(word: str) -> list[str]:
+    """A word as it was typed, and without its ending: chewing, chew."""
+    stems = [word.removesuffix(end) for end in ENDINGS if word.endswith(end)]
+    return [word, *(stem for stem in stems if len(stem) >= LEAST_STEM)]

@@ -10,7 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..passes.labelled import check_wanted
+from ..passes.labels import check_wanted
 from ..passes.passes import IMAGES
 from ..refining.refiners import parse_options
 from .surroundings import Backgrounds, backgrounds_of

@@ -26,9 +26,8 @@ from risorius.assets.identities import (
 
 from ..files import Image
 from ..motion import SETTLING
-from ..motion.idle import looking_at
-from ..passes.labelled import Labelled
-from ..passes.labels import CameraLabels
+from ..motion.life import looking_at
+from ..passes.labels import CameraLabels, Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, Viewport
 from ..refining.presets import Refinement

@@ -1,5 +1,85 @@
-"""Scenes in motion: a script's frames one by one, and the life of a face that nobody moves."""
+"""Scenes in motion: a script's frames one by one, whoever looks on; life is in life.py."""
 
-from .playing import SETTLING, counted_frames, play, scene_of, tally
+from __future__ import annotations
 
-__all__ = ["SETTLING", "counted_frames", "play", "scene_of", "tally"]
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from tqdm import tqdm
+
+from risorius.assets.fitting import FittedHead
+
+from ..scenes import Scene, build_scene
+from ..script import Script
+from ..stopping import cleaned_up_if_stopped
+from .life import Idle
+
+
+@dataclass
+class Tally:
+    """What this process has played."""
+
+    frames: int = 0
+
+
+tally = Tally()
+SETTLING = 1.0  # [s] after which the face rests in a pose
+
+
+def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
+    """The scene that a script is written for; UserError if it asks for what that has not."""
+    scene = build_scene(script.scene, head)
+    script.check(scene.limits)
+    return scene
+
+
+def play(
+    scene: Scene,
+    script: Script,
+    frames_per_second: float,
+    *,
+    until: float | None = None,
+    viewer: npt.NDArray[np.float64] | None = None,
+    step: Callable[[float], None] | None = None,
+    progress: bool = True,
+) -> Iterator[float]:
+    """Play a script and yield the time [s] of each frame, the scene moved to it.
+
+    It begins in the script's first pose, as if that had been held for a while.
+
+    until: the last frame's time [s]; the script's end unless told. viewer: where somebody stands
+    [mm], shape (3,), at whom the face looks while what the script leaves alone lives; None: nothing
+    moves by itself. step: lets so many seconds pass; that of the scene unless told.
+    """
+    step = scene.step if step is None else step
+    idle = None if viewer is None else Idle(scene)
+    named = (*script.posed_names, *script.tracks)
+    moved = frozenset[str]().union(*map(scene.moved_by, named))
+
+    def pose(time: float) -> None:
+        """Ask for what the script and the life beneath it have at this time."""
+        beneath = {} if idle is None or viewer is None else idle.beneath(moved, viewer, time)
+        scene.pose({**script.at(time), **beneath})
+
+    scene.reset()
+    pose(0.0)
+    if any(scene.values.values()):
+        step(SETTLING)
+    until = script.duration if until is None else until
+    for index in counted_frames(until, frames_per_second, progress=progress):
+        pose(index / frames_per_second)
+        if index:
+            step(1.0 / frames_per_second)
+        yield index / frames_per_second
+
+
+def counted_frames(until: float, frames_per_second: float, *, progress: bool) -> Iterator[int]:
+    """The numbers of the frames up to a time [s], with a bar that tells how far they are."""
+    frames = range(round(until * frames_per_second) + 1)
+    bar = tqdm(frames, unit="frame", disable=not progress or None, leave=False)
+    with cleaned_up_if_stopped(bar.close):
+        for index in bar:
+            tally.frames += 1
+            yield index

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import in_one_line
-from ..script import POSE_SECONDS, TOLERANCE, Channel, Limits, Pose, Script, rounded, thinned
+from ..script import POSE_SECONDS, Channel, Limits, Pose, Script, rounded
+from ..script.thinning import TOLERANCE, thinned
 from .calibration import calibration_for
 from .mapping import controls_of
 from .report import Report, report_of
@@ -56,9 +57,7 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
     curves = {
         name: np.clip(values, *limits[name]) for name, values in controls.items() if name in limits
     }
-    report = report_of(take, calibration)
-    script = _script(take, curves, playback.lead)
-    return script, report
+    return _script(take, curves, playback.lead), report_of(take, calibration)
 
 
 def _script(take: Take, curves: Mapping[str, Array], lead: float) -> Script:

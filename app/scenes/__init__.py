@@ -1,30 +1,378 @@
-"""What can be animated: the head, the plane and the cloth, with all that is seen of them.
+"""What can be animated: the built-in head with its muscles, the paper's plane (Fig. 9), a cloth.
 
-`build_scene` makes one by its name. Nothing here knows of refinement or drawing.
+A scene owns a triangle mesh whose topology never changes, moves its vertices as time passes, and
+knows nothing of refinement or drawing. `build_scene` makes one by its name.
 """
 
-from .scene import (
-    BUILT_IN,
-    OWN,
-    SCENES,
-    ClothScene,
-    FaceScene,
-    PlaneScene,
-    Scene,
-    build_scene,
-    clamped,
-    own_head,
-)
+from __future__ import annotations
 
-__all__ = [
-    "BUILT_IN",
-    "OWN",
-    "SCENES",
-    "ClothScene",
-    "FaceScene",
-    "PlaneScene",
-    "Scene",
-    "build_scene",
-    "clamped",
-    "own_head",
-]
+import logging
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius import assets, sim
+from risorius.assets.fitting import FittedHead, fit_head
+from risorius.assets.identities import HAIR, Person, recoloured
+
+from ..controls import parted
+from ..errors import UserError
+from .mouth import Tongue, shaded_mouth
+from .surface_attachment import SurfaceAttachment
+
+BUILT_IN, OWN = "built-in", "own"  # what heads are called: that which comes along, and a user's
+CHIN, NECK = 8, 32.0  # landmark, and [mm] below it that a portrait shows
+LOG = logging.getLogger("risorius.heads")  # what was done to a head that somebody brings
+LONGEST_STEP = 1.0 / 60.0  # [s] the simulation is fed at least at this rate, whatever the film's
+
+
+class Scene:
+    """Anything that moves the vertices of one triangle mesh."""
+
+    name: str
+    faces: npt.NDArray[np.int32]
+    rest_positions: npt.NDArray[np.float64]
+    focus: npt.NDArray[np.float64]  # where a camera close by looks [mm], shape (3,)
+    groups: Mapping[str, tuple[str, ...]]  # all controls, by the heading that a panel shows
+    limits: Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
+    actions: Mapping[str, str] = MappingProxyType({})  # what controls do, where that is known
+    called: str = ""  # whose head it is, if it is one
+    expressions: tuple[str, ...] = ()  # whole faces, without those of a side
+    parts: tuple[Any, ...] = ()  # what moves with bones: eyes, teeth, ...
+    uv: npt.NDArray[np.float32] | None = None  # texture coordinates (U, 2)
+    face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
+    albedo: npt.NDArray[np.uint8] | None = None  # the texture (H, W, 3), sRGB
+    wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
+    fade: tuple[float, float, float, float] | None = None  # see render.Renderer.draw_mesh
+    in_tone: Callable[[float], npt.NDArray[np.uint8]] | None = None  # the texture by ITA [deg]
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        """The vertices now [mm], shape (V, 3); read only for everybody else."""
+        raise NotImplementedError
+
+    @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        """Points that a camera has to see, if it is to see the whole scene [mm], shape (n, 3)."""
+        return self.rest_positions
+
+    @property
+    def framed(self) -> npt.NDArray[np.float64]:
+        """Points that fill the frame of a camera [mm], shape (n, 3)."""
+        return self.extent
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """What each control is set to."""
+        raise NotImplementedError
+
+    def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
+        """How open the skin is to light from all around, over the texture (H, W); None: all.
+
+        The scene stays as it is.
+        """
+        return None
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        """Set controls, each cut off at its limits; what is not named becomes 0.
+
+        Raises UserError on a name that is no control.
+        """
+        raise NotImplementedError
+
+    def step(self, seconds: float) -> None:
+        """Let time pass."""
+        raise NotImplementedError
+
+    def reset(self) -> None:
+        """Back to rest, at once."""
+        raise NotImplementedError
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        """Where the rigid parts are now: a (4, 4) matrix for each bone."""
+        return {}
+
+    def moved_by(self, name: str) -> Mapping[str, float]:
+        """The lowest controls that a control moves: itself, or what a layer's control adds to.
+
+        And how far each of them goes where the control is at its most, without a sign.
+        """
+        return {name: 1.0}
+
+
+class FaceScene(Scene):
+    """A head, moved by muscles, jaw and gaze through the spring simulation."""
+
+    name = "face"
+
+    def __init__(
+        self,
+        head: assets.Head | FittedHead | None = None,
+        simulation: sim.Simulation | None = None,
+    ) -> None:
+        """Simulate `head`, the built-in one unless told; simulation: of it, if there is one."""
+        head = assets.load("head") if head is None else head
+        self.head = head
+        self.simulation = simulation = simulation or sim.create(head)
+        self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
+        self.groups, self.limits = simulation.groups, simulation.limits
+        self.actions = simulation.actions
+        expressions = simulation.layers.get("Expressions", ())
+        self.expressions = tuple(
+            name for name in expressions if parted(name)[0] not in {*expressions} - {name}
+        )
+        self.parts = tuple(
+            part
+            if part.roots is None
+            else SurfaceAttachment.of(part, self.rest_positions, self.faces)
+            for part in shaded_mouth(head.parts)
+        )
+        self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
+        self.wrinkles = head.wrinkles
+        is_known = isinstance(head, assets.Head)
+        person = head if isinstance(head, Person) else None
+        if isinstance(head, FittedHead) and person is None:  # others have a shirt
+            self.fade = head.fade()
+        self.called = BUILT_IN if is_known else (person and person.called) or OWN
+        self.in_tone = recoloured if is_known else None if person is None else person.in_tone
+        self.landmarks = head.landmarks
+        landmarks = head.vertices[head.landmarks]
+        self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
+        self._moved_by: dict[str, dict[str, float]] = {}
+
+    def clone(self) -> FaceScene:
+        """The same head once more, at rest, which moves by itself; that takes no time."""
+        simulation = self.simulation.clone()
+        simulation.reset()
+        return FaceScene(self.head, simulation)
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self.simulation.positions
+
+    @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        hair = [part.vertices for part in self.parts if part.name.startswith(HAIR)]
+        return np.vstack([self.rest_positions, *hair])
+
+    @property
+    def framed(self) -> npt.NDArray[np.float64]:
+        """The head and the beginning of the neck; what is below may lie beyond the frame."""
+        lowest = float(self.rest_positions[self.landmarks[CHIN], 1]) - NECK
+        extent = self.extent
+        return np.asarray(extent[extent[:, 1] > lowest])
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self.simulation.values
+
+    def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
+        """That of the built-in head's file, or baked now; see `Scene.ambient_occlusion`."""
+        head, simulation = self.head, self.simulation
+        if isinstance(head, Person):  # same triangles, hardly another form
+            return head.ambient_occlusion
+        if isinstance(head, assets.Head) and head.ambient_occlusion_file.exists():
+            return head.ambient_occlusion
+        # Only who brings a head waits for it to be compiled.
+        from .ambient_occlusion import ambient_occlusion
+
+        if any(self.values.values()) or not np.array_equal(self.positions, self.rest_positions):
+            simulation = sim.create(head)  # baking moves it
+        return ambient_occlusion(head, simulation)
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        try:
+            self.simulation.pose(channels, cut_off=True)
+        except ValueError as error:  # a name that is no control
+            raise UserError(str(error)) from None
+
+    def step(self, seconds: float) -> None:
+        count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
+        for _ in range(count):
+            self.simulation.step(seconds / count)
+        self._bend_parts()
+
+    def reset(self) -> None:
+        self.simulation.reset()
+        self._bend_parts()
+
+    def _bend_parts(self) -> None:
+        bent, bones = self.simulation.tongue(), self.bone_transforms()
+        for part in self.parts:
+            if isinstance(part, SurfaceAttachment):
+                part.follow(self.positions, bones[part.bone])
+            elif isinstance(part, Tongue) and bent is not None:
+                part.bend(bent)
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        return self.simulation.bone_transforms()
+
+    def moved_by(self, name: str) -> Mapping[str, float]:
+        simulation = self.simulation
+        if name not in self._moved_by:
+            # Asked of the simulation, between two steps, so that nothing of layers is known here.
+            values = simulation.values
+            simulation.pose({name: self.limits[name][1]})
+            sums = simulation.sums
+            simulation.pose(values)
+            self._moved_by[name] = {each: abs(share) for each, share in sums.items() if share}
+        return self._moved_by[name]
+
+
+class SheetScene(Scene):
+    """A scene without muscles: its controls have values, and nothing else moves them."""
+
+    _values: dict[str, float]
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self._values
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
+
+    def reset(self) -> None:
+        self._values.update(dict.fromkeys(self.limits, 0.0))
+
+
+class PlaneScene(SheetScene):
+    """The paper's plane: 154 triangles under a strong travelling sine (Fig. 9 and Table 1).
+
+    The wave runs along the diagonals of the cells, so that every edge bends: across one along the
+    plane a third of the edges would stay straight and never be split. `amplitude` 1 lifts the
+    crests by HEIGHT; `phase` moves the wave along by that many wavelengths.
+    """
+
+    name = "plane"
+    WAVES = 1.5  # wavelengths in a length of the plane (chosen by eye, with HEIGHT)
+    HEIGHT = 0.2  # crest above the middle, in lengths of the plane
+
+    groups = MappingProxyType({"Wave": ("amplitude", "phase")})
+    limits = MappingProxyType({"amplitude": (0.0, 1.0), "phase": (0.0, 100.0)})
+
+    def __init__(self) -> None:
+        plane = assets.load("plane")
+        self.faces, self.rest_positions = plane.faces, plane.vertices
+        self.focus = plane.vertices.mean(axis=0)
+        self._values = dict.fromkeys(self.limits, 0.0)
+        self._length = float(np.ptp(plane.vertices, axis=0).max())
+        self._positions = plane.vertices.copy()
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self._positions
+
+    def step(self, seconds: float) -> None:
+        self._positions[:] = self.waved(self.rest_positions)[0]
+
+    def waved(
+        self, points: npt.NDArray[np.float64]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Where points of the flat plane z = 0 lie now, and the wave's normals there, (n, 3)."""
+        height = self._values["amplitude"] * self.HEIGHT * self._length
+        frequency = 2.0 * np.pi * self.WAVES / self._length
+        along = points.sum(axis=1) / np.sqrt(2.0)
+        angle = frequency * along - 2.0 * np.pi * self._values["phase"]
+        moved, normals = points.copy(), np.ones_like(points)
+        moved[:, 2] += height * np.sin(angle)
+        normals[:, :2] = -np.sqrt(0.5) * height * frequency * np.cos(angle)[:, None]
+        return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+    def reset(self) -> None:
+        super().reset()
+        self._positions[:] = self.rest_positions
+
+
+class ClothScene(SheetScene):
+    """A sheet of 1152 triangles that falls over a ball: folds wherever it hangs.
+
+    `drop` lets go of it, or takes it up again; `turn` is how far the ball has been turned, which
+    draws the sheet along.
+    """
+
+    name = "cloth"
+    groups = MappingProxyType({"Cloth": ("drop",), "Ball": ("turn",)})
+    limits = MappingProxyType({"drop": (0.0, 1.0), "turn": (-2.0, 2.0)})
+    actions = MappingProxyType(
+        {"drop": "lets the cloth fall", "turn": "turns the ball under the cloth, 1 once around"}
+    )
+
+    def __init__(self) -> None:
+        cloth = assets.load("cloth")
+        self.parts = (cloth.ball,)
+        self.sheet = sim.Cloth(cloth, np.zeros(3), cloth.radius)
+        self.faces, self.rest_positions = cloth.faces, cloth.vertices
+        self._values = dict.fromkeys(self.limits, 0.0)
+        # A corner hangs down from where it leaves the ball, half-way up.
+        from_middle = float(np.linalg.norm(cloth.vertices[0, [0, 2]]))
+        lowest = 0.5 * np.pi * cloth.radius - from_middle
+        self._extent = np.vstack([cloth.vertices, [0.0, lowest, 0.0]])
+        self.focus = np.array([0.0, 0.5 * (cloth.radius + lowest), 0.0])
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        return self.sheet.positions
+
+    @property
+    def extent(self) -> npt.NDArray[np.float64]:
+        """The sheet held up, and how low its corners hang."""
+        return self._extent
+
+    def step(self, seconds: float) -> None:
+        self.sheet.held = 1.0 - self._values["drop"]
+        left = 2.0 * np.pi * self._values["turn"] - self.sheet.turned
+        self.sheet.turning = left / seconds if seconds > 0.0 else 0.0
+        self.sheet.step(seconds)
+
+    def reset(self) -> None:
+        super().reset()
+        self.sheet.reset()
+
+    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
+        cosine, sine = np.cos(self.sheet.turned), np.sin(self.sheet.turned)
+        turn = np.eye(4)
+        turn[0, [0, 2]], turn[2, [0, 2]] = (cosine, sine), (-sine, cosine)
+        return {"ball": turn}
+
+
+def clamped(
+    limits: Mapping[str, tuple[float, float]], channels: Mapping[str, float]
+) -> dict[str, float]:
+    """The channels, each cut off at its limits. Raises UserError on one that has none."""
+    for name in channels.keys() - limits.keys():
+        raise UserError(f"there is no control called '{name}'")
+    return {
+        name: min(max(value, limits[name][0]), limits[name][1]) for name, value in channels.items()
+    }
+
+
+SCENES: dict[str, Callable[[], Scene]] = {
+    "face": FaceScene,
+    "plane": PlaneScene,
+    "cloth": ClothScene,
+}
+
+
+def build_scene(name: str, head: FittedHead | None = None) -> Scene:
+    """The scene called `name`, with a head of the user's; UserError where it has none."""
+    if head is None:
+        return SCENES[name]()
+    if name != "face":
+        raise UserError(f"--head and --person go with the scene face, not with '{name}'")
+    try:
+        return FaceScene(head)
+    except ValueError as error:
+        raise UserError(f"this head cannot be simulated: {error}") from None
+
+
+def own_head(head: Path, landmarks: Path) -> FittedHead:
+    """The user's own head, fitted."""
+    fitted = fit_head(head, landmarks)
+    for note in fitted.notes:
+        LOG.warning("risorius: %s: %s", head, note)
+    return fitted

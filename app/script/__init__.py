@@ -13,7 +13,7 @@ A script is a list of poses and, beside them, tracks::
 
     [[pose]]
     time = 1.0
-    easing = "smooth"            # how this pose is approached, see easing.py
+    easing = "smooth"            # how this pose is approached, see below
     name = "joy"                 # optional: the label of this key pose on a contact sheet
     joy = 1.0                    # a control of any layer: an expression, an action unit,
     jaw_open = 0.1               # a viseme, a muscle, the jaw, the gaze
@@ -30,46 +30,333 @@ A script is a list of poses and, beside them, tracks::
     '''                          # lines of time and value, eased linearly, as recordings have
 
 Before its first key a channel keeps that key's value, after its last key the last one's.
-`docs/scripts.md` is the user's page of this format.
+`docs/scripts.md` is the user's page of this format. Here is what a script is: poses and tracks of
+keys, and their values at any time.
 """
 
-from .model import (
-    DECIMALS,
-    EASING_NAMES,
-    LARGEST,
-    LONGEST_FILE,
-    Channel,
-    Floats,
-    Key,
-    Limits,
-    Pose,
-    Script,
-    rounded,
-)
-from .reader import load_script, parse_script, preface_of
-from .thinning import TOLERANCE, thinned
-from .writer import POSE_SECONDS, is_pose, pose_script, save_script, script_text
+from __future__ import annotations
 
-__all__ = [
-    "DECIMALS",
-    "EASING_NAMES",
-    "LARGEST",
-    "LONGEST_FILE",
-    "POSE_SECONDS",
-    "TOLERANCE",
-    "Channel",
-    "Floats",
-    "Key",
-    "Limits",
-    "Pose",
-    "Script",
-    "is_pose",
-    "load_script",
-    "parse_script",
-    "pose_script",
-    "preface_of",
-    "rounded",
-    "save_script",
-    "script_text",
-    "thinned",
-]
+import bisect
+import difflib
+import functools
+from array import array
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.schema import REST, OneOf, Record, Within, called
+
+from ..errors import UserError
+
+Floats = npt.NDArray[np.float64]
+Easings = npt.NDArray[np.uint16]  # places in EASING_NAMES
+Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
+
+DECIMALS = 6  # of numbers that come from sliders and clocks
+LONGEST_FILE = 2**25  # [bytes]; three quarters of an hour of capture, and /dev/zero has no end
+POSE_SECONDS = 1.0  # duration of a script that is one pose
+LARGEST = 86_400.0  # of any number in a script; as a time [s] it is a day
+
+
+def linear(fraction: float) -> float:
+    """Constant speed."""
+    return fraction
+
+
+def smooth(fraction: float) -> float:
+    """Starts and stops softly (cubic); the default, since no muscle starts or stops at once."""
+    return fraction * fraction * (3.0 - 2.0 * fraction)
+
+
+def ease_in(fraction: float) -> float:
+    """Starts softly, arrives at speed."""
+    return fraction * fraction
+
+
+def ease_out(fraction: float) -> float:
+    """Starts at speed, arrives softly."""
+    return 1.0 - (1.0 - fraction) ** 2
+
+
+def hold(fraction: float) -> float:
+    """Stays at the previous key until the next one is reached, then jumps."""
+    return fraction // 1.0
+
+
+# Curves between two keys: of a fraction 0..1, each from 0 to 1, for numbers and arrays alike.
+EASINGS: dict[str, Callable[[float], float]] = {
+    "linear": linear,
+    "smooth": smooth,
+    "ease-in": ease_in,
+    "ease-out": ease_out,
+    "hold": hold,
+}
+EASING_NAMES = tuple(EASINGS)
+
+_CURVES = tuple(EASINGS.values())
+Number = Annotated[float, Within(-LARGEST, LARGEST)]
+Moment = Annotated[float, Within(0.0, LARGEST)]
+Easing = Annotated[str, OneOf(EASING_NAMES)]
+
+
+@dataclass(frozen=True)
+class Key(Record):
+    """One keyframe of one channel: at `time` [s] it has `value`, approached by `easing`."""
+
+    time: Moment
+    value: Number
+    easing: Easing = "smooth"
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """The keys of one control, at least one, in the order of time.
+
+    A recorded take has half a million keys, so they are kept in arrays, which nobody may write.
+
+    times: of the keys [s], shape (K,). values: at these times, shape (K,). easings: how each key is
+    approached, numbers of EASING_NAMES, shape (K,), or the name of one easing for all.
+    """
+
+    times: Floats
+    values: Floats
+    easings: Easings
+
+    def __init__(
+        self, times: npt.ArrayLike, values: npt.ArrayLike, easings: npt.ArrayLike | str = "linear"
+    ) -> None:
+        if isinstance(easings, str):
+            easings = np.full(np.shape(times), EASING_NAMES.index(easings))
+        for name, part, kind in (
+            ("times", times, np.float64),
+            ("values", values, np.float64),
+            ("easings", easings, np.uint16),
+        ):
+            own = np.asarray(part, kind)
+            if own.flags.writeable:  # somebody else might write it
+                own = own.copy()
+                own.flags.writeable = False
+            object.__setattr__(self, name, own)
+
+    @classmethod
+    def of(cls, keys: Iterable[Key]) -> Channel:
+        """The channel that has these keys, which are in the order of time."""
+        keys = tuple(keys)
+        return cls(
+            [key.time for key in keys],
+            [key.value for key in keys],
+            [EASING_NAMES.index(key.easing) for key in keys],
+        )
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """The keys one by one, made anew at each call: for a few of them, or few channels."""
+        parts = zip(self.times.tolist(), self.values.tolist(), self.easings.tolist(), strict=True)
+        return tuple(Key(time, value, EASING_NAMES[easing]) for time, value, easing in parts)
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Channel):
+            return NotImplemented
+        return self is other or (
+            np.array_equal(self.times, other.times)
+            and np.array_equal(self.values, other.values)
+            and np.array_equal(self.easings, other.easings)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @functools.cached_property
+    def _parts(self) -> tuple[array[float], array[float], array[int]]:
+        """The same numbers in sequences of Python's own, which are quicker to look into."""
+        times, values = array("d", self.times.tobytes()), array("d", self.values.tobytes())
+        return times, values, array("H", self.easings.tobytes())
+
+    def value(self, time: float) -> float:
+        """The eased value at `time` [s]; constant before the first and after the last key."""
+        times, values, easings = self._parts
+        previous, following, share = _between(times, time)
+        start = values[previous]
+        return start + (values[following] - start) * _CURVES[easings[following]](share)
+
+    @functools.cached_property
+    def ends(self) -> tuple[float, float]:
+        """The lowest and the highest value of all."""
+        return float(self.values.min()), float(self.values.max())
+
+    def raised(
+        self, chosen: npt.NDArray[np.bool_], amount: float, low: float, high: float
+    ) -> Channel:
+        """The channel with the chosen keys higher, as far as the limits let them; shape (K,)."""
+        higher = within(self.values, amount, low, high)
+        return Channel(self.times, np.where(chosen, higher, self.values), self.easings)
+
+    def values_at(self, times: Floats) -> Floats:
+        """The same at each of many times [s]; both of shape (N,)."""
+        after = np.searchsorted(self.times, times, "right")
+        before = np.maximum(after - 1, 0)
+        following = np.minimum(after, len(self) - 1)
+        seconds = np.where(before < following, self.times[following] - self.times[before], 1.0)
+        shares = np.where(before < following, (times - self.times[before]) / seconds, 0.0)
+        for easing in set(self.easings[following].tolist()):
+            is_eased = self.easings[following] == easing
+            shares[is_eased] = _CURVES[easing](shares[is_eased])
+        start = self.values[before]
+        values: Floats = start + (self.values[following] - start) * shares
+        return values
+
+    def outline(self, start: float, end: float, count: int) -> tuple[Floats, Floats]:
+        """Times [s] and values of points that draw the curve between two times.
+
+        As true as `count` columns can show it: with every key and every jump where these are
+        fewer than the columns, else with the lowest and the highest key of each. Shape (N,).
+        """
+        edges = np.linspace(start, end, count + 1)
+        first, last = np.searchsorted(self.times, (start, end))
+        keys, values = self.times[first:last], self.values[first:last]
+        if len(keys) <= count:  # "hold" jumps at a key: it needs a point just before as well
+            times = np.unique(np.concatenate([edges, keys, np.nextafter(keys, -np.inf)]))
+            return times, self.values_at(times)
+        begins = np.unique(np.searchsorted(keys, edges[:-1]))
+        begins = begins[begins < len(keys)]
+        ends = [extreme.reduceat(values, begins) for extreme in (np.minimum, np.maximum)]
+        return np.repeat(keys[begins], 2), np.stack(ends, axis=1).ravel()
+
+
+@dataclass(frozen=True)
+class Pose(Record):
+    """A whole pose at `time` [s]: what it does not name is 0; approached by `easing`."""
+
+    time: Moment
+    values: Annotated[Mapping[str, Number], called(REST)] = field(default_factory=dict)
+    easing: Easing = "smooth"
+    name: str | None = None  # one that has a name gets a picture on a contact sheet
+
+    def raised(self, names: Iterable[str], amount: float, limits: Limits) -> Pose:
+        """The pose with some values higher, as far as their limits let them."""
+        higher = {
+            name: float(within(self.values.get(name, 0.0), amount, *limits[name])) for name in names
+        }
+        new = {name: value for name, value in higher.items() if value or name in self.values}
+        return replace(self, values={**self.values, **new})
+
+
+@dataclass(frozen=True)
+class Script:
+    """A performance: what each control does over `duration` seconds."""
+
+    title: str
+    duration: float
+    source: str = field(compare=False)  # the file it came from, for error texts
+    scene: str = "face"
+    camera: str | None = None
+    sound: Path | None = None  # the file of what is heard with it, its whole path
+    poses: tuple[Pose, ...] = ()  # in the order of time
+    tracks: dict[str, Channel] = field(default_factory=dict)
+    preface: str = ""  # the lines of comment with which the file begins
+    is_converted: bool = field(default=False, compare=False)  # source is a recording, no script
+
+    @functools.cached_property
+    def posed_names(self) -> tuple[str, ...]:
+        """The controls that any pose names."""
+        return tuple(sorted({name for pose in self.poses for name in pose.values}))
+
+    @functools.cached_property
+    def _pose_times(self) -> tuple[float, ...]:
+        return tuple(pose.time for pose in self.poses)
+
+    def posed(self, time: float) -> dict[str, float]:
+        """What the poses alone make of each control that they name, at `time` [s]."""
+        values = dict.fromkeys(self.posed_names, 0.0)
+        if self.poses:
+            before, after, share = _between(self._pose_times, time)
+            previous, following = self.poses[before], self.poses[after]
+            share = EASINGS[following.easing](share)
+            for name in {**previous.values, **following.values}:
+                start = previous.values.get(name, 0.0)
+                values[name] = start + (following.values.get(name, 0.0) - start) * share
+        return values
+
+    def posed_channel(self, name: str) -> Channel:
+        """How the poses alone move a control, which is as a track of these keys would."""
+        keys = (Key(each.time, each.values.get(name, 0.0), each.easing) for each in self.poses)
+        return Channel.of(keys)
+
+    @property
+    def key_poses(self) -> tuple[Pose, ...]:
+        """The poses that have a name."""
+        return tuple(pose for pose in self.poses if pose.name is not None)
+
+    def at(self, time: float) -> dict[str, float]:
+        """The value of every channel that the script names, at `time` [s]."""
+        values = self.posed(time)
+        for name, channel in self.tracks.items():
+            values[name] = values.get(name, 0.0) + channel.value(time)
+        return values
+
+    def check(self, limits: Limits) -> None:
+        """Raise UserError if the script names what the scene does not have, or asks too much.
+
+        What tracks add to poses may be negative, and is cut off with them; no single key may be
+        further from 0 than can have an effect.
+        """
+        for name in (*self.posed_names, *self.tracks):
+            if name not in limits:
+                hint = suggestion(name, limits, self.scene)
+                raise UserError(f"{self.source}: unknown name '{name}'; {hint}")
+        for pose in self.poses:
+            when = f" at {pose.time:g} s" if len(self.poses) > 1 else ""
+            for name, value in pose.values.items():
+                self._check_value(name, value, when, *limits[name])
+        for name, channel in self.tracks.items():
+            low, high = limits[name]
+            for place in np.flatnonzero(np.abs(channel.values) > high - low)[:1]:
+                when = f" at {channel.times[place]:g} s" if len(channel) > 1 else ""
+                value = channel.values[place]
+                self._check_value(f"track '{name}'", value, when, low - high, high - low)
+
+    def _check_value(self, what: str, value: float, when: str, low: float, high: float) -> None:
+        if not low <= value <= high:
+            raise UserError(
+                f"{self.source}: {what} is {value:g}{when}; it must be from {low:g} to {high:g}"
+            )
+
+
+def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
+    """Which of the times are before and after `time` [s], and the share of the way between them.
+
+    Before the first and after the last both are that one.
+    """
+    after = bisect.bisect_right(times, time)
+    if after in (0, len(times)):
+        outermost = min(after, len(times) - 1)
+        return outermost, outermost, 0.0
+    previous, following = times[after - 1], times[after]
+    return after - 1, after, (time - previous) / (following - previous)
+
+
+def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats:
+    """Values higher by an amount, within limits; what is beyond these already may stay there."""
+    now = np.asarray(values, np.float64)
+    higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))
+    return np.round(higher, DECIMALS)
+
+
+def rounded(number: float) -> float:
+    """A time or a value as programs write it into scripts: no digits that nobody meant."""
+    return round(float(number), DECIMALS)
+
+
+def suggestion(name: str, allowed: Iterable[str], scene: str) -> str:
+    """The end of an error text: the names that were probably meant, or where to find all."""
+    near = difflib.get_close_matches(name, list(allowed), n=3)
+    if near:
+        return f"did you mean {' or '.join(near)}?"
+    option = "" if scene == "face" else f" --scene {scene}"
+    return f"`risorius controls{option}` lists every control"

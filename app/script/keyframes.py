@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..errors import UserError
 from ..scenes import clamped
-from .model import DECIMALS, EASING_NAMES, LARGEST, Channel, Key, Limits, Pose, Script, rounded
+from . import DECIMALS, EASING_NAMES, LARGEST, Channel, Key, Limits, Pose, Script, rounded
 from .places import Places, among
 
 POSES = ""  # the track of whole poses; any other is called as its control is
@@ -64,14 +64,22 @@ def pose_at(script: Script, time: float) -> Pose | None:
 # Changes
 
 
-def moved(script: Script, places: Places, seconds: float) -> Placed:
-    """The script with keys later by `seconds` (none before 0), and where they are then."""
-    return _placed(script, places, seconds)
+def moved(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
+    """The script with keys later by `seconds` (none before 0), and where they are then.
 
-
-def copied(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
-    """The script with copies of keys (its own or a source's), `seconds` later, and their places."""
-    return _placed(script, places, seconds, source or script)
+    source: whose keys are copied, while its own stay; None moves them.
+    """
+    shift = max(seconds, -places.first) if places else 0.0
+    changed, arrived, before = {}, {}, _columns(script, places)
+    for name, columns in _columns(source or script, places).items():
+        is_chosen = among(columns[0], places.times[name])
+        times, *rest = _picked(columns, is_chosen)
+        arrived[name] = np.round(times + shift, DECIMALS)
+        nothing = _picked(columns, np.arange(0))
+        there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
+        changed[name] = _joined(there, (arrived[name], *rest))
+    ends = [float(times[-1]) for times in arrived.values() if len(times)]
+    return _reaching(_with(script, changed), *ends), Places(arrived)
 
 
 def without(script: Script, places: Places) -> Script:
@@ -133,29 +141,24 @@ def differing(script: Script, time: float, values: Values, limits: Limits) -> li
     return [name for name, value in values.items() if abs(value - told.get(name, 0.0)) > SAME]
 
 
-def keyed(
-    script: Script, time: float, values: Values, limits: Limits, *, is_whole: bool = False
-) -> Script:
+def keyed(script: Script, time: float, values: Values, limits: Limits) -> Script:
     """The script with a key that shows these values at `time` [s].
 
     The key is a pose, which holds what the tracks do not add; where a pose cannot (a track closes
     the eye, and it shall be open) the track gets a key, too. In a script of tracks alone, as
     recordings are, those get keys that differ; all of them where nothing does.
-    is_whole: every track gets a key, too, whether it differs or not.
     """
     time = rounded(time)
     plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
     changed = differing(script, time, values, limits)
     if script.tracks and not script.poses:
-        names = {*changed, *script.tracks} if is_whole or not changed else changed
-        keys = {name: values[name] for name in sorted(names)}
+        keys = {name: values[name] for name in sorted(changed or script.tracks)}
         return _with_track_keys(_reaching(script, time), time, keys)
     wanted = plain | {name: values[name] - added.get(name, 0.0) for name in changed}
     posed = {name: rounded(value) for name, value in clamped(limits, wanted).items()}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
     keys = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
-    keys = added | keys if is_whole else keys
     present = pose_at(script, time)
     pose = Pose(
         present.time if present else time,
@@ -206,21 +209,6 @@ def _pose_columns(poses: Sequence[Pose]) -> Columns:
     column = np.empty(len(poses), object)
     column[:] = poses
     return np.array([pose.time for pose in poses]), column
-
-
-def _placed(script: Script, places: Places, seconds: float, source: Script | None = None) -> Placed:
-    """The script with keys (copies of a source's) later by `seconds`, and where they are then."""
-    shift = max(seconds, -places.first) if places else 0.0
-    changed, arrived, before = {}, {}, _columns(script, places)
-    for name, columns in _columns(source or script, places).items():
-        is_chosen = among(columns[0], places.times[name])
-        times, *rest = _picked(columns, is_chosen)
-        arrived[name] = np.round(times + shift, DECIMALS)
-        nothing = _picked(columns, np.arange(0))
-        there = before.get(name, nothing) if source else _picked(columns, ~is_chosen)
-        changed[name] = _joined(there, (arrived[name], *rest))
-    ends = [float(times[-1]) for times in arrived.values() if len(times)]
-    return _reaching(_with(script, changed), *ends), Places(arrived)
 
 
 def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:

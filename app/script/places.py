@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 Times = npt.NDArray[np.float64]  # [s], shape (K,), rising
+NOTHING: Times = np.empty(0)
 
 
 class KeyPlace(NamedTuple):
@@ -21,9 +22,6 @@ class KeyPlace(NamedTuple):
 class Places(Set[KeyPlace]):
     """A set of places that never changes: of each track that is in it, the times of its keys."""
 
-    _columns: tuple[float, float, int] = (0.0, 0.0, 0)  # for which is remembered ...
-    _latest: dict[tuple[str, ...], Times]  # ... what is in them, by the tracks that were asked for
-
     def __init__(self, times: Mapping[str, Times]) -> None:
         """times: by the name of the track; rising, each time once."""
         self.times = {name: each for name, each in times.items() if len(each)}
@@ -31,19 +29,17 @@ class Places(Set[KeyPlace]):
     @classmethod
     def of(cls, *places: KeyPlace) -> Places:
         """The set of a few places."""
-        return cls._from_iterable(places)
-
-    @classmethod
-    def _from_iterable(cls, places: Iterable[Any]) -> Places:  # type: ignore[override]
         times: dict[str, set[float]] = {}
         for track, time in places:
             times.setdefault(track, set()).add(time)
         return cls({name: np.array(sorted(each)) for name, each in times.items()})
 
+    @classmethod
+    def _from_iterable(cls, places: Iterable[Any]) -> Places:  # type: ignore[override]
+        return cls.of(*places)  # for what Set makes of other sets
+
     def __contains__(self, place: object) -> bool:
-        if not isinstance(place, KeyPlace) or place.track not in self.times:
-            return False
-        return bool(among(np.array([place.time]), self.times[place.track])[0])
+        return isinstance(place, KeyPlace) and place.time in self.times.get(place.track, NOTHING)
 
     def __iter__(self) -> Iterator[KeyPlace]:
         return (KeyPlace(name, time) for name, each in self.times.items() for time in each.tolist())
@@ -57,30 +53,24 @@ class Places(Set[KeyPlace]):
         return min(float(each[0]) for each in self.times.values())
 
     def latest_in(self, edges: Times, names: Iterable[str]) -> Times:
-        """The latest time between each two of the times `edges` that has any in these tracks [s].
-
-        Remembered as long as the edges stay, since it is asked for in each frame.
-        """
-        columns = float(edges[0]), float(edges[-1]), len(edges)
-        if columns != self._columns:
-            self._columns, self._latest = columns, {}
-        tracks = tuple(names)
-        if tracks not in self._latest:
-            latest = np.full(len(edges) - 1, -np.inf)
-            for times in (self.times[name] for name in tracks if name in self.times):
-                after = np.searchsorted(times, edges)
-                is_there = after[1:] > after[:-1]
-                latest[is_there] = np.maximum(latest[is_there], times[after[1:][is_there] - 1])
-            self._latest[tracks] = latest[np.isfinite(latest)]
-        return self._latest[tracks]
+        """The latest time between each two of the times `edges` with any in these tracks [s]."""
+        latest = np.full(len(edges) - 1, -np.inf)
+        for times in (self.times[name] for name in names if name in self.times):
+            after = np.searchsorted(times, edges)
+            is_there = after[1:] > after[:-1]
+            latest[is_there] = np.maximum(latest[is_there], times[after[1:][is_there] - 1])
+        found: Times = latest[np.isfinite(latest)]
+        return found
 
     def near(self, time: float, reach: float) -> Places:
         """Those at the time nearest to this one, none if that is further than `reach` [s]."""
-        times = {name: _nearest(each, time) for name, each in self.times.items()}
-        nearest = min(times.values(), key=lambda each: abs(each - time), default=np.inf)
-        if abs(nearest - time) > reach:
-            return NOWHERE
-        return Places({name: np.array([each]) for name, each in times.items() if each == nearest})
+        around = self.between(time - reach, time + reach).times
+        nearest = min(
+            (float(each[np.abs(each - time).argmin()]) for each in around.values()),
+            key=lambda each: abs(each - time),
+            default=time,
+        )
+        return self.between(nearest, nearest)
 
     def between(self, first: float, last: float) -> Places:
         """Those from one time to another [s]."""
@@ -92,18 +82,22 @@ class Places(Set[KeyPlace]):
         )
 
     def __or__(self, other: Set[Any]) -> Places:
-        theirs = _places(other).times
-        joined = {
-            name: each if name not in theirs else np.union1d(each, theirs[name])
-            for name, each in self.times.items()
-        }
-        return Places(theirs | joined)
+        return self._joined(other, np.union1d)
 
     def __and__(self, other: Set[Any]) -> Places:
-        return self._filtered(_places(other), are_kept=True)
+        return self._joined(other, np.intersect1d)
 
     def __sub__(self, other: Set[Any]) -> Places:
-        return self._filtered(_places(other), are_kept=False)
+        return self._joined(other, np.setdiff1d)
+
+    def _joined(self, other: Set[Any], join: Callable[[Times, Times], Times]) -> Places:
+        theirs = (other if isinstance(other, Places) else Places.of(*other)).times
+        return Places(
+            {
+                name: join(self.times.get(name, NOTHING), theirs.get(name, NOTHING))
+                for name in (self.times | theirs)
+            }
+        )
 
     def __le__(self, other: Set[Any]) -> bool:
         return len(self & other) == len(self)
@@ -113,40 +107,14 @@ class Places(Set[KeyPlace]):
 
     __hash__ = None  # type: ignore[assignment]
 
-    def _filtered(self, other: Places, *, are_kept: bool) -> Places:
-        """What is in the other set as well, or what is not."""
-        nothing = np.empty(0)
-        return Places(
-            {
-                name: each[among(each, other.times.get(name, nothing)) == are_kept]
-                for name, each in self.times.items()
-            }
-        )
-
 
 NOWHERE = Places({})
 
 
 def among(times: Times, others: Times, reach: float = 0.0) -> npt.NDArray[np.bool_]:
     """Which of the times are one of the others, or no further from one than `reach` [s]."""
-    is_among = np.zeros(len(times), np.bool_)
-    if len(others):
-        begin = np.searchsorted(times, others[0] - reach)
-        stretch = slice(begin, np.searchsorted(times, others[-1] + reach, "right"))
-        inner = times[stretch]
-        if np.array_equal(inner, others):  # as a box selects them
-            is_among[stretch] = True
-        else:
-            after = np.searchsorted(others, inner - reach)
-            is_among[stretch] = others[np.minimum(after, len(others) - 1)] <= inner + reach
+    if not len(others):
+        return np.zeros(len(times), np.bool_)
+    after = np.minimum(np.searchsorted(others, times - reach), len(others) - 1)
+    is_among: npt.NDArray[np.bool_] = np.abs(others[after] - times) <= reach
     return is_among
-
-
-def _nearest(times: Times, time: float) -> float:
-    after = int(np.searchsorted(times, time))
-    around = times[max(after - 1, 0) : after + 1].tolist()
-    return float(min(around, key=lambda each: abs(each - time)))
-
-
-def _places(others: Set[Any]) -> Places:
-    return others if isinstance(others, Places) else Places._from_iterable(others)

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from . import EASING_NAMES, Channel, Key, Limits, Script, rounded
 from .keyframes import FRAME, differing
-from .model import EASING_NAMES, Channel, Key, Limits, Script, rounded
 from .thinning import thinned
 
 RELEASE = 0.1  # [s] at the recording's end in which a control goes back to where the script has it
@@ -35,7 +35,6 @@ class Recorder:
         self.start = self.time = rounded(start)
         # Of each control that has moved: times [s] and what its track has, from the last key on.
         self.samples: dict[str, tuple[array[float], array[float]]] = {}
-        self._taken: dict[str, Channel] = {}
         thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
 
     def add(self, time: float, values: Mapping[str, float]) -> None:
@@ -64,19 +63,13 @@ class Recorder:
         return {name: each for name, each in self.held.items() if self._kept.get(name) != each}
 
     def script(self) -> Script | None:
-        """The script with what was recorded so far, or None where nothing was.
-
-        Only what is new since the last call is thinned, so that a long recording does not stutter.
-        """
-        for name, (times, values) in self.samples.items():
-            if name not in self._taken:
-                self._taken[name] = thinned(times, values)
-            elif len(times) > 1:
-                self._taken[name] = self._taken[name].continued(thinned(times, values))
-            del times[:-1], values[:-1]
-        if not self._taken:
+        """The script with what was recorded so far, or None where nothing was."""
+        if not self.samples:
             return None
-        tracks = {name: self._joined(name, taken) for name, taken in sorted(self._taken.items())}
+        tracks = {
+            name: self._joined(name, thinned(*samples))
+            for name, samples in sorted(self.samples.items())
+        }
         end = max(self._played.duration, rounded(self.time))
         return replace(self._played, duration=end, tracks={**self._played.tracks, **tracks})
 
@@ -90,8 +83,6 @@ class Recorder:
         old = self._played.tracks.get(name, Channel([], []))
         start, end = rounded(taken.times[0]), rounded(self.time)
         is_last = end >= self._played.duration - FRAME
-        if is_last and not len(old):
-            return taken  # with the lines of text that it has made
         head = [key for key in old.keys if key.time < start]
         tail = [key for key in old.keys if key.time > end]
         keys = list(taken.keys)

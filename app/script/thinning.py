@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from risorius.jit import njit
 
-from .model import DECIMALS, Channel, Floats
+from . import DECIMALS, Channel, Floats
 
 TOLERANCE = 2e-3  # of a value: what a straight line between keys may be off; nobody sees it
 

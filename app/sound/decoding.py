@@ -1,4 +1,7 @@
-"""A sound file -> its samples. Any file that ffmpeg hears something in: WAV, MP3, a film."""
+"""A sound file -> its samples. Any file that ffmpeg hears something in: WAV, MP3, a film.
+
+Films go through the same ffmpeg, which `imageio_ffmpeg` brings along.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import UserError
-from ..ffmpeg import RATE, program, sound_form, sound_input
+from ..errors import UserError, needed
 from ..files import read_bytes
 from ..script import Script
 
+RATE = 48_000  # [samples/s] of sounds; what devices and films have, too
 LONGEST = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo
 PATIENCE = 300.0  # [s] for ffmpeg to read a file
 
@@ -36,10 +39,73 @@ class Sound:
         return len(self.samples) / self.rate
 
 
+BLOCK = 512  # samples of which the lowest and the highest are known
+LEAST = 4  # blocks of a stretch, so that its edges are right; of shorter ones samples are read
+
+
+class Peaks:
+    """How far a sound swings, of all channels together; made once, asked often at any zoom."""
+
+    def __init__(self, sound: Sound) -> None:
+        self._rate = sound.rate
+        swings = sound.samples.min(axis=1), sound.samples.max(axis=1)
+        starts = np.arange(0, len(sound.samples), BLOCK)
+        blocks = np.minimum.reduceat(swings[0], starts), np.maximum.reduceat(swings[1], starts)
+        self._levels = {BLOCK: blocks, 1: swings}
+        self._loudest = max(-int(blocks[0].min()), int(blocks[1].max()), 1)
+
+    def between(
+        self, start: float, end: float, count: int
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """The lowest and highest value in each of `count` equal stretches of a time [s].
+
+        Each (count,), from -1 to 1, which is as far as the sound ever swings: a quiet recording is
+        seen, too. 0 where there is no sound. start: not below 0.
+        """
+        edges = np.linspace(start, end, count + 1) * self._rate
+        length = BLOCK if edges[-1] - edges[0] >= count * LEAST * BLOCK else 1
+        low, high = self._levels[length]
+        places = np.floor(edges / length).astype(np.int64)
+        begins = places[:-1][places[:-1] < len(low)]
+        swings = np.zeros((2, count))
+        if len(begins):
+            last = max(min(int(places[len(begins)]), len(low)), int(begins[-1]) + 1)
+            part = slice(begins[0], last)
+            swings[0, : len(begins)] = np.minimum.reduceat(low[part], begins - begins[0])
+            swings[1, : len(begins)] = np.maximum.reduceat(high[part], begins - begins[0])
+        return swings[0] / self._loudest, swings[1] / self._loudest
+
+
+def ffmpeg() -> str:
+    """The ffmpeg that is used here; UserError where there is none."""
+    imageio_ffmpeg = needed("imageio_ffmpeg", "film or sound", "films", package="imageio-ffmpeg")
+    try:
+        return str(imageio_ffmpeg.get_ffmpeg_exe())
+    except RuntimeError:
+        raise UserError(
+            "no film without ffmpeg: install it, or write frames to a folder (-o NAME)"
+        ) from None
+
+
+def sound_form() -> tuple[str, ...]:
+    """Options for a sound at `RATE`; of both sides, where it has them.
+
+    What begins late in its file (the sound of a film, say) begins as late here.
+    """
+    form = f"aformat=sample_rates={RATE}:channel_layouts=mono|stereo"
+    return "-af", f"aresample=async=1:first_pts=0,{form}"
+
+
+def sound_input(file: Path, seconds: float, begin: float = 0.0) -> tuple[str, ...]:
+    """Options for an input of so much sound: of a file, and of nothing that this may point to."""
+    skipped = ("-ss", f"{begin:.6f}") if begin else ()
+    return "-protocol_whitelist", "file", *skipped, "-t", f"{seconds:.6f}", "-i", f"file:{file}"
+
+
 def load_sound(file: Path) -> Sound:
     """Read a sound file, or the sound of a film; UserError says why there is none in it."""
     read_bytes(file, what="sound file", longest=2**40, first=0)
-    name = program()
+    name = ffmpeg()
     source = sound_input(Path(os.path.abspath(file)), LONGEST + 1.0)
     form = ["-map", "0:a:0", *sound_form(), "-f", "wav", "-c", "pcm_s16le"]
     try:

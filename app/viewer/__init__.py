@@ -3,7 +3,7 @@
 window/     all parts joined (application.py: start reading here), loop, menus, splash screen
 context.py  what the parts share, and take what they need from
 marking/    landmarks of a mesh, marked in place of the face
-panels/     what stands at the left of the picture, and its help
+panels/     what stands around the picture
 timeline/   the script below it: keys in rows and as curves, the sound
 documents/  scripts, heads and exports: opened, asked for, saved
 picture/    what is seen: camera, meshes and colours, when it is drawn; the mouse in it

@@ -10,14 +10,13 @@ from risorius import render
 from .documents.export import Exporter
 from .documents.file_dialogs import FileDialogs
 from .documents.scripts import Question, ScriptCommands
-from .frame_times import FrameTimes
 from .interface.gui import Gui, wake_up
 from .messages import Messages
-from .picture.stage import Stage
-from .picture.view import View
+from .picture.stage import Stage, View
 from .session.live_commands import LiveCommands
+from .session.physics import FrameTimes
 from .session.session import Session
-from .settings import PanelState, Settings
+from .settings import Settings
 
 
 class ApplicationContext:
@@ -33,9 +32,9 @@ class ApplicationContext:
             self.stage = Stage(surface, session.scene, settings.display, self.times)
             self.opened = stack.pop_all()  # to be closed with the window
         self.view = View(session, settings, surface)
-        self.panel_state = PanelState()
+        self.wanted_tab = ""  # of the panel, to be brought to the front, by its title
         self.question = Question(session)
         self.scripts = ScriptCommands(session, self.files, self.question, settings.note_recent)
         self.exporter = Exporter(session, settings, self.stage, self.view)
-        show_live = partial(setattr, self.panel_state, "wanted_tab", "Live")
+        show_live = partial(setattr, self, "wanted_tab", "Live")
         self.live = LiveCommands(session, show_live, wake_up)

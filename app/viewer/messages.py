@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..controls.vocabulary import sentence
+from ..controls import sentence
 from ..errors import UserError
 
 SECONDS = 6.0  # for which a message stays

@@ -3,10 +3,14 @@
 One JSON file in the user's configuration folder, replaced whole or not at all. Every value stands
 for itself: one that is of no use gives way to what it is at first, the others stay, and the window
 names it in one line.
+
+Colours of triangles tell how often they were split, how far they bend, how they are strained. Every
+amount belongs to a triangle of the mesh that is simulated; refined ones take it from their source.
 """
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import sys
@@ -14,7 +18,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from risorius import refine, render
+from risorius.geometry.normals import vertex_normals
+from risorius.render.style import AMOUNT_RAMP, SIGNED_RAMP
 from risorius.schema import (
     Flag,
     MadeFrom,
@@ -27,14 +36,78 @@ from risorius.schema import (
 )
 
 from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
+from ..capture.captions import SPLITS_BAR, ColourBar
 from ..capture.encoder import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text
+from ..pipeline import SourceValues
 from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement
 from ..scenes import FaceScene, Scene
-from .colours import COLOURS
 from .interface.gui import THEMES
+
+MOST_DROP = 0.3  # of the normals' dot product, drawn darkest: a bend of 45 degrees
+MOST_STRAIN = 0.35  # of a length, drawn darkest; skin stiffens well before
+
+FloatArray = npt.NDArray[np.float64]
+Amounts = npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Colours:
+    """A way to colour triangles: how the renderer takes the values, and what they mean."""
+
+    kind: render.ColourBy
+    bar: ColourBar | None = None
+    of_source: SourceValues | None = None
+
+
+def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:
+    """How far the dot product of the normals fell along the worst edge of each triangle."""
+    edges = refiner.edges
+    now, rest = (
+        _dots(vertex_normals(positions, scene.faces), edges)
+        for positions in (scene.positions, scene.rest_positions)
+    )
+    worst = (rest - now)[refiner.triangle_edges].max(axis=1)
+    return np.asarray(np.clip(255.0 * worst / MOST_DROP, 0.0, 255.0), np.uint8)
+
+
+def tensions(scene: Scene, refiner: refine.Refiner) -> Amounts:
+    """How far each triangle is stretched, less how far it is compressed."""
+    anything: Any = scene
+    stretch, compression = _tension_of(anything).measure(scene.positions)
+    tension = (stretch - compression)[scene.faces].mean(axis=1)
+    return np.asarray(np.clip(128.0 + 127.0 * tension / MOST_STRAIN, 0.0, 255.0), np.uint8)
+
+
+@functools.lru_cache(maxsize=1)  # the scene that is shown; one before it may go
+def _tension_of(scene: Any) -> refine.Tension:
+    return refine.Tension(scene.faces, scene.rest_positions)
+
+
+def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:
+    dots: FloatArray = (normals[edges[:, 0]] * normals[edges[:, 1]]).sum(axis=1)
+    return dots
+
+
+DROPS = ("0", f"{MOST_DROP / 2.0:g}", f"{MOST_DROP:g}")
+STRAINS = (f"-{100 * MOST_STRAIN:g} %", "0", f"+{100 * MOST_STRAIN:g} %")
+COLOURS = {
+    "none": Colours(render.ColourBy.NONE),
+    "splits": Colours(render.ColourBy.SPLITS, SPLITS_BAR),
+    "curvature drop": Colours(
+        render.ColourBy.AMOUNT,
+        ColourBar("Curvature: drop of n · n at rest", AMOUNT_RAMP, DROPS),
+        curvature_drops,
+    ),
+    "tension": Colours(
+        render.ColourBy.SIGNED,
+        ColourBar("Tension: change of length", SIGNED_RAMP, STRAINS),
+        tensions,
+    ),
+}
+
 
 LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
@@ -55,22 +128,7 @@ MOST_RECENT = 10  # files that are remembered
 MOST_TOLD = 4  # of values that are of no use; a line has room for no more
 
 
-@dataclass
-class PanelState:
-    """Commands change it, panels follow."""
-
-    are_hidden: bool = False  # all but the picture
-    is_help_open: bool = False
-    wanted_tab: str = ""  # to be brought to the front, by its title
-
-    def toggle_hidden(self) -> str | None:
-        """Hide all but the picture, or show it again."""
-        self.are_hidden = not self.are_hidden
-        return "Menus are at the upper edge" if self.are_hidden else None
-
-
-FRAMES, SHEET = "frames", "sheet"  # pictures in a folder, and a contact sheet
-SOURCES = {"script": "The script", "pose": "The face as it is"}
+FRAMES = "frames"  # pictures in a folder
 
 
 class Kind(NamedTuple):
@@ -88,7 +146,6 @@ KINDS = {
     for end, each in FILMS.items()
 }
 KINDS[FRAMES] = Kind("Pictures in a folder (.png)", "", True, True)
-KINDS[SHEET] = Kind("Contact sheet of named poses (.png)", ".png")
 for _each in MOTION:
     _end = (*_each.suffixes, "")[0]
     KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)
@@ -178,11 +235,6 @@ class Display(Record):
         others = [each for each in self.overlays if each != name]
         self.overlays = others if name in self.overlays else [*others, name]
 
-    def next_shading(self) -> None:
-        """Flat, Gouraud, per pixel, and round again."""
-        order = [shading.value for shading in render.Shading]
-        self.shading = order[(order.index(self.shading) + 1) % len(order)]
-
     def remove_missing_overlays(self, scene: Scene) -> None:
         """Show none that this scene has no data for."""
         self.overlays = self.overlays if isinstance(scene, FaceScene) else []
@@ -193,12 +245,9 @@ class ExportChoices(Record):
     """What was exported last, and how."""
 
     kind: Annotated[str, OneOf(KINDS)] = "mp4"
-    source: Annotated[str, OneOf(SOURCES)] = "script"
-    seconds: Annotated[float, Within(0.1, 600.0)] = 4.0  # of a face as it is
     size: Annotated[tuple[int, int], Within(*SIDES_EXPORTED)] = (1280, 720)
     rate: Annotated[float, Within(1.0, 240.0)] = 30.0  # [frames/s]
     is_transparent: Flag = False
-    is_turntable: Flag = False
 
 
 @dataclass

@@ -19,8 +19,8 @@ import numpy.typing as npt
 import PIL.Image
 
 from risorius import assets, refine, render
-from risorius.app.capture.cameras import camera_for
 from risorius.app.capture.captions import LANCZOS
+from risorius.app.capture.drawing import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
 
 from ..canvas import FLAT, GOURAUD, RED, Canvas, Drawing, image_table

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine, render
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.files import Image
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene

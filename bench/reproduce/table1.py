@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import refine
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.performances import script_for
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import FaceScene, PlaneScene, Scene

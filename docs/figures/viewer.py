@@ -14,7 +14,7 @@ import figures
 from imgui_bundle import imgui
 
 from risorius import assets
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.files import Image
 from risorius.app.performances import script_for
 from risorius.app.script.keyframes import places_of
@@ -53,7 +53,7 @@ def controls(viewer: Viewer) -> None:
 def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
     viewer.session.toggle_alone("disgust")
-    viewer.panel_state.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
     # Of the panel show what says how the mesh is refined, and its colours.
     viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
     viewer.settings.display = Display(compare="wipe", wireframe=True, colours="splits", skin="clay")

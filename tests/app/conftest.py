@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from risorius.app.motion import playing
+from risorius.app import motion
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script import load_script
 from risorius.app.script.places import NOWHERE
+from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.session.session import Session
@@ -66,7 +66,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     viewer.settings.folds.clear()
     replace_state(viewer.files, FileDialogs())
     viewer.messages.text = ""
-    viewer.panel_state.wanted_tab = "Face"
+    viewer.wanted_tab = "Face"
     viewer.view.fit_scene()
     settle(viewer)
 
@@ -87,11 +87,11 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
 @pytest.fixture(scope="module")
 def shared_scenes() -> Iterator[None]:
     """Commands of a file share scenes of the built-in head; each plays from a reset on."""
-    built = playing.build_scene
+    built = motion.build_scene
     shared = functools.cache(built)
     with pytest.MonkeyPatch.context() as this_process:
         this_process.setattr(
-            playing,
+            motion,
             "build_scene",
             lambda name, head=None: shared(name) if head is None else built(name, head),
         )

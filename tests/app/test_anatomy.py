@@ -14,7 +14,7 @@ from risorius import render
 from risorius.app.anatomy import STRUCTURES, Anatomy, AnatomyView
 from risorius.app.anatomy.muscle_bands import AROUND, ROWS, Muscles
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import fit_head
 from tests.heads import stranger

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from risorius.app.capture.cameras import DEFAULT_VIEW, camera_for, whole_scene
+from risorius.app.capture.drawing import DEFAULT_VIEW, camera_for, whole_scene
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
 

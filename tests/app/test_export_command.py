@@ -26,7 +26,7 @@ from pathlib import Path
 from risorius.app.errors import report_user_errors
 from risorius.app.export.clip import record
 from risorius.app.export.formats import Request, format_for, write
-from risorius.app.script import load_script
+from risorius.app.script.script_file import load_script
 
 output = Path(sys.argv[1])
 clip = record(load_script(Path("cloth.toml")), None, 240.0, progress=False)

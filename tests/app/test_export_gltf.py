@@ -19,7 +19,7 @@ from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
 from risorius.app.performances import script_for
 from risorius.app.scenes import build_scene
-from risorius.app.script import parse_script
+from risorius.app.script.script_file import parse_script
 from risorius.geometry.normals import vertex_normals
 
 from .command_line import positions_in_blender

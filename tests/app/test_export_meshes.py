@@ -20,7 +20,7 @@ from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene, build_scene
-from risorius.app.script import parse_script
+from risorius.app.script.script_file import parse_script
 
 from .command_line import positions_in_blender
 

@@ -13,7 +13,8 @@ from risorius.app.performances import read_performance
 from risorius.app.recordings import read_take
 from risorius.app.recordings.conversion import LEAD, Playback
 from risorius.app.scenes import FaceScene
-from risorius.app.script import Script, parse_script
+from risorius.app.script import Script
+from risorius.app.script.script_file import parse_script
 
 Columns = dict[str, npt.NDArray[np.float64]]
 

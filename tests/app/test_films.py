@@ -19,7 +19,7 @@ from risorius.app.capture.encoder import FORMATS, TRANSPARENT, size_of_film
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script import parse_script
+from risorius.app.script.script_file import parse_script
 
 from .command_line import risorius
 

@@ -32,7 +32,7 @@ def test_no_pixel_changes(
     studio: Capture, camera: str, pose: dict[str, float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """From everywhere, close by, behind, with eyes and mouth open or shut; and much is left out."""
-    from risorius.app.capture.cameras import camera_for
+    from risorius.app.capture.drawing import camera_for
 
     known = studio.scene.limits
     studio.scene.reset()

@@ -5,15 +5,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
-from risorius.app.motion.idle import EYES_MOST, Idle, looking_at
-from risorius.app.motion.life import EYE_RANGE, LID, Blinks, Glances, Life
+from risorius.app.motion.life import (
+    EYE_RANGE,
+    EYES_MOST,
+    LID,
+    Blinks,
+    Glances,
+    Idle,
+    Life,
+    looking_at,
+)
 from risorius.app.performances import limits_of, script_for
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script import Channel, Key, Script
-from risorius.app.viewer.frame_times import FrameTimes
-from risorius.app.viewer.session.physics import SEEN, STEP, Physics
+from risorius.app.viewer.session.physics import SEEN, STEP, FrameTimes, Physics
 from risorius.app.viewer.session.session import Session
 
 HOUR = 3600.0

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from risorius.app.errors import UserError
-from risorius.app.passes.labelled import NOTHING, Labelled, save_labelled, write_exr
+from risorius.app.passes.labels import NOTHING, Labelled, save_labelled, write_exr
 
 from .command_line import risorius
 

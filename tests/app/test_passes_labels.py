@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import render
-from risorius.app.passes.labels import CameraLabels, gaze, head_pose, labels_of
+from risorius.app.passes.labels import CameraLabels, gaze, labels_of
 from risorius.app.scenes import FaceScene, PlaneScene
 
 SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))
@@ -50,15 +50,15 @@ def test_a_head_at_rest_is_turned_as_the_camera_is_not(
 ) -> None:
     """A camera on the subject's left sees it turned to its right, one above sees it bowed."""
     scene.reset()
-    labels = CameraLabels.of(camera_at(yaw, pitch), (640, 480))
-    pose = head_pose(scene, labels)
-    points = scene.rest_positions
-    assert np.allclose(points @ pose.rotation.T + pose.translation, labels.to_camera(points))
+    camera, size = camera_at(yaw, pitch), (640, 480)
+    pose, points = labels_of(scene, camera, size)["head"], scene.rest_positions
+    rotation, seen = np.array(pose["R"]), CameraLabels.of(camera, size).to_camera(points)
+    assert np.allclose(points @ rotation.T + pose["t"], seen, atol=1e-5)
     towards_camera = camera_at(yaw, pitch).axes()[2]  # in the head's axes
-    assert math.copysign(1.0, pose.yaw) == -math.copysign(1.0, yaw) or abs(yaw) < 1e-6
-    sine = math.sin(math.radians(pose.pitch))
+    assert math.copysign(1.0, pose["yaw"]) == -math.copysign(1.0, yaw) or abs(yaw) < 1e-6
+    sine = math.sin(math.radians(pose["pitch"]))
     assert sine == pytest.approx(-math.sin(math.radians(pitch)) * math.cos(math.radians(yaw)))
-    facing = -pose.rotation[2, 2]
+    facing = -rotation[2, 2]
     assert facing == pytest.approx(towards_camera[2])
 
 
@@ -68,15 +68,14 @@ def test_angles_are_those_that_the_head_was_turned_by(face: FaceScene) -> None:
     The axes about which it turns are found by landmarks, 2 degrees off those of the scene.
     """
     names = ("yaw", "pitch", "roll")
-    labels = CameraLabels.of(camera_at(0.0, 0.0), (640, 480))
 
     def turned(*values: float) -> list[float]:
         """The angles of a head with these values of its controls."""
         face.reset()
         face.pose({f"head_{name}": value for name, value in zip(names, values, strict=True)})
         face.step(1.0)
-        pose = head_pose(face, labels)
-        return [pose.yaw, pose.pitch, pose.roll]
+        pose = labels_of(face, camera_at(0.0, 0.0), (640, 480))["head"]
+        return [pose[name] for name in names]
 
     alone = np.array([turned(*row) for row in np.eye(3)])
     most = alone.diagonal()

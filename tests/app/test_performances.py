@@ -16,7 +16,8 @@ from risorius.app.recordings import Take
 from risorius.app.recordings.conversion import LEAD, Playback, lead_of, script_of
 from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene
-from risorius.app.script import TOLERANCE, load_script
+from risorius.app.script.script_file import load_script
+from risorius.app.script.thinning import TOLERANCE
 
 from . import recording_files
 from .command_line import risorius
@@ -171,8 +172,6 @@ def test_a_recording_is_filmed_as_its_script_is(tmp_path: Path) -> None:
     [
         ("take.mov", b"\0\0\0\x18ftypqt  \xb9\0", "is not a text file; a recording of a face"),
         ("take.txt", b"hello, this is\na text\n", "is a table of which no column is known"),
-        ("take.csv", b"title = 'x'\n", r"no \[\[pose\]\] and no \[tracks\]"),
-        ("take.csv", b"# x\n\n[[pose]]\ntime = 'x'\n", "time"),
         ("take.toml", b"hello, this is\na text\n", "not valid TOML"),
     ],
 )
@@ -182,13 +181,6 @@ def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(
     (tmp_path / name).write_bytes(content)
     with pytest.raises(UserError, match=words):
         read_performance(tmp_path / name)
-
-
-def test_a_script_plays_whatever_its_name(tmp_path: Path) -> None:
-    path = tmp_path / "script.csv"
-    path.write_text("# A comment\ntitle = 'Smile'\n[[pose]]\ntime = 1.0\njoy = 1.0\n", "utf-8")
-    script, report = read_performance(path)
-    assert (script.title, report) == ("Smile", None)
 
 
 @pytest.mark.parametrize(

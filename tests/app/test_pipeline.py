@@ -12,7 +12,7 @@ from risorius.app.motion import SETTLING
 from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport, side_by_side
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene, PlaneScene
-from risorius.app.script import parse_script
+from risorius.app.script.script_file import parse_script
 from risorius.refine.border.registry import refiners
 
 SIZE = (320, 240)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
-from risorius.app.capture.cameras import whole_scene
+from risorius.app.capture.drawing import whole_scene
 from risorius.app.pipeline import Pipeline, Viewport
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import parse_comparison, refiner_for

@@ -10,18 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.errors import UserError
-from risorius.app.script import (
-    LARGEST,
-    Channel,
-    Key,
-    Pose,
-    Script,
-    load_script,
-    parse_script,
-    save_script,
-    script_text,
-)
-from risorius.app.script.easing import ALL_EASINGS
+from risorius.app.script import EASINGS, LARGEST, Channel, Key, Pose, Script
+from risorius.app.script.script_file import load_script, parse_script, save_script, script_text
 
 HELLO = """
 title = "Hello"
@@ -72,9 +62,7 @@ def channels(draw: st.DrawFn) -> Channel:
     )
     size = {"min_size": len(times), "max_size": len(times)}
     values = draw(st.lists(st.floats(-LARGEST, LARGEST), **size))
-    easings = draw(
-        st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*ALL_EASINGS]), **size)
-    )
+    easings = draw(st.just(len(times) * ["linear"]) | st.lists(st.sampled_from([*EASINGS]), **size))
     return Channel.of(map(Key, times, values, easings))
 
 
@@ -97,23 +85,8 @@ def test_a_channel_has_the_values_of_its_keys(channel: Channel, data: st.DataObj
     before = [key for key in keys if key.time <= time][-1:] or keys[:1]
     after = [key for key in keys if key.time > time][:1] or before
     share = (time - before[0].time) / (after[0].time - before[0].time or 1.0)
-    way = (after[0].value - before[0].value) * ALL_EASINGS[after[0].easing](
-        min(max(share, 0.0), 1.0)
-    )
+    way = (after[0].value - before[0].value) * EASINGS[after[0].easing](min(max(share, 0.0), 1.0))
     assert channel.value(time) == before[0].value + (way if before[0].time <= time else 0.0)
-
-
-@given(channel=channels(), first=st.floats(0.0, LARGEST), steps=st.lists(st.floats(1e-3, 1e4)))
-def test_extremes_between_times(channel: Channel, first: float, steps: list[float]) -> None:
-    """The timeline's curve reaches as far as any moment between two times, keys among them."""
-    edges = np.cumsum([first, 1.0, *steps])
-    lowest, highest = channel.extremes(edges)
-    for low, high, begin, end in zip(lowest, highest, edges[:-1], edges[1:], strict=True):
-        moments = [*np.linspace(begin, end, 7).tolist()]
-        moments += [time for time in channel.times.tolist() if begin <= time < end]
-        values = [channel.value(moment) for moment in moments]
-        slack = 1e-6 * (1.0 + max(map(abs, values)))
-        assert abs(low - min(values)) <= slack and abs(high - max(values)) <= slack
 
 
 @given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
@@ -127,28 +100,13 @@ def test_a_drawn_curve_is_what_is_played(channel: Channel, start: float, span: f
     assert len(times) <= 4 * 41 and start <= times[1] and times[-1] <= start + span
 
 
-@given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(ALL_EASINGS)))
+@given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(EASINGS)))
 def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
     """Every easing goes from 0 to 1 and never leaves that range."""
-    ease = ALL_EASINGS[name]
+    ease = EASINGS[name]
     assert ease(0.0) == 0.0
     assert ease(1.0) == 1.0
     assert -1e-12 <= ease(fraction) <= 1.0 + 1e-12
-
-
-def test_free_slopes_are_read_and_written() -> None:
-    """Of poses, of tables and of lines; the curve leaves and arrives as steep as they say."""
-    script = parse_script(
-        "[[pose]]\ntime=0\n[[pose]]\ntime=1\njoy=1\neasing='0.5,2'\n[tracks]\n"
-        "blink=[{time=0,value=0},{time=2,value=1,easing='3,0.1'}]\nAU4='''0 0\n2 1 0,1.5'''",
-        source="t",
-    )
-    step = 1e-6
-    assert script.at(step)["joy"] / step == pytest.approx(0.5, abs=1e-4)
-    assert (1.0 - script.at(1.0 - step)["joy"]) / step == pytest.approx(2.0, abs=1e-4)
-    assert script.at(step)["blink"] / step == pytest.approx(1.5, abs=1e-4)
-    assert (1.0 - script.at(2.0 - step)["AU4"]) / step == pytest.approx(0.75, abs=1e-4)
-    assert parse_script(script_text(script), source="t") == script
 
 
 @pytest.mark.parametrize(
@@ -156,17 +114,14 @@ def test_free_slopes_are_read_and_written() -> None:
     [
         ("pose = = 3", r"bad.toml: not valid TOML: .*line 1"),
         ("x=1\na = " + 5000 * "[", r"bad.toml: not valid TOML: brackets are nested too deep"),
-        ("a" + 30_000 * ".a" + "=1", r"bad.toml: line 1: a key has more than 3 parts with dots"),
-        ("".join(f"[a{n}]\n" for n in range(500_000)), r"more than 4 MB outside of quotes"),
         ("durration = 1\n[[pose]]\ntime=1", r"unknown key 'durration'; did you mean 'duration'"),
         ("[[pose]]\njoy=1", r"'pose' 1, 'time': is missing"),
         ("[[pose]]\ntime='x'", r"'pose' 1, 'time': was 'x', must be a number"),
         ("[[pose]]\ntime=nan", r"'pose' 1, 'time': was nan"),
         ("[[pose]]\ntime=1\n[[pose]]\ntime=1", r"pose 2: time 1 s does not come after"),
-        ("[[pose]]\ntime=1\neasing='x'", r"'easing': was 'x', must be linear, smooth"),
+        ("[[pose]]\ntime=1\neasing='x'", r"'easing': was 'x', must be one of linear, smooth"),
         ("[[pose]]\ntime=1\njoy=true", r"'joy': was True, must be a number"),
         ("[[pose]]\ntime=0", r"duration is 0 s; it must be above 0: write duration = 1.0, or"),
-        ("[[pose]]\ntime=1\neasing='1,3.1'", r"'1,3.1', must be .* or two slopes from 0 to 3"),
         ("[[pose]]\ntime=1" + 400 * "0", r"'time': was 1000.*, must be a number from 0 to 86400"),
         ("duration=1\n[[pose]]\ntime=2\nname='x'", r"pose 'x' at 2 s comes after the duration"),
         ("pose = 3", r"'pose': was 3, must be a list"),

@@ -4,8 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.script import Channel, Key, Pose, Script, keyframes
-from risorius.app.script.easing import EASINGS
+from risorius.app.script import EASINGS, Channel, Key, Pose, Script, keyframes
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 
@@ -57,8 +56,8 @@ def test_keys_arrive_as_one_by_one(
     before = dict(keyed_by_place(script))
     arrived = {KeyPlace(track, time + shift): before[track, time] for track, time in places}
     stays = {place: key for place, key in before.items() if are_copies or place not in places}
-    change = keyframes.copied if are_copies else keyframes.moved
-    changed, now = change(script, Places.of(*places), steps / 8.0)
+    source = script if are_copies else None
+    changed, now = keyframes.moved(script, Places.of(*places), steps / 8.0, source)
     assert now == set(arrived)
     assert changed.duration == max([script.duration, *(time for _, time in arrived)])
     assert dict(keyed_by_place(changed)) == stays | arrived

@@ -20,9 +20,10 @@ from risorius.app.capture.encoder import HEARD
 from risorius.app.capture.encoder import Soundtrack as Heard
 from risorius.app.errors import UserError
 from risorius.app.scenes import PlaneScene
-from risorius.app.script import Script, load_script, parse_script, save_script, script_text
+from risorius.app.script import Script
+from risorius.app.script.script_file import load_script, parse_script, save_script, script_text
 from risorius.app.sound import Player, Sound, load_sound, player
-from risorius.app.sound.peaks import Peaks
+from risorius.app.sound.decoding import Peaks
 from risorius.app.viewer.session.physics import STEP, Clock
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.session.soundtrack import Soundtrack

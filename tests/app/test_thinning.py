@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.script import TOLERANCE, Script, thinned
+from risorius.app.script import Script
 from risorius.app.script.recorder import Recorder
+from risorius.app.script.thinning import TOLERANCE, thinned
 
 SAMPLE = st.tuples(st.integers(1, 10**7), st.floats(-1.0, 1.0))  # [us] after the one before
 

@@ -99,7 +99,7 @@ def test_keys_change_the_picture(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     before, display = viewer.surface.read(), deepcopy(viewer.settings.display)
     left = round(viewer.view.area[0])
-    for key, times in (("w", 2), ("c", 2), ("t", 2), ("s", 3), ("d", 2)):
+    for key, times in (("w", 2), ("c", 2), ("t", 2), ("d", 2)):
         xdotool(viewer, "key", key)
         changed = viewer.surface.read()[:500, left:].astype(int) - before[:500, left:]
         assert np.abs(changed).max() > 20, key
@@ -192,14 +192,13 @@ def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
     viewer.surface.should_close = viewer.is_leaving = False
 
 
-def test_help_and_themes(viewer: Viewer) -> None:
-    """F1 shows the keys, F2 the other theme; both go away again."""
+def test_the_dark_theme(viewer: Viewer) -> None:
+    """F2 shows it, and the other one again."""
     before = viewer.surface.read().astype(int)
-    for key in ("F1", "F2"):
-        xdotool(viewer, "key", key)
-        assert np.abs(viewer.surface.read().astype(int) - before).mean() > 3.0, key
-        xdotool(viewer, "key", key)
-    assert not viewer.panel_state.is_help_open and viewer.settings.theme == "light"
+    xdotool(viewer, "key", "F2")
+    assert np.abs(viewer.surface.read().astype(int) - before).mean() > 3.0
+    xdotool(viewer, "key", "F2")
+    assert viewer.settings.theme == "light"
 
 
 def test_an_idle_window_rests(viewer: Viewer) -> None:
@@ -312,7 +311,7 @@ def test_linked_sides_are_pulled_together(viewer: Viewer) -> None:
 
 def test_a_click_shows_the_muscle_in_the_panel(viewer: Viewer) -> None:
     """Its group opens, and its slider is scrolled to."""
-    viewer.panel_state.wanted_tab = "Live"
+    viewer.wanted_tab = "Live"
     x, y = landmark(viewer, 54)
     xdotool(viewer, "mousemove", x + 15, y - 15, "click", 1)
     assert until(viewer, lambda: viewer.settings.folds.get("Upper lip and cheek", False))

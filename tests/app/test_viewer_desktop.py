@@ -24,13 +24,6 @@ from risorius.app.viewer.window.splash_screen import COMPILING, FIRST_SIZE, LOAD
 from .driving import (
     DEADLINE,
     NEEDS_A_SCREEN,
-    SIZE,
-    click,
-    nose,
-    on_screen,
-    show_controls,
-    until,
-    xdotool,
 )
 
 pytestmark = NEEDS_A_SCREEN
@@ -43,29 +36,6 @@ def screen_size() -> tuple[int, int]:
     """Of the whole screen."""
     screen = display.Display().screen()
     return screen.width_in_pixels, screen.height_in_pixels
-
-
-@pytest.mark.usefixtures("calm")
-def test_panels_hide_and_come_back(viewer: Viewer) -> None:
-    """H leaves the picture alone; menus come up at its edge; they bring all back."""
-    around = viewer.view.area
-    xdotool(viewer, "mousemove", *nose(viewer))
-    xdotool(viewer, "key", "h")
-    assert viewer.view.viewport == (0, 0, *SIZE) and "play" not in viewer.gui.places
-    assert until(viewer, lambda: viewer.is_idle or viewer.messages.is_fading)
-    image = viewer.surface.read()
-    assert (np.ptp(image[:300, :8].astype(int), axis=(0, 1)) > 3).any()  # backdrop, not a panel
-    assert "menu View" not in viewer.gui.places
-    x = nose(viewer)[0]
-    xdotool(viewer, "mousemove", x, on_screen(viewer, 0, 5)[1])
-    assert "menu View" in viewer.gui.places
-    click(viewer, "menu View")
-    click(viewer, "menu View: Hide panels")
-    assert viewer.view.area == around and "play" in viewer.gui.places
-    show_controls(viewer, "jaw")
-    xdotool(viewer, "key", "h")  # which belongs to whoever writes
-    assert not viewer.panel_state.are_hidden
-    xdotool(viewer, "key", "Escape")
 
 
 @pytest.mark.usefixtures("calm")

@@ -2,6 +2,7 @@
 
 import signal
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,9 @@ from PIL import Image
 from risorius.app import stopping, workers
 from risorius.app.capture import CaptureOptions
 from risorius.app.capture import capture as film_of
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.refining.presets import Refinement
-from risorius.app.script import parse_script
+from risorius.app.script.script_file import parse_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import ExportChoices
 from risorius.render import LIGHT, LIGHTS, Style
@@ -30,12 +31,17 @@ LONG = 120.0  # [s] for an export, whose process starts anew
 @pytest.fixture(autouse=True)
 def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
     """A script of half a second, small pictures, few of them, into the test's folder."""
-    viewer.session.open(parse_script(SCRIPT, source="smile.toml"))
+    open_script(viewer, SCRIPT)
     viewer.settings.export = ExportChoices("frames", size=SMALL, rate=12.0)
     yield
     viewer.exporter.close()
     viewer.exporter.is_asking = False
     settle(viewer)
+
+
+def open_script(viewer: Viewer, text: str) -> None:
+    """Take a script of this text in place of the one before."""
+    viewer.session.open(parse_script(text, source="smile.toml"))
 
 
 def finish(viewer: Viewer, *key: str) -> None:
@@ -81,11 +87,15 @@ def test_a_film_is_what_capture_writes(viewer: Viewer, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_film_shows_what_the_window_shows(viewer: Viewer, tmp_path: Path) -> None:
-    """A wipe, colours and overlays that only the window has are in the film, too."""
+    """A comparison, side by side, and colours that only the window has are in the film, too."""
     display = viewer.settings.display
-    display.compare, display.colours, display.overlays = "wipe", "tension", ["landmarks"]
-    viewer.settings.export.source, viewer.settings.export.seconds = "pose", 0.1
-    viewer.session.set("jaw_open", 0.4)
+    display.compare, display.colours = "side by side", "tension"
+    open_script(
+        viewer,
+        "duration = 0.1\n[[pose]]\ntime = 0.0\njaw_open = 0.4\n[tracks]\n"
+        "AU4 = [{ time = 0.0, value = 0.0 }, { time = 0.1, value = 0.0 }]\n",
+    )
+    viewer.session.seek(0.1)
     settle(viewer)
     assert until(viewer, lambda: viewer.physics.is_at_rest)
     viewer.settings.export.size = viewer.view.viewport[2:]
@@ -115,8 +125,8 @@ def test_the_window_lives_and_cancel_leaves_nothing(
 ) -> None:
     """While a film is made the face answers; cancelled, no file is left, nor a part of one."""
     monkeypatch.setattr(workers, "GRACE", LONG)
-    viewer.settings.export.kind, viewer.settings.export.source = "mp4", "pose"
-    viewer.settings.export.seconds = 600.0
+    viewer.settings.export.kind = "mp4"
+    open_script(viewer, SCRIPT.replace("0.5", "600.0"))
     xdotool(viewer, "key", "F10")
     begin(viewer)
     job = viewer.exporter.job
@@ -141,7 +151,7 @@ def test_a_signal_ends_the_export_too(
     viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What stops the window stops the other process, and nothing stays."""
-    viewer.settings.export.source, viewer.settings.export.seconds = "pose", 100.0
+    open_script(viewer, SCRIPT.replace("0.5", "100.0"))
     xdotool(viewer, "key", "F10")
     begin(viewer)
 
@@ -169,8 +179,11 @@ def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
 
 def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> None:
     """What fails in the other process is told here, and nothing is left."""
-    viewer.settings.export.kind = "sheet"
-    viewer.session.open(parse_script(SCRIPT.replace("name = 'j'\n", ""), source="no.toml"))
+    viewer.settings.export.kind = "mp4"
+    viewer.session.edit(replace(viewer.session.script, sound=tmp_path / "gone.wav"))
+    settle(viewer)
+    assert "plays without" in viewer.messages.text
     finish(viewer)
-    assert viewer.messages.is_error and "no pose has a name" in viewer.messages.text
+    assert viewer.messages.is_error and "gone.wav: no such sound file" in viewer.messages.text
+    assert "plays without" not in viewer.messages.text
     assert list(tmp_path.iterdir()) == []

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from risorius.app.scenes import build_scene
-from risorius.app.script import load_script
+from risorius.app.script.script_file import load_script
 from risorius.app.sound import player
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display

@@ -18,13 +18,15 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import PlaneScene
+from risorius.app.script import Script
+from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session.physics import STEP
-from risorius.app.viewer.session.recovery import INTERVAL, Recovery, Work
+from risorius.app.viewer.session.recovery import INTERVAL, Recovery
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display, Settings, load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, click, run, settle, until, wait_for, xdotool
+from .driving import NEEDS_A_SCREEN, SIZE, run, settle, until, wait_for
 
 GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wireframe": True}}
 
@@ -151,7 +153,7 @@ def test_a_full_disk_is_told_and_closes_the_window(
     ]
     assert path.read_text() == '{"theme": "dark"}'
     recovery = Recovery(path.parent, viewer.session)
-    assert recovery.found and recovery.found.pose
+    assert recovery.found and load_script(recovery.found).posed_names
     recovery.close()
 
 
@@ -190,14 +192,14 @@ def watch(recovery: Recovery, clock: Clock) -> None:
 
 def stored(folder: Path) -> list[str]:
     """The files with unsaved work."""
-    return [path.name for path in folder.glob("unsaved*.json")]
+    return [path.name for path in folder.glob("unsaved*.toml")]
 
 
-def found_by_next(folder: Path, session: Session) -> Work | None:
-    """What a window that opens now would offer."""
+def found_by_next(folder: Path, session: Session) -> Script | None:
+    """What a window that opens now finds."""
     other = Recovery(folder, session)
     other.close()
-    return other.found
+    return None if other.found is None else load_script(other.found)
 
 
 def leave(folder: Path, session: Session) -> None:
@@ -218,8 +220,8 @@ def test_work_is_written_soon_and_goes_when_it_is_undone(
         recovery.watch()
         clock.now += STEP
     recovery.close()
-    found = found_by_next(tmp_path, session)
-    assert found is not None and 0.2 <= found.pose["jaw_open"] < 0.3
+    (name,) = stored(tmp_path)
+    assert 0.2 <= load_script(tmp_path / name).at(session.time)["jaw_open"] < 0.3
     session.note()
     session.undo()
     recovery.watch()
@@ -235,16 +237,15 @@ def test_saved_work_is_kept_no_more(
     watch(recovery, clock)
     session.save_script(tmp_path / "own.toml")
     watch(recovery, clock)
-    recovery.close()
-    found = found_by_next(tmp_path, session)
-    assert found is not None and found.pose == {"jaw_open": 0.4} and not found.script
+    (name,) = stored(tmp_path)
+    assert load_script(tmp_path / name).at(session.time)["jaw_open"] == 0.4
     session.save_pose(tmp_path / "pose.toml")
     recovery.watch()
     assert not stored(tmp_path)
 
 
 def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Path) -> None:
-    """A script with what is being recorded, to each digit; it knows its file, comments and all."""
+    """A script with what is being recorded, to each digit, its comments at the head and all."""
     session.set("jaw_open", 0.25)
     session.set_key()
     session.set("jaw_open", 1.0 / 3.0)
@@ -254,44 +255,25 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     recovery.save()
     assert found_by_next(tmp_path, session) is None  # its window still lives
     recovery.close()
-    after = Session(session.scene, script_for(None, "face"))
-    next_one = Recovery(tmp_path, after)
-    assert next_one.found is not None and next_one.found.summary == "the script own.toml"
-    next_one.accept_found()
-    assert next_one.found is None and after.unsaved == "the script"
+    found = found_by_next(tmp_path, session)
     session.toggle_recording()
-    assert after.script == session.script and after.script.preface.startswith("# A smile")
-    assert after.file.path == tmp_path / "own.toml" and after.file.objection == ""
-    next_one.close()
-    assert found_by_next(tmp_path, session) is not None
+    assert found == session.script and found.preface.startswith("# A smile")
 
 
-def test_an_offer_that_nobody_answers_is_made_again(session: Session, tmp_path: Path) -> None:
-    """Whatever is done, saved or given up meanwhile; thrown away, it is gone."""
+def test_what_was_found_stays_and_is_found_once(session: Session, tmp_path: Path) -> None:
+    """Whatever is done, saved or given up meanwhile; a window with the plane leaves it alone."""
     session.set("jaw_open", 0.4)
     leave(tmp_path, session)
+    assert found_by_next(tmp_path, Session(PlaneScene(), script_for(None, "plane"))) is None
     session.neutral()
     recovery = Recovery(tmp_path, session)
+    assert recovery.found is not None
     with recovery.guarding():
         recovery.watch()
         session.set("jaw_open", 0.1)
         recovery.save()
     recovery.close()
-    recovery = Recovery(tmp_path, session)
-    assert recovery.found is not None and recovery.found.pose == {"jaw_open": 0.4}
-    recovery.discard()
-    assert not stored(tmp_path)
-    recovery.close()
-
-
-@pytest.mark.parametrize("damaged", [b"nonsense", bytes(range(256)), b'{"when": 1.0}'])
-def test_only_what_is_of_use_is_offered(session: Session, tmp_path: Path, damaged: bytes) -> None:
-    """No damaged file; and a window with the plane leaves a face's pose to one with a face."""
-    session.set("jaw_open", 0.4)
-    leave(tmp_path, session)
-    assert found_by_next(tmp_path, Session(PlaneScene(), script_for(None, "plane"))) is None
-    assert found_by_next(tmp_path, session) is not None
-    (tmp_path / "unsaved-face.json").write_bytes(damaged)
+    assert load_script(recovery.found).at(0.0)["jaw_open"] == 0.4
     assert found_by_next(tmp_path, session) is None
 
 
@@ -347,46 +329,20 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
 def test_a_window_that_ended_is_recovered(
     at_work: subprocess.Popen[str], tmp_path: Path, how: signal.Signals
 ) -> None:
-    """Told to stop, or killed some seconds after the last change; it is offered until answered."""
+    """Told to stop, or killed some seconds after the last change: a line says where it is."""
     folder = tmp_path / "risorius"
     if how == signal.SIGKILL:
         wait_for(lambda: stored(folder))
     at_work.send_signal(how)
     assert at_work.wait(60.0) == -how
     script = script_for(None, "face")
-    for answer in ("Recover", "Throw away"):
-        with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
-            settle(viewer)
-            assert not viewer.session.unsaved and viewer.recovery.found is not None
-            assert viewer.recovery.found.pose == {"joy": 1.0}
-            click(viewer, f"offer: {answer}")
-            assert "offer: Recover" not in viewer.gui.places
-            if answer == "Recover":
-                assert viewer.session.unsaved == "the pose"
-                assert viewer.session.is_alone("joy")
-    assert not stored(folder)
-
-
-@pytest.mark.window
-@NEEDS_A_SCREEN[1]
-def test_other_work_is_asked_for_and_can_be_given_up(session: Session, tmp_path: Path) -> None:
-    """Going back keeps both; what is closed without saving is not offered again."""
-    session.set("jaw_open", 0.4)
-    leave(tmp_path, session)
-    script = script_for(None, "face")
-    with Viewer(script, SIZE, settings_path=tmp_path / "viewer.json") as viewer:
+    with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
         settle(viewer)
-        viewer.session.set("AU12", 0.7)
-        click(viewer, "offer: Recover")
-        click(viewer, "question: Back")
-        assert viewer.session.values["AU12"] == 0.7 and viewer.recovery.found is not None
-        click(viewer, "offer: Recover")
-        click(viewer, "question: Recover without saving")
-        assert viewer.session.values["AU12"] == 0.0 and viewer.session.values["jaw_open"] == 0.4
-        xdotool(viewer, "key", "ctrl+q")
-        click(viewer, "question: Close without saving")
-        viewer.run()
-    assert not stored(tmp_path)
+        assert not viewer.session.unsaved and viewer.messages.is_error
+        assert "work is in File > Recent: unsaved-face-" in viewer.messages.text
+        viewer.drop(viewer.settings.recent[0].split("\n"))
+        moved = {name: value for name, value in viewer.session.values.items() if value}
+        assert moved == {"joy": 1.0}
 
 
 @pytest.mark.window

@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
-from risorius.app.script import Script, keyframes, load_script, parse_script
+from risorius.app.script import Script, keyframes
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace, Places
+from risorius.app.script.script_file import load_script, parse_script
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.time_axis import LEAST_SPAN, TimeAxis
 

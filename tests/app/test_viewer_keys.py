@@ -4,7 +4,6 @@ import subprocess
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
 from imgui_bundle import imgui
 
@@ -61,7 +60,7 @@ def test_chords_keep_their_modifier(viewer: Viewer) -> None:
 
 
 def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
-    """Menus, lists, the menu of the timeline, dialogs, the overview of keys."""
+    """Menus, lists, the menu of the timeline, dialogs."""
     click(viewer, "tab Mechanism")
     x, y = middle(viewer, "keys")
     places, context = viewer.gui.places, imgui.get_current_context()
@@ -76,50 +75,10 @@ def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
         assert until(viewer, lambda: shown in places), shown  # noqa: B023
         xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
         assert shown not in places and not context.open_popup_stack.size(), shown
-    xdotool(viewer, "key", "F1")
-    click(viewer, "menu View")
-    for is_open in (True, False):
-        xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
-        assert viewer.panel_state.is_help_open == is_open
     click(viewer, "tab Face")
 
 
-def test_the_keyboard_reaches_everything(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Tab goes from widget to widget, arrows move, Space presses; Ctrl+Tab goes to other panels."""
-    click(viewer, "tab Face")
-    focused, remember = [""], viewer.gui.remember
-
-    def note(name: str) -> None:
-        remember(name)
-        if imgui.is_item_focused():
-            focused.append(name)
-
-    monkeypatch.setattr(viewer.gui, "remember", note)
-    assert until(viewer, lambda: viewer.is_idle)
-    before = viewer.surface.read().astype(int)
-    xdotool(viewer, "key", "Tab")
-    assert imgui.get_io().nav_visible
-    assert np.abs(viewer.surface.read().astype(int) - before).max() > 60  # the frame around it
-    for _ in range(30):
-        if focused[-1] != "show joy":
-            xdotool(viewer, "key", "Tab")
-    xdotool(viewer, "key", "space")
-    assert viewer.session.is_alone(viewer.session.scene.expressions[0])
-    assert not viewer.session.is_playing
-    xdotool(viewer, "key", "Down", "Right")
-    assert viewer.session.time == 0.0  # arrows walk, and go to no key of the script
-    context = imgui.get_current_context()
-    for count in (1, 2):  # by which panel was used last
-        if context.nav_window.name != "##MainMenuBar":
-            tabs = ("key", "Tab") * count
-            xdotool(viewer, "keydown", "ctrl", *tabs, "keyup", "ctrl")
-    xdotool(viewer, "key", "Down", "Down", "Right", "Down", "Return")
-    assert not any(viewer.session.values.values())  # Edit, Undo
-    xdotool(viewer, "key", "Escape", "Escape")
-    assert not viewer.gui.owns_keys
-
-
-def test_the_overview_names_each_command_and_key_once(viewer: Viewer) -> None:
+def test_each_command_has_its_own_name_and_keys(viewer: Viewer) -> None:
     """No two commands share a label or a key."""
     doing = [each for each in viewer.commands if each.submenu is None]
     for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):

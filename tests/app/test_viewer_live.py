@@ -145,7 +145,7 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     click(viewer, "listen")
     face = viewer.live.face
     assert face is not None
-    assert not viewer.live.can_calibrate
+    assert not viewer.live.is_receiving
     frown = {"browDownLeft": 0.3, "mouthFrownLeft": 0.2}
     hold(viewer, face, 0.6, **frown)
     assert viewer.session.current["browDownLeft"] > 0.2

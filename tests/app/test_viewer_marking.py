@@ -17,7 +17,7 @@ from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
 from risorius.app.viewer.marking import Marking, Room
 from risorius.app.viewer.marking.marking import FIRST, ORDER
-from risorius.app.viewer.marking.view import places_in
+from risorius.app.viewer.marking.room import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks

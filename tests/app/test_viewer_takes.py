@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius.app.errors import UserError
-from risorius.app.script import Channel, Key, Pose, Script, load_script
+from risorius.app.script import Channel, Key, Pose, Script
 from risorius.app.script.recorder import Recorder
+from risorius.app.script.script_file import load_script
 from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.session import Session
 

@@ -4,15 +4,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from risorius.app.controls.vocabulary import readable
 from risorius.app.scenes import FaceScene
-from risorius.app.script import load_script
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
-from risorius.app.viewer.panels.rows import rows_of, search_rows
-from risorius.app.viewer.picture.painter import FULL, LEVELS, PATIENCE, LevelOfDetail
+from risorius.app.script.script_file import load_script
+from risorius.app.viewer.panels.face import rows_of, search_rows
+from risorius.app.viewer.picture.stage import FULL, LEVELS, PATIENCE, LevelOfDetail
 from risorius.app.viewer.session.physics import MOST_STEPS, STEP, Clock
-from risorius.app.viewer.session.scene_controls import change_of
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 
@@ -52,7 +50,6 @@ COMMANDS = {
     "seek": lambda s, x: s.seek(4.0 * x),
     "next": lambda s, x: s.seek_key(1),
     "key": lambda s, x: s.set_key(),
-    "whole": lambda s, x: s.set_key(is_whole=True),
     "let go": lambda s, x: s.let_go(),
     "auto": lambda s, x: setattr(s, "is_keying", x > 0.5),
     "new": lambda s, x: s.begin_script(),
@@ -97,30 +94,6 @@ def test_undo_gives_the_state_before(steps: list[tuple[str, float]]) -> None:
 
 
 SHARED = Still()
-
-
-def test_the_undo_list_has_names(session: Session) -> None:
-    """Each state is called as what led to it, and can be gone to at once."""
-    session.seek(1.2)
-    set_by_hand(session, AU12_left=0.6)
-    session.mirror()
-    session.set("AU12_left", 0.3, linked=True)
-    session.note()
-    session.set_key()
-    selection = KeySelection(session)
-    selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace(POSES, 3.0))
-    selection.nudge(1)
-    selection.delete()
-    assert session.history.labels == [
-        "Beginning", "Set AU12 left to 0.60", "Mirror", "Set AU12 to 0.30", "Key at 1.20 s",
-        "Move 2 keys", "Delete 2 keys",
-    ]  # fmt: skip
-    session.go_to(2)
-    assert session.values["AU12_right"] == 0.6 and session.script_is_unsaved is False
-    session.go_to(6)
-    assert [pose.time for pose in session.script.poses] == [0.0, 1.2, 4.0]
-    assert change_of({}, {"jaw_open": 0.1, "joy": 0.2}) == "Set 2 controls"
-    assert readable("AU12_left") == "AU12 left"
 
 
 # Copies

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import sim
-from risorius.app.cli.parameters import PERSON_NAMES
+from risorius.app.cli.options import PERSON_NAMES
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting.mesh_validation import SkinPiece, check_manifold, check_openings
 from risorius.assets.identities import (

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from risorius import assets, refine, sim
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.files import Image
 from risorius.app.refining.presets import FIRST_PRESET, PRESETS
 from risorius.app.scenes import ClothScene

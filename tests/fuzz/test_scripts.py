@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from risorius.app.capture.cameras import camera_for
+from risorius.app.capture.drawing import camera_for
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import SCENES, FaceScene, Scene
-from risorius.app.script import Script, parse_script, script_text
+from risorius.app.script import Script
+from risorius.app.script.script_file import parse_script, script_text
 
 from .damage import SEED, changed
 from .sandbox import bounded, check_line

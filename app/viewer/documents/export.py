@@ -7,70 +7,28 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from imgui_bundle import imgui
 
-from risorius import render
 from risorius.assets.fitting import FittedHead
 
 from ...capture import CaptureOptions, capture
 from ...export.formats import Request, check_request, export, format_for
-from ...files import Image, check_file, save_png
-from ...scenes import FaceScene, Scene
-from ...script import Script, pose_script
+from ...files import check_file, save_png
+from ...refining.presets import STATIC, Refinement
+from ...scenes import FaceScene
 from ...workers import Task
-from ..frame_times import FrameTimes
 from ..interface.gui import NOTE_FLAGS, Gui, em, wake_up
 from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
 from ..messages import Message
-from ..picture.stage import Stage, style_of
-from ..picture.view import View
+from ..picture.stage import Stage, View, style_of
 from ..session.session import Session
-from ..settings import (
-    FRAMES,
-    KINDS,
-    SHEET,
-    SIDES_EXPORTED,
-    SOURCES,
-    Display,
-    ExportChoices,
-    Kind,
-    Settings,
-)
+from ..settings import COLOURS, FRAMES, KINDS, TONES, ExportChoices, Kind, Settings
 from .file_dialogs import FileDialogs
-
-
-@dataclass
-class StagePicture:
-    """Draws as the window does, in a process that makes a film; stands for a `View` there."""
-
-    display: Display
-    background: render.Background | None
-    viewport: render.Rectangle
-    letter: float  # [pixels] of captions, at least
-    camera: Any = None
-    pointed: Mapping[str, float] = field(default_factory=dict)
-    stage: Any = None
-
-    def on(self, scene: Scene, surface: Any) -> StagePicture:
-        """Draw this scene onto that surface."""
-        self.stage = Stage(surface, scene, self.display, FrameTimes())
-        return self
-
-    def refine(self, camera: render.OrbitCamera) -> None:
-        """Refine a frame that nobody draws."""
-        self.stage.pipeline.refine(camera, self.stage.viewports(self.display, self.viewport))
-
-    def draw_image(self, camera: render.OrbitCamera) -> Image:
-        """The picture; premultiplied, where it is transparent."""
-        self.camera = camera
-        image: Image = self.stage.draw_image(self)
-        return image
 
 
 @dataclass
@@ -86,7 +44,7 @@ class Exporter:
     """Screenshots of a stage; films and files of a session, one at a time."""
 
     def __init__(self, session: Session, settings: Settings, stage: Stage, view: View) -> None:
-        self._session, self._settings, self._stage, self._view = session, settings, stage, view
+        self.session, self._settings, self._stage, self._view = session, settings, stage, view
         self.job: ExportJob | None = None
         self.is_asking = False  # the dialog is open
 
@@ -94,11 +52,6 @@ class Exporter:
     def choices(self) -> ExportChoices:
         """What is exported, and how."""
         return self._settings.export
-
-    @property
-    def stem(self) -> str:
-        """What the file is called, unless the user says otherwise."""
-        return Path(self._session.name).stem
 
     @property
     def kind(self) -> Kind:
@@ -113,35 +66,32 @@ class Exporter:
         save_png(target, self._stage.draw_image(self._view))
         return f"Written to {target}"
 
-    def ask(self) -> None:
+    def ask(self) -> Message:
         """Open the dialog, with what was used last."""
-        script = self._session.script
-        if not (script.posed_names or script.tracks):
-            self.choices.source = "pose"
         self.is_asking = True
-
-    def played(self) -> Script:
-        """The script, or the face as it is, which is exported."""
-        session, choices = self._session, self.choices
-        if choices.source == "script" or choices.kind == SHEET:
-            return session.script
-        pose = pose_script(session.current, title="pose", scene=session.script.scene)
-        return replace(pose, duration=choices.seconds)
+        is_apart = bool(self.session.differing)
+        return (
+            "The script is exported; [Set key] puts the face as it is into it" if is_apart else None
+        )
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
-        """How `capture` is told to draw what the window shows."""
-        choices, view, is_sheet = self.choices, self._view, self.choices.kind == SHEET
+        """How `capture` is told to draw what the window shows, a comparison side by side."""
+        choices, view, display = self.choices, self._view, self._view.display
         is_clear = choices.is_transparent and self.kind.can_be_transparent
-        background, display = None if is_clear else view.background, deepcopy(view.display)
-        area = (0, 0, *choices.size)
-        letter = view.letter * choices.size[1] / view.viewport[3]
+        is_compared, static = display.compare != "off", Refinement(refiner=STATIC)
+        is_refined = display.is_refined or is_compared
+        colours = COLOURS[display.colours]
         return CaptureOptions(
             choices.size,
             choices.rate,
+            display.refinement_on(self.session.scene) if is_refined else static,
+            (static,) if is_compared else (),
             camera=view.camera.copy(),
-            is_turntable=choices.is_turntable and not is_sheet,
-            picture=StagePicture(display, background, area, letter).on,
-            style=style_of(display, background),
+            style=style_of(display, None if is_clear else view.background),
+            tone=TONES[display.tone],
+            values=colours.of_source,
+            bar=colours.bar,
+            anatomy=display.anatomy,
             head=head,
             is_alive=self._settings.is_alive,
         )
@@ -151,16 +101,15 @@ class Exporter:
 
         UserError where it cannot be.
         """
-        choices, script = self.choices, self.played()
-        scene = self._session.scene
+        choices, script = self.choices, self.session.script
+        scene = self.session.scene
         head = scene.head if isinstance(scene, FaceScene) else None
         head = head if isinstance(head, FittedHead) else None
         work: Callable[[], object]
         if self.kind.is_drawn:
             check_file(target / "frame.png" if choices.kind == FRAMES else target)
             draw = partial(capture, script, self._options(head), overwrite=True)
-            name = "sheet" if choices.kind == SHEET else "output"
-            work = partial(draw, progress=False, **{name: target})
+            work = partial(draw, progress=False, output=target)
         else:
             chosen = format_for(target, choices.kind)
             request = Request(overwrite=target.exists(), progress=False)
@@ -206,10 +155,6 @@ PICTURES = {
     **{(1080, 1080): "Square", (1080, 1920): "Upright"},
 }
 RATES = (12, 15, 24, 25, 30, 48, 50, 60, 120)
-SWITCHES = {  # fields of the choices
-    "is_transparent": "Transparent background",
-    "is_turntable": "Turntable: the camera goes round once",
-}
 Value = TypeVar("Value")
 
 
@@ -244,41 +189,28 @@ class ExportDialog:
         return now if chosen is None else values[chosen]
 
     def _draw_motion(self, choices: ExportChoices) -> None:
-        """What is exported, from when to when, how large and how often."""
+        """What is exported, how large and how often."""
         titles = {name: kind.title for name, kind in KINDS.items()}
         choices.kind = self._pick("Write", choices.kind, titles)
-        kind, is_sheet = self._exporter.kind, choices.kind == SHEET
-        if not is_sheet:
-            choices.source = self._pick("What", choices.source, SOURCES)
-        if choices.source == "pose" and not is_sheet:
-            self._rows.begin("Length")
-            always = imgui.SliderFlags_.always_clamp
-            _, choices.seconds = imgui.drag_float(
-                "##length", choices.seconds, 0.05, 0.1, 600.0, "%.2f s", always
-            )
+        kind = self._exporter.kind
         if kind.is_drawn:
-            sizes = {choices.size: "Typed", self._view.viewport[2:]: "As in the window", **PICTURES}
+            here = self._view.viewport[2:]
+            sizes = {choices.size: "As last", here: "As in the window", **PICTURES}
             words = {size: f"{name}: {size[0]} x {size[1]}" for size, name in sizes.items()}
             choices.size = self._pick("Size", choices.size, words)
-            self._rows.begin("")
-            _, sides = imgui.input_int2("##sides", [*choices.size])
-            self._gui.remember("export: sides")
-            width, height = (min(max(side, SIDES_EXPORTED[0]), SIDES_EXPORTED[1]) for side in sides)
-            choices.size = width, height
         choices.rate = min(choices.rate, kind.fastest)
         rates = [choices.rate, *(float(rate) for rate in RATES if rate <= kind.fastest)]
         shown = {rate: f"{rate:g}" for rate in sorted(rates)}
         choices.rate = self._pick("Frames a second", choices.rate, shown)
-        can = kind.can_be_transparent, kind.is_drawn and not is_sheet
-        for (switch, label), is_possible in zip(SWITCHES.items(), can, strict=True):
-            if is_possible:
-                self._rows.begin("")
-                setattr(choices, switch, imgui.checkbox(label, getattr(choices, switch))[1])
-                self._gui.remember(f"export: {label}")
+        if kind.can_be_transparent:
+            self._rows.begin("")
+            label = "Transparent background"
+            _, choices.is_transparent = imgui.checkbox(label, choices.is_transparent)
+            self._gui.remember(f"export: {label}")
 
     def _draw_end(self, choices: ExportChoices) -> None:
         """How much will be written; and the buttons, the first of which asks for a name."""
-        exporter, duration = self._exporter, self._exporter.played().duration
+        exporter, duration = self._exporter, self._exporter.session.script.duration
         imgui.separator()
         imgui.align_text_to_frame_padding()
         left = imgui.get_content_region_avail().x - em(2.0 * BUTTON)
@@ -296,7 +228,7 @@ class ExportDialog:
         elif is_begun or (was_focused and is_enter):
             exporter.is_asking, suffix = False, exporter.kind.suffix
             ask = partial(self._files.ask, TITLE, exporter.start, saving=True, suffixes=(suffix,))
-            ask(proposed=f"{exporter.stem}{suffix}")
+            ask(proposed=f"{Path(exporter.session.name).stem}{suffix}")
 
     def _draw_progress(self) -> None:
         """How far it is."""

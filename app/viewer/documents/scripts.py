@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -13,13 +12,12 @@ from imgui_bundle import imgui
 
 from ...errors import UserError
 from ...performances import read_performance
-from ...script import Script, is_pose
+from ...script import Script
+from ...script.script_file import is_pose
 from ...sound import with_sound
-from ..interface.gui import NOTE_FLAGS, Gui, em
+from ..interface.gui import Gui
 from ..interface.widgets import button, dialog
 from ..messages import Message, Task
-from ..picture.view import View
-from ..session.recovery import Recovery
 from ..session.session import Session
 from .file_dialogs import SUFFIX, FileDialogs
 
@@ -180,7 +178,7 @@ class ScriptCommands:
 
     def set_sound(self, path: Path) -> Message:
         """Put a sound file beside the script; UserError where nothing is heard in it."""
-        self._session.edit(with_sound(self._session.script, path), f"Sound {path.name}")
+        self._session.edit(with_sound(self._session.script, path))
         self.note_recent(path)
         return f"{path.name}: opened; Space plays it with the script"
 
@@ -191,7 +189,7 @@ class ScriptCommands:
 
     def remove_sound(self) -> None:
         """The script without its sound."""
-        self._session.edit(replace(self._session.script, sound=None), "Remove sound")
+        self._session.edit(replace(self._session.script, sound=None))
 
     def toggle_recording(self) -> Message:
         """Record the sliders into the script, or end that."""
@@ -241,24 +239,3 @@ def draw_question(
         imgui.close_current_popup()
     question.task = None
     return answer()
-
-
-def draw_recovery(gui: Gui, recovery: Recovery, question: Question, view: View) -> Message:
-    """Offer what was left behind, until it is taken or thrown away."""
-    if recovery.found is None:
-        return None
-    when = time.strftime("%Y-%m-%d %H:%M", time.localtime(recovery.found.when))
-    left, top, width, height = view.area
-    imgui.set_next_window_pos((left + 0.5 * width, top + height - em(0.8)), 0, (0.5, 1.0))
-    imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), em(7)), em(20)))
-    imgui.begin("##offer", None, NOTE_FLAGS)
-    imgui.text_wrapped(f"Unsaved work of {when}: {recovery.found.summary}")
-    is_accepted = button(gui, "Recover", name="offer: Recover")
-    imgui.same_line()
-    is_discarded = button(gui, "Throw away", name="offer: Throw away")
-    imgui.end()
-    if is_accepted:  # unless work of this window would be lost
-        return question.before("Recover", recovery.accept_found)
-    if is_discarded:
-        recovery.discard()
-    return None

@@ -17,7 +17,6 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
 # Ctrl keys that a line of text takes for itself while one writes.
 _WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
 _CHANGING = ("Edit", "Keys", "Expression")  # menus of what waits until the mouse lets go
-_WALKING = ("Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "PageUp", "PageDown")
 
 
 @dataclass
@@ -26,27 +25,21 @@ class Command:
 
     menu: str
     label: str
-    key: str  # "" for none
+    key: str  # "" for none; several with ", " between
     run: Task
     is_on: Callable[[], bool] | None = None
     can_run: Callable[[], bool] = lambda: True
-    other_key: str = ""
     submenu: Callable[[], Iterable[Command]] | None = None  # in place of doing something
-    reads: Callable[[], str] | None = None  # its label now, where that changes
 
     @property
     def displayed_keys(self) -> str:
         """All keys as people know them."""
-        words = {"Equal": "=", "Minus": "-", "Keypad": "Num "}
-        keys = ", ".join(self.keys)
-        for name, word in words.items():
-            keys = keys.replace(name, word)
-        return keys
+        return self.key.replace("Equal", "=").replace("Minus", "-").replace("Keypad", "Num ")
 
     @property
     def keys(self) -> tuple[str, ...]:
         """All keys that do it."""
-        return tuple(filter(None, (self.key, self.other_key)))
+        return tuple(filter(None, self.key.split(", ")))
 
 
 def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> None:
@@ -57,8 +50,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
     for command in commands:
         for key in command.keys:
             is_for_text = is_writing and ("Ctrl" not in key or key in _WRITING)
-            is_taken = is_for_text or (gui.owns_keys and key in _WALKING)
-            if is_taken or not imgui.is_key_chord_pressed(chord(key)):
+            if is_for_text or not imgui.is_key_chord_pressed(chord(key)):
                 continue
             is_in_the_way = command.menu in _CHANGING and imgui.is_any_mouse_down()
             if command.can_run() and not is_in_the_way:
@@ -110,10 +102,9 @@ class MenuBar:
                 self._gui.remember(f"menu {title}: {command.label}")
                 continue
             is_on = command.is_on is not None and command.is_on()
-            name = f"menu {title}: {command.label}"
-            label = f"{command.reads()}###{name}" if command.reads else command.label
-            is_clicked, _ = imgui.menu_item(label, command.displayed_keys, is_on, command.can_run())
-            self._gui.remember(name)
+            label, keys = command.label, command.displayed_keys
+            is_clicked, _ = imgui.menu_item(label, keys, is_on, command.can_run())
+            self._gui.remember(f"menu {title}: {label}")
             if is_clicked:
                 self._messages.attempt(command.run)
         if imgui.is_key_pressed(imgui.Key.escape):  # the mouse may be on what opens a submenu again

@@ -29,7 +29,6 @@ FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.
 FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
 BUTTON = -1  # in place of a key: one of the mouse was pressed
-PANEL = "Controls"  # the window in which the keyboard begins
 SETTLING = 3  # turns of the GUI in which what a press has opened gets the focus
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
@@ -89,8 +88,6 @@ class Gui:
         self._context = imgui.create_context()
         self.double_click_time = 0.3  # [s] in which the second press comes
         self.has_popup = False  # a menu, a list or a dialog, as the turn began
-        self.owns_keys = False  # Tab, arrows, Space ... are for widgets: they walk through these
-        self._is_walking = False
         self._presses: list[tuple[int, int | None]] = []  # how many events before, and which key
         self._looked = time.perf_counter()  # when events were taken in last [s]
         self._shown = self._looked - 1.0 / 60.0  # when that was for the last frame [s]
@@ -186,12 +183,6 @@ class Gui:
         queue.clear()
         cuts, self._presses = [(0, None), *self._presses, (waiting.size(), 0)], []
         for (start, pressed), (end, following) in pairwise(cuts):
-            if pressed == glfw.KEY_TAB:
-                self._is_walking = True
-                if self._context.nav_window is None:
-                    imgui.set_window_focus(PANEL)
-            elif pressed == BUTTON or (pressed == glfw.KEY_ESCAPE and not self.has_popup):
-                self._is_walking = False
             for index in range(start, end):
                 queue.push_back(waiting[index])
             while queue.size():
@@ -226,9 +217,10 @@ class Gui:
         io.delta_time = max(self._looked - self._shown, 1e-6)
         self._shown = self._looked
         self.has_popup = self._context.open_popup_stack.size() > 0
-        self.owns_keys = self._is_walking or self.has_popup
-        walks = imgui.ConfigFlags_.nav_enable_keyboard
-        io.config_flags = io.config_flags | walks if self.owns_keys else io.config_flags & ~walks
+        walks = (
+            imgui.ConfigFlags_.nav_enable_keyboard
+        )  # by Tab and arrows, which else do other things
+        io.config_flags = io.config_flags | walks if self.has_popup else io.config_flags & ~walks
         imgui.new_frame()
         self.places.clear()
         try:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from imgui_bundle import imgui
 
-from ...controls.vocabulary import readable, sentence
+from ...controls import readable, sentence
 from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
 
 # Knob and number of imgui's own sliders; bars have others.
@@ -206,11 +206,11 @@ class LabelledRows:
         neutral: float,
         *,
         digits: int = 2,
-    ) -> float | None:
-        """Draw a row with a slider; what it was moved to, None if it was not."""
+    ) -> float:
+        """Draw a row with a slider; its value now."""
         self.begin(label)
         slid = slider(self._gui, name, value, limits, width=-1.0, neutral=neutral, digits=digits)
-        return slid.value if slid.is_changed else None
+        return slid.value if slid.is_changed else value
 
 
 def button_width(label: str) -> float:

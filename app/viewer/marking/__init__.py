@@ -1,8 +1,7 @@
 """Marking the 68 landmarks of a mesh by the mouse.
 
 marking.py  the mesh, where its landmarks are so far, undo, files; knows no windows
-view.py     what is drawn: the mesh, its points, what is asked
-room.py     all of it joined: the mouse, and commands
+room.py     what is drawn and asked, the mouse, and commands
 """
 
 from .marking import Marking

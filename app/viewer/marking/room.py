@@ -1,31 +1,213 @@
-"""Everything that is there while a mesh is marked, joined; the mouse on it, and its commands."""
+"""A mesh that is marked, in the window: what is seen and asked, the mouse, commands."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from imgui_bundle import imgui
 
-from risorius import render
-from risorius.assets.fitting.guess import axes_turned
+from risorius import assets, render
+from risorius.assets.fitting.guess import FIRST, axes_turned
 from risorius.sim.landmarks import MIRRORED
 
+from ...passes.labels import CameraLabels
+from ...refining.presets import STATIC
+from ...scenes import Scene
 from ..context import ApplicationContext
-from ..interface.commands import Command, MenuBar
-from ..interface.gui import LEFT, em
+from ..interface.commands import Command, MenuBar, command_button
+from ..interface.gui import LEFT, Gui, colour, em, fixed_panel, ink_of
+from ..interface.widgets import muted
 from ..messages import Message, Messages, Task
 from ..picture.mouse import CameraMouse
-from ..picture.painter import Painter
 from ..picture.skin import Ray, skin_under
-from ..picture.stage import Stage
-from .marking import Marking
-from .view import MarkingPanel, MarkingView, MeshScene
+from ..picture.stage import Painter, Stage, View
+from ..settings import Display, Settings
+from .marking import GROUP_OF, GROUPS, FloatArray, Marking
 
-SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size", "Keys and mouse")
+FACING = 0.15  # cosine to the line of sight beyond which a mark is seen
+WIDTH, SHARE = 21.0, 0.4  # [em] of the panel, and at most of the window
+GUIDE = 11.0  # [em] of its height
+DARK, WHITE = (0.08, 0.08, 0.10), (1.0, 1.0, 1.0)
+NAMES = {  # of the first points
+    **{36: "Outer corner of the right eye", 45: "Outer corner of the left eye"},
+    **{30: "Tip of the nose", 48: "Right corner of the mouth", 54: "Left corner of the mouth"},
+}
+SIDES = {
+    -1.0: "the person's right: on your left as the face looks at you",
+    0.0: "in the middle of the face",
+    1.0: "the person's left: on your right as the face looks at you",
+}
+BEGIN = (
+    "Click the point on the skin that the guide shows. Where the head does not look at you, drag "
+    "it with the mouse and press Upright, or Turn 90 degrees. The wheel zooms."
+)
+GO_ON = (
+    "Drag points that are not where they belong; a click on the skin moves this one. White inside: "
+    "guessed, and not moved yet."
+)
+
+Spot = tuple[float, float]  # [window units]
+
+
+class MeshScene(Scene):
+    """The mesh where it is placed now."""
+
+    name = "face"
+    limits: Mapping[str, tuple[float, float]] = {}
+
+    def __init__(self, marking: Marking) -> None:
+        self.rest_positions, self.faces = marking.positions, marking.faces
+        self._marking = marking
+
+    @property
+    def positions(self) -> FloatArray:
+        return self._marking.positions
+
+
+class MarkingView(View):
+    """How the mesh is seen: as clay, by a camera that frames all of it."""
+
+    def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:
+        self._marking, self._settings, self._surface = marking, settings, surface
+        self.area, self.pointed = (0.0, 0.0, 1.0, 1.0), {}
+        self.fit_scene()
+
+    def fit_scene(self) -> None:
+        marking = self._marking
+        self.camera = render.OrbitCamera.framing(marking.positions)
+        if marking.is_upright:  # all of the face, however much there is of hair and shoulders
+            self.camera.fit(marking.seen(marking.marks.places)[0], 0.14)
+
+    @property
+    def display(self) -> Display:
+        return Display(skin="clay", refiner=STATIC)
+
+    @property
+    def state(self) -> object:
+        return super().state, id(self._marking.positions)
+
+    def places(self) -> dict[int, Spot]:
+        """Where the marks are that are on the side which is seen, by number."""
+        numbers = list(self._marking.marks.places)
+        points, normals = self._marking.seen(numbers)
+        spots = places_in(self.area, self.camera, points)
+        to_eye = self.camera.eye - points
+        toward = (normals * to_eye).sum(axis=1) / np.linalg.norm(to_eye, axis=1)
+        return {n: spots[index] for index, n in enumerate(numbers) if toward[index] > FACING}
+
+
+class MarkingPanel:
+    """Draws what is asked, what can be done, and the points over the mesh."""
+
+    def __init__(
+        self,
+        gui: Gui,
+        messages: Messages,
+        marking: Marking,
+        menus: MenuBar,
+        commands: Iterable[Command],
+    ) -> None:
+        """commands: that get buttons."""
+        self._gui, self._messages, self._marking = gui, messages, marking
+        self._menus, self._commands = menus, tuple(commands)
+        head = assets.load("head")
+        self._guide = head.vertices[head.landmarks][:, :2] * (1.0, -1.0)
+
+    def draw(self, view: MarkingView) -> None:
+        """Draw everything, and give the view its place."""
+        display = imgui.get_io().display_size
+        top = self._menus.draw()
+        left = round(min(em(WIDTH), SHARE * display.x))
+        view.area = (left, top, max(display.x - left, 1.0), max(display.y - top, 1.0))
+        with fixed_panel("Controls", (0.0, top), (left, display.y - top)):
+            imgui.push_text_wrap_pos(0.0)
+            self._draw_task()
+            self._draw_guide()
+            self._draw_buttons()
+            imgui.pop_text_wrap_pos()
+        marks, current = self._marking.marks, self._marking.current
+        pen, at = imgui.get_background_draw_list(), view.places()
+        pen.push_clip_rect((left, top), (display.x, display.y))
+        _draw_points(pen, at, current, joined=marks.is_complete)
+        for number in marks.guessed & at.keys():
+            pen.add_circle_filled(at[number], em(0.12), ink_of(WHITE))
+        for number in at.keys() & {*GROUP_OF[current].numbers}:
+            x, y = at[number][0] + em(0.45), at[number][1] - em(0.95)
+            pen.add_text((x + em(0.07), y + em(0.07)), ink_of(DARK), str(number))
+            pen.add_text((x, y), ink_of(WHITE), str(number))
+        pen.pop_clip_rect()
+
+    def _draw_task(self) -> None:
+        marking, is_complete = self._marking, self._marking.marks.is_complete
+        number = marking.current
+        muted(self._gui, marking.path.name)
+        if number in FIRST and not is_complete:
+            step, name = f"First points: {FIRST.index(number) + 1} of {len(FIRST)}", NAMES[number]
+        else:
+            step, name = GROUP_OF[number].title.capitalize(), f"Point {number}"
+        imgui.text_colored(colour(self._gui.theme.accent), step)
+        imgui.text_wrapped(name)
+        side = 0.0 if MIRRORED[number] == number else float(np.sign(self._guide[number, 0]))
+        muted(self._gui, SIDES[side])
+        imgui.spacing()
+        imgui.text_wrapped(GO_ON if is_complete else BEGIN)
+        imgui.spacing()
+
+    def _draw_guide(self) -> None:
+        """Where the current point belongs among those of a face; its group, as large as it can."""
+        current, is_complete = self._marking.current, self._marking.marks.is_complete
+        low, size = imgui.get_cursor_screen_pos(), (imgui.get_content_region_avail().x, em(GUIDE))
+        imgui.dummy(size)
+        numbers = list(GROUP_OF[current].numbers) if is_complete else range(len(self._guide))
+        shown = self._guide[numbers]
+        middle, spread = 0.5 * (shown.max(axis=0) + shown.min(axis=0)), np.ptp(shown, axis=0)
+        scale = 0.8 * float(np.min(np.array(size) / np.maximum(spread, 1e-9)))
+        spots = np.array([low.x, low.y]) + 0.5 * np.array(size) + scale * (self._guide - middle)
+        at = {n: (float(x), float(y)) for n, (x, y) in enumerate(spots) if n in numbers}
+        _draw_points(imgui.get_window_draw_list(), at, current, joined=True)
+
+    def _draw_buttons(self) -> None:
+        """One for each command, two in a row."""
+        spacing = imgui.get_style().item_spacing.x
+        width = 0.5 * (imgui.get_content_region_avail().x - spacing)
+        for index, command in enumerate(self._commands):
+            if index % 2:
+                imgui.same_line()
+            command_button(self._gui, self._messages, command, width=width)
+
+
+def _draw_points(
+    pen: imgui.ImDrawList, at: Mapping[int, Spot], current: int, *, joined: bool
+) -> None:
+    """Points with a dark border, joined by the lines of groups, a ring around one."""
+    for group in GROUPS if joined else ():
+        for a, b in (pair for line in group.lines for pair in pairwise(line)):
+            if a in at and b in at:
+                pen.add_line(at[a], at[b], ink_of(group.colour, 0.75), em(0.1))
+    for number, spot in at.items():
+        radius = em(0.34 if number == current else 0.22)
+        pen.add_circle_filled(spot, radius + em(0.08), ink_of(DARK))
+        pen.add_circle_filled(spot, radius, ink_of(GROUP_OF[number].colour))
+    if current in at:
+        pen.add_circle(at[current], em(0.62), ink_of(WHITE), 0, em(0.12))
+
+
+def places_in(
+    area: tuple[float, float, float, float], camera: render.OrbitCamera, points: npt.ArrayLike
+) -> list[Spot]:
+    """Where a camera that fills an area of the window sees points (n, 3) [window units]."""
+    left, top, width, height = area
+    seen = CameraLabels.of(camera, (width, max(height, 1.0))).project(np.asarray(points))
+    return [(left + x, top + y) for x, y in seen.tolist()]
+
+
+SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size")
 REACH = 0.8  # [em] around a mark in which the mouse takes it
 ASIDE = 40.0  # [degrees] from which a landmark is seen that the front hides
 QUARTER = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # of a turn in the picture
@@ -166,7 +348,7 @@ class Room:
             file("Open landmarks ...", "Ctrl+O", marking.ask_open),
             file("Leave", "Ctrl+W", self.leave),
             edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: history.can_undo),
-            edit("Redo", "Ctrl+Y", marking.redo, None, lambda: history.can_redo, "Ctrl+Shift+Z"),
+            edit("Redo", "Ctrl+Y, Ctrl+Shift+Z", marking.redo, None, lambda: history.can_redo),
             turned("Upright", "U", self._straighten),
             turned("Turn 90 degrees", "T", partial(self._straighten, 1)),
             landmarks("Point before", "Left", partial(self._step, -1)),

@@ -1,7 +1,6 @@
 """Where everything stands: menus above, controls at the left, time below, the picture in the rest.
 
-Hidden, all of it makes room for the picture; menus come up with the mouse at its upper edge. What
-the window has to say stands in a line at the upper edge of the picture.
+What the window has to say stands in a line at the upper edge of the picture.
 """
 
 from __future__ import annotations
@@ -12,9 +11,9 @@ from imgui_bundle import imgui
 
 from ..context import ApplicationContext
 from ..interface.commands import MenuBar
-from ..interface.gui import LEFT, NOTE_FLAGS, PANEL, Gui, colour, em, fixed_panel
+from ..interface.gui import LEFT, NOTE_FLAGS, Gui, colour, em, fixed_panel
 from ..messages import Messages
-from ..picture.view import View
+from ..picture.stage import View
 from ..timeline.timeline import Timeline
 
 
@@ -25,7 +24,7 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     left, top, width, _ = view.area
     imgui.set_next_window_pos((left + em(0.8), top + em(0.8)))  # captions are at the foot
     imgui.set_next_window_size_constraints((0.0, 0.0), (max(width - em(1.6), 50.0), em(20)))
-    imgui.begin("##message", None, NOTE_FLAGS | imgui.WindowFlags_.no_nav_focus)
+    imgui.begin("##message", None, NOTE_FLAGS)
     imgui.push_text_wrap_pos(min(width - em(2.4), em(46)))
     text = gui.with_keys(messages.text)
     if messages.is_error:
@@ -43,7 +42,6 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
 
 PANEL_WIDTHS = 12.0, 60.0  # [em] between which the left panel may be drawn wider
 PANEL_SHARE = 0.45  # of the window, at most
-EDGE = 1.6  # [em] of the picture's upper edge, where menus come up that are hidden
 
 
 class Layout:
@@ -57,51 +55,39 @@ class Layout:
         timeline: Timeline,
     ) -> None:
         """tabs: what draws the panels at the left, by their titles, or label###title."""
-        self._gui, self._settings, self._state = app.gui, app.settings, app.panel_state
+        self._app, self._gui, self._settings = app, app.gui, app.settings
         self._menus, self._tabs, self._timeline = menus, tabs, timeline
 
     def draw(self, view: View) -> None:
         """Draw everything, and give the view its place."""
         view.pointed = {}
-        if self._state.are_hidden:
-            view.area = self._draw_bare()
-        else:
-            view.area = self._draw_around()
-
-    def _draw_bare(self) -> tuple[float, float, float, float]:
-        io = imgui.get_io()
-        if 0.0 <= io.mouse_pos.y < em(EDGE) or self._gui.owns_keys:
-            self._menus.draw()
-        return 0.0, 0.0, max(io.display_size.x, 1.0), max(io.display_size.y, 1.0)
-
-    def _draw_around(self) -> tuple[float, float, float, float]:
         display = imgui.get_io().display_size
         top = self._menus.draw()
         least, most = PANEL_WIDTHS
         wanted = em(min(max(self._settings.panel_width, least), most))
         left = round(min(wanted, PANEL_SHARE * display.x))
         below = round(self._timeline.height())
-        with fixed_panel(PANEL, (0.0, top), (left, display.y - top), resizes=True):
+        with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
             is_other = round(imgui.get_window_width()) != left
             if is_other and imgui.is_mouse_down(LEFT):  # its edge is being dragged
                 self._settings.panel_width = imgui.get_window_width() / em()
             self._draw_tabs()
         with fixed_panel("Time", (left, display.y - below), (display.x - left, below)):
             self._timeline.draw()
-        return left, top, max(display.x - left, 1.0), max(display.y - top - below, 1.0)
+        view.area = left, top, max(display.x - left, 1.0), max(display.y - top - below, 1.0)
 
     def _draw_tabs(self) -> None:
-        state = self._state
+        app = self._app
         if not imgui.begin_tab_bar("tabs"):
             return
         for label, draw_panel in self._tabs.items():
             title = label.rpartition("###")[2]
-            flags = imgui.TabItemFlags_.set_selected if state.wanted_tab == title else 0
+            flags = imgui.TabItemFlags_.set_selected if app.wanted_tab == title else 0
             is_open, _ = imgui.begin_tab_item(label, None, flags)
             self._gui.remember(f"tab {title}")
             if is_open:
-                if state.wanted_tab == title:
-                    state.wanted_tab = ""
+                if app.wanted_tab == title:
+                    app.wanted_tab = ""
                 draw_panel()
                 imgui.end_tab_item()
         imgui.end_tab_bar()

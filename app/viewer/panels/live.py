@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
-from ...controls.vocabulary import sentence
+from ...controls import sentence
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
-from ...recordings.calibration import BLINK_GAIN, HIGHEST_GAIN
+from ...recordings.calibration import HIGHEST_GAIN
 from ..context import ApplicationContext
 from ..interface.commands import Command, command_button
 from ..interface.gui import colour
@@ -17,11 +17,6 @@ from ..interface.widgets import LabelledRows, hint, muted
 
 LABEL_SHARE = 0.38  # of a row
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
-# Gains that have a slider of their own, beside that of all: channels, and what is usual.
-GAINS = {
-    "Blink": (("eyeBlinkLeft", "eyeBlinkRight"), BLINK_GAIN),
-    "Head": (("head_yaw", "head_pitch", "head_roll"), 1.0),
-}
 COMPUTERS = {"this computer alone": LOOPBACK, "the whole network": ANYWHERE}
 HINTS = {
     "Protocol": "what the sender speaks; Live Link Face is an app of an iPhone, "
@@ -30,8 +25,6 @@ HINTS = {
     "do nothing else",
     "Port": "where the sender must send to",
     "Gain": "how strongly shapes are taken",
-    "Blink": "phones seldom see eyes that are closed completely",
-    "Head": "how far the head turns along",
 }
 
 
@@ -47,7 +40,7 @@ class LivePanel:
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
         gui, live, messages = self._gui, self._live, self._messages
-        imgui.begin_child("live", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
+        imgui.begin_child("live")
         self._draw_listening()
         label = "Stop listening" if live.is_on else "Listen"
         command_button(gui, messages, self._commands["Listen"], label, name="listen", width=-1.0)
@@ -96,17 +89,9 @@ class LivePanel:
         _, mirror = imgui.checkbox("Mirror##live", face.calibration.mirror)
         self._gui.remember("mirror live")
         hint("left and right change places, as in a mirror")
-        calibration, limits = replace(face.calibration, mirror=mirror), (0.0, MOST_GAIN)
-        gain = self._rows.slide("Gain", "live Gain", calibration.default_gain, limits, 1.0)
-        if gain is not None:
-            calibration = replace(calibration, default_gain=gain)
-        for label, (names, usual) in GAINS.items():
-            now = calibration.gains.get(names[0], 1.0)
-            gain = self._rows.slide(label, f"live {label}", now, limits, usual)
-            if gain is not None:
-                gains = {**calibration.gains, **dict.fromkeys(names, gain)}
-                calibration = replace(calibration, gains=gains)
-        face.calibration = calibration
+        before = face.calibration
+        gain = self._rows.slide("Gain", "live Gain", before.default_gain, (0.0, MOST_GAIN), 1.0)
+        face.calibration = replace(before, mirror=mirror, default_gain=gain)
 
 
 def state_in_words(face: LiveFace | None) -> str:

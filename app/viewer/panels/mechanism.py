@@ -14,16 +14,15 @@ from risorius import refine, render
 from risorius.assets.identities import NAMED, person_in_words
 
 from ...anatomy import OPACITY, SIDES, STRUCTURES
-from ...controls.vocabulary import readable
+from ...controls import readable
 from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
-from ...refining.refiners import DETAIL, can_detail
+from ...refining.refiners import DETAIL, can_detail, open_choices, options_of
 from ...scenes import BUILT_IN, OWN, FaceScene
-from ..colours import COLOURS
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
-from ..frame_times import PHASES
 from ..interface.widgets import LabelledRows, button, heading, muted
-from ..settings import BACKGROUNDS, COMPARISONS, SKINS, TONES, Display, switch
+from ..session.physics import PHASES
+from ..settings import BACKGROUNDS, COLOURS, COMPARISONS, SKINS, TONES, Display, switch
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -44,7 +43,6 @@ HINTS = {
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
-    "Shading": "[Next shading] goes through them",
     "Colours": "of the simulated mesh's triangles, however refined ([Colour by splits]: splits)",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
@@ -79,7 +77,7 @@ class MechanismPanel:
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        imgui.begin_child("mechanism", (0.0, 0.0), imgui.ChildFlags_.nav_flattened)
+        imgui.begin_child("mechanism")
         imgui.begin_disabled(self._display == Display())
         if button(self._gui, "Reset all", meaning="all of this as at first, except the person"):
             self._settings.display = Display()
@@ -110,7 +108,7 @@ class MechanismPanel:
         put = partial(display.choose_refiner, stage.scene)
         self._choose("Refiner", display.refiner_on(stage.scene), names, put)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
-        for name, default in stage.refiner_options.items():
+        for name, default in options_of(display.refiner_on(stage.scene)).items():
             if name not in THRESHOLDS or has_thresholds:
                 self._draw_option(name, default)
         self._pick("Compare", COMPARISONS)
@@ -139,7 +137,7 @@ class MechanismPanel:
         elif isinstance(default, float):
             limits = 0.0, max(HIGHEST, 2.0 * default)
             slid = self._rows.slide(label, name, float(value), limits, default, digits=3)
-            if slid is not None:
+            if slid != value:
                 put(slid)
                 _keep_in_order(stored, name, slid, told)
         elif isinstance(default, str):
@@ -148,7 +146,7 @@ class MechanismPanel:
             if allowed:
                 self._choose(label, str(value), allowed, put)
         elif default is None:
-            choices = self._stage.open_choices[name]
+            choices = open_choices(refiner)[name]
             present = next(word for word, each in choices.items() if each == value)
             self._choose(label, present, list(choices), lambda word: put(choices[word]))
 
@@ -158,8 +156,8 @@ class MechanismPanel:
         self._pick("Colours", tuple(COLOURS))
         self._pick("Skin", tuple(SKINS))
         if self._stage.scene.wrinkles is not None:
-            depth = self._rows.slide("Wrinkles", "wrinkles", display.wrinkles, (0.0, 1.0), 1.0)
-            display.wrinkles = display.wrinkles if depth is None else depth
+            now = display.wrinkles
+            display.wrinkles = self._rows.slide("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
         self._switch("Wireframe")
         imgui.same_line(self._rows.second)
         self._switch("Occlusion")
@@ -189,8 +187,8 @@ class MechanismPanel:
             self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
         if display.anatomy.structures:
             now = display.skin_opacity
-            slid = self._rows.slide("Skin opacity", "skin_opacity", now, (0.0, 1.0), OPACITY)
-            display.skin_opacity = now if slid is None else slid
+            label, name = "Skin opacity", "skin_opacity"
+            display.skin_opacity = self._rows.slide(label, name, now, (0.0, 1.0), OPACITY)
             self._pick("Dissect", tuple(SIDES))
 
     def _draw_times(self) -> None:

@@ -1,7 +1,7 @@
 """The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
 Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
-wheel zooms. What a finger does to the skin is in skin_drag.py.
+wheel zooms. What a finger does to the skin is in skin.py.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from ...scenes import FaceScene
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
 from .skin import Ray, SkinDrag, skin_under
-from .stage import Stage
-from .view import View
+from .stage import Stage, View
 
 Grab = Callable[..., SkinDrag]
 Select = Callable[[str], None]

@@ -16,9 +16,7 @@ import numpy.typing as npt
 from risorius import render, sim
 from risorius.sim.landmarks import polyline_distance
 
-from ...controls.mirror import OPPOSITE, TURNED, parted, twin_of
-from ...controls.vocabulary import called
-from ...errors import counted
+from ...controls import OPPOSITE, TURNED, called, parted, twin_of
 from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings
@@ -164,10 +162,7 @@ class SkinDrag:
             return None
         pull.solve()
         self._obey(pull)
-        names = [name for names in pull.changes for name in names]
-        muscles = sum(not name.startswith("jaw_") for name in names)
-        parts = counted(muscles, "muscle") if muscles else "", "jaw" * (muscles < len(names))
-        self._session.note(f"Pull ({', '.join(filter(None, parts))})")
+        self._session.note()
         if not pull.changes:
             return "No muscle draws the skin this way: it swings back"
         told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())

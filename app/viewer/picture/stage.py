@@ -1,27 +1,111 @@
-"""The scene in the window: which meshes are drawn where, coloured and overlaid as the user wants.
+"""The scene in the window: its camera; what is drawn where, coloured and overlaid; and when.
 
-Draws by `Pipeline.draw`, as films do, and keeps the time of each part of the paper's Figure 1.
+Draws by `Pipeline.draw`, as films do, and keeps the time of each part of the paper's Figure 1. It
+draws if something has changed, and while it moves as finely as this machine can. A scene that
+stands still, a screenshot and a film are always drawn in full. While something moves, the detail
+may only fall, when frames were too slow for some time; it may rise by one level when a new motion
+begins, if there was ample time left. So it never swings to and fro.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import asdict
 
 import numpy as np
+from imgui_bundle import imgui
 
 from risorius import render
 
 from ...capture.captions import SPLITS_BAR, Label, captioned, labels
+from ...capture.drawing import whole_scene
 from ...files import Image
 from ...pipeline import Pipeline, Viewport
 from ...refining.presets import STATIC, Refinement
-from ...refining.refiners import open_choices, options_of
 from ...scenes import FaceScene, Scene
-from ..colours import COLOURS
-from ..frame_times import FrameTimes
-from ..settings import SKINS, TONES, Display
-from .view import View
+from ..interface.gui import THEMES, em
+from ..messages import Messages
+from ..session.physics import CALM, FrameTimes
+from ..session.session import Session
+from ..settings import BACKGROUNDS, COLOURS, SKINS, TONES, Display, Settings
+
+WHITE = (1.0, 1.0, 1.0)
+
+
+class View:
+    """One view of a session's scene.
+
+    area: the scene's part of the window: left, top, width, height [window units].
+    pointed: the muscles of the control that the mouse is on, and how much each has to do with it.
+    """
+
+    camera: render.OrbitCamera
+    area: tuple[float, float, float, float]
+    pointed: Mapping[str, float]
+
+    def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
+        self._session, self._settings, self._surface = session, settings, surface
+        self.area = (0.0, 0.0, 1.0, 1.0)
+        self.pointed = {}
+        self.fit_scene()
+
+    def fit_scene(self) -> None:
+        """The camera as at first: all of the scene."""
+        self.camera = whole_scene(self._session.scene, self._session.script.camera)
+
+    def look_from(self, label: str) -> None:
+        """Turn the camera to one of `render.VIEWS`, about what it looks at."""
+        self.camera.yaw, self.camera.pitch = render.VIEWS[label.lower().replace(" ", "-")]
+
+    @property
+    def display(self) -> Display:
+        """How the scene is drawn."""
+        return self._settings.display
+
+    @property
+    def background(self) -> render.Background:
+        """What is behind it."""
+        return BACKGROUNDS[self.display.background] or THEMES[self._settings.theme].background
+
+    @property
+    def viewport(self) -> render.Rectangle:
+        """Its part of the framebuffer."""
+        return self.pixels(self.area)
+
+    def pixels(self, area: tuple[float, float, float, float]) -> render.Rectangle:
+        """A part of the window, as one of the framebuffer."""
+        display = imgui.get_io().display_size
+        width, height = self._surface.size
+        across, along = width / max(display.x, 1.0), height / max(display.y, 1.0)
+        left, top, wide, high = area
+        x, y = round(left * across), round((display.y - top - high) * along)
+        return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
+
+    @property
+    def letter(self) -> float:
+        """How large words are in the window [pixels]: captions are no smaller."""
+        return self.pixels((0.0, 0.0, em(), 1.0))[2]
+
+    @property
+    def state(self) -> object:
+        """Everything that the picture depends on, but for the motion of the scene."""
+        display = repr(asdict(self.display))
+        camera = self.camera
+        place = camera.yaw, camera.pitch, camera.distance, *camera.target.tolist()
+        return place, display, self._settings.theme, self.viewport, self.pointed
+
+    def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
+        """The line between the two halves of a comparison, and what to drag it by."""
+        if self.display.compare == "off":
+            return []
+        left, bottom, width, height = self.viewport
+        unit = max(round(em(0.13) * width / max(self.area[2], 1.0)), 2)
+        x, y = left + round(self.display.share * width), bottom + height // 2
+        line = (x - unit // 2, bottom, unit, height)
+        grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
+        rules = [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
+        return rules if self.display.compare == "wipe" else rules[:1]
+
 
 FULL = render.Detail(samples=4, scale=1.0)
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
@@ -47,8 +131,6 @@ class Stage:
         # The mesh as it is, and as the refiner that is chosen has it drawn.
         self.refined = self.static = self.pipeline.bind(Refinement(refiner=STATIC))
         self._asked: Refinement | None = None  # what it was bound for
-        self.refiner_options: dict[str, Any] = {}  # of `refined`, with their defaults
-        self.open_choices: dict[str, dict[str, Any]] = {}  # and what those may be that are open
         self.bind(display)
 
     def bind(self, display: Display) -> None:
@@ -63,8 +145,6 @@ class Stage:
         self._asked = chosen  # refused options are refused once, not in every frame
         is_static = chosen.refiner == STATIC
         self.refined = self.static if is_static else self.pipeline.bind(chosen)
-        self.refiner_options = options_of(display.refiner_on(self.scene))
-        self.open_choices = open_choices(display.refiner_on(self.scene))
 
     def viewports(self, display: Display, area: render.Rectangle) -> list[Viewport]:
         """What is drawn where in an area of the frame."""
@@ -157,3 +237,99 @@ def style_of(display: Display, background: render.Background | None) -> render.S
         light=render.LIGHTS[display.light],
         background=background,
     )
+
+
+# One sample, outlines smoothed by fringes (render/outline.py); then a little blurred, too.
+# Two samples would not help: software draws four. Processor time of a whole frame at 1280 x 720,
+# as parts of the first: 1, 0.53, 0.47, 0.39 (measured 2026-11-21); with four samples at 0.75: 0.8.
+LEVELS = (
+    FULL,
+    render.Detail(samples=0, scale=1.0),
+    render.Detail(samples=0, scale=0.75),
+    render.Detail(samples=0, scale=0.6),
+)
+FIRST_ON_SOFTWARE = 1  # lest the first second stutters
+TOO_SLOW = 0.045  # [s] a frame; more than 20 a second are promised
+AMPLE = 0.024  # [s] a frame at which the next finer level is safe
+PATIENCE = 4  # frames in a row that decide
+
+
+class LevelOfDetail:
+    """Picks a level of detail by the time that frames took."""
+
+    def __init__(self, *, is_software: bool) -> None:
+        self.level = FIRST_ON_SOFTWARE if is_software else 0
+        self._slow = 0
+        self._fast = 0
+
+    @property
+    def detail(self) -> render.Detail:
+        """For a scene that moves."""
+        return LEVELS[self.level]
+
+    @property
+    def unhurried(self) -> render.Detail:
+        """For a scene that moves a little now and then: not coarser than software begins with."""
+        return LEVELS[min(self.level, FIRST_ON_SOFTWARE)]
+
+    def begin_motion(self) -> None:
+        """Something begins to move: the one moment at which more detail goes unnoticed."""
+        if self._fast >= PATIENCE and self.level > 0:
+            self.level -= 1
+        self._slow = self._fast = 0
+
+    def note(self, seconds: float) -> None:
+        """A frame of a moving scene took so long, all in all."""
+        self._slow = self._slow + 1 if seconds > TOO_SLOW else 0
+        self._fast = self._fast + 1 if seconds < AMPLE else 0
+        if self._slow >= PATIENCE and self.level < len(LEVELS) - 1:
+            self.level += 1
+            self._slow = 0
+
+
+class Painter:
+    """Keeps the picture of the scene up to date, as finely as the machine can."""
+
+    def __init__(self, stage: Stage, view: View, messages: Messages) -> None:
+        self._stage, self._view, self._messages = stage, view, messages
+        self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
+        self._calm_for = 0.0  # [s] that the picture has not changed
+        self.forget()
+
+    def forget(self) -> None:
+        """What was drawn last is not what should be seen."""
+        self._painted: tuple[object, render.Detail] = (None, FULL)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the picture shows the present view, in full detail."""
+        return self._painted == (self._view.state, FULL)
+
+    def paint(self, elapsed: float, *, has_moved: bool, is_alive: bool) -> bool:
+        """Draw the scene if it has changed, or is not drawn in full yet; whether it changed.
+
+        elapsed: since the last frame [s]. has_moved: whether what is seen of it did. is_alive: it
+        only lives, and will move again in a moment: finer pictures in between would flicker.
+        """
+        surface = self._stage.surface
+        surface.area = self._view.viewport
+        surface.rules = self._view.divider()
+        state = self._view.state
+        painted, detail = self._painted
+        has_changed = state != painted or has_moved or surface.frame_size != surface.size
+        if has_changed and self._calm_for > CALM:
+            self.level_of_detail.begin_motion()
+        self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
+        if has_changed:
+            level = self.level_of_detail
+            is_unhurried = is_alive and state == painted
+            self._draw(level.unhurried if is_unhurried else level.detail, state)
+        elif detail != FULL and self._calm_for > CALM and not is_alive:
+            self._draw(FULL, state)
+        return has_changed
+
+    def _draw(self, detail: render.Detail, state: object) -> None:
+        self._messages.attempt(lambda: self._stage.bind(self._view.display))
+        self._stage.surface.detail, self._stage.surface.labels = detail, ()
+        self._stage.draw(self._view)
+        self._painted = state, detail

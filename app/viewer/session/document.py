@@ -1,4 +1,4 @@
-"""What can be undone and saved: states of it, and the file that a script is kept in."""
+"""What a user works on: the controls of a scene, states that can be undone, a script's file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,75 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from ...script import Script, preface_of, save_script
+from risorius.assets.loading import read_words
+from risorius.sim.layers import BOTH_SIDES
+
+from ...scenes import FaceScene, Scene, clamped
+from ...script import Script
+from ...script.script_file import preface_of, save_script
+
+
+class SceneControls:
+    """Every control of every layer (muscles, jaw, gaze, action units, expressions, visemes).
+
+    limits: the lowest and highest value of each. muscles: the lowest ones, to which all others add
+    up; all where a scene does not tell. groups: title -> controls, the highest layer first; those
+    of both sides of a muscle are found beside its sides.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self.limits = scene.limits
+        own = scene.simulation.controls if isinstance(scene, FaceScene) else self.limits
+        self.muscles = frozenset(own)
+        order = [*read_words()["order"], *scene.groups]
+        self.groups = {
+            title: scene.groups[title]
+            for title in dict.fromkeys(order)
+            if title in scene.groups and title != BOTH_SIDES
+        }
+
+    def pose(self, values: Mapping[str, float]) -> dict[str, float]:
+        """A value for each control, within its limits; 0 where none is given."""
+        return {**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, values)}
+
+    def alone(self, name: str) -> dict[str, float]:
+        """This control at its most, and no other."""
+        return self.pose({name: self.limits[name][1]})
+
+    def moved_by(self, values: Mapping[str, float]) -> frozenset[str]:
+        """The lowest controls that a pose moves."""
+        active = (name for name, value in values.items() if value)
+        return frozenset().union(*map(self._scene.moved_by, active))
+
+
+class LiveOverride:
+    """Where a live face has controls, and by what share of 0 (not at all) to 1 (all the way)."""
+
+    def __init__(self) -> None:
+        self._controls: Mapping[str, float] = {}
+        self._share = 0.0
+
+    def take(self, controls: Mapping[str, float], share: float) -> None:
+        """Override these controls from now on, and no others."""
+        self._controls, self._share = controls, share
+
+    @property
+    def is_on(self) -> bool:
+        """Whether anything is overridden."""
+        return self._share > 0.0
+
+    def over(
+        self, values: Mapping[str, float], limits: Mapping[str, tuple[float, float]]
+    ) -> dict[str, float]:
+        """The values, overridden within limits; a control that has no value is left out."""
+        overridden = dict(values)
+        for name, wanted in self._controls.items() if self._share else ():
+            if name in values:
+                low, high = limits[name]
+                overridden[name] += self._share * (min(max(wanted, low), high) - values[name])
+        return overridden
+
 
 _QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
 
@@ -20,7 +88,7 @@ class ScriptFile:
     path: None as long as no file of the user's holds the script.
     """
 
-    def __init__(self, path: Path | None, saved: Script | None) -> None:
+    def __init__(self, path: Path | None, saved: Script) -> None:
         self.path = path
         self._saved = saved
         self._bytes = _bytes_of(path)
@@ -32,14 +100,6 @@ class ScriptFile:
         is_own = not script.is_converted and path.is_file()
         is_own = is_own and not path.resolve().is_relative_to(str(files("risorius.assets")))
         return cls(path if is_own else None, script)
-
-    @classmethod
-    def recovered(cls, path: Path | None, when: float) -> ScriptFile:
-        """The file of a script that was not saved to it, as it was at a time [s since 1970]."""
-        file = cls(path, None)
-        if path is not None and path.exists() and path.stat().st_mtime > when:
-            file._bytes = None  # somebody has written it since
-        return file
 
     def differs(self, script: Script) -> bool:
         """Whether saving would change anything."""
@@ -93,7 +153,6 @@ class History(Generic[State]):
 
     def __init__(self, present: State) -> None:
         self._states = [present]
-        self.labels = ["Beginning"]  # what was done to come to each state
         self.place = 0  # of the present among them
 
     @property
@@ -111,16 +170,12 @@ class History(Generic[State]):
         """The state noted last, or come back to."""
         return self._states[self.place]
 
-    def note(self, state: State, label: str = "") -> None:
-        """Something was done; what was undone before is forgotten. Equal states count once.
-
-        label: what was done, as "Mirror".
-        """
+    def note(self, state: State) -> None:
+        """Something was done; what was undone before is forgotten. Equal states count once."""
         if state == self.present:
             return
-        end = self.place + 1
-        self._states[end:], self.labels[end:] = [state], [label]
-        del self._states[:-MOST], self.labels[:-MOST]
+        self._states[self.place + 1 :] = [state]
+        del self._states[:-MOST]
         self.place = len(self._states) - 1
 
     def amend(self, state: State) -> None:

@@ -74,11 +74,6 @@ class LiveCommands:
         self.stop()
         return None
 
-    @property
-    def can_calibrate(self) -> bool:
-        """Whether a face is seen whose neutral state can be learned."""
-        return self.face is not None and self.face.state is State.RECEIVING
-
     def calibrate(self) -> Message:
         """The face as it is in the next half second is neutral."""
         if self.face is not None:
@@ -119,7 +114,7 @@ class LiveCommands:
 
     @property
     def is_receiving(self) -> bool:
-        """Whether another packet can be expected soon."""
+        """Whether a face is seen, and another packet can be expected soon."""
         return self.face is not None and self.face.state is State.RECEIVING
 
     def due_in(self) -> float:

@@ -8,7 +8,10 @@ that it begins and ends softly is left to the muscles.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 
 import numpy as np
 import numpy.typing as npt
@@ -16,10 +19,8 @@ import numpy.typing as npt
 from risorius import sim
 
 from ...errors import UserError
-from ...motion.idle import Idle
-from ...motion.life import Values
+from ...motion.life import Idle, Values
 from ...scenes import FaceScene
-from ..frame_times import FrameTimes
 from .session import Session
 
 STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
@@ -34,7 +35,38 @@ SEEN = 0.2  # [mm] of motion that is drawn while it only lives: about half a pix
 EYE_RADIUS = 12.0  # [mm] about: of how far a turning eye moves
 
 
+PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
+KEPT_FRAMES = 60  # of which the times are known
+SMOOTHING = 0.9  # of the frame rate, from frame to frame
+
 Life = Callable[[float], Mapping[str, float]]  # what a face adds to its controls, so much [s] later
+
+
+class FrameTimes:
+    """Milliseconds by phase and by frame, and the rate of frames, for the window and benchmarks."""
+
+    def __init__(self) -> None:
+        self.milliseconds = {name: deque([0.0] * KEPT_FRAMES, KEPT_FRAMES) for name in PHASES}
+        self.frames_per_second = 0.0
+
+    @contextmanager
+    def timed(self, phase: str) -> Iterator[None]:
+        """Add the time that the block takes to the present frame's."""
+        start = time.perf_counter()
+        yield
+        self.milliseconds[phase][-1] += 1e3 * (time.perf_counter() - start)
+
+    def next_frame(self) -> None:
+        """Begin with the next frame."""
+        for column in self.milliseconds.values():
+            column.append(0.0)
+
+    def note_frame(self, elapsed: float) -> None:
+        """A frame has begun `elapsed` seconds after the one before it; 0 where nothing moves."""
+        # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
+        mean = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
+        smooth = SMOOTHING * mean + (1.0 - SMOOTHING) * elapsed
+        self.frames_per_second = 1.0 / smooth if elapsed > 0.0 else 0.0
 
 
 class Clock:

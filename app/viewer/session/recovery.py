@@ -1,28 +1,26 @@
 """Unsaved work survives what ends the window: a signal, a crash, a closed terminal.
 
-It is kept in one file beside the settings, written some seconds after a change, and when the
-process is told to stop. The file goes when the work is saved or given up; what is there at the next
-start is offered. Of several windows with the same scene the first has the file, by a lock that the
-system lets go of however a process ends.
+It is kept as a script beside the settings, written some seconds after a change, and when the
+process is told to stop; a pose that is no key is one in it. The file goes when the work is saved or
+given up. The next window puts what is there aside, under the time of its writing, to be opened as
+any script. Of several windows with the same scene the first has the file, by a lock that the system
+lets go of however a process ends.
 """
 
 from __future__ import annotations
 
 import contextlib
-import json
 import math
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
 from risorius.assets.staging import locked
-from risorius.schema import Number, Record, parsed_json, read
 
 from ...errors import UserError
-from ...files import read_text, save_text
-from ...script import LONGEST_FILE, Script, parse_script, script_text
+from ...script import Script, keyframes
+from ...script.script_file import save_script
 from ...stopping import cleaned_up_if_stopped
 from .session import Session
 
@@ -30,41 +28,10 @@ INTERVAL = 2.0  # [s] after a change, in which further ones may come
 LEAST_SHARE = 30.0  # ... or so many times what writing took, lest a long recording stutters
 
 
-@dataclass(frozen=True)
-class Work(Record):
-    """What is not saved."""
-
-    when: float  # [s since 1970]
-    script: str = ""  # the text of it, with what is being recorded; "" where its file has it
-    file: str = ""  # that the script was opened from or saved to; "" for none
-    pose: dict[str, Number] = field(default_factory=dict)  # by hand, and no key
-
-    @classmethod
-    def of(cls, session: Session) -> Work:
-        """What a session has that no file has."""
-        script = session.script if session.script_is_unsaved else None
-        if session.recorder is not None:
-            script = session.recorder.script() or script
-        file = str(session.file.path.absolute()) if session.file.path else ""
-        pose = {name: value for name, value in session.values.items() if value}
-        text = "" if script is None else script_text(script)
-        return cls(time.time(), text, file, pose if _has_pose(session) else {})
-
-    def parsed(self) -> Script | None:
-        """The script, None where there is none; UserError where it is damaged."""
-        return parse_script(self.script, source=self.file or "Untitled") if self.script else None
-
-    @property
-    def summary(self) -> str:
-        """What there is of it."""
-        parts = [f"the script {Path(self.file).name}".rstrip()] if self.script else []
-        return " and ".join(parts + ["a pose"] * bool(self.pose))
-
-
 class Recovery:
     """Keeps a session's unsaved work safe in a folder; without one it does nothing."""
 
-    found: Work | None = None  # what a window left behind that ended, to be offered
+    found: Path | None = None  # the script that a window left behind which ended
 
     def __init__(
         self,
@@ -73,7 +40,7 @@ class Recovery:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._clock, self._session = clock, session
-        self._path = folder and folder / f"unsaved-{session.scene.name}.json"
+        self._path = folder and folder / f"unsaved-{session.scene.name}.toml"
         self._lock: IO[Any] | None = None
         self._safe: object = None  # the state that the file has
         self._due = math.inf  # when it is to be written
@@ -85,22 +52,17 @@ class Recovery:
                 self._lock = locked(self._path.with_suffix(".lock"))
                 if self._lock is None:  # another window has it
                     self._path = None
-        if self._path is not None:
-            self.found = _read(self._path, session)
-
-    def accept_found(self) -> None:
-        """What was found is the session's work now, in place of what it had."""
-        found, self.found = self.found, None
-        if found is not None:
-            path = Path(found.file) if found.file else None
-            self._session.recover(found.parsed(), path, found.pose, found.when)
+                elif self._path.exists():
+                    when = time.localtime(self._path.stat().st_mtime)
+                    kept = f"{self._path.stem}-{time.strftime('%Y%m%d-%H%M%S', when)}"
+                    self.found = self._path.replace(self._path.with_stem(kept))
 
     def watch(self) -> None:
         """To be called all the time; UserError, once, where nothing can be written."""
         if self._path is None:
             return
         if not self._session.unsaved:
-            if self.found is None and self._safe is not None:
+            if self._safe is not None:
                 self.discard()
             self._safe, self._due = None, math.inf
         elif self._due < math.inf:
@@ -120,7 +82,7 @@ class Recovery:
             return
         begin = time.perf_counter()
         try:
-            save_text(self._path, json.dumps(asdict(Work.of(self._session)), indent=1))
+            save_script(self._path, unsaved_script(self._session))
             self._is_failing = False
         except UserError as error:
             is_told, self._is_failing = self._is_failing, True
@@ -132,7 +94,6 @@ class Recovery:
 
     def discard(self) -> None:
         """All is saved, or knowingly thrown away."""
-        self.found = None
         if self._path is not None:
             with contextlib.suppress(OSError):
                 self._path.unlink(missing_ok=True)
@@ -147,10 +108,7 @@ class Recovery:
             with contextlib.suppress(UserError):
                 self.save()
             raise
-        found = self.found
         self.discard()
-        if found is not None and self._path is not None:  # nobody has answered yet
-            save_text(self._path, json.dumps(asdict(found), indent=1))
 
     def close(self) -> None:
         """Leave what is still there to the next window."""
@@ -158,17 +116,14 @@ class Recovery:
             self._lock.close()
 
 
-def _read(path: Path, session: Session) -> Work | None:
-    """The work in a file; None where there is none, or none for this scene."""
-    with contextlib.suppress(UserError, ValueError):
-        text = read_text(path, what="file of unsaved work", longest=LONGEST_FILE)
-        work = read(Work, parsed_json(text), str(path))
-        script, limits = work.parsed(), session.controls.limits
-        if script is not None:
-            script.check(limits)
-        if work.pose.keys() <= limits.keys() and work.summary:
-            return work
-    return None
+def unsaved_script(session: Session) -> Script:
+    """The script with what is recorded, and with a pose by hand as a key at the time shown."""
+    recorder = session.recorder
+    script = (recorder.script() if recorder is not None else None) or session.script
+    if _has_pose(session):
+        time, limits = keyframes.key_time(script, session.time), session.controls.limits
+        script = keyframes.keyed(script, time, session.values, limits)
+    return script
 
 
 def _has_pose(session: Session) -> bool:

@@ -8,16 +8,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...controls.mirror import copied, mirrored, twin_of
-from ...controls.vocabulary import readable
+from ...controls import copied, mirrored, readable, twin_of
 from ...errors import UserError, counted
 from ...motion import SETTLING
 from ...scenes import Scene
-from ...script import Pose, Script, is_pose, keyframes, pose_script, rounded, save_script
+from ...script import Pose, Script, keyframes, rounded
 from ...script.recorder import Recorder
+from ...script.script_file import is_pose, pose_script, save_script
 from ..messages import Message
-from .document import Document, History, ScriptFile
-from .scene_controls import LiveOverride, SceneControls, change_of
+from .document import Document, History, LiveOverride, SceneControls, ScriptFile
 
 NEW_SECONDS = 4.0  # that a script begun from nothing lasts
 
@@ -64,7 +63,7 @@ class Session:
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
-        self._set_pose(pose, f"Show {name.replace('_', ' ')}", is_unsaved=False)
+        self._set_pose(pose, is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
         """Whether this control alone is not 0, and at its most."""
@@ -72,21 +71,20 @@ class Session:
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""
-        self._set_pose(self.controls.pose({}), "Neutral", is_unsaved=False)
+        self._set_pose(self.controls.pose({}), is_unsaved=False)
 
     def mirror(self, source: str = "") -> None:
         """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
-        pose = copied(self.values, source) if source else mirrored(self.values)
-        self._set_pose(pose, f"Mirror {source}".rstrip())
+        self._set_pose(copied(self.values, source) if source else mirrored(self.values))
 
-    def _set_pose(self, pose: dict[str, float], label: str, *, is_unsaved: bool = True) -> None:
+    def _set_pose(self, pose: dict[str, float], *, is_unsaved: bool = True) -> None:
         if self.recorder is not None:
             self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved, self._is_touched = is_unsaved, True
         self.values = pose
-        self.note(label)
+        self.note()
 
     @property
     def current(self) -> dict[str, float]:
@@ -107,20 +105,14 @@ class Session:
         values = None if self.is_following else {n: v for n, v in self.values.items() if v}
         return Document(values, self.script, self.file, self.time)
 
-    def note(self, label: str = "") -> None:
-        """A change is complete (a slider let go, a button pressed): it can be undone.
-
-        label: what was done, as "Mirror"; "" for controls that were set, which are told.
-        """
+    def note(self) -> None:
+        """A change is complete (a slider let go, a button pressed): it can be undone."""
         if self.is_recording:
             return  # that is one change, when it ends
-        if not label:
-            before = self.history.present.values
-            label = change_of(self.script.at(self.time) if before is None else before, self.values)
         is_touched, self._is_touched = self._is_touched, False
         if is_touched and self.is_keying and self.differing:
-            label = f"{label}, key at {self._key(self.values):.2f} s"
-        self.history.note(self._document(), label)
+            self._key(self.values)
+        self.history.note(self._document())
 
     @property
     def can_undo(self) -> bool:
@@ -191,7 +183,7 @@ class Session:
             self.history.amend(self._document())
             return None
         what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
-        self.history.note(self._document(), f"Let go of {what}")
+        self.history.note(self._document())
         return f"{what} not keyed, so let go; [Undo] brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
@@ -200,10 +192,10 @@ class Session:
         self.is_playing = False
         return line
 
-    def edit(self, script: Script, label: str = "Edit", *, is_done: bool = True) -> None:
+    def edit(self, script: Script, *, is_done: bool = True) -> None:
         """Take the script as it was changed; a face that follows it follows the change.
 
-        label: what was done. is_done: False while something is dragged, which is no step yet.
+        is_done: False while something is dragged, which is no step yet.
         """
         self._refuse_while_recording()
         self.script = script
@@ -211,22 +203,22 @@ class Session:
         if self.is_following:
             self._follow_script()
         if is_done:
-            self.note(label)
+            self.note()
 
     def _refuse_while_recording(self) -> None:
         if self.is_recording:
             raise UserError("stop the recording first ([Record]): it goes into the script as it is")
 
-    def set_key(self, *, is_whole: bool = False) -> float:
-        """The face as it is becomes a key, is_whole: of all tracks, whatever differs; its time."""
+    def set_key(self) -> float:
+        """The face as it is becomes a key; its time."""
         self._refuse_while_recording()
-        time = self._key(self.current, is_whole=is_whole)
-        self.note(f"Key at {time:.2f} s")
+        time = self._key(self.current)
+        self.note()
         return time
 
-    def _key(self, values: Mapping[str, float], *, is_whole: bool = False) -> float:
+    def _key(self, values: Mapping[str, float]) -> float:
         time, limits = keyframes.key_time(self.script, self.time), self.controls.limits
-        self.script = keyframes.keyed(self.script, time, values, limits, is_whole=is_whole)
+        self.script = keyframes.keyed(self.script, time, values, limits)
         self.is_playing = False
         self._go_to(time)
         return time
@@ -280,7 +272,7 @@ class Session:
         missed = self.differing  # a pose by hand
         self.is_following, self.pose_is_unsaved = not missed, bool(missed)
         what = counted(len(recorder.samples), "control")
-        self.note(f"Record {what}" if recording else "")
+        self.note()
         if recording is None:
             raise UserError("nothing was recorded: no control moved")
         apart = f"; {counted(len(missed), 'control')} moved after that, not keyed" if missed else ""
@@ -295,36 +287,23 @@ class Session:
 
     def open(self, script: Script) -> None:
         """A pose to show, which a recording takes in, or a script to play, which ends it."""
-        label = f"Open {Path(script.source).name}"
         if is_pose(script):
-            self._set_pose(self.controls.pose(script.at(0.0)), label, is_unsaved=False)
+            self._set_pose(self.controls.pose(script.at(0.0)), is_unsaved=False)
         else:
-            self._replace_script(script, ScriptFile.of(script), label)
+            self._replace_script(script, ScriptFile.of(script))
 
     def begin_script(self) -> None:
         """An empty script: the neutral face, to which keys can be added."""
         scene, camera = self.script.scene, self.script.camera
         script = Script("", NEW_SECONDS, "a new script", scene, camera, poses=(Pose(0.0),))
-        self._replace_script(script, ScriptFile(None, script), "New script")
+        self._replace_script(script, ScriptFile(None, script))
 
-    def _replace_script(self, script: Script, file: ScriptFile, label: str) -> None:
+    def _replace_script(self, script: Script, file: ScriptFile) -> None:
         """Another script in place of this one."""
         self.recorder, self._is_touched = None, False
         self.script, self.file, self.is_playing = script, file, False
         self._go_to(0.0)
-        self.note(label)
-
-    def recover(
-        self, script: Script | None, path: Path | None, pose: Mapping[str, float], when: float
-    ) -> None:
-        """Go on with unsaved work of another session.
-
-        path: the script's own file. pose: {} for none. when: it was so [s since 1970].
-        """
-        if script is not None:
-            self._replace_script(script, ScriptFile.recovered(path, when), "Recover")
-        if pose:
-            self._set_pose(self.controls.pose(pose), "Recover the pose")
+        self.note()
 
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""

@@ -25,7 +25,7 @@ from ..messages import Message, Task
 from . import key_marks
 from .graph import Graph
 from .key_marks import Waveform
-from .keys import KeySelection, Track, all_tracks, described
+from .keys import KeySelection, Track, all_tracks
 from .time_axis import TimeAxis
 
 ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
@@ -44,7 +44,7 @@ VALUES = 2.2  # [em] for the labels of values
 class Drag:
     """What the mouse holds on to."""
 
-    doing: str  # keys, box, scrub, end, pan, slope
+    doing: str  # keys, box, scrub, end, pan
     began: tuple[float, float]  # [window units]
     script: Script  # as it was then
     selected: Places  # then
@@ -159,9 +159,6 @@ class DopeSheet:
                 self._draw_name(track, (place.x, bottom - em(ROW)), room.x)
         if has_keys:
             self._draw_over(io, (place.y, self._tops[-1]))
-        if has_keys and self._session.differing:
-            middle = self._tops[1] - 0.5 * em(ROW)
-            key_marks.draw_unkeyed(theme, self.axis, self._session.time, middle)
         if is_hovered and self._drag is None:
             self._hover(io, place.x)
         imgui.end_child()
@@ -209,19 +206,14 @@ class DopeSheet:
             imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
             return
         if self.settings.shows_curves:
-            graph.handle = graph.handle_at(x, y)
-            hit = None if graph.handle else graph.at(x, y)
+            hit = graph.at(x, y)
             under = hit.key if hit else NOWHERE
         elif track is not None:
             under = track.places.near(axis.time(x), axis.seconds(em(REACH)))
-        line = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
-        if (under or line) and not imgui.is_mouse_down(LEFT):
-            imgui.set_tooltip(described(self._session.script, under) if under else line)
-        if self.settings.shows_curves and graph.handle is not None:
-            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ns)
-            if imgui.is_mouse_clicked(LEFT):
-                self._begin("slope", io)
-        elif imgui.is_mouse_clicked(LEFT):
+        if (under or hit) and not imgui.is_mouse_down(LEFT):
+            value = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
+            imgui.set_tooltip(f"{under.first:.2f} s  {value}".rstrip() if under else value)
+        if imgui.is_mouse_clicked(LEFT):
             graph.held = hit
             is_dense = hit is None and track is not None and self._are_dense.get(track.name, False)
             self._press(io, under, is_dense=is_dense)
@@ -286,11 +278,10 @@ class DopeSheet:
                 keyframes.lasting(drag.script, axis.time(x)), is_done=False
             ),
             "pan": lambda: axis.scroll(-axis.seconds(io.mouse_delta.x)),
-            "slope": lambda: self._bend(y, drag),
         }
         if drag.has_moved or drag.doing in ("scrub", "pan"):
             self._messages.attempt(act[drag.doing])
-        if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end", "slope"):
+        if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
             self._drag = None
             self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
             self.selection.places = drag.selected
@@ -323,13 +314,6 @@ class DopeSheet:
         self.selection.places = places
         imgui.set_tooltip(line)
 
-    def _bend(self, y: float, drag: Drag) -> None:
-        assert self.graph.handle is not None
-        easing = self.graph.bent(self.graph.handle, y)
-        script = keyframes.eased(drag.script, self.graph.handle.key, easing)
-        self._session.edit(script, is_done=False)
-        imgui.set_tooltip(f"slopes {easing}")
-
     def _select_box(self, io: Any, drag: Drag) -> None:
         corner, inside = (io.mouse_pos.x, io.mouse_pos.y), NOWHERE
         if self.settings.shows_curves:
@@ -355,8 +339,5 @@ class DopeSheet:
                 session.is_playing = False
                 line = session.seek(self._grabbed.first)
         if drag.doing in ("keys", "end") and drag.has_moved:
-            keys = counted(len(drag.selected), "key")
-            session.note(f"Move {keys if drag.doing == 'keys' else 'the end'}")
-        elif drag.doing == "slope" and drag.has_moved:
-            session.note("Drag a handle")
+            session.note()
         return line

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from ...script import Floats
 from ...script.places import Places
-from ...sound.peaks import Peaks
+from ...sound.decoding import Peaks
 from ..interface.gui import Gui, Theme, em, ink_of
 from ..interface.widgets import shortened
 from ..session.soundtrack import Soundtrack
@@ -67,14 +67,6 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
         x = round(axis.x(time)) + 0.5
         ink, width = ink_of(theme.accent), max(em(0.09), 1.0)
         imgui.get_window_draw_list().add_line((x, edges[0]), (x, edges[1]), ink, width)
-
-
-def draw_unkeyed(theme: Theme, axis: TimeAxis, time: float, y: float) -> None:
-    """A hollow key at a time [s], where one would be set for what differs from the script."""
-    lines, size, x = imgui.get_window_draw_list(), em(1.2 * KEY), axis.x(time)
-    corners = (x - size, y), (x, y - size), (x + size, y), (x, y + size)
-    lines.add_quad_filled(*corners, ink_of(theme.panel))
-    lines.add_quad(*corners, ink_of(theme.accent), em(0.12))
 
 
 def draw_label(

@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from ...controls.vocabulary import readable
+from ...controls import readable
 from ...errors import counted
-from ...script import EASING_NAMES, Channel, Script, keyframes
+from ...script import Channel, Script, keyframes
 from ...script.keyframes import POSES, places_of
 from ...script.places import NOWHERE, Places
 from ..messages import Message
@@ -68,21 +68,6 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
     return tuple(replace(row, number=number) for number, row in enumerate(rows))
 
 
-def described(script: Script, places: Places) -> str:
-    """What there is to say about keys at one time: that, a pose's name, other easings."""
-    names, easings = list[str](), set[str]()
-    for track, times in places.times.items():
-        if track == POSES:
-            poses = [pose for pose in script.poses if pose.time in times]
-            names += [pose.name for pose in poses if pose.name]
-            easings |= {pose.easing for pose in poses}
-        else:
-            channel = script.tracks[track]
-            found = channel.easings[np.searchsorted(channel.times, times)].tolist()
-            easings |= {EASING_NAMES[each] for each in found}
-    return ", ".join([*names, f"{places.first:.2f} s", *sorted(easings - {"smooth"})])
-
-
 class KeySelection:
     """Some keys of a session's script; menus, the keyboard and the timeline share it."""
 
@@ -101,9 +86,9 @@ class KeySelection:
         """Whether there are keys that something could be done with."""
         return bool(self.places) and self.can_edit
 
-    def set_key(self, *, is_whole: bool = False) -> Message:
-        """The face as it is becomes a key at the time shown; is_whole: of every track."""
-        time = self._session.set_key(is_whole=is_whole)
+    def set_key(self) -> Message:
+        """The face as it is becomes a key at the time shown."""
+        time = self._session.set_key()
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)
         self.places = Places({POSES: there.times[POSES]}) if POSES in there.times else there
@@ -112,7 +97,7 @@ class KeySelection:
     def delete(self) -> Message:
         """Take the selected keys away."""
         what = counted(len(self.places), "key")
-        self._session.edit(keyframes.without(self._session.script, self.places), f"Delete {what}")
+        self._session.edit(keyframes.without(self._session.script, self.places))
         return f"{what} deleted; [Undo] brings back"
 
     def copy(self) -> Message:
@@ -125,9 +110,9 @@ class KeySelection:
         assert self.copied is not None
         source, places = self.copied
         offset = keyframes.key_time(self._session.script, self._session.time) - places.first
-        script, self.places = keyframes.copied(self._session.script, places, offset, source)
+        script, self.places = keyframes.moved(self._session.script, places, offset, source)
         what = counted(len(places), "key")
-        self._session.edit(script, f"Copy {what}")
+        self._session.edit(script)
         return f"{what} copied to {places.first + offset:.2f} s"
 
     def nudge(self, frames: int) -> None:
@@ -135,7 +120,7 @@ class KeySelection:
         first = self.places.first
         offset = keyframes.on_frame(first + frames * keyframes.FRAME) - first
         script, places = keyframes.moved(self._session.script, self.places, offset)
-        self._session.edit(script, f"Move {counted(len(places), 'key')}")
+        self._session.edit(script)
         self.places = places
 
     def select_all(self) -> None:
@@ -144,8 +129,7 @@ class KeySelection:
 
     def ease(self, easing: str) -> None:
         """How the selected keys are approached."""
-        eased = keyframes.eased(self._session.script, self.places, easing)
-        self._session.edit(eased, f"Easing: {easing}")
+        self._session.edit(keyframes.eased(self._session.script, self.places, easing))
 
     def is_eased(self, easing: str) -> bool:
         """Whether all selected keys are approached so."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from risorius import refine
 from risorius.assets.fitting import FittedHead
 
-from ...controls.vocabulary import readable
+from ...controls import readable
 from ...errors import UserError
 from ...refining.refiners import refiner_for
 from ...scenes import BUILT_IN, Scene, build_scene
@@ -22,13 +22,12 @@ from ..interface.commands import Command, MenuBar
 from ..marking import Marking, Room
 from ..messages import Message
 from ..panels.face import FacePanel
-from ..panels.help import Help
 from ..panels.layout import Layout
 from ..panels.live import LivePanel
 from ..panels.mechanism import MechanismPanel
 from ..picture.mouse import Mouse
-from ..picture.painter import Painter
 from ..picture.skin import SkinDrag
+from ..picture.stage import Painter
 from ..session.physics import IdleLife, Physics
 from ..session.recovery import Recovery
 from ..session.session import Session
@@ -84,10 +83,15 @@ class Application(ApplicationContext):
         self._join_commands()
         self._join_panels()
         self.is_leaving = False
+        if (kept := self.recovery.found) is not None:
+            settings.note_recent(kept)
+            complaint = complaint or f"unsaved work is in File > Recent: {kept.name}"
         if complaint:
             self.messages.say(complaint, error=True)
         elif settings_path is not None and not settings_path.exists():
-            self.messages.say("Drag the skin, or press [Play]; [Keys and mouse] shows every key")
+            self.messages.say(
+                "Drag the skin, or press [Play]; menus show every key, and Help the mouse"
+            )
 
     def _join_commands(self) -> None:
         """What can be done, each with what it needs for that."""
@@ -104,10 +108,10 @@ class Application(ApplicationContext):
             *menus.edit_menu(session),
             *menus.time_menu(session, self.scripts, self.time_axis),
             *menus.keys_menu(session, self.selection),
-            *menus.view_menu(settings, self.view, self.panel_state),
+            *menus.view_menu(settings, self.view),
             *menus.expression_menu(session),
             *menus.live_menu(self.live),
-            *menus.help_menu(self.panel_state),
+            *menus.HELP,
         )
         self.gui.keys = {each.label: each.displayed_keys for each in self.commands}
         self.life = IdleLife(session, lambda: settings.is_alive, lambda: self.view.camera.eye)
@@ -127,7 +131,6 @@ class Application(ApplicationContext):
         first = "Face" if session.scene.name == "face" else f"{readable(session.scene.name)}###Face"
         tabs = {first: self.face_panel.draw, "Mechanism": mechanism.draw, "Live": live.draw}
         self.layout = Layout(self, bar, tabs, self.timeline)
-        self.help = Help(self)
         self.export_dialog = ExportDialog(self.gui, self.exporter, self.files, self.view)
         grab = partial(SkinDrag, session, self.settings)
         self.mouse = Mouse(self.view, self.stage, self.messages, grab, self.select_muscle)
@@ -190,7 +193,7 @@ class Application(ApplicationContext):
 
     def select_muscle(self, name: str) -> None:
         """Show a muscle's slider in the panel."""
-        self.panel_state.wanted_tab = "Face"
+        self.wanted_tab = "Face"
         self.face_panel.select(name)
 
     def ask_to_close(self) -> str | None:

@@ -1,34 +1,37 @@
 """Everything that a key or a menu does, as data, a function for each menu.
 
-Menus, the keyboard and the overview of keys are all made from these tables.
+Menus, the keyboard and buttons are all made from these tables.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ...controls.vocabulary import readable
+from ...controls import readable
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
-from ...script.easing import EASINGS
+from ...script import EASING_NAMES
 from ..documents.export import Exporter
 from ..documents.file_drop import FileDrop
 from ..documents.scripts import ScriptCommands
 from ..interface.commands import Command
 from ..messages import Message, Task
-from ..picture.view import View
+from ..picture.stage import View
 from ..session.live_commands import LiveCommands
 from ..session.session import Session
-from ..settings import PanelState, Settings, switch
+from ..settings import Settings, switch
 from ..timeline.keys import KeySelection
 from ..timeline.time_axis import TimeAxis
 
 Menu = tuple[Command, ...]
-VIEW_KEYS = {
-    **{"Front": "Keypad1", "Three-quarter": "Keypad2", "Three-quarter right": "Ctrl+Keypad2"},
-    **{"Profile": "Keypad3", "Profile right": "Ctrl+Keypad3", "Top": "Keypad7"},
+VIEW_KEYS = {  # Alt: where there is no number pad
+    "Front": "Keypad1, Alt+1",
+    "Three-quarter": "Keypad2, Alt+2",
+    "Three-quarter right": "Ctrl+Keypad2, Ctrl+Alt+2",
+    "Profile": "Keypad3, Alt+3",
+    "Profile right": "Ctrl+Keypad3, Ctrl+Alt+3",
+    "Top": "Keypad7, Alt+7",
 }
 
 
@@ -63,7 +66,7 @@ def file_menu(
         command("Save script as ...", "Ctrl+Shift+S", scripts.save_as),
         command("Save pose ...", "Ctrl+P", scripts.save_pose),
         command("Screenshot", "F12", exporter.screenshot),
-        export("Export ...", "Ctrl+E", exporter.ask, other_key="F10"),
+        export("Export ...", "Ctrl+E, F10", exporter.ask),
         command("Quit", "Ctrl+Q", close),
     )
 
@@ -71,20 +74,10 @@ def file_menu(
 def edit_menu(session: Session) -> Menu:
     """Undo, and whole faces."""
     command = partial(Command, "Edit")
-
-    def named(verb: str, further: int) -> str:
-        """The command, with what it takes back or does again."""
-        place = session.history.place + further
-        label = "".join(session.history.labels[max(place, 1) : place + 1])
-        return f"{verb} {label[:1].lower()}{label[1:]}".rstrip()
-
-    undo = partial(command, reads=partial(named, "Undo", 0))
-    redo = partial(command, reads=partial(named, "Redo", 1))
+    redo = partial(command, can_run=lambda: session.history.can_redo)
     return (
-        undo("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
-        redo(
-            "Redo", "Ctrl+Y", session.redo, None, lambda: session.history.can_redo, "Ctrl+Shift+Z"
-        ),
+        command("Undo", "Ctrl+Z", session.undo, can_run=lambda: session.can_undo),
+        redo("Redo", "Ctrl+Y, Ctrl+Shift+Z", session.redo),
         command("Neutral", "N", session.neutral),
         command("Mirror", "M", session.mirror),
         command("Left to right", "Shift+M", partial(session.mirror, "left")),
@@ -133,7 +126,6 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     ease, is_eased = selection.ease, selection.is_eased
     return (
         edit("Set key", "K", selection.set_key),
-        edit("Set key of all", "Shift+K", partial(selection.set_key, is_whole=True)),
         command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
         switch_of(lambda: session, "Keys", "Auto-key", "", "is_keying"),
         change("Copy", "Ctrl+C", selection.copy),
@@ -142,11 +134,11 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
-        *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
+        *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASING_NAMES),
     )
 
 
-def view_menu(settings: Settings, view: View, panels: PanelState) -> Menu:
+def view_menu(settings: Settings, view: View) -> Menu:
     """How the scene is drawn, and what is around it."""
     command = partial(Command, "View")
     display_switch = partial(switch_of, lambda: settings.display, "View")
@@ -159,10 +151,6 @@ def view_menu(settings: Settings, view: View, panels: PanelState) -> Menu:
         return f"Look: {display.look}"
 
     muscles = partial(command, is_on=lambda: "muscles" in settings.display.overlays)
-    views = (  # Alt: where there is no number pad
-        command(name, key, partial(view.look_from, name), other_key=key.replace("Keypad", "Alt+"))
-        for name, key in VIEW_KEYS.items()
-    )
     return (
         display_switch("Refine", "R", "is_refined"),
         command("Paper's look", "P", toggle_look, lambda: settings.display.look == PAPERS_PRESET),
@@ -170,15 +158,13 @@ def view_menu(settings: Settings, view: View, panels: PanelState) -> Menu:
         display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
         display_switch("Wireframe", "W", "wireframe"),
         display_switch("Colour by splits", "C", "colours", "splits", "none"),
-        command("Next shading", "S", lambda: settings.display.next_shading()),
         display_switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         setting("Idle life", "A", "is_alive"),
         setting("Curves", "G", "shows_curves"),
         command("Frame the face", "F", view.fit_scene),
-        *views,
-        replace(display_switch("Orthographic", "Keypad5", "is_orthographic"), other_key="Alt+5"),
-        command("Hide panels", "H", panels.toggle_hidden, lambda: panels.are_hidden),
+        *(command(name, key, partial(view.look_from, name)) for name, key in VIEW_KEYS.items()),
+        display_switch("Orthographic", "Keypad5, Alt+5", "is_orthographic"),
         setting("Dark theme", "F2", "theme", "dark", "light"),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),
@@ -200,10 +186,22 @@ def live_menu(live: LiveCommands) -> Menu:
     command = partial(Command, "Live")
     return (
         command("Listen", "Ctrl+L", live.toggle, lambda: live.is_on),
-        command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.can_calibrate),
+        command("Calibrate", "Shift+N", live.calibrate, can_run=lambda: live.is_receiving),
     )
 
 
-def help_menu(panels: PanelState) -> Menu:
-    """The overview of keys."""
-    return (switch_of(lambda: panels, "Help", "Keys and mouse", "F1", "is_help_open"),)
+HELP = tuple(  # what the mouse does, to be read
+    Command("Help", f"{how.capitalize()}: {what}", "", lambda: None, can_run=lambda: False)
+    for how, what in (
+        ("left on the skin", "pose; Ctrl: pull; click: muscle"),
+        ("left beside, or right", "orbit"),
+        ("middle, or Shift", "pan"),
+        ("wheel", "zoom"),
+        ("double click a slider", "type a number"),
+        ("right click a slider", "back to 0"),
+        ("drag a key", "move what is selected; Ctrl: anywhere"),
+        ("drag over nothing", "select keys in a box"),
+        ("right click a key", "what can be done with it"),
+        ("drop files", "open them"),
+    )
+)

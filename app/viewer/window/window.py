@@ -1,7 +1,7 @@
 """The window as it runs: one turn of its loop, and when that rests. Its parts: application.py.
 
 Physics goes in steps of its own, apart from frames (physics.py). The scene is drawn only when
-something in it has changed, with less detail while it moves if the machine is slow (painter.py);
+something in it has changed, with less detail while it moves if the machine is slow (stage.py);
 panels are drawn around it less often then. A window in which nothing happens waits for events.
 """
 
@@ -17,12 +17,11 @@ from imgui_bundle import imgui
 
 from ...stopping import cleaned_up_if_stopped
 from ..documents.file_drop import LANDMARKS
-from ..documents.scripts import draw_question, draw_recovery
+from ..documents.scripts import draw_question
 from ..interface.commands import run_pressed
 from ..interface.gui import on_drop
-from ..panels.help import MOUSE
 from ..panels.layout import draw_message
-from ..picture.painter import Painter
+from ..picture.stage import Painter
 from ..session.live_commands import PACING
 from .application import Application
 
@@ -92,7 +91,7 @@ class Viewer(Application):
             self._draw_gui(is_visible=False)
         if self.exporter.has_news:
             self._awake = max(self._awake, 1)
-        announced = [self.file_drop.do_announced] if self.file_drop.has_announced else []
+        announced = self.file_drop.announced
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         room = self.room
@@ -106,9 +105,9 @@ class Viewer(Application):
             return  # what is shown stays as it is; of a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
-        for task in announced:
-            self.messages.text = ""
-            self.messages.attempt(task)
+        if announced is not None:
+            self.file_drop.announced, self.messages.text = None, ""
+            self.messages.attempt(announced)
             self._last = time.perf_counter()
         if is_moving and not self.is_left_alone:
             self.shown_painter.level_of_detail.note(time.perf_counter() - now)
@@ -206,10 +205,9 @@ class Viewer(Application):
             return
         self.surface.resolve()
         view = self.view if self.room is None else self.room.view
-        if self.room is not None or not self.panel_state.are_hidden:
-            left, bottom, width, _ = view.viewport
-            self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
-            self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
+        left, bottom, width, _ = view.viewport
+        self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
+        self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_visible=True)
         self._panels_age, self._panels_size = 0.0, size
         self._is_scene_covered = self.gui.covers(view.area)
@@ -232,12 +230,10 @@ class Viewer(Application):
                 view.pointed = {}
             dialogs = partial(self.files.draw, gui), self.export_dialog.draw
             for draw in (
-                partial(draw_recovery, gui, self.recovery, self.question, view),
                 *(() if self.question.is_open else dialogs),  # which wait for the answer
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
-            self.help.draw(commands, MOUSE if room is None else ())
             self.view.camera.is_orthographic = self.settings.display.is_orthographic
             if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
                 run_pressed(commands, messages, gui)

@@ -1,13 +1,21 @@
-"""A script file -> a Script, or the file and the line or key that is wrong."""
+"""A script file -> a Script, or the file and the line or key that is wrong; and back into a file.
+
+What is written reads back as the same script. Tracks of a few keys are written as tables, which
+explain themselves, those of more keys as lines, which are short and quickly read. A pose by itself
+is a script with one [[pose]] at time 0.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import io
 import itertools
+import json
 import os
 import re
 import sys
 from array import array
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,22 +27,21 @@ import numpy.typing as npt
 from risorius.schema import MadeFrom, Record, parsed_toml, quoted, read
 
 from ..errors import UserError, in_one_line
-from ..files import read_text
-from .easing import ALLOWED
-from .model import EASING_NUMBERS, LARGEST, LONGEST_FILE, Channel, Key, Number, Pose, Script
+from ..files import read_text, save_text
+from . import (
+    EASING_NAMES,
+    LARGEST,
+    LONGEST_FILE,
+    POSE_SECONDS,
+    Channel,
+    Key,
+    Number,
+    Pose,
+    Script,
+    rounded,
+)
 
 SOON_READ = 2**20  # [bytes]; a longer script is said to be read
-# A TOML parser makes a table for each part of a key, and looks at all parts of one again for each
-# of them, so that a few kilobytes of dots could take hours. Lines of keys in quotes are cheap.
-LONGEST_BARE = 2**22  # [characters] outside of quotes and comments
-# Strings and comments, in which dots mean nothing. No text makes this slow: what has been taken is
-# not given back, and each kind of string can be unfinished once.
-QUOTED = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*+"""|' r"'''.*?'''|"
-    r'"(?:[^"\\\n]|\\.)*+"|' r"'[^'\n]*+'|#[^\n]*+",
-    re.DOTALL,
-)  # fmt: skip
-LONG_KEY = re.compile(r"(?:\.[^.=,\n\[\]{}]*+){3}")  # of more than three parts; a script needs two
 
 
 def _channel(entries: Any) -> Channel:
@@ -62,11 +69,11 @@ def _channel_of_lines(text: str) -> Channel:
             time, value, easing = words if len(words) == 3 else (*words, "linear")
             times.append(float(time))
             values.append(float(value))
-            easings.append(EASING_NUMBERS[easing])
-        except (ValueError, KeyError):
+            easings.append(EASING_NAMES.index(easing))
+        except ValueError:
             raise ValueError(
                 f"key {number}: was {quoted(' '.join(words))}, must be a time, a value and perhaps "
-                f"an easing: {ALLOWED}"
+                f"an easing: {', '.join(EASING_NAMES)}"
             ) from None
     channel = Channel(times, values, easings)
     is_wrong = ~(np.abs(channel.values) <= LARGEST) | ~(channel.times <= LARGEST)
@@ -114,13 +121,6 @@ def load_script(path: Path) -> Script:
 
 def parse_script(text: str, *, source: str) -> Script:
     """Turn the TOML text of a script into a Script; `source` names it in error texts."""
-    bare = QUOTED.sub(lambda found: "_" + "\n" * found[0].count("\n"), text)
-    if len(bare) > LONGEST_BARE:
-        most = f"{LONGEST_BARE >> 20} MB outside of quotes, where long tracks have lines"
-        raise UserError(f"{source}: has more than {most}")
-    if long_key := LONG_KEY.search(bare):
-        line = bare.count("\n", 0, long_key.start()) + 1
-        raise UserError(f"{source}: line {line}: a key has more than 3 parts with dots between")
     try:
         document = parsed_toml(text)
     except ValueError as error:
@@ -162,3 +162,97 @@ def preface_of(text: str) -> str:
     """The lines of comment with which a file begins; programs that write it anew keep them."""
     comments = itertools.takewhile(lambda line: line.startswith("#"), text.split("\n"))
     return "\n".join(comments)
+
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+MOST_TABLES = 24  # keys of a track that are written as tables; those of more as lines
+
+
+def save_script(target: Path, script: Script) -> None:
+    """Write a script file, whole or not at all; UserError where it cannot be written."""
+    text = script_text(script, target.parent)
+    if len(text) > LONGEST_FILE:
+        raise UserError(
+            f"{target}: the script would be longer than can be read again, "
+            f"{LONGEST_FILE >> 20} MB; leave out some keys"
+        )
+    save_text(target, text)
+
+
+def script_text(script: Script, folder: Path | None = None) -> str:
+    """The TOML text of a script; folder: where it will be, for what it names beside it."""
+    head = [script.preface] if script.preface else []
+    if script.title:  # else it is called as its file is
+        head.append(f"title = {_quoted(script.title)}")
+    head.append(f"scene = {_quoted(script.scene)}")
+    if script.camera is not None:
+        head.append(f"camera = {_quoted(script.camera)}")
+    if script.sound is not None:
+        head.append(f"sound = {_quoted(_as_seen_from(folder, script.sound))}")
+    head.append(f"duration = {_number(script.duration)}")
+    blocks = ["\n".join(head), *map(_pose, script.poses)]
+    if script.tracks:
+        tracks = [_track(name, channel) for name, channel in script.tracks.items()]
+        blocks.append("\n".join(["[tracks]", *tracks]))
+    return "\n\n".join(blocks) + "\n"
+
+
+def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Script:
+    """A script that is nothing but one pose; what is 0 is left out."""
+    pose = Pose(0.0, {name: rounded(value) for name, value in values.items() if rounded(value)})
+    return Script(title, POSE_SECONDS, source=title, scene=scene, poses=(pose,))
+
+
+def is_pose(script: Script) -> bool:
+    """Whether a script holds one pose and no motion."""
+    is_still = all(len(channel) == 1 for channel in script.tracks.values())
+    is_something = bool(script.posed_names or script.tracks)
+    return is_something and is_still and len(script.poses) <= 1
+
+
+def _as_seen_from(folder: Path | None, file: Path) -> str:
+    """How a script in `folder` names a file, so that both may move together.
+
+    By its whole path where it is neither in the folder nor near it: then only the script moves.
+    """
+    if folder is not None:
+        with contextlib.suppress(ValueError):  # another drive
+            near = Path(os.path.relpath(file, folder))
+            if near.parts[:2] != ("..", ".."):
+                return near.as_posix()
+    return str(file)
+
+
+def _pose(pose: Pose) -> str:
+    lines = ["[[pose]]", f"time = {_number(pose.time)}"]
+    if pose.easing != "smooth":
+        lines.append(f"easing = {_quoted(pose.easing)}")
+    if pose.name is not None:
+        lines.append(f"name = {_quoted(pose.name)}")
+    lines += [f"{_key(name)} = {_number(value)}" for name, value in pose.values.items()]
+    return "\n".join(lines)
+
+
+def _track(name: str, channel: Channel) -> str:
+    if len(channel) > MOST_TABLES:
+        names = ["", *(f" {easing}" for easing in EASING_NAMES[1:])]  # linear is not said
+        parts = (each.tolist() for each in (channel.times, channel.values, channel.easings))
+        keys = "\n".join(f"{t!r} {v!r}{names[e]}" for t, v, e in zip(*parts, strict=True))
+        return f"{_key(name)} = '''\n{keys}\n'''"
+    lines = [f"{_key(name)} = ["]
+    for key in channel.keys:
+        easing = "" if key.easing == "smooth" else f", easing = {_quoted(key.easing)}"
+        lines.append(f"    {{ time = {_number(key.time)}, value = {_number(key.value)}{easing} }},")
+    return "\n".join([*lines, "]"])
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _key(name: str) -> str:
+    return name if _BARE.fullmatch(name) else _quoted(name)
