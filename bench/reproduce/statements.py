@@ -13,14 +13,12 @@ from itertools import islice
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
 
-from risorius import assets, refine
+from risorius import refine
 from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.table import CONFIGURATIONS
 
-from ..quality import Everywhere
 from .experiments import Measured, Outcome
 from .table1 import papers_refiner, played
 
@@ -56,14 +54,11 @@ def outcome() -> Outcome:
             counts["frames that remember others"] += is_other
             is_inside = (refiner.origins().weights > 0.0).all(axis=1)
             counts["points inside triangles"] += int(np.count_nonzero(is_inside))
-            counts["unsplit triangles that differ"] += _unsplit_that_differ(scene, refiner, mesh)
-            counts["vertices moved without a split"] += _moved_unsplit(refiner, mesh, positions)
             counts["frames with cracks"] += _is_broken(refiner, mesh, positions)
     lengths = [len(sequence) for sequence in sequence_tables().sequences]
     values: dict[str, Measured | float] = {
         **counts,
         "most splits of an edge": splits,
-        "off Loop [mm]": _off_loop(),
         "entries of the table": len(CONFIGURATIONS.counts),
         "longest entry": int(CONFIGURATIONS.counts.max()),
         "most subtriangles seen": subtriangles,
@@ -87,23 +82,6 @@ def _moved(positions: Points) -> Points:
     return np.asarray(positions @ turn.T + SHIFT)
 
 
-def _unsplit_that_differ(scene: Scene, refiner: refine.Refiner, mesh: refine.RefinedMesh) -> int:
-    """Triangles without a split that come out otherwise than they went in."""
-    is_split = np.asarray((refiner.splits[refiner.triangle_edges] > 0).any(axis=1))
-    rows = np.flatnonzero(~is_split[mesh.source])
-    corners, before = mesh.triangles[rows], scene.faces[mesh.source[rows]]
-    differ = np.not_equal(corners, before).any(axis=1)
-    return int(differ.sum()) + abs(len(rows) - int((~is_split).sum()))
-
-
-def _moved_unsplit(refiner: refine.Refiner, mesh: refine.RefinedMesh, positions: Points) -> int:
-    """Vertices without a split edge that are not where they were, to the last bit."""
-    still = np.ones(len(positions), bool)
-    still[refiner.edges[refiner.splits > 0]] = False
-    moved = mesh.positions[: len(positions)][still] != positions.astype(np.float32)[still]
-    return int(moved.any(axis=1).sum())
-
-
 def _is_broken(refiner: refine.Refiner, mesh: refine.RefinedMesh, positions: Points) -> bool:
     """Whether `refine.check` finds a crack."""
     try:
@@ -111,12 +89,3 @@ def _is_broken(refiner: refine.Refiner, mesh: refine.RefinedMesh, positions: Poi
     except refine.BrokenMeshError:
         return True
     return False
-
-
-def _off_loop() -> float:
-    """How far the head with every edge split once is from one step of Loop subdivision [mm]."""
-    head = assets.load("head")
-    ours = refine.create("kahler", head.faces, head.vertices, criterion=Everywhere(1))
-    loop = refine.create("loop", head.faces, head.vertices, levels=1)
-    tree = cKDTree(loop.refine(head.vertices).positions)
-    return float(tree.query(ours.refine(head.vertices).positions)[0].max())

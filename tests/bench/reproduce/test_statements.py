@@ -90,22 +90,3 @@ def test_cracks_are_seen(waving: pytest.MonkeyPatch) -> None:
     assert measured(waving)["frames with cracks"] == 0
     waving.setattr(refine, "check", broken)
     assert measured(waving)["frames with cracks"] == 4
-
-
-def test_moved_vertices_are_seen(waving: pytest.MonkeyPatch) -> None:
-    """A refiner that forgets to tell of its splits has moved vertices without need."""
-    real = statements.papers_refiner
-
-    class Silent:
-        """The real one, with splits that it does not tell."""
-
-        def __init__(self, scene: Scene) -> None:
-            self._refiner = real(scene)
-            self.splits = np.zeros(len(self._refiner.edges), np.uint8)
-
-        def __getattr__(self, name: str) -> Any:
-            return getattr(self._refiner, name)
-
-    assert statements.outcome().values["vertices moved without a split"] == 0
-    waving.setattr(statements, "papers_refiner", Silent)
-    assert statements.outcome().values["vertices moved without a split"] > 100
