@@ -4,9 +4,10 @@ Kähler, Haber, Seidel 2003, section 6: "If the input geometry has been produced
 one could do even better than smoothing: detail information can be stored locally and used to place
 generated split vertices on the surface, as has been exercised in multiresolution editing."
 
-At binding, the points that all edges would get from the scheme `cubic` are compared with where they
-fit the finer mesh best (fit.py), both at rest. What is missing is stored along directions that move
-with the surface:
+At binding, the points that all edges would get from the scheme `cubic` are compared with the
+closest points of the finer mesh that look the same way, both at rest. Points stand out of the
+straight edge FULLNESS times as far as these, because triangles between them are flat, as those of
+the cubic do. What is missing is stored along three directions that move with the surface:
 
           n                                     stored:  how the finer surface lies beside the
           |                                              point, along n, t and n x t
@@ -15,12 +16,9 @@ with the surface:
         n x t                                       there to the normal of the end at its quarters
 
 In a frame the same directions are found in the deformed mesh and the detail is added to the cubic.
-A quarter has to turn with the vertex near it: with one direction n for all of an edge, stars stood
-around the vertices where the mesh was folded.
-
-The middle of an edge has two places, for one split and for two (fit.py), and goes from the first to
-the second while the quarters grow. The middle of a triangle, which blending adds, slides toward the
-edges that bend (axes.py).
+They change without a jump as long as normals and edges do. A quarter has to turn with the vertex
+near it: with one direction n for all of an edge, stars stood around the vertices where the mesh was
+folded.
 
 Vertices stay where they are (they lie on the finer mesh if they are taken from it). Normals are not
 the finer mesh's but those of the refined surface (surface_normals.py), which has its shape.
@@ -29,23 +27,22 @@ the finer mesh's but those of the refined surface (surface_normals.py), which ha
 import numpy as np
 import numpy.typing as npt
 
-from ...geometry.normals import vertex_normals
+from ...geometry.closest import closest_points
 from ...jit import njit
-from ..kahler.frame import CENTRES, ROWS, FrameBuffers
+from ..kahler.frame import FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
-from ..mesh.connectivity import Connectivity
+from ..mesh.connectivity import Connectivity, Surroundings
 from ..mesh.validation import checked_indices, checked_positions
-from ..mesh.vectors import HALF, ONE, THIRD, ZERO, Vector, plus, row_of, times
-from .axes import FOUR, find_middles, middle_axes, quarter_axes, slide_middle, triangle_axes
-from .blending import FOUR_NINTHS
-from .cubic import CubicScheme
-from .fit import ALONE, END, MIDDLE, START, FinerSurface, Points, fit, middles_of
+from ..mesh.vectors import TINY, Vector, between, cross, dot, less, plus, row_of, unit, write_row
+from .cubic import FULLNESS, MIDDLE, NEAR_END, NEAR_START, CubicScheme
+from .measuring import mean_length
 
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
-AXES_OF = [START, MIDDLE, END, MIDDLE]
-"""The directions that each point of an edge is stored along: both middles have the same."""
+WRONG_SIDE = 10.0
+"""How much farther away, in edge lengths, a surface seems that looks the other way: lips that touch
+at rest do not take each other's points."""
 
 
 class DetailScheme(CubicScheme):
@@ -62,144 +59,104 @@ class DetailScheme(CubicScheme):
         faces = checked_indices("detail[1]", finer[1], len(positions), "detail[0]")
         if len(faces) == 0:
             raise ValueError("detail[1] must have triangles, got none")
-        normals = vertex_normals(positions, faces)
-        self._finer: FinerSurface | None = FinerSurface(positions, normals, faces)
+        self._finer = positions, faces
 
     def bind(
         self, connectivity: Connectivity, rest_positions: Doubles, rest_normals: Floats
     ) -> None:
         """Compare the cubic at rest with the finer mesh, point by point."""
         super().bind(connectivity, rest_positions, rest_normals)
-        assert self._finer is not None, "a scheme is bound once"
-        mesh = connectivity
-        self._axes = np.zeros((len(mesh.edges), 3, 3, 3), dtype=np.float32)
+        edge_count = len(connectivity.edges)
+        self._every_edge = np.arange(edge_count, dtype=np.uint32)
+        self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
         self._displace(rest_positions)
         normals = self._normals  # at rest: all directions follow those that the cubic has
-        shares = np.zeros((len(mesh.faces), 3), dtype=np.float32)
-        centre_axes = np.zeros((len(mesh.faces), 3, 3), dtype=np.float32)
-        find_middles(rest_positions, normals, mesh.faces, shares, centre_axes)
-        points, ups = _points_on(self._displacements, mesh, rest_positions, normals)
-        middles = shares.astype(np.float64), centre_axes[:, 0].astype(np.float64)
-        places = fit(self._finer, mesh, rest_positions, normals, (points, ups), middles)
-        centres = middles_of(places.of_edges, mesh, rest_positions, middles[0])
-        offsets = Points(places.of_edges - points, places.of_triangles - centres)
-        every_edge = np.arange(len(mesh.edges), dtype=np.uint32)
         middle_axes(self._around, rest_positions, normals, self._axes)
-        quarter_axes(self._around, rest_positions, normals, every_edge, self._axes)
-        self._offsets = _along(self._axes[:, AXES_OF], offsets.of_edges)
-        self._centre_offsets = _along(centre_axes[:, None], offsets.of_triangles)
-        self._finer = None
+        quarter_axes(self._around, rest_positions, normals, self._every_edge, self._axes)
+
+        share = np.array([0.25, 0.5, 0.75])[:, None]
+        start, end = connectivity.edges.T
+        straight = (1.0 - share) * rest_positions[start][:, None]
+        straight += share * rest_positions[end][:, None]
+        points = straight + self._displacements
+        ways = (1.0 - share) * normals[start][:, None] + share * normals[end][:, None]
+        away = WRONG_SIDE * float(mean_length(connectivity, rest_positions))
+        found = closest_points(points.reshape(-1, 3), *self._finer, ways.reshape(-1, 3), away)
+        places = found.interpolate(self._finer[0]).reshape(points.shape)
+        missing = straight + float(FULLNESS) * (places - straight) - points
+        axes = self._axes.astype(np.float64)
+        self._offsets = np.einsum("epij,epj->epi", axes, missing).astype(np.float32)
 
     def prepare(self, frame: FrameBuffers) -> None:
         """Find the displacements of all edges as if each were split once."""
         super().prepare(frame)
         middle_axes(self._around, frame.positions, self._normals, self._axes)
-        add_offsets_once(self._offsets, self._axes, self._displacements)
+        self._add(self._every_edge, MIDDLE)
 
     def place_positions(self, frame: FrameBuffers) -> None:
         """Write points with their detail; only once after `prepare` with edges split twice."""
         twice = frame.twice_split_edges
         quarter_axes(self._around, frame.positions, self._normals, twice, self._axes)
-        add_offsets_twice(
-            twice, frame.geomorph_twice, self._offsets, self._axes, self._displacements
-        )
+        self._add(twice, NEAR_START)
+        self._add(twice, NEAR_END)
         super().place_positions(frame)
 
-    def place_centres(self, frame: FrameBuffers) -> None:
-        """Slide and move the points in the middle of triangles."""
-        slide_centres(self._mesh, frame, self._normals, self._centre_offsets)
-
-
-def _points_on(
-    displacements: Floats, mesh: Connectivity, positions: Doubles, normals: Floats
-) -> tuple[Doubles, Doubles]:
-    """Points of all edges (fit.Points), and normals around there, both of shape (E, 4, 3)."""
-    share = np.array([0.25, 0.5, 0.75])[:, None]
-    a, b = mesh.edges[:, 0], mesh.edges[:, 1]
-    points = (1.0 - share) * positions[a][:, None] + share * positions[b][:, None] + displacements
-    between = (1.0 - share) * normals[a][:, None] + share * normals[b][:, None]
-    return points[:, AXES_OF], between[:, AXES_OF]
-
-
-def _along(axes: Floats, vectors: Doubles) -> Floats:
-    """Components of vectors (.., 3) along the rows of axes (.., 3, 3)."""
-    components: Doubles = np.einsum("...ij,...j->...i", axes.astype(np.float64), vectors)
-    return components.astype(np.float32)
+    def _add(self, edges: Unsigned, point: int) -> None:
+        add_offsets(edges, point, self._offsets, self._axes, self._displacements)
 
 
 @njit
-def add_offsets_once(offsets: Floats, axes: Floats, displacements: Floats) -> None:
-    """Add the stored offsets of middles, shape (E, 4, 3), to their displacements, shape (E, 3, 3).
-
-    `axes`: shape (E, 3, 3, 3), edge, point, direction.
-    """
-    for e in range(displacements.shape[0]):
-        for j in range(3):
-            for i in range(3):
-                displacements[e, MIDDLE, i] += offsets[e, ALONE, j] * axes[e, MIDDLE, j, i]
-
-
-@njit
-def add_offsets_twice(
-    edges: Unsigned, geomorph_twice: Floats, offsets: Floats, axes: Floats, displacements: Floats
+def add_offsets(
+    edges: Unsigned, point: int, offsets: Floats, axes: Floats, displacements: Floats
 ) -> None:
-    """Add what a second split of some edges, shape (N,), shows: middles have those of one already.
+    """Add the stored offsets of one point of some edges, shape (N,), to displacements, (E, 3, 3).
 
-    `geomorph_twice`: shape (E,); the rest as for `add_offsets_once`.
+    `offsets`: shape (E, 3, 3), edge, point, direction; `axes`: shape (E, 3, 3, 3).
     """
     for e in edges:
         for j in range(3):
-            step = geomorph_twice[e] * (offsets[e, MIDDLE, j] - offsets[e, ALONE, j])
             for i in range(3):
-                displacements[e, MIDDLE, i] += step * axes[e, MIDDLE, j, i]
-                displacements[e, START, i] += offsets[e, START, j] * axes[e, START, j, i]
-                displacements[e, END, i] += offsets[e, END, j] * axes[e, END, j, i]
+                displacements[e, point, i] += offsets[e, point, j] * axes[e, point, j, i]
 
 
 @njit
-def mixed_rows(rows: Floats, k: int, n: int, share: np.float32) -> Vector:
-    """A share of the way from row k to row n."""
-    return plus(times(ONE - share, row_of(rows, k)), times(share, row_of(rows, n)))
+def write_axes(up: Vector, towards: Vector, axes: Floats) -> None:
+    """Write three orthogonal directions of length one as rows of `axes`, shape (3, 3).
 
-
-@njit
-def grown_around(mesh: Connectivity, frame: FrameBuffers, t: int) -> tuple[np.float32, np.float32]:
-    """How far the least grown edge of a triangle has grown, for its first and its second split."""
-    once = twice = ONE
-    for i in range(3):
-        e = mesh.triangle_edges[t, i]
-        once = min(once, frame.geomorph_once[e])
-        twice = min(twice, frame.geomorph_twice[e] if frame.splits[e] == 2 else ZERO)
-    return once, twice
-
-
-@njit
-def slide_centres(
-    mesh: Connectivity, frame: FrameBuffers, normals: Floats, offsets: Floats
-) -> None:
-    """Slide and move the points in the middle of triangles as the least grown edge allows.
-
-    Where all edges have grown, blending has them in the centroid (blending.py).
-    `normals`: of vertices, shape (V, 3). `offsets`: what is missing, shape (F, 2, 3).
+    The first is `up`, the second is `towards` made normal to it.
     """
-    vertices = frame.rows
-    shares, axes = np.zeros(3, np.float32), np.zeros((3, 3), np.float32)
-    for k in range(frame.counts[CENTRES]):
-        t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
-        once, twice = grown_around(mesh, frame, t)
-        if once == ZERO:
-            continue
-        slide_middle(frame.positions, normals, mesh.faces, t, shares)
-        triangle_axes(frame.positions, normals, mesh.faces, t, shares, axes)
-        for i in range(3):
-            e, a, b = mesh.triangle_edges[t, i], mesh.faces[t, i], mesh.faces[t, (i + 1) % 3]
-            middle = frame.first_points[e] + (frame.splits[e] >> 1)
-            corner = once * (shares[i] - THIRD)
-            displacement = once * (FOUR * shares[i] * shares[(i + 1) % 3] - FOUR_NINTHS)
-            for j in range(3):
-                out = vertices[middle, j] - HALF * (vertices[a, j] + vertices[b, j])
-                vertices[row, j] += corner * vertices[a, j] + displacement * out
-        offset = mixed_rows(offsets[t], 1, 0, twice)
-        for j in range(3):
-            for i in range(3):
-                vertices[row, i] += once * offset[j] * axes[j, i]
+    up = unit(up)
+    towards = unit(less(towards, dot(up, towards), up))
+    write_row(axes, 0, up)
+    write_row(axes, 1, towards)
+    write_row(axes, 2, cross(up, towards))
+
+
+@njit
+def middle_axes(around: Surroundings, positions: Doubles, normals: Floats, axes: Floats) -> None:
+    """Write the directions of the middles of all edges: upright on the edge, along it, across.
+
+    Upright is the mean of the normals at both ends, made normal to the edge. `normals`: of
+    vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
+    """
+    for e in range(axes.shape[0]):
+        a, b = around.points[e, 0], around.points[e, 1]
+        along, mean = between(positions, a, b), plus(row_of(normals, a), row_of(normals, b))
+        up = unit(less(mean, dot(along, mean) / max(dot(along, along), TINY), along))
+        write_axes(up, along, axes[e, MIDDLE])
+
+
+@njit
+def quarter_axes(
+    around: Surroundings, positions: Doubles, normals: Floats, edges: Unsigned, axes: Floats
+) -> None:
+    """Write the directions of the quarters of some edges, shape (N,), from those of their middles.
+
+    Up is half way from the middle's to the normal at the end: a point near a vertex turns with it,
+    not with the edge.
+    """
+    for e in edges:
+        a, b = around.points[e, 0], around.points[e, 1]
+        up, along = row_of(axes[e, MIDDLE], 0), between(positions, a, b)
+        write_axes(plus(up, row_of(normals, a)), along, axes[e, NEAR_START])
+        write_axes(plus(up, row_of(normals, b)), along, axes[e, NEAR_END])

@@ -1,4 +1,4 @@
-"""Closest points, the fit to a finer mesh, and detail that moves with the surface."""
+"""Detail of a finer mesh: it lies there at rest, and moves with the surface."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from risorius.geometry.normals import vertex_normals
 from tests import meshes
 from tests.refine import plain_twin
 from tests.refine.cases import GivenMetric, as_lists, assert_equals_twin, kahler, point_names
-from tests.refine.plain_detail import DetailRules, Seen
+from tests.refine.plain_detail import detail_rules
 from tests.refine.plain_normals import RefinedNormals
 
 
@@ -140,14 +140,12 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bo
             normals=normals,
         )
 
-    def seen_with(metric: float) -> Seen:
-        everything = refiner_of(np.full(edge_count, metric), True)
-        still = everything.refine(mesh.vertices)
-        points = still.positions.astype(float).tolist()
-        names = point_names(everything.origins())
-        return {name: (x, y, z) for name, (x, y, z) in zip(names, points, strict=True)}
-
-    seen = seen_with(0.9), seen_with(2.0)
+    everything = refiner_of(np.full(edge_count, 2.0), True)
+    still = everything.refine(mesh.vertices).positions.astype(float).tolist()
+    seen = {
+        name: tuple(each)
+        for name, each in zip(point_names(everything.origins()), still, strict=True)
+    }
     metric = generator.uniform(-0.7, 2.0, edge_count)
     deformed = meshes.wrinkled(mesh, seed, 0.1)
     refiner = refiner_of(metric, blend)
@@ -161,7 +159,7 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bo
         plain_twin.edge_name(int(a), int(b)): int(n > 0) + int(n > 1)
         for (a, b), n in zip(refiner.edges, needed.metric, strict=True)
     }
-    rules: plain_twin.Rules = DetailRules(rest, points, faces, seen)
+    rules: plain_twin.Rules = detail_rules(rest, points, faces, seen)
     if normals == "refined":
         rules = RefinedNormals(rules, faces)
     twin = plain_twin.refine(
