@@ -15,7 +15,6 @@ to step; here that of a smoothing thin-plate warp).
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -148,14 +147,8 @@ def upright(vertices: FloatArray, radius: float) -> Similarity:
 
 def axes_turned() -> list[FloatArray]:
     """The 24 rotations that take axes to axes, the one that leaves them alone first."""
-    turns = []
-    for order in itertools.permutations(range(3)):
-        for signs in itertools.product((1.0, -1.0), repeat=3):
-            turn = np.zeros((3, 3))
-            turn[range(3), order] = signs
-            if np.linalg.det(turn) > 0.0:
-                turns.append(turn)
-    return turns
+    turns = np.rint(scipy.spatial.transform.Rotation.create_group("O").as_matrix())
+    return sorted(turns, key=lambda turn: -float(np.trace(turn)))
 
 
 def _off(points: FloatArray, face: FloatArray) -> float:

@@ -48,10 +48,9 @@ from .landmark_file import (
     nearest_vertices,
     read_landmarks,
 )
-from .layouts import Layout, drawn_over, maps_in, own_picture
 from .mesh_validation import SkinPiece, check_manifold, check_openings, skin_of, without_bag
 from .organs import FittedSkin, place_eyes, place_parts, with_eyelid_rims
-from .painting import plain_picture, spread_uv
+from .painting import Layout, drawn_over, maps_in, own_picture, plain_picture, spread_uv
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere

@@ -1,4 +1,4 @@
-"""Brows of persons, painted hair by hair on the texture of the built-in head.
+"""Brows, roots of lashes and stubble of persons, painted on the texture of the built-in head.
 
 A brow runs from its inner end over its peak to its tail. The peak of women's lies 0.93 of the
 eye's width from the inner corner of the eye (Roth, Metzinger 2003, "Quantifying the arch position
@@ -173,3 +173,15 @@ def lid_lines(size: int) -> SingleArray:
             pen.line([*start, *end], fill=255, width=round(width))
     fine = np.asarray(image, np.float32).reshape(size, FINER, size, FINER) / 255.0
     return np.asarray(scipy.ndimage.gaussian_filter(fine.mean(axis=(1, 3)), 0.8))
+
+
+@lru_cache(maxsize=1)
+def stubble(size: int) -> SingleArray:
+    """How much short hairs of a beard cover where one grows, 0 to 1, shape (size, size)."""
+    random = np.random.default_rng(0).random((size, size), np.float32)
+    hairs = scipy.ndimage.gaussian_filter(random, (1.4, 0.55))
+    hairs = np.clip((hairs - hairs.mean()) / hairs.std() + 0.6, 0.0, 2.0) / 2.0
+    across, down = np.abs(np.linspace(-0.5, 0.5, size)), np.linspace(0.0, 1.0, size)[:, None]
+    # The map of the beard goes on around the neck.
+    front = (1.0 - smooth_step(0.26, 0.3, across)) * (1.0 - smooth_step(0.84, 0.93, down))
+    return np.asarray(hairs * front, dtype=np.float32)

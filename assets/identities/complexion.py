@@ -32,7 +32,7 @@ from ..fitting.head import FittedHead
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
-from .brows import Brows, drawn_brows, lid_lines, painted
+from .brows import Brows, drawn_brows, lid_lines, painted, stubble
 from .hair import CUTS, HAIR, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair
 from .person import Person
@@ -66,14 +66,15 @@ class Features:
     """What sex and age make of the picture of a face; the default is the built-in head's.
 
     brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
-    lids, 0 to 1. beard, lips: density of its shadow, and of blood in them, beside that of the
-    built-in head. relief: of pores and patches, as a share beside its own. fair, grey: shares of
-    such hair. hairline: where hair begins. grown: whether hair stands so long that no scalp shines
-    through.
+    lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
+    of its shadow, and of blood in them, beside that of the built-in head. relief: of pores and
+    patches, as a share beside its own. fair, grey: shares of such hair. hairline: where hair
+    begins. grown: whether hair stands so long that no scalp shines through.
     """
 
     brows: Brows | None = None
     lid_line: float = 0.0
+    stubble: float = 0.0
     beard: float = 0.0
     lips: float = 0.0
     relief: float = 0.0
@@ -183,6 +184,8 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
         np.maximum(kept, painted(features.brows, len(kept)), out=kept)
     if features.lid_line > 0.0:
         kept = np.maximum(kept, np.float32(features.lid_line) * lid_lines(len(kept)))
+    if features.stubble > 0.0:
+        kept = np.maximum(kept, np.float32(features.stubble) * stubble(len(kept)) * tints.beard)
     receded = features.hairline.shift(len(kept))
     share = np.clip(_behind(tints, features) / np.clip(2.0 * receded, 0.1, 14.0), 0.0, 1.0)
     return np.where((tints.scalp > 0.01) & (receded > 0.0), kept * share, kept)
@@ -275,11 +278,12 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     """
     is_man = identity.sex is Sex.MAN
     years = identity.age
-    beard, lips, fair, grey, line = random.uniform(0.0, 1.0, 5)
+    beard, lips, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
     is_grown = CUTS[identity.cut] is not None
     return Features(
         brows=drawn_brows(is_man, years, random),
         lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
+        stubble=float(is_man) * max(2.0 * hairs - 1.1, 0.0),
         beard=0.1 + 0.8 * beard**1.3 if is_man else -BEARD_SHADOW,
         lips=-0.12 + 0.1 * lips
         if is_man

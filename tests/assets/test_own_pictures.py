@@ -15,7 +15,7 @@ from scipy import ndimage
 from risorius import assets, refine
 from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead, fit, fit_head
-from risorius.assets.fitting.layouts import Layout, drawn_over, maps_in, sampled, texels_within
+from risorius.assets.fitting.painting import Layout, drawn_over, maps_in, sampled, texels_within
 from risorius.assets.meshes import Mesh, read_mesh
 from tests.heads import Stranger, stranger
 
