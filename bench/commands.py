@@ -175,7 +175,7 @@ def bench_window(size: tuple[int, int], seconds: float) -> None:
 )
 @click.option("--head", type=FILE, nargs=2, help="A head of your own, and its 68 landmarks.")
 def bench_capture(size: tuple[int, int], seconds: float, head: tuple[Path, Path] | None) -> None:
-    """Time a film without a screen: frames a second, and where its time goes."""
+    """Time a film without a screen."""
     from risorius.app.scenes import own_head
 
     from . import capture
