@@ -67,7 +67,7 @@ class SetFolder:
                 for left in unfinished.glob("[0-9]*"):
                     shutil.rmtree(left)
             if not self.there():
-                self.save_json(BEGUN, options)
+                save_text(self.path / BEGUN, json.dumps(options, indent=1) + "\n")
             yield
         with cannot_be_written(self.path):
             shutil.rmtree(unfinished)
@@ -147,10 +147,6 @@ class SetFolder:
         """What is in the .json of a sample."""
         labels: dict[str, Any] = json.loads(self._read(f"{name_of(index)}.json"))
         return labels
-
-    def save_json(self, name: str, content: Mapping[str, Any]) -> None:
-        """Write a JSON file of the set, whole."""
-        save_text(self.path / name, json.dumps(content, indent=1) + "\n")
 
 
 def _seal(file: Path) -> None:

@@ -85,11 +85,7 @@ def _shares(request: Request, missing: Sequence[int], jobs: int) -> list[Share]:
 
     The samples of one person are together, for a head takes seconds to build.
     """
-
-    def person(index: int) -> int:
-        return draw(request.table, request.seed, index).person
-
-    ordered = sorted(missing, key=person)
+    ordered = sorted(missing, key=lambda index: draw(request.table, request.seed, index).person)
     each = max(-(-len(ordered) // jobs), 1)
     return [
         Share(request, tuple(ordered[first : first + each]))

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..motion.life import EYE_RANGE, HEAD_RANGES
+from ..motion.life import HEAD_RANGES
 from .table import BLINK, LETTERS, SampleTable, Shares, paired_units
 
 MOST_UNITS = 7  # of a mixture
@@ -90,14 +90,6 @@ def draw(table: SampleTable, seed: int, index: int) -> Sample:
         chosen(looks, table.lights),
         int(looks.integers(2**63)),
     )
-
-
-def gaze_controls(gaze: tuple[float, float]) -> dict[str, float]:
-    """Both eyes turned within the head, to its left and up [degrees]."""
-    return {
-        "gaze_horizontal": round(gaze[0] / EYE_RANGE, 4),
-        "gaze_vertical": round(gaze[1] / EYE_RANGE, 4),
-    }
 
 
 def chosen(random: np.random.Generator, shares: Shares) -> str:

@@ -26,7 +26,7 @@ from risorius.assets.identities import (
 
 from ..files import Image
 from ..motion import SETTLING
-from ..motion.life import looking_at
+from ..motion.life import EYE_RANGE, looking_at
 from ..passes.labels import CameraLabels, Labelled
 from ..passes.passes import Passes
 from ..pipeline import Pipeline, Viewport
@@ -35,7 +35,7 @@ from ..scenes import FaceScene
 from .folder import name_of
 from .labels import labels_of_face
 from .request import Request
-from .sampling import Sample, View, draw, gaze_controls
+from .sampling import Sample, View, draw
 from .surroundings import laid_over, light_of
 
 SAMPLES = 8  # of each pixel
@@ -159,7 +159,8 @@ def _posed(scene: FaceScene, sample: Sample, size: tuple[int, int]) -> render.Or
     if sample.gaze is None:
         eyes = looking_at(scene, camera.eye)["eyes"]
     else:
-        eyes = gaze_controls(sample.gaze)
+        aside, up = (round(degrees / EYE_RANGE, 4) for degrees in sample.gaze)
+        eyes = {"gaze_horizontal": aside, "gaze_vertical": up}
     scene.pose({**sample.controls, **eyes})
     scene.step(SETTLING)
     return camera

@@ -11,7 +11,7 @@ import numpy as np
 
 from .angles import in_degrees
 from .gaps import whole_take
-from .names import ACTION_UNIT, ARKIT, angle_of, is_eye_roll, shape_of, viseme_of
+from .names import ACTION_UNIT, ARKIT, angle_of, shape_of, viseme_of
 from .table import FACE_COLUMNS, Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
@@ -21,7 +21,7 @@ NONSENSE = 3.0  # and shares beyond are no measurements
 MOST_PERCENT = 110.0  # an intensity beyond is none in any unit
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
-OF_NO_USE = ("blendshapecount", "timecode", "index", "")
+OF_NO_USE = ("blendshapecount", "timecode", "index", "", "lefteyeroll", "righteyeroll")
 
 
 @dataclass
@@ -52,7 +52,7 @@ class Columns:
                 found.angles.setdefault(angle, number)
             elif name.casefold().startswith("viseme_") and (viseme := viseme_of(name)):
                 found.visemes.setdefault(viseme, number)
-            elif not is_eye_roll(name) and name.casefold() not in OF_NO_USE:
+            elif name.casefold() not in OF_NO_USE:
                 found.unknown.append(number)
         return found
 

@@ -74,7 +74,6 @@ def _angle_spellings() -> dict[str, str]:
 
 _SHAPES = _spellings()
 _ANGLES = _angle_spellings()
-_EYE_ROLLS = ("lefteyeroll", "righteyeroll")
 
 
 @functools.lru_cache(maxsize=4096)  # JSON names each shape again in each frame
@@ -86,11 +85,6 @@ def shape_of(column: str) -> str | None:
 def angle_of(column: str) -> str | None:
     """The angle of head or eye that a column holds, unit and sign aside."""
     return _ANGLES.get(_letters(column))
-
-
-def is_eye_roll(column: str) -> bool:
-    """Whether the column is known and of no use: eyes do not roll."""
-    return _letters(column) in _EYE_ROLLS
 
 
 def viseme_of(column: str) -> str | None:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from risorius.schema import parsed_json
 
@@ -20,33 +20,20 @@ from . import mediapipe_json, named_columns, openface, pyfeat, speech
 from .table import Table, header_of, table_in
 from .take import Request, Take
 
-
-class TableFormat(NamedTuple):
-    """A kind of table: whether the names of columns are its own, and how it is read."""
-
-    recognises: Callable[[tuple[str, ...]], bool]
-    read: Callable[[Table, Request], Take]
-
-
-class DocumentFormat(NamedTuple):
-    """A kind of JSON: whether the document is of it, and how it is read from which file."""
-
-    recognises: Callable[[Any], bool]
-    read: Callable[[Any, str, Request], Take]
-
-
-TABLES = (
-    TableFormat(speech.recognises_rows, speech.read_rows),
-    TableFormat(named_columns.is_live_link, named_columns.read),
-    TableFormat(pyfeat.recognises, pyfeat.read),
-    TableFormat(openface.recognises, openface.read),
-    TableFormat(named_columns.recognises, named_columns.read),
+# Of each kind of table: whether the names of columns are its own, and how it is read.
+TABLES: Sequence[tuple[Callable[[tuple[str, ...]], bool], Callable[[Table, Request], Take]]] = (
+    (speech.recognises_rows, speech.read_rows),
+    (named_columns.is_live_link, named_columns.read),
+    (pyfeat.recognises, pyfeat.read),
+    (openface.recognises, openface.read),
+    (named_columns.recognises, named_columns.read),
 )
-DOCUMENTS = (
-    DocumentFormat(speech.recognises_tracks, speech.read_tracks),
-    DocumentFormat(speech.recognises_cues, speech.read_cues),
-    DocumentFormat(mediapipe_json.recognises_weights, mediapipe_json.read_weights),
-    DocumentFormat(mediapipe_json.recognises, mediapipe_json.read),
+# Of each kind of JSON: whether the document is of it, and how it is read from which file.
+DOCUMENTS: Sequence[tuple[Callable[[Any], bool], Callable[[Any, str, Request], Take]]] = (
+    (speech.recognises_tracks, speech.read_tracks),
+    (speech.recognises_cues, speech.read_cues),
+    (mediapipe_json.recognises_weights, mediapipe_json.read_weights),
+    (mediapipe_json.recognises, mediapipe_json.read),
 )
 KNOWN = (
     "Live Link Face, OpenFace and py-feat tables, tables with ARKit or AU names above columns, "
@@ -77,14 +64,14 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
     request = Request(face, rate)
     if JSON.match(text):
         document = _document(text, str(path))
-        for kind in DOCUMENTS:
-            if kind.recognises(document):
-                return kind.read(document, str(path), request)
+        for recognises, read in DOCUMENTS:
+            if recognises(document):
+                return read(document, str(path), request)
         raise UserError(f"{path}: is JSON without shapes of a face; known are {KNOWN}")
     names, _ = header_of(text)
-    for table_kind in TABLES:
-        if table_kind.recognises(names):
-            return table_kind.read(table_in(text, source=str(path)), request)
+    for is_known, read_table in TABLES:
+        if is_known(names):
+            return read_table(table_in(text, source=str(path)), request)
     raise UserError(f"{path}: {_strange(names)}; known are {KNOWN}")
 
 
@@ -97,7 +84,7 @@ def is_recording(path: Path) -> bool:
     if JSON.match(text):
         return bool(SPEAKS_OF_FACES.search(text))
     names, _ = header_of(text)
-    return any(kind.recognises(names) for kind in TABLES)
+    return any(recognises(names) for recognises, _ in TABLES)
 
 
 def _document(text: str, source: str) -> Any:

@@ -97,9 +97,6 @@ def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> A
     code = _Timecode.of(cells)
     if np.isnan(code.seconds).all():
         return code.seconds
-    if not code.frames.any() and len(np.unique(code.seconds)) > 1:
-        notes.append("The timecode counts no frames, and was not used.")
-        return frame_times(None, len(cells), rate, notes)
     counted = _rate_in(code, notes if rate is None else [])
     rate = rate or counted
     base = math.ceil(rate if code.frames.max() < rate <= RATES[-1] else counted)

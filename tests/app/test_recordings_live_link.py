@@ -213,7 +213,7 @@ def test_whole_seconds(tmp_path: Path) -> None:
     codes = [f"10:00:{n // 30:02}" for n in range(90)]
     times, notes = take_of(tmp_path, codes, rate=30.0)
     assert times == pytest.approx(np.arange(90) / 30.0)
-    assert told(notes, "counts no frames")
+    assert told(notes, "stands still")
 
 
 def test_rows_out_of_order(tmp_path: Path) -> None:
