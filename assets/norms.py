@@ -18,6 +18,7 @@ review of 67 studies (pmc.ncbi.nlm.nih.gov/articles/PMC9029890) has 31.4 +- 2.5 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -49,52 +50,42 @@ class Norm:
     men: Sample
 
 
-DISTANCES = {
-    "n-gn": ("nasion", "gnathion"),
-    "n-sn": ("nasion", "subnasale"),
+# By their anthropometric codes: the points between which they are taken, then mean, deviation [mm]
+# and size of the samples of women and men. With a deviation no figure was found for the others.
+MEASURES: dict[str, tuple[Any, ...]] = {
+    "n-gn": ("nasion", "gnathion", (118.0, 5.8, 1476), (126.6, 6.6, 918)),
+    "n-sn": ("nasion", "subnasale", (54.5, 3.6, 1502), (56.7, 3.9, 952)),
     "sn-gn": ("subnasale", "gnathion"),
-    "n-prn": ("nasion", "pronasale"),
-    "sn-prn": ("subnasale", "pronasale"),
-    "sn-sto": ("subnasale", "stomion"),
-    "sn-ls": ("subnasale", "labiale_superius"),
-    "ls-sto": ("labiale_superius", "stomion"),
-    "sto-li": ("stomion", "labiale_inferius"),
-    "li-sl": ("labiale_inferius", "sublabiale"),
+    "n-prn": ("nasion", "pronasale", (47.1, 3.4, 1502), (49.6, 3.9, 952)),
+    "sn-prn": ("subnasale", "pronasale", (20.0, 1.8, 1502), (20.9, 2.0, 952)),
+    "sn-sto": ("subnasale", "stomion", (20.3, 2.4, 1500), (22.6, 2.5, 951)),
+    "sn-ls": ("subnasale", "labiale_superius", (14.0, 2.4, 1501), (16.3, 2.5, 951)),
+    "ls-sto": ("labiale_superius", "stomion", (7.4, 1.4, 1500), (7.6, 1.6, 950)),
+    "sto-li": ("stomion", "labiale_inferius", (8.6, 1.7, 1497), (8.7, 2.1, 950)),
+    "li-sl": ("labiale_inferius", "sublabiale", (10.6, 2.2, 1497), (12.3, 2.5, 936)),
     "tr-n": ("trichion", "nasion"),
-    "en-en": ("endocanthion_right", "endocanthion_left"),
-    "ex-ex": ("exocanthion_right", "exocanthion_left"),
-    "en-ex": ("endocanthion_left", "exocanthion_left"),
+    "en-en": ("endocanthion_right", "endocanthion_left", (31.5, 2.7, 1498), (32.7, 2.9, 949)),
+    "ex-ex": ("exocanthion_right", "exocanthion_left", (85.6, 3.8, 1480), (88.9, 4.1, 932)),
+    "en-ex": ("endocanthion_left", "exocanthion_left", (27.8, 2.0, 1480), (28.7, 1.9, 932)),
     "ps-pi": ("palpebrale_superius_left", "palpebrale_inferius_left"),
-    "al-al": ("alare_right", "alare_left"),
-    "ch-ch": ("cheilion_right", "cheilion_left"),
-    "cph-cph": ("crista_philtri_right", "crista_philtri_left"),
-    "ft-ft": ("frontotemporale_right", "frontotemporale_left"),
-    "zy-zy": ("zygion_right", "zygion_left"),
-    "go-go": ("gonion_right", "gonion_left"),
+    "al-al": ("alare_right", "alare_left", (32.7, 2.3, 1501), (35.9, 2.6, 950)),
+    "ch-ch": ("cheilion_right", "cheilion_left", (47.9, 3.5, 1501), (50.1, 3.8, 951)),
+    "cph-cph": ("crista_philtri_right", "crista_philtri_left", (11.8, 1.7, 1501), (13.1, 1.7, 949)),
+    "ft-ft": (
+        "frontotemporale_right",
+        "frontotemporale_left",
+        (105.7, 7.8, 1404),
+        (110.4, 8.4, 913),
+    ),
+    "zy-zy": ("zygion_right", "zygion_left", (130.1, 5.3, 1337), (137.1, 6.3, 883)),
+    "go-go": ("gonion_right", "gonion_left", (97.0, 6.5, 1382), (103.7, 7.1, 898)),
     "t-t": ("tragion_right", "tragion_left"),
 }
-"""Measures by their anthropometric codes: the anatomical points between which they are taken."""
-
-# Measures by the same codes. Not found with a deviation: sn-gn, tr-n, t-t, ps-pi.
+DISTANCES = {code: (first, second) for code, (first, second, *_) in MEASURES.items()}
 NORMS = {
-    "n-gn": Norm(Sample(118.0, 5.8, 1476), Sample(126.6, 6.6, 918)),
-    "n-sn": Norm(Sample(54.5, 3.6, 1502), Sample(56.7, 3.9, 952)),
-    "n-prn": Norm(Sample(47.1, 3.4, 1502), Sample(49.6, 3.9, 952)),
-    "sn-prn": Norm(Sample(20.0, 1.8, 1502), Sample(20.9, 2.0, 952)),
-    "sn-sto": Norm(Sample(20.3, 2.4, 1500), Sample(22.6, 2.5, 951)),
-    "sn-ls": Norm(Sample(14.0, 2.4, 1501), Sample(16.3, 2.5, 951)),
-    "ls-sto": Norm(Sample(7.4, 1.4, 1500), Sample(7.6, 1.6, 950)),
-    "sto-li": Norm(Sample(8.6, 1.7, 1497), Sample(8.7, 2.1, 950)),
-    "li-sl": Norm(Sample(10.6, 2.2, 1497), Sample(12.3, 2.5, 936)),
-    "en-en": Norm(Sample(31.5, 2.7, 1498), Sample(32.7, 2.9, 949)),
-    "ex-ex": Norm(Sample(85.6, 3.8, 1480), Sample(88.9, 4.1, 932)),
-    "en-ex": Norm(Sample(27.8, 2.0, 1480), Sample(28.7, 1.9, 932)),
-    "al-al": Norm(Sample(32.7, 2.3, 1501), Sample(35.9, 2.6, 950)),
-    "ch-ch": Norm(Sample(47.9, 3.5, 1501), Sample(50.1, 3.8, 951)),
-    "cph-cph": Norm(Sample(11.8, 1.7, 1501), Sample(13.1, 1.7, 949)),
-    "zy-zy": Norm(Sample(130.1, 5.3, 1337), Sample(137.1, 6.3, 883)),
-    "go-go": Norm(Sample(97.0, 6.5, 1382), Sample(103.7, 7.1, 898)),
-    "ft-ft": Norm(Sample(105.7, 7.8, 1404), Sample(110.4, 8.4, 913)),
+    code: Norm(*(Sample(*figures) for figures in samples))
+    for code, (_, _, *samples) in MEASURES.items()
+    if samples
 }
 
 

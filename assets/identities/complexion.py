@@ -17,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
-from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +27,6 @@ from risorius.geometry.colour import to_linear, to_screen
 from ..data_files import Image, read_arrays_of
 from ..errors import AssetError
 from ..eyeballs import with_irises
-from ..fitting.head import FittedHead
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
@@ -53,7 +51,6 @@ BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the h
 GROWN = 0.94  # of a scalp, that is covered by long hair
 BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin is called brow
 DETAIL = 9  # [texels] below which relief is told from colour
-AnyHead = TypeVar("AnyHead", bound=FittedHead)
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
 # CIE 1976 L*a*b* of linear sRGB, for the white of a screen (D65).
@@ -198,28 +195,26 @@ def _grown_over(tints: _Tints, features: Features) -> SingleArray:
 
 
 def coloured(
-    head: AnyHead,
+    person: Person,
     *,
-    angle: float | None = None,
+    angle: float,
     blood: float = 1.0,
     irises: str | None = None,
     features: Features = PLAIN,
-) -> AnyHead:
-    """A head with skin and eyes of other colours; None leaves them as they are.
+) -> Person:
+    """A person with skin of a tone (ITA [deg]), eyes of a colour, and the hair of its cut.
 
-    With a tone, a person gets the hair of its cut, too, and keeps it in other tones (`in_tone`).
+    The hair stays in other tones (`in_tone`). irises: None leaves them as they are.
     """
-    parts = head.parts if irises is None else with_irises(head.parts, head.eyes, irises)
-    segments = head.segments
-    if features is not PLAIN:
-        segments = _haired_segments(segments, features)
-    if angle is None:
-        return replace(head, parts=parts, segments=segments)
-    in_tone = partial(recoloured, blood=blood, features=features)
-    if isinstance(head, Person):
-        in_tone = partial(in_tone, haired_as=angle)  # hair stays, whatever the skin
-        parts, head = _with_hair(head, parts, angle, features), replace(head, in_tone=in_tone)
-    return replace(head, albedo=in_tone(angle), parts=parts, segments=segments)
+    parts = person.parts if irises is None else with_irises(person.parts, person.eyes, irises)
+    in_tone = partial(recoloured, blood=blood, features=features, haired_as=angle)
+    return replace(
+        person,
+        albedo=in_tone(angle),
+        parts=_with_hair(person, parts, angle, features),
+        segments=_haired_segments(person.segments, features),
+        in_tone=in_tone,
+    )
 
 
 def _haired_segments(segments: Image, features: Features) -> Image:
@@ -245,9 +240,8 @@ def _with_hair(
     cut = CUTS[person.identity.cut]
     if cut is None:
         return others
-    uv = np.zeros((len(person.vertices), 2))
-    uv[person.faces] = person.uv[person.face_uv]
-    scalp = scalp_of(person.vertices, person.faces, uv, _behind(_tints(), features))
+    uv, behind = person.uv.astype(np.float64), _behind(_tints(), features)
+    scalp = scalp_of(person.vertices, person.faces, uv, behind)
     colour, length = _hair_colour(angle, features), person.identity.hair
     if isinstance(cut, Fall):
         return (*others, falling_hair(cut, scalp, person, colour, length))

@@ -199,7 +199,7 @@ def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArra
     is_layereded = (far(uv) > 0.0)[faces].any(axis=1)
     used, number = np.unique(faces[is_layereded], return_inverse=True)
     faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
-    points, uv = vertices[used], uv[used].astype(np.float64)
+    points, uv = vertices[used], uv[used]
     for _ in range(LEVELS):
         cut = quarter(faces, len(points))
         faces, ends = cut.faces, points[cut.edges]
