@@ -104,6 +104,7 @@ class Pipeline:
         self.texture: render.Texture | None = None
         self.set_tone(None)
         self.wrinkle_map: render.BumpMap | None = None
+        self._compression: Compression | None = None
         if (wrinkles := scene.wrinkles) is not None:
             self._compression = Compression(scene)
             self.wrinkle_map = renderer.load_bumps(wrinkles.map, wrinkles.steepest)
@@ -111,7 +112,7 @@ class Pipeline:
 
     def bind(self, refinement: Refinement) -> DrawnMesh:
         """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
-        refiner = refiner_for(self.scene, refinement)
+        refiner = refiner_for(self.scene, refinement, self._compression)
         room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         stream: render.Stream | render.GpuStream
         is_on_gpu = isinstance(refiner, refine.BaseRefiner) and refiner.runs_on_gpu
@@ -158,8 +159,8 @@ class Pipeline:
         timer: measures "refinement", "upload" and "draw".
         """
         with timer("refinement"):
-            shows_wrinkles = self.wrinkle_map is not None and style.shows_bumps
-            amounts = self._compression.amounts(self.scene.positions) if shows_wrinkles else None
+            measure = self._compression if style.shows_bumps else None
+            amounts = None if measure is None else measure.amounts(self.scene.positions)
             self.refine(camera, viewports)
         with timer("upload"):
             for viewport in viewports:

@@ -104,9 +104,9 @@ class Clip:
 
         Raises UserError for a refiner that has to know where somebody looks from.
         """
-        refiner = refiner_for(self.scene, refinement)
         relief = relief_of(self.scene, refinement)
         compression = None if relief is None else Compression(self.scene)
+        refiner = refiner_for(self.scene, refinement, compression)
         for frame in range(self.frame_count):
             try:
                 positions = self.skin.at(frame)

@@ -47,12 +47,21 @@ class Compression:
             self._readiness[_seam_vertices(scene.faces, scene.face_uv)] = 0.0
         self._resting = wrinkles.resting * np.minimum(self._readiness, 1.0)
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
+        self._seen = np.empty((0, 3))  # what was asked for last,
+        self._found = np.empty((0, 2), np.float32)  # and told: a frame asks twice
 
     def amounts(self, positions: Points) -> Amounts:
         """How far each vertex wrinkles in either slot, 0 (not at all) to 1, shape (V, 2).
 
-        It begins and ends without a kink: nothing pops.
+        It begins and ends without a kink: nothing pops. Read only.
         """
+        if not np.array_equal(positions, self._seen):
+            self._seen, self._found = positions.copy(), self._measured(positions)
+            self._found.flags.writeable = False
+        return self._found
+
+    def _measured(self, positions: Points) -> Amounts:
+        """Of what was not asked for last."""
         lost = self._shortening.measure(positions)
         beyond = np.square(np.maximum(self._readiness * lost - ONSET, 0.0))
         amounts = beyond / (beyond + (HALF - ONSET) ** 2)
@@ -101,9 +110,9 @@ class FoldCriterion(refine.Criterion):
 
     uses_normals = False
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, compression: Compression) -> None:
         assert scene.wrinkles is not None and scene.uv is not None and scene.face_uv is not None
-        self._compression, self._relief = Compression(scene), Relief(scene.wrinkles)
+        self._compression, self._relief = compression, Relief(scene.wrinkles)
         self._uv = np.zeros((len(scene.rest_positions), 2), np.float32)
         self._uv[scene.faces] = scene.uv[scene.face_uv]  # any of those that a seam's vertex has
 
