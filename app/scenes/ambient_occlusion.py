@@ -7,7 +7,7 @@ From each vertex rays go out over its normal, more of them the closer they are t
 comes from everywhere counts. What a ray meets within REACH takes its part of the light away, less
 the farther it is. A face moves: what touches at rest, lips or the folds of lids, may come to light
 later. So two poses are looked at, at rest and with mouth open and eyes shut, and the more open one
-counts.
+counts. The program looks at the finest mesh of a head, which takes a minute.
 
 Sources: Zhukov, Iones, Kronin 1998, "An ambient light illumination model" (obscurance that fades
 with distance); Möller and Trumbore 1997 (ray and triangle).
@@ -28,6 +28,7 @@ import scipy
 from risorius import assets, sim
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.assets.model import FineMesh
 from risorius.assets.topology import decimated
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.texels import Texels
@@ -42,65 +43,54 @@ MOST_SEEN = 6000  # triangles that rays are cast at: more would take seconds, an
 RAYS = 48  # from each vertex
 DEPTH = 1.6  # power of what is left; chosen by eye: folds are told from afar, and nothing is black
 REVEALED = 0.8  # most light that comes to what only a moving face shows
-STEEP, LONG = 0.15, 8.0  # change along an edge, and its length [mm]: beyond them its middle counts
 START = 0.4  # [mm] above the skin, lest it shade itself
 THIN = 5.0  # [mm] a ray may leave what is thinner: at the root of an ear it begins within the ear
 REVEALING = ("yawn", "jaw_open")  # the first of these that a head knows opens mouth and shuts eyes
 SETTLED = 60  # steps of 1/60 s
 MARGIN = 3.0  # [texels] painted beyond a triangle, for texels between patches
+SOFT = 1.5  # [texels] of the blur in which what single rays tell is lost
 
 Points = npt.NDArray[np.float64]
 Triangles = npt.NDArray[np.int32]
 Values = npt.NDArray[np.float32]
 
 
-def ambient_occlusion(head: Any, simulation: sim.Simulation) -> npt.NDArray[np.uint8]:
+def ambient_occlusion(
+    head: Any, simulation: sim.Simulation, fine: FineMesh | None = None
+) -> npt.NDArray[np.uint8]:
     """An image over the head's texture: 255 where all light comes in, 0 where none; (H, W).
 
     head: with texture coordinates `uv`, `face_uv` and `albedo` (H, W, 3).
     simulation: of that head, at rest; it is moved, and at rest again at the end.
+    fine: a finer mesh of the head, to be looked at instead of its own.
     """
-    seen, faces = _looked_through(simulation.positions, simulation.faces)
-    sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    edges, edge_of_side = np.unique(sides, axis=0, return_inverse=True)
-    # Places that are looked at: vertices, and middles of long edges along which it gets dark.
-    count = len(seen)
-    ends = np.concatenate([np.repeat(np.arange(count)[:, None], 2, axis=1), edges])
-    values = np.empty(len(ends), np.float32)
-    at_rest = simulation.positions[seen]
-    values[:count] = open_to_light(at_rest, faces, ends[:count])
-    lengths = np.linalg.norm(np.diff(at_rest[edges], axis=1)[:, 0], axis=1)
-    is_steep = abs(np.diff(values[edges])[:, 0]) > STEEP
-    steep = count + np.flatnonzero(is_steep & (lengths > LONG))
-    values[steep] = open_to_light(at_rest, faces, ends[steep])
+    rest, places = simulation.positions.copy(), head.uv.astype(np.float64)[head.face_uv]
+    numbers, faces = _looked_through(rest, simulation.faces)
+    points = rest[numbers]
+    if fine is not None:
+        points, faces, places = fine.vertices, fine.faces, fine.interpolate(head.uv)[fine.faces]
+    values = open_to_light(points, faces, np.arange(len(points)))
     name = next((each for each in REVEALING if each in simulation.limits), None)
     if name is not None:
         simulation.set(name, 1.0)
         for _ in range(SETTLED):
             simulation.step(1.0 / 60.0)
-        looked_at = np.concatenate([np.arange(count), steep])
-        hidden = looked_at[values[looked_at] < REVEALED]
-        moved = open_to_light(simulation.positions[seen], faces, ends[hidden])
-        values[hidden] = np.maximum(values[hidden], REVEALED * moved)
+        ways, hidden = simulation.positions - rest, np.flatnonzero(values < REVEALED)
+        moved = points + (ways[numbers] if fine is None else fine.interpolate(ways))
+        revealed = open_to_light(moved, faces, hidden)
+        values[hidden] = np.maximum(values[hidden], REVEALED * revealed)
         simulation.reset()
-    between = np.setdiff1d(np.arange(count, len(ends)), steep)
-    values[between] = values[ends[between]].mean(axis=1)
     shades = values**DEPTH
-    places = head.uv.astype(np.float64)[head.face_uv]
     if len(faces) < len(simulation.faces):
-        normals = vertex_normals(simulation.positions, simulation.faces)
-        near = nearest_on(simulation.positions, normals, at_rest, faces)
-        colours = near.interpolate(shades[:count]).astype(np.float32)[simulation.faces]
-    else:  # each triangle is painted in four: its corners, then what is between their middles
-        middles = 0.5 * (places + np.roll(places, -1, axis=1))
-        places = _quartered(places, middles)
-        colours = _quartered(shades[faces], shades[count + edge_of_side.reshape(-1, 3)])
+        near = nearest_on(rest, vertex_normals(rest, simulation.faces), points, faces)
+        shades, faces = near.interpolate(shades).astype(np.float32), simulation.faces
     # What is meant lies over what overlaps; and folds that another head's texture shows twice, such
     # as the inside of a nostril, must not darken the open skin there: the more open one counts.
     size = head.albedo.shape[:2]
-    around, inside = (_painted(places, colours, margin, size) for margin in (MARGIN, 0.0))
+    around, inside = (_painted(places, shades[faces], margin, size) for margin in (MARGIN, 0.0))
     image = np.where(inside > 0.0, inside, np.where(around > 0.0, around, 1.0))
-    return np.round(255.0 * image).astype(np.uint8)
+    softened: Values = scipy.ndimage.gaussian_filter(image, SOFT)
+    return np.round(255.0 * softened).astype(np.uint8)
 
 
 def _looked_through(positions: Points, faces: Triangles) -> tuple[npt.NDArray[np.intp], Triangles]:
@@ -116,28 +106,14 @@ def _looked_through(positions: Points, faces: Triangles) -> tuple[npt.NDArray[np
     return numbers, np.ascontiguousarray(triangles[is_sound])
 
 
-def _quartered(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Values at the corners of triangles in four, (4 F, 3, ...), of those at corners and middles.
-
-    Both are of shape (F, 3, ...); middle i lies between corners i and i + 1.
-    """
-    before = np.roll(middles, 1, axis=1)
-    four = np.concatenate([np.stack([corners, middles, before], axis=2), middles[:, None]], axis=1)
-    return np.ascontiguousarray(four.reshape(-1, *four.shape[2:]))
-
-
-def open_to_light(positions: Points, faces: Triangles, ends: npt.NDArray[np.intp]) -> Values:
-    """The share of the light from all around that reaches the middles between `ends`, 0..1.
-
-    ends: pairs of vertices, (n, 2); twice the same for a vertex itself.
-    """
+def open_to_light(positions: Points, faces: Triangles, numbers: npt.NDArray[np.intp]) -> Values:
+    """The share of the light from all around that reaches vertices of these numbers, 0..1."""
     corners = positions[faces]
-    normals = vertex_normals(positions, faces)[ends].sum(axis=1)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    normals = vertex_normals(positions, faces)[numbers]
     middles = corners.mean(axis=1)
     radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
-    values = np.empty(len(ends), np.float32)
-    _cast(positions[ends].mean(axis=1), normals, corners, middles, radii, _hemisphere(), values)
+    values = np.empty(len(numbers), np.float32)
+    _cast(positions[numbers], normals, corners, middles, radii, _hemisphere(), values)
     return values
 
 
@@ -228,7 +204,7 @@ def _painted(places: Points, values: Values, margin: float, size: tuple[int, int
 def bake(head: assets.Head) -> dict[str, npt.NDArray[np.generic]]:
     """Make everything that `head.ambient_occlusion_file` holds, array name -> array."""
     return {
-        "ambient_occlusion": ambient_occlusion(head, sim.create(head)),
+        "ambient_occlusion": ambient_occlusion(head, sim.create(head), head.finer(2)),
         "made_from": np.array(head.fingerprint, dtype=np.uint32),
     }
 
