@@ -38,7 +38,7 @@ class DrawnMesh:
     refiner: refine.Refiner
     stream: render.Stream | render.GpuStream
     relief: Relief | None = None  # by which wrinkles move what was refined
-    strength: float = 1.0  # how much of them shows
+    style: render.Style = render.Style()  # noqa: RUF009 - frozen; in which it was drawn last
     mesh: refine.RefinedMesh | None = None  # what was refined last, of:
     positions: npt.NDArray[np.float64] | None = None
 
@@ -53,13 +53,13 @@ class DrawnMesh:
         out: Any = self.stream  # of the kind that `Pipeline.bind` has found it to take
         self.mesh, self.positions = self.refiner.refine(positions, out=out, view=view), positions
 
-    def upload(self, wrinkling: Amounts | None = None, strength: float = 1.0) -> None:
+    def upload(self, style: render.Style, wrinkling: Amounts | None = None) -> None:
         """Hand over what was refined last, moved as far as the scene's vertices wrinkle."""
         assert self.mesh is not None and self.positions is not None
-        self.strength = strength
+        self.style = style
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
         if rows is not None and self.relief is not None and self.has_uv:
-            self.relief.move(self.mesh, strength * rows)
+            self.relief.move(self.mesh, style.bumps * rows)
         if isinstance(self.stream, render.GpuStream):
             frame: Any = self.mesh  # of a refiner that fetches rows on demand
             self.stream.show(frame, self.positions, rows)
@@ -129,7 +129,8 @@ class Pipeline:
         scene = self.scene
         if scene.albedo is not None:
             albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
-            self.texture = self.renderer.load_texture(albedo, scene.ambient_occlusion())
+            maps = scene.ambient_occlusion(), scene.fine_shape
+            self.texture = self.renderer.load_texture(albedo, *maps)
 
     def step(self, seconds: float) -> None:
         """The upper half of the figure: time passes, and the triangle mesh follows."""
@@ -164,7 +165,7 @@ class Pipeline:
             self.refine(camera, viewports)
         with timer("upload"):
             for viewport in viewports:
-                viewport.drawn.upload(amounts, style.bumps)
+                viewport.drawn.upload(style, amounts)
         with timer("draw"):
             layers = self.anatomy.layers(anatomy)
             areas = dict.fromkeys(viewport.area for viewport in viewports)

@@ -12,12 +12,13 @@ The built-in head ships as data; docs/head.md says what it was fitted to.
 from .errors import AssetError
 from .loading import available, load
 from .meshes import Mesh, read_mesh
-from .model import Cloth, Eye, Head, Layer, Part, Plane, Segment, Wrinkles
+from .model import Cloth, Eye, FineShape, Head, Layer, Part, Plane, Segment, Wrinkles
 
 __all__ = [
     "AssetError",
     "Cloth",
     "Eye",
+    "FineShape",
     "Head",
     "Layer",
     "Mesh",

@@ -66,9 +66,9 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
 
     The image of the skin lies beside the data file, as a PNG file of the same name; so do the files
     of its tones (`_tints.npz`), of its wrinkles (`_wrinkles.npz`), of its classes
-    (`_segments.png`), of the light on it (`_ambient_occlusion.npz`), of the finer meshes
-    (`_finer.npz`) and of how people differ (`_modes.npz`). All seven are read only when they are
-    asked for.
+    (`_segments.png`), of the light on it (`_ambient_occlusion.npz`), of its fine shape
+    (`_fine_shape.npz`), of the finer meshes (`_finer.npz`) and of how people differ (`_modes.npz`).
+    All eight are read only when they are asked for.
 
     Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
     """
@@ -124,6 +124,7 @@ def _assemble(
         wrinkles_file=head_file.with_name(f"{head_file.stem}_wrinkles.npz"),
         segments_file=head_file.with_name(f"{head_file.stem}_segments.png"),
         ambient_occlusion_file=head_file.with_name(f"{head_file.stem}_ambient_occlusion.npz"),
+        fine_shape_file=head_file.with_name(f"{head_file.stem}_fine_shape.npz"),
         finer_file=head_file.with_name(f"{head_file.stem}_finer.npz"),
         modes_file=head_file.with_name(f"{head_file.stem}_modes.npz"),
         rig=rig,

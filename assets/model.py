@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -148,6 +148,15 @@ class Wrinkles:
     resting: float = 0.0
 
 
+class FineShape(NamedTuple):
+    """Fine shape of a skin at rest, over what is usually drawn of it, in the layout of `uv`."""
+
+    slopes: Image
+    """Of its height along u and v, row 0 is v = 1, shape (H, W, 2), uint8; 128 is level."""
+    steepest: float
+    """Slope of 255 [mm for one unit of the texture coordinates]."""
+
+
 @dataclass(frozen=True)
 class FineMesh:
     """The skin of a head with more triangles, at rest.
@@ -205,6 +214,7 @@ class Head:
     wrinkles_file: the map of its wrinkles.
     segments_file: the map of what is nose, lip, neck, ...
     ambient_occlusion_file: app/scenes/ambient_occlusion.py makes it.
+    fine_shape_file: the map of its fine shape; bench/fine_shape.py made it.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up; () where there
@@ -229,6 +239,7 @@ class Head:
     wrinkles_file: Path
     segments_file: Path
     ambient_occlusion_file: Path
+    fine_shape_file: Path
     finer_file: Path
     modes_file: Path
     rig: dict[str, Any]
@@ -286,6 +297,19 @@ class Head:
         names, file = ("ambient_occlusion",), self.ambient_occlusion_file
         mend = "bake it with 'python -m risorius.app.scenes.ambient_occlusion'"
         return read_arrays_of(self.fingerprint, file, names, mend=mend)["ambient_occlusion"]
+
+    @cached_property
+    def fine_shape(self) -> FineShape | None:
+        """The fine shape of the skin; None where there is no file of it.
+
+        Raises AssetError when the file is broken or that of another head.
+        """
+        if not self.fine_shape_file.exists():
+            return None
+        arrays = read_arrays_of(self.fingerprint, self.fine_shape_file, ("steps", "steepest"))
+        slopes = np.cumsum(arrays["steps"], axis=0, dtype=np.uint8)  # steps take less room
+        slopes.flags.writeable = False
+        return FineShape(slopes, float(arrays["steepest"]))
 
     def finer(self, level: int) -> FineMesh:
         """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.

@@ -5,7 +5,7 @@ middle of each pixel, so that no number is a mean of two things.
 Source: Saito and Takahashi 1990, "Comprehensible rendering of 3-D shapes" (the G-buffer).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import moderngl
@@ -47,8 +47,7 @@ class GeometryBuffer:
     def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
         self.size = size
         self._gl = gl
-        self._program = compile_program(gl, "geometry.glsl")
-        self._bumped: moderngl.Program | None = None
+        self._programs: dict[tuple[str, ...], moderngl.Program] = {}  # by their defines
         self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4, 2)]
         self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
 
@@ -58,16 +57,16 @@ class GeometryBuffer:
         parts: Sequence[PlacedPart],
         view: CameraView,
         values: Floats | None,
-        bumps: tuple[BumpMap, float] | None,
+        maps: Mapping[BumpMap, float],
     ) -> Geometry:
         """Draw what `stream` last uploaded, and parts; see `Renderer.draw_geometry`."""
-        gl, program = self._gl, self._program
+        gl, program = self._gl, self._program_of({})
         self._target.use()
         gl.viewport, gl.scissor = (0, 0, *self.size), None
         gl.enable_only(moderngl.DEPTH_TEST)
         self._target.clear()
         stream.upload_values(values)
-        skin = program if bumps is None else self._program_of(*bumps)
+        skin = self._program_of(maps)
         for each in (program, skin):
             write_uniform(each, "projection", view.projection)
         write_uniform(skin, "model_view", view.world_to_view)
@@ -81,12 +80,15 @@ class GeometryBuffer:
             first += len(buffers.part.faces)
         return self._read()
 
-    def _program_of(self, bumps: BumpMap, strength: float) -> moderngl.Program:
-        """The program for a mesh with a bump map, ready to draw it."""
-        if self._bumped is None:
-            self._bumped = compile_program(self._gl, "geometry.glsl", "BUMPS")
-        bumps.set_uniforms(self._bumped, strength)
-        return self._bumped
+    def _program_of(self, maps: Mapping[BumpMap, float]) -> moderngl.Program:
+        """The program for a mesh with such maps, ready to draw it."""
+        names = tuple(each.define for each in maps)
+        if names not in self._programs:
+            self._programs[names] = compile_program(self._gl, "geometry.glsl", *names)
+        program = self._programs[names]
+        for map_, strength in maps.items():
+            map_.set_uniforms(program, strength)
+        return program
 
     def _read(self) -> Geometry:
         """Fetch the textures, top row first."""

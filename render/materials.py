@@ -1,5 +1,7 @@
 """How meshes and parts take light and colours: what surface.glsl asks of each."""
 
+from collections.abc import Iterable
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +12,7 @@ from .camera import CameraView
 from .parts import LAYERS, Part
 from .programs import write_uniform
 from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Light, Style
+from .texture import BumpMap
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 STRAND_PIXELS = 1.4  # that a strand is wide at least: a triangle seen from its side is narrower
@@ -28,7 +31,7 @@ COLOUR_DEFINES: dict[ColourBy, tuple[str, ...]] = {
 }
 
 
-def mesh_shader(style: Style, has_texture: bool, has_bumps: bool, fades: bool) -> list[str]:
+def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades: bool) -> list[str]:
     """The file and the defines of the program of a mesh."""
     return [
         "surface.glsl",
@@ -38,7 +41,7 @@ def mesh_shader(style: Style, has_texture: bool, has_bumps: bool, fades: bool) -
         *(["TEXTURED"] if has_texture else []),
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),
-        *(["BUMPS"] if has_bumps else []),
+        *(each.define for each in maps),
         *(["FADED"] if fades else []),
     ]
 

@@ -9,6 +9,7 @@ Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
+from types import MappingProxyType
 from typing import Any
 
 import moderngl
@@ -35,7 +36,7 @@ from .shadow import ShadowMap, Thrower
 from .stream import GpuStream, MeshBuffers, Share, Stream
 from .style import ColourBy, Shading, Style
 from .surface import NEWEST, Image, Surface
-from .texture import BumpMap, Texture
+from .texture import BumpMap, Slopes, Texture
 from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
@@ -75,15 +76,19 @@ class Renderer:
         self.surface.make_current()
         return GpuStream(self._gl, vertex_capacity, triangle_capacity, columns, margin)
 
-    def load_texture(self, image: Image, occlusion: Image | None = None) -> Texture:
-        """Hand an image to OpenGL, from which draw_mesh takes the albedo.
+    def load_texture(
+        self, image: Image, occlusion: Image | None = None, fine_shape: Slopes | None = None
+    ) -> Texture:
+        """Hand an image to OpenGL, from which draw_mesh takes the albedo, and maps beside it.
 
         image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
         occlusion: how much of the light from all around gets there, 255 = all, (H, W), uint8.
+        fine_shape: slopes of its height along u and v (128 is level), (h, w, 2), uint8, and
+            that of 255 [mm for a whole texture coordinate]. Per-pixel shading alone has it.
         Raises ValueError for an image of another shape or type, or beyond the driver's limit.
         """
         self.surface.make_current()
-        return Texture(self._gl, image, occlusion)
+        return Texture(self._gl, image, occlusion, fine_shape)
 
     def load_bumps(self, texels: Image, steepest: float) -> BumpMap:
         """Hand a bump map to OpenGL, from which draw_mesh takes the fine shape of a surface.
@@ -94,7 +99,7 @@ class Renderer:
         Raises ValueError for another shape or type.
         """
         self.surface.make_current()
-        return BumpMap(self._gl, texels, steepest)
+        return BumpMap(self._gl, texels, steepest, 4)
 
     def view(
         self,
@@ -135,8 +140,8 @@ class Renderer:
 
         values: what each triangle is coloured by, as `ColourBy` says, shape (M,), uint8; needed
             unless that is NONE. Raises ValueError where it does not fit.
-        texture: the albedo of the front side, unless the style is not textured; needs a stream of
-            8 columns, ValueError else.
+        texture: the albedo of the front side, unless the style is not textured, and its fine shape;
+            needs a stream of 8 columns, ValueError else.
         bumps: fine shape, as far as the style and the amounts that were uploaded let it show;
             per-pixel shading alone has it. Needs 8 columns, too.
         cut: in front of it the mesh is opaque. Draw before it what is to be seen through it.
@@ -231,9 +236,14 @@ class Renderer:
         *more: str,
     ) -> moderngl.Program:
         """The program of a mesh, with all that it asks for."""
+        maps = {} if bumps is None else {bumps: style.bumps}
+        # In the fringes beside a mesh there is no slope to be measured.
+        fine = None if texture is None or more else texture.fine_shape
+        if fine is not None and style.shows_fine_shape:
+            maps[fine] = 1.0
         texture = texture if style.textured else None
-        has = texture is not None, bumps is not None, fade is not None
-        program = self._program(*mesh_shader(style, *has), *more)
+        names = mesh_shader(style, texture is not None, maps, fade is not None)
+        program = self._program(*names, *more)
         write_uniform(program, "model_view", view.world_to_view)
         write_uniform(program, "projection", view.projection)
         if fade is not None:
@@ -242,9 +252,9 @@ class Renderer:
         if style.shadows and self._shadow is not None:
             self._shadow.set_uniforms(program, view, _SHADOW_UNIT)
         if texture is not None:
-            texture.set_uniforms(program, _ALBEDO_UNIT, float(style.occlusion))
-        if bumps is not None:
-            bumps.set_uniforms(program, style.bumps)
+            texture.set_uniforms(program, _ALBEDO_UNIT, float(style.skin_maps))
+        for map_, strength in maps.items():
+            map_.set_uniforms(program, strength)
         if style.colour_by is not ColourBy.NONE:
             assert self._values is not None
             self._values.use(_VALUE_UNIT)
@@ -311,22 +321,22 @@ class Renderer:
         view: CameraView,
         *,
         values: npt.NDArray[np.float32] | None = None,
-        bumps: tuple[BumpMap, float] | None = None,
+        maps: Mapping[BumpMap, float] = MappingProxyType({}),
     ) -> Geometry:
         """Numbers of what is seen, for each pixel of the surface; nothing on it changes.
 
         values: two numbers for each vertex that `stream` last uploaded, (vertex_count, 2), to be
             interpolated; None: zeros. Raises ValueError for another shape, or a bone without
             transform.
-        bumps: fine shape that tilts normals, and how much of it, 0 to 1; needs amounts that were
-            uploaded, or counts for nothing.
+        maps: fine shape that tilts normals, and how much of each, 0 to 1; what needs amounts counts
+            for nothing where none were uploaded.
         """
         if self._geometry_buffer is None or self._geometry_buffer.size != self.surface.target.size:
             self._geometry_buffer = GeometryBuffer(self._gl, self.surface.target.size)
         placed = self._parts.placed(parts, transforms)
         if not stream.has_bumps:
-            bumps = None
-        return self._geometry_buffer.draw(stream, placed, view, values, bumps)
+            maps = {each: strength for each, strength in maps.items() if each.define != "BUMPS"}
+        return self._geometry_buffer.draw(stream, placed, view, values, maps)
 
     def draw_lines(self, lines: Lines, view: CameraView) -> None:
         """Draw polylines over the scene; where something hides them they shine through."""

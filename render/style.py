@@ -177,7 +177,7 @@ class Style:
     subsurface: float | None = None
     gloss: float = 0.5  # strength of the skin's highlight, 0..1
     shadows: bool = True  # of the key light
-    occlusion: bool = True  # less light from all around in folds, where the texture says so
+    skin_maps: bool = True  # fine shape, and less light in folds, where the texture says so
     bumps: float = 1.0  # how much of a bump map shows, where there is one; 0 = none
     light: Light = LIGHTS["studio"]
     background: Background | None = LIGHT  # None: transparent
@@ -204,6 +204,11 @@ class Style:
     def shows_bumps(self) -> bool:
         """Whether anything of a bump map is to be seen: only pixel shading has them."""
         return self.bumps > 0.0 and self.shading is Shading.PIXEL
+
+    @property
+    def shows_fine_shape(self) -> bool:
+        """Whether anything of a texture's fine shape is to be seen: as with bumps."""
+        return self.skin_maps and self.shading is Shading.PIXEL
 
     @property
     def _warmth(self) -> float:

@@ -1,4 +1,4 @@
-"""Images over the texture coordinates of a surface: its albedo, and its bump map.
+"""Images over the texture coordinates of a surface: its albedo, and maps of its fine shape.
 
 The albedo comes as sRGB and is kept as square roots of linear light, which shaders square: eight
 bits hold either as finely. Software OpenGL reads and blends such bytes as they are, in two thirds
@@ -15,25 +15,25 @@ from risorius.geometry.colour import to_linear
 
 from .surface import Image, is_software
 
+Slopes = tuple[Image, float]  # a map (H, W, 2), and what 255 in it is, see `BumpMap`
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
 LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
-BUMP_UNIT = 5  # texture unit; 4 belongs to a window's enlargement
-_AROUND_UNIT = 6
+_BUMP_UNIT, _AROUND_UNIT, _FINE_UNIT = 5, 6, 7  # texture units; 4 is for a window's enlargement
 _AROUND_LEVEL = 3  # of the smaller versions: a texel there is the mean of 8 x 8
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 
 class _Mipmaps:
-    """Four bytes for each texel on the graphics card, and smaller versions for what is far away.
+    """Bytes for each texel on the graphics card, and smaller versions for what is far away.
 
     size: width and height [texels].
     """
 
     def __init__(self, gl: moderngl.Context, texels: Image) -> None:
-        """texels: top row first, shape (H, W, 4)."""
+        """texels: top row first, shape (H, W, 2 or 4)."""
         self.size = texels.shape[1], texels.shape[0]
         rows = np.ascontiguousarray(texels[::-1])  # OpenGL counts rows, and v, from below
-        self._texture = gl.texture(self.size, 4, rows.tobytes())
+        self._texture = gl.texture(self.size, rows.shape[2], rows.tobytes())
         self._texture.repeat_x = self._texture.repeat_y = False
         self._texture.build_mipmaps()
         self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
@@ -43,19 +43,27 @@ class Texture(_Mipmaps):
     """The albedo of a skin; `Renderer.load_texture` makes it.
 
     redness: median of red over green light; where the image is redder, lips are, and they gloss.
+    fine_shape: of the skin, None: there is none.
     """
 
-    def __init__(self, gl: moderngl.Context, image: Image, occlusion: Image | None = None) -> None:
-        albedo = _checked(image, int(gl.info["GL_MAX_TEXTURE_SIZE"]))
-        wanted = albedo.shape[:2]
+    def __init__(
+        self, gl: moderngl.Context, image: Image, occlusion: Image | None, fine_shape: Slopes | None
+    ) -> None:
+        _check(image, "texture's image", 3, "sRGB")
+        if max(image.shape) > (limit := int(gl.info["GL_MAX_TEXTURE_SIZE"])):
+            raise ValueError(
+                f"the texture's image has {image.shape[1]} x {image.shape[0]} texels; this driver "
+                f"takes at most {limit} each way: shrink the image"
+            )
+        wanted = image.shape[:2]
         if occlusion is not None and (occlusion.shape != wanted or occlusion.dtype != np.uint8):
             raise ValueError(
                 f"occlusion has shape {occlusion.shape} and dtype {occlusion.dtype}; it must be "
                 f"{wanted} uint8, as the texture's image"
             )
-        self.redness = _median_redness(albedo)
+        self.redness = _median_redness(image)
         alpha = np.full(wanted, 255, np.uint8) if occlusion is None else occlusion
-        light = to_linear(np.arange(256) / 255.0).astype(np.float32)[albedo]
+        light = to_linear(np.arange(256) / 255.0).astype(np.float32)[image]
         texels = np.dstack([light, alpha / np.float32(255.0)])
         super().__init__(gl, _roots(texels))
         for level in range(1, max(self.size).bit_length()):
@@ -65,6 +73,7 @@ class Texture(_Mipmaps):
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
         self._around = self._means(gl)
+        self.fine_shape = None if fine_shape is None else BumpMap(gl, *fine_shape, 2)
 
     def _means(self, gl: moderngl.Context) -> moderngl.Texture:
         """The lightness of the skin around each place: software reads one number, not four."""
@@ -86,27 +95,25 @@ class Texture(_Mipmaps):
 
 
 class BumpMap(_Mipmaps):
-    """The fine shape of a surface, say its furrows; `Renderer.load_bumps` makes it.
+    """The fine shape of a surface: furrows that come and go, or, of two bytes, what always shows.
 
     steepest: slope of a full byte [scene's unit for one unit of the texture coordinates].
+    define: what programs that look it up are compiled with.
     """
 
-    def __init__(self, gl: moderngl.Context, texels: Image, steepest: float) -> None:
-        texels = np.asarray(texels)
-        if texels.ndim != 3 or texels.shape[2] != 4 or not texels.size or texels.dtype != np.uint8:
-            raise ValueError(
-                f"the bump map has shape {texels.shape} and dtype {texels.dtype}; it must "
-                "be (height, width, 4) uint8: slopes along u and v, depth, slot; top row first"
-            )
+    def __init__(self, gl: moderngl.Context, texels: Image, steepest: float, channels: int) -> None:
+        kind, more = ("fine shape", "") if channels == 2 else ("bump map", ", depth, slot")
+        _check(texels, kind, channels, f"slopes along u and v{more}")
         self.steepest = steepest
+        self.define, self._unit = ("FINE", _FINE_UNIT) if channels == 2 else ("BUMPS", _BUMP_UNIT)
         super().__init__(gl, texels)
 
     def set_uniforms(self, program: moderngl.Program, strength: float) -> None:
         """Let a program that includes bumps.glsl look it up."""
-        self._texture.use(BUMP_UNIT)
-        program["bump_map"] = BUMP_UNIT
-        program["bump_slope"] = self.steepest
-        program["bump_strength"] = strength
+        name = self.define.lower()
+        self._texture.use(self._unit)
+        program[f"{name}_map"], program[f"{name}_slope"] = self._unit, self.steepest
+        program[f"{name}_strength"] = strength
 
 
 def _roots(values: npt.NDArray[np.float32]) -> Image:
@@ -131,17 +138,11 @@ def _median_redness(image: Image) -> float:
     return float(np.median(light[:, 0] / np.maximum(light[:, 1], 1e-3)))
 
 
-def _checked(image: Image, limit: int) -> Image:
-    """An image that a texture can be made of; ValueError for all else."""
-    image = np.asarray(image)
-    if image.ndim != 3 or image.shape[2] != 3 or not image.size or image.dtype != np.uint8:
+def _check(image: Image, name: str, channels: int, meaning: str) -> None:
+    """ValueError for an array that is no image of so many channels."""
+    is_image = image.ndim == 3 and image.shape[2] == channels and image.size > 0
+    if not is_image or image.dtype != np.uint8:
         raise ValueError(
-            f"the texture's image has shape {image.shape} and dtype {image.dtype}; it must be "
-            "(height, width, 3) uint8: sRGB, top row first"
+            f"the {name} has shape {image.shape} and dtype {image.dtype}; it must be "
+            f"(height, width, {channels}) uint8: {meaning}, top row first"
         )
-    if max(image.shape) > limit:
-        raise ValueError(
-            f"the texture's image has {image.shape[1]} x {image.shape[0]} texels; this driver "
-            f"takes at most {limit} each way: shrink the image"
-        )
-    return image

@@ -128,7 +128,7 @@ SCENE = click.option("--scene", type=SCENE_NAMES, help="What is animated.")
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
 STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
 ANATOMY_OPTIONS = ("anatomy", "skin_opacity", "dissect")
-STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "wrinkles", "light")
+STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "skin_maps", "wrinkles", "light")
 
 
 def option(*names: str, **about: Any) -> Any:
@@ -259,6 +259,12 @@ class Drawing(Subject):
         show_default=True,
         help="How deep skin wrinkles where it is compressed; 0: not at all.",
     )
+    skin_maps: bool = option(
+        "--skin-maps/--no-skin-maps",
+        default=True,
+        show_default=True,
+        help="Maps of the skin's fine shape, and of light in its folds.",
+    )
     skin: str = option(
         type=click.Choice(["textured", "plain", "clay"]),
         default="textured",
@@ -293,6 +299,7 @@ class Drawing(Subject):
             colour_by=render.ColourBy.SPLITS if self.splits else render.ColourBy.NONE,
             textured=self.skin == "textured",
             albedo=render.CLAY if self.skin == "clay" else render.SKIN,
+            skin_maps=self.skin_maps,
             bumps=self.wrinkles,
             light=render.LIGHTS[self.light],
         )

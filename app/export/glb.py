@@ -64,13 +64,16 @@ class Glb:
             accessor["max"] = np.atleast_1d(values.max(axis=0)).tolist()
         return self.add("accessors", accessor)
 
-    def texture(self, image: npt.NDArray[np.uint8]) -> int:
-        """Add a picture (H, W) or (H, W, 3), top row first, as a texture."""
+    def texture(self, image: npt.NDArray[np.uint8], kind: str = "jpeg") -> dict[str, int]:
+        """Add a picture (H, W) or (H, W, 3), top row first, as a texture; what materials say of it.
+
+        kind: "png" where every bit counts.
+        """
         file = io.BytesIO()
-        PIL.Image.fromarray(image).save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
+        PIL.Image.fromarray(image).save(file, kind, quality=JPEG_QUALITY, subsampling=0)
         view = self._view(file.getvalue(), None)
-        source = self.add("images", {"bufferView": view, "mimeType": "image/jpeg"})
-        return self.add("textures", {"source": source})
+        source = self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
+        return {"index": self.add("textures", {"source": source})}
 
     def animate(self, node: int, path: str, values: npt.NDArray[np.float64]) -> None:
         """Add the "translation", "rotation" or "weights" of a node at each time, first axis N."""

@@ -23,9 +23,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from risorius import render
+from risorius import assets, render
 from risorius.geometry.colour import to_linear
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.texels import Texels, rates
 
 from ..scenes import FaceScene, Scene
 from .clip import METRES, Clip, Surface
@@ -210,11 +211,34 @@ def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:
     if scene.albedo is None or surface.uv is None:
         rough["baseColorFactor"] = [*to_linear(render.CLAY), 1.0]
         return glb.add("materials", material)
-    rough["baseColorTexture"] = {"index": glb.texture(scene.albedo)}
+    rough["baseColorTexture"] = glb.texture(scene.albedo)
     ambient_occlusion = scene.ambient_occlusion()
     if ambient_occlusion is not None:
-        material["occlusionTexture"] = {"index": glb.texture(ambient_occlusion)}
+        material["occlusionTexture"] = glb.texture(ambient_occlusion)
+    if scene.fine_shape is not None:
+        material["normalTexture"] = glb.texture(_normal_map(surface, scene.fine_shape), "png")
     return glb.add("materials", material)
+
+
+def _normal_map(surface: Surface, fine: assets.FineShape) -> npt.NDArray[np.uint8]:
+    """Normals of the fine shape (H, W, 3): along u, across it in the surface, and out of that."""
+    assert surface.uv is not None and surface.face_uv is not None
+    places = surface.uv[surface.face_uv]
+    texels = Texels.within(places.astype(np.float64), fine.slopes.shape[:2], margin=1.0)
+    # Slopes are for a unit of u and of v; here they are for a millimetre along u, and across it.
+    along, aside = rates(places, surface.rest[surface.faces]).swapaxes(0, 1)
+    length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+    shear = (along * aside).sum(axis=1) / length
+    height = np.maximum(np.linalg.norm(np.cross(along, aside), axis=1) / length, 1e-9)
+    steps = fine.slopes[texels.rows, texels.columns] - 128.0
+    slope_u, slope_v = steps.T * (fine.steepest / 127.0)
+    slope_u /= length[texels.faces]
+    slope_v = (slope_v - shear[texels.faces] * slope_u) / height[texels.faces]
+    normals = np.column_stack([-slope_u, -slope_v, np.ones_like(slope_u)])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    image = np.full((*fine.slopes.shape[:2], 3), (128, 128, 255), np.uint8)
+    image[texels.rows, texels.columns] = np.rint(127.5 + 127.5 * normals)
+    return image
 
 
 class Skeleton:

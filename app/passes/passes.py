@@ -64,16 +64,19 @@ class Passes:
         if "tension" in wanted:
             stretch, compression = self._tension.measure(scene.positions)
             values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
-        bumps = None
+        maps = {}
         if pipeline.wrinkle_map is not None and drawn.has_uv:
-            bumps = pipeline.wrinkle_map, drawn.strength
+            maps[pipeline.wrinkle_map] = drawn.style.bumps
+        fine = None if pipeline.texture is None else pipeline.texture.fine_shape
+        if fine is not None and drawn.has_uv:
+            maps[fine] = float(drawn.style.shows_fine_shape)
         geometry = pipeline.renderer.draw_geometry(
             drawn.stream,
             self._parts,
             scene.bone_transforms(),
             pipeline.renderer.view(camera),
             values=values,
-            bumps=bumps,
+            maps=maps,
         )
         # Entry -1, the last one, is that of pixels where nothing is drawn.
         parts = len(self._part_classes)

@@ -78,6 +78,11 @@ class Scene:
         """
         return None
 
+    @property
+    def fine_shape(self) -> assets.FineShape | None:
+        """What its triangles do not hold of the skin."""
+        return None
+
     def pose(self, channels: Mapping[str, float]) -> None:
         """Set controls, each cut off at its limits; what is not named becomes 0.
 
@@ -170,6 +175,10 @@ class FaceScene(Scene):
     @property
     def values(self) -> Mapping[str, float]:
         return self.simulation.values
+
+    @property
+    def fine_shape(self) -> assets.FineShape | None:
+        return self.head.fine_shape
 
     def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
         """That of the built-in head's file, or baked now; see `Scene.ambient_occlusion`."""

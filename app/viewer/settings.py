@@ -186,7 +186,7 @@ class Display(Record):
     wireframe: Flag = False
     colours: Annotated[str, OneOf(COLOURS)] = "none"
     skin: Annotated[str, OneOf(SKINS)] = "textured"
-    occlusion: Flag = True  # less light in folds; of textured skin
+    skin_maps: Flag = True  # fine shape, and less light in folds, from maps over the skin
     wrinkles: Share = 1.0  # how deep they are where skin is compressed
     light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
     background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"

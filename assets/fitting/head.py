@@ -30,6 +30,7 @@ from ..loading import load
 from ..meshes import Mesh, read_mesh
 from ..model import (
     Eye,
+    FineShape,
     FloatArray,
     Head,
     IndexArray,
@@ -96,6 +97,7 @@ class FittedHead:
     to_millimetres: Similarity
     file_vertices: IndexArray
     notes: tuple[str, ...] = field(default=(), kw_only=True)
+    fine_shape: FineShape | None = field(default=None, kw_only=True)
 
     def fade(self) -> tuple[float, float, float, float] | None:
         """A x + b y + c z + d is 0 along the neck's edge, 1 FADE above; None: there is no edge.

@@ -24,7 +24,7 @@ from scipy.sparse.linalg import cg
 
 from risorius.geometry.closest import SurfacePoints
 from risorius.geometry.normals import cross_products
-from risorius.geometry.texels import Texels
+from risorius.geometry.texels import Texels, rates
 
 from ..data_files import Image
 from ..errors import AssetError
@@ -236,10 +236,7 @@ def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image]:
     segments = np.full((SIZE, SIZE), Segment.SKIN, np.uint8)
     segments[texels.rows, texels.columns] = sampled(known.segments, place)
     found = sampled(known.wrinkles.map, place)
-    sides, their_sides = (np.diff(each.corners, axis=1) for each in (own, theirs))  # (F, 2, 2)
-    is_flat = abs(np.linalg.det(sides)) < 1e-14
-    sides[is_flat] = np.eye(2)
-    change = np.linalg.solve(sides, their_sides)  # row i: theirs over a step along own axis i
+    change = rates(own.corners, theirs.corners)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
     slope = np.einsum("nij,nj->ni", change[texels.faces], slope)
     steepest = max(float(np.percentile(abs(slope), STEEPEST)), 1e-6) if len(slope) else 1.0

@@ -134,6 +134,7 @@ def _made(identity: Identity) -> Person:
         anatomy=known.anatomy,
         mirror=known.mirror,
         ambient_occlusion=known.ambient_occlusion,
+        fine_shape=known.fine_shape,
         identity=identity,
     )
 

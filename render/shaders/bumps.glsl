@@ -1,23 +1,47 @@
-// Fine shape of a surface: normals and albedo of furrows from a map over the texture coordinates, as
-// far as two amounts, interpolated from vertices, let them show (Blinn 1978).
+// Fine shape of a surface, from maps over the texture coordinates (Blinn 1978): with FINE one that is
+// always there, with BUMPS normals and albedo of furrows, as far as two amounts, interpolated from
+// vertices, let them show.
 // The gradient of a height on any surface, from screen-space derivatives: M. Mikkelsen, "Bump
-// mapping unparametrized surfaces on the GPU", 2010; here the map knows the slopes along u and v.
+// mapping unparametrized surfaces on the GPU", 2010; here the maps know the slopes along u and v.
 
-uniform sampler2D bump_map;    // slope along u and v, depth of the furrow, which amount counts
-uniform float bump_slope;      // height over texture coordinates of a full byte
-uniform float bump_strength;
+#if defined(FINE)
+uniform sampler2D fine_map;  // slope along u and v
+uniform float fine_slope;    // height over texture coordinates of a full byte
+uniform float fine_strength;
+#endif
+#if defined(BUMPS)
+uniform sampler2D bumps_map;   // slope along u and v, depth of the furrow, which amount counts
+uniform float bumps_slope;
+uniform float bumps_strength;
 const vec3 FURROW = vec3(0.40, 0.50, 0.52);  // how much darker the deepest is; light in it is red
+#define BUMP_AMOUNTS surface.bump_amounts
+#else
+#define BUMP_AMOUNTS vec2(0.0)
+#endif
 
 struct Bump {
     vec2 slope;  // of the height along u and v
     float depth;
 };
 
-Bump bump_at(vec2 uv, vec2 amounts) {
-    vec4 texel = texture(bump_map, uv);
-    float amount = bump_strength * mix(amounts.x, amounts.y, texel.a);
-    vec2 slope = (texel.rg * 255.0 - 128.0) * (bump_slope / 127.0);
-    return Bump(amount * slope, amount * texel.b);
+vec2 slopes(vec2 texel, float steepest) {
+    return (texel * 255.0 - 128.0) * (steepest / 127.0);
+}
+
+// The inner side of a surface has none.
+Bump bump_at(vec2 uv, vec2 amounts, bool is_front) {
+    Bump bump = Bump(vec2(0.0), 0.0);
+    float share = is_front ? 1.0 : 0.0;
+#if defined(FINE)
+    bump.slope += share * fine_strength * slopes(texture(fine_map, uv).rg, fine_slope);
+#endif
+#if defined(BUMPS)
+    vec4 texel = texture(bumps_map, uv);
+    float amount = share * bumps_strength * mix(amounts.x, amounts.y, texel.a);
+    bump.slope += amount * slopes(texel.rg, bumps_slope);
+    bump.depth = amount * texel.b;
+#endif
+    return bump;
 }
 
 // `normal` points out of the surface.

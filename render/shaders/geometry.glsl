@@ -1,11 +1,7 @@
 // What each pixel shows, as numbers: no light, no blending, one sample.
-// BUMPS: of the skin, as in surface.glsl.
+// BUMPS, FINE: of the skin, as in surface.glsl.
 
-#if defined(BUMPS)
 #define SURFACE vec3 normal; float depth; vec2 uv; vec2 values; vec3 position; vec2 bump_amounts;
-#else
-#define SURFACE vec3 normal; float depth; vec2 uv; vec2 values;
-#endif
 
 #if defined(VERTEX_STAGE)
 
@@ -26,8 +22,8 @@ void main() {
     surface.depth = -position.z;
     surface.uv = in_uv;
     surface.values = in_values;
-#if defined(BUMPS)
     surface.position = position.xyz;
+#if defined(BUMPS)
     surface.bump_amounts = in_bumps;
 #endif
     gl_Position = projection * position;
@@ -35,7 +31,8 @@ void main() {
 
 #elif defined(FRAGMENT_STAGE)
 
-#if defined(BUMPS)
+#if defined(BUMPS) || defined(FINE)
+#define RELIEF
 #include "bumps.glsl"
 #endif
 in Surface { SURFACE } surface;
@@ -48,8 +45,8 @@ void main() {
     float side = gl_FrontFacing ? 1.0 : -1.0;
     // From OpenGL's axes of the camera to those of pictures: x right, y down, z away from the eye.
     vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);
-#if defined(BUMPS)
-    Bump bump = bump_at(surface.uv, gl_FrontFacing ? surface.bump_amounts : vec2(0.0));
+#if defined(RELIEF)
+    Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);
     normal = bumped(normal, surface.position, surface.uv, bump);
 #endif
     normal.yz = -normal.yz;

@@ -1,12 +1,16 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
-// a picture), SHADOWS (of the key), BUMPS (of the skin; with PIXEL), FRINGE (fading fringes along
+// a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), FRINGE (fading fringes along
 // contours, see outline.py), STRANDS (thin cones, never drawn thinner than a pixel: they fade instead),
 // FIBRES (striation), TRANSLUCENT (skin that shows what is under it), SUNK (what is under
 // it, hidden where skin is whole), FADED (skin that fades toward a plane).
 
 #include "lighting.glsl"
+
+#if defined(BUMPS) || defined(FINE)
+#define RELIEF
+#endif
 
 uniform float subsurface;
 uniform float gloss;
@@ -29,7 +33,7 @@ uniform float sharpness;
 #else
 #define COLOUR_VARYING
 #endif
-#if defined(TEXTURED) || defined(BUMPS)
+#if defined(TEXTURED) || defined(RELIEF)
 #define HAS_UV
 #define TEXTURE_VARYING vec2 uv;
 #else
@@ -238,7 +242,7 @@ uniform vec4 ramp[5];  // colour, and how much of it
 #if defined(SHADOWS)
 #include "shadowed.glsl"
 #endif
-#if defined(BUMPS)
+#if defined(RELIEF)
 #include "bumps.glsl"
 #endif
 #if defined(FIBRES)
@@ -324,8 +328,8 @@ void main() {
     vec3 to_eye = normalize(-surface.position);
 #endif
     vec3 normal = shading_normal();
-#if defined(BUMPS)
-    Bump bump = bump_at(surface.uv, IS_FRONT ? surface.bump_amounts : vec2(0.0));
+#if defined(RELIEF)
+    Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, IS_FRONT);
     normal = bumped(normal, surface.position, surface.uv, bump);
 #endif
 #if defined(FIBRES)

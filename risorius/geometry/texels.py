@@ -59,6 +59,17 @@ class Texels:
         return found
 
 
+def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -> Doubles:
+    """How fast `values` (F, 3, k) change along u and along v in triangles, shape (F, 2, k).
+
+    corners: their texture coordinates, (F, 3, 2); triangles without area have no rates, 0.
+    """
+    steps, changes = (np.diff(each, axis=1).astype(np.float64) for each in (corners, values))
+    is_flat = np.abs(np.linalg.det(steps)) < 1e-14
+    steps[is_flat], changes[is_flat] = np.eye(2), 0.0
+    return np.asarray(np.linalg.solve(steps, changes))
+
+
 @njit
 def _walk(
     places: Doubles, boxes: Integers, margin: float, found: Integers, weights: Doubles

@@ -183,6 +183,38 @@ def test_the_texture_is_the_right_way_up(clip: Clip, glb: Path) -> None:
     assert expected.std(axis=0).min() > 8.0  # or any coordinate would do
 
 
+def test_fine_shape_is_a_normal_map(clip: Clip, glb: Path) -> None:
+    """Its normals are those of the slopes in the scene's map, in the frame of a triangle's texture.
+
+    trimesh finds both maps, too.
+    """
+    skin, fine = clip.skin, clip.scene.fine_shape
+    assert fine is not None and skin.uv is not None and skin.face_uv is not None
+    scene = trimesh.load_scene(glb, process=False)
+    material = next(
+        mesh.visual.material for name, mesh in scene.geometry.items() if name.startswith("skin")
+    )
+    image = np.asarray(material.normalTexture.convert("RGB"), np.float64)
+    assert image.shape == (*fine.slopes.shape[:2], 3)
+    assert np.asarray(material.occlusionTexture).min() < 100
+    size, checked = np.array(image.shape[1::-1]), 0
+    for face in range(0, len(skin.faces), 7):
+        uv, points = skin.uv[skin.face_uv[face]].astype(float), skin.rest[skin.faces[face]]
+        column, row = ((uv.mean(axis=0) * [1, -1] + [0, 1]) * size).astype(int)
+        slope = (fine.slopes[row, column] - 128.0) * fine.steepest / 127.0
+        along, aside = np.linalg.solve(np.diff(uv, axis=0), np.diff(points, axis=0))
+        if abs(np.linalg.det(np.diff(uv, axis=0))) < 4.0 / size.prod():
+            continue  # smaller than a few texels: another may have drawn there
+        normal = np.cross(along, aside) / np.linalg.norm(np.cross(along, aside))
+        gradient = np.linalg.solve(np.stack([along, aside, normal]), [*slope, 0.0])
+        right = along / np.linalg.norm(along)
+        tilted = np.stack([right, np.cross(normal, right), normal]) @ (normal - gradient)
+        expected = 127.5 + 127.5 * tilted / np.linalg.norm(tilted)
+        assert np.abs(image[row, column] - expected).max() < 1.0
+        checked += 1
+    assert checked > 150 and image[..., :2].std() > 2.0
+
+
 def test_vertex_colours_are_linear_light(clip: Clip, glb: Path) -> None:
     """glTF has linear colours: shown again as sRGB, they are as the eyes were painted."""
     painted = next(s.colours for s in clip.surfaces if s.name == "eyeball_left")

@@ -22,6 +22,7 @@ def textured(
     camera: render.OrbitCamera | None = None,
     values: npt.NDArray[np.uint8] | None = None,
     occlusion: npt.NDArray[np.uint8] | None = None,
+    fine_shape: tuple[npt.NDArray[np.uint8], float] | None = None,
 ) -> SignedImage:
     """A square (or another shape) under the image, which spans x and y from -50 to 50."""
     shape = shape or square()
@@ -29,7 +30,7 @@ def textured(
     stream = lent(renderer, shape, columns=8)
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     stream.upload(len(shape.positions), len(shape.triangles))
-    texture = renderer.load_texture(image, occlusion)
+    texture = renderer.load_texture(image, occlusion, fine_shape)
     with fresh_frame(renderer, style):
         renderer.draw_mesh(
             stream, renderer.view(camera or facing()), style, values=values, texture=texture
@@ -170,5 +171,34 @@ def test_less_light_where_it_is_less_open(surface: render.Surface, shading: rend
     assert lost[right] == 0
     assert 5 < lost[upper] < lost[lower]
     assert folded[lower].min() > 20  # the key light still shines there
-    off = textured(surface, image, replace(style, occlusion=False), occlusion=occlusion)
+    off = textured(surface, image, replace(style, skin_maps=False), occlusion=occlusion)
     assert np.array_equal(off, plain)
+
+
+@pytest.mark.parametrize("shading", render.Shading)
+@pytest.mark.parametrize("is_textured", [True, False])
+def test_fine_shape_tilts_what_each_pixel_shows(
+    surface: render.Surface, shading: render.Shading, is_textured: bool
+) -> None:
+    """What rises to the right faces the key; level skin, other shadings and without: as it was."""
+    slopes = np.full((32, 32, 2), 128, np.uint8)
+    slopes[:, 16:] = 190, 128
+    image, style = plain_image((180, 140, 120)), replace(PLAIN, shading=shading)
+    style = replace(style, textured=is_textured)
+    plain = textured(surface, image, style)
+    shown = textured(surface, image, style, fine_shape=(slopes, 100.0))
+    off = textured(surface, image, replace(style, skin_maps=False), fine_shape=(slopes, 100.0))
+    assert np.array_equal(off, plain)
+    if shading is not render.Shading.PIXEL:
+        assert np.array_equal(shown, plain)
+        return
+    middle = plain.shape[1] // 2
+    assert np.array_equal(shown[:, : middle - 2], plain[:, : middle - 2])
+    assert (shown - plain)[48, middle + 20].sum() > 10
+
+
+def test_fine_shape_that_is_none_is_refused(surface: render.Surface) -> None:
+    """A map of wrinkles is none."""
+    maps = None, (np.zeros((4, 4, 4), np.uint8), 1.0)
+    with pytest.raises(ValueError, match=r"the fine shape has shape \(4, 4, 4\)"):
+        render.Renderer(surface).load_texture(plain_image((180, 140, 120)), *maps)

@@ -46,7 +46,7 @@ HINTS = {
     "Colours": "of the simulated mesh's triangles, however refined ([Colour by splits]: splits)",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
-    "Occlusion": "less light from all around in folds of the textured skin",
+    "Skin maps": "fine shape (with pixel shading), and less light in folds (with texture)",
     "Skin tone": "by its typology angle; own: as this person has it",
     "Person": "another head, on which script and pose go on (--person takes any number)",
     "Muscles": "under translucent skin; they bulge and redden as they contract ([Muscles])",
@@ -160,7 +160,7 @@ class MechanismPanel:
             display.wrinkles = self._rows.slide("Wrinkles", "wrinkles", now, (0.0, 1.0), 1.0)
         self._switch("Wireframe")
         imgui.same_line(self._rows.second)
-        self._switch("Occlusion")
+        self._switch("Skin maps")
 
     def _draw_light_and_person(self) -> None:
         scene = self._stage.scene

@@ -231,7 +231,7 @@ def style_of(display: Display, background: render.Background | None) -> render.S
         wireframe=display.wireframe,
         colour_by=COLOURS[display.colours].kind,
         textured=is_textured,
-        occlusion=display.occlusion,
+        skin_maps=display.skin_maps,
         albedo=albedo,
         bumps=display.wrinkles,
         light=render.LIGHTS[display.light],

@@ -1,0 +1,80 @@
+"""The fine shape of the skin as it is worn: by both sides of a comparison, passes and persons."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import render
+from risorius.app.capture import Capture, CaptureOptions
+from risorius.app.passes.passes import Passes
+from risorius.app.refining.presets import Refinement
+from risorius.app.scenes import FaceScene
+from risorius.assets.fitting import fit_head
+from risorius.assets.identities import person_called
+from risorius.assets.loading import HEAD_FILE, load_head
+from risorius.bench import fine_shape
+from tests.heads import stranger
+
+from .command_line import risorius
+
+SIZE = (400, 300)
+
+
+def images(scene: FaceScene) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.float32]]:
+    """Static beside refined, with the maps and without, (2, H, W, 3); and normals of the latter."""
+    scene.reset()
+    options = CaptureOptions(
+        size=SIZE, camera="0,0,0.8", beside=(Refinement(refiner="none"),), captions=False
+    )
+    with Capture(scene, options) as capture:
+        found, normals = [], []
+        for is_on in (True, False):
+            capture.options = replace(options, style=render.Style(skin_maps=is_on))
+            found.append(capture.draw_image().astype(np.int32))
+            passes = Passes(capture.pipeline, capture.viewports[-1].drawn)
+            normals.append(passes.draw(capture.camera, ("normal",))["normal"])
+    return np.stack(found), np.stack(normals)
+
+
+def test_both_sides_wear_it(scene: FaceScene) -> None:
+    """Static and refined skin change alike; so do normals; background and eyes stay."""
+    (shown, plain), normals = images(scene)
+    changed = np.abs(shown - plain).max(axis=2) > 3
+    static, refined = (half.mean() for half in np.split(changed, 2, axis=1))
+    assert 0.1 < static < 0.9 and abs(static - refined) < 0.03
+    assert not changed[:8].any()
+    assert 0.05 < (np.abs(normals[0] - normals[1]).max(axis=2) > 0.02).mean() < 0.9
+
+
+@pytest.mark.slow
+def test_persons_wear_it_and_own_heads_have_none(tmp_path: Path) -> None:
+    """A person has the built-in head's triangles; of another mesh the map would tell nothing."""
+    (shown, plain), _ = images(FaceScene(person_called("ada")))
+    assert (np.abs(shown - plain).max(axis=2) > 3).mean() > 0.05
+    assert FaceScene(fit_head(*stranger().write(tmp_path))).fine_shape is None
+
+
+def test_the_command_turns_it_off(tmp_path: Path) -> None:
+    """`--no-skin-maps` draws the picture without; anything else is refused in a line."""
+    files = [tmp_path / f"{k}.png" for k in (0, 1)]
+    for file, more in zip(files, ((), ("--no-skin-maps",)), strict=True):
+        done = risorius("capture", "--set", "joy", "--size", "160x120", *more, "-o", str(file))
+        assert done.exit_code == 0
+    assert files[0].read_bytes() != files[1].read_bytes()
+
+
+@pytest.mark.slow
+def test_shipped_fine_shape_is_what_the_program_makes(tmp_path: Path) -> None:
+    """It belongs to the shipped head; rounding moves slopes by a step."""
+    shutil.copytree(HEAD_FILE.parent, tmp_path / "data")
+    known = load_head(tmp_path / "data" / HEAD_FILE.name)
+    shipped = known.fine_shape
+    assert shipped is not None and fine_shape.make(tmp_path / "data" / HEAD_FILE.name)
+    made = load_head(tmp_path / "data" / HEAD_FILE.name).fine_shape
+    assert made is not None and made.steepest == pytest.approx(shipped.steepest, rel=1e-2)
+    difference = np.abs(made.slopes.astype(int) - shipped.slopes)
+    assert (difference > 1).mean() < 0.01
