@@ -214,7 +214,7 @@ class Head:
     wrinkles_file: the map of its wrinkles.
     segments_file: the map of what is nose, lip, neck, ...
     ambient_occlusion_file: app/scenes/ambient_occlusion.py makes it.
-    fine_shape_file: the map of its fine shape; bench/fine_shape.py made it.
+    fine_shape_file: the map of its fine shape.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
     layers: action units, expressions, visemes, ARKit shapes, from the lowest up; () where there

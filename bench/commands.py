@@ -117,15 +117,6 @@ def bench_human(reference: Path, head_file: Path | None) -> None:
     conclude(human.report(found), human.targets(found))
 
 
-@bench.command("fine-shape")
-@click.argument("head_file", type=FILE)
-def bench_fine_shape(head_file: Path) -> None:
-    """Bake the fine shape of the skin of a head, whose head.npz is HEAD_FILE, beside it."""
-    from . import fine_shape
-
-    click.echo(in_one_line(fine_shape.make(head_file)))
-
-
 @bench.command("reference")
 @click.argument("checkout", type=FOLDER)
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")

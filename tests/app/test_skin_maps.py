@@ -1,6 +1,5 @@
 """The fine shape of the skin as it is worn: by both sides of a comparison, passes and persons."""
 
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,8 +14,6 @@ from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets.fitting import fit_head
 from risorius.assets.identities import person_called
-from risorius.assets.loading import HEAD_FILE, load_head
-from risorius.bench import fine_shape
 from tests.heads import stranger
 
 from .command_line import risorius
@@ -65,16 +62,3 @@ def test_the_command_turns_it_off(tmp_path: Path) -> None:
         done = risorius("capture", "--set", "joy", "--size", "160x120", *more, "-o", str(file))
         assert done.exit_code == 0
     assert files[0].read_bytes() != files[1].read_bytes()
-
-
-@pytest.mark.slow
-def test_shipped_fine_shape_is_what_the_program_makes(tmp_path: Path) -> None:
-    """It belongs to the shipped head; rounding moves slopes by a step."""
-    shutil.copytree(HEAD_FILE.parent, tmp_path / "data")
-    known = load_head(tmp_path / "data" / HEAD_FILE.name)
-    shipped = known.fine_shape
-    assert shipped is not None and fine_shape.make(tmp_path / "data" / HEAD_FILE.name)
-    made = load_head(tmp_path / "data" / HEAD_FILE.name).fine_shape
-    assert made is not None and made.steepest == pytest.approx(shipped.steepest, rel=1e-2)
-    difference = np.abs(made.slopes.astype(int) - shipped.slopes)
-    assert (difference > 1).mean() < 0.01
