@@ -86,12 +86,8 @@ def run(about: str | None, figures: Mapping[str, Figure]) -> None:
         draw(given.folder, {name: figures[name] for name in given.only or figures})
 
 
-def _read(file: Path) -> Image:
-    """A picture without its alpha."""
-    return np.asarray(PIL.Image.open(file).convert("RGB"))
-
-
 if __name__ == "__main__":
     handle_signals()
     with report_user_errors():
-        draw(FOLDER, {Path(file).stem: partial(_read, Path(file)) for file in sys.argv[1:]})
+        opened = {Path(file).stem: PIL.Image.open(file).convert("RGB") for file in sys.argv[1:]}
+        draw(FOLDER, {name: partial(np.asarray, image) for name, image in opened.items()})
