@@ -107,7 +107,7 @@ class Pipeline:
         self._compression: Compression | None = None
         if (wrinkles := scene.wrinkles) is not None:
             self._compression = Compression(scene)
-            self.wrinkle_map = renderer.load_bumps(wrinkles.map, wrinkles.steepest)
+            self.wrinkle_map = render.BumpMap(renderer.surface, wrinkles.map, wrinkles.steepest)
         self.anatomy = Anatomy(scene)
 
     def bind(self, refinement: Refinement) -> DrawnMesh:
@@ -130,7 +130,7 @@ class Pipeline:
         if scene.albedo is not None:
             albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
             maps = scene.ambient_occlusion(), scene.fine_shape
-            self.texture = self.renderer.load_texture(albedo, *maps)
+            self.texture = render.Texture(self.renderer.surface, albedo, *maps)
 
     def step(self, seconds: float) -> None:
         """The upper half of the figure: time passes, and the triangle mesh follows."""

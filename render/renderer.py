@@ -35,8 +35,8 @@ from .render_target import Rectangle, scaled
 from .shadow import ShadowMap, Thrower
 from .stream import GpuStream, MeshBuffers, Share, Stream
 from .style import ColourBy, Shading, Style
-from .surface import NEWEST, Image, Surface
-from .texture import BumpMap, Slopes, Texture
+from .surface import NEWEST, Surface
+from .texture import BumpMap, Texture
 from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
 _VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
@@ -75,31 +75,6 @@ class Renderer:
         """
         self.surface.make_current()
         return GpuStream(self._gl, vertex_capacity, triangle_capacity, columns, margin)
-
-    def load_texture(
-        self, image: Image, occlusion: Image | None = None, fine_shape: Slopes | None = None
-    ) -> Texture:
-        """Hand an image to OpenGL, from which draw_mesh takes the albedo, and maps beside it.
-
-        image: sRGB, top row first, shape (H, W, 3), uint8; texture coordinate v is 1 at the top.
-        occlusion: how much of the light from all around gets there, 255 = all, (H, W), uint8.
-        fine_shape: slopes of its height along u and v (128 is level), (h, w, 2), uint8, and
-            that of 255 [mm for a whole texture coordinate]. Per-pixel shading alone has it.
-        Raises ValueError for an image of another shape or type, or beyond the driver's limit.
-        """
-        self.surface.make_current()
-        return Texture(self._gl, image, occlusion, fine_shape)
-
-    def load_bumps(self, texels: Image, steepest: float) -> BumpMap:
-        """Hand a bump map to OpenGL, from which draw_mesh takes the fine shape of a surface.
-
-        texels: slope of its height along u and v (128 is level), depth of the furrow, which
-            of the stream's two amounts counts (0 the first .. 255 the second); top row first,
-            shape (H, W, 4), uint8. steepest: slope of 255 [mm for a whole texture coordinate].
-        Raises ValueError for another shape or type.
-        """
-        self.surface.make_current()
-        return BumpMap(self._gl, texels, steepest, 4)
 
     def view(
         self,

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
-from .surface import Image, is_software
+from .surface import Image, Surface, is_software
 
 Slopes = tuple[Image, float]  # a map (H, W, 2), and what 255 in it is, see `BumpMap`
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
@@ -29,26 +29,40 @@ class _Mipmaps:
     size: width and height [texels].
     """
 
-    def __init__(self, gl: moderngl.Context, texels: Image) -> None:
+    def __init__(self, surface: Surface, texels: Image) -> None:
         """texels: top row first, shape (H, W, 2 or 4)."""
+        surface.make_current()
         self.size = texels.shape[1], texels.shape[0]
         rows = np.ascontiguousarray(texels[::-1])  # OpenGL counts rows, and v, from below
-        self._texture = gl.texture(self.size, rows.shape[2], rows.tobytes())
+        self._texture = surface.gl.texture(self.size, rows.shape[2], rows.tobytes())
         self._texture.repeat_x = self._texture.repeat_y = False
         self._texture.build_mipmaps()
         self._texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
 
 
 class Texture(_Mipmaps):
-    """The albedo of a skin; `Renderer.load_texture` makes it.
+    """The albedo of a skin, and maps beside it.
 
     redness: median of red over green light; where the image is redder, lips are, and they gloss.
     fine_shape: of the skin, None: there is none.
     """
 
     def __init__(
-        self, gl: moderngl.Context, image: Image, occlusion: Image | None, fine_shape: Slopes | None
+        self,
+        surface: Surface,
+        image: Image,
+        occlusion: Image | None = None,
+        fine_shape: Slopes | None = None,
     ) -> None:
+        """Hand an image to the OpenGL of a surface, (H, W, 3), uint8: sRGB, top row first.
+
+        Texture coordinate v is 1 at the top.
+        occlusion: how much of the light from all around gets there, 255 = all, (H, W), uint8.
+        fine_shape: slopes of its height along u and v (128 is level), (h, w, 2), uint8, and
+            that of 255 [mm for a whole texture coordinate]. Per-pixel shading alone has it.
+        Raises ValueError for an image of another shape or type, or beyond the driver's limit.
+        """
+        gl = surface.gl
         _check(image, "texture's image", 3, "sRGB")
         if max(image.shape) > (limit := int(gl.info["GL_MAX_TEXTURE_SIZE"])):
             raise ValueError(
@@ -65,7 +79,7 @@ class Texture(_Mipmaps):
         alpha = np.full(wanted, 255, np.uint8) if occlusion is None else occlusion
         light = to_linear(np.arange(256) / 255.0).astype(np.float32)[image]
         texels = np.dstack([light, alpha / np.float32(255.0)])
-        super().__init__(gl, _roots(texels))
+        super().__init__(surface, _roots(texels))
         for level in range(1, max(self.size).bit_length()):
             texels = _halved(texels)
             self._texture.write(_roots(texels)[::-1].tobytes(), level=level)
@@ -73,7 +87,7 @@ class Texture(_Mipmaps):
         if gl.max_anisotropy > 1.0 and not is_software(gl.info["GL_RENDERER"]):
             self._texture.anisotropy = min(ANISOTROPY, gl.max_anisotropy)
         self._around = self._means(gl)
-        self.fine_shape = None if fine_shape is None else BumpMap(gl, *fine_shape, 2)
+        self.fine_shape = None if fine_shape is None else BumpMap(surface, *fine_shape, 2)
 
     def _means(self, gl: moderngl.Context) -> moderngl.Texture:
         """The lightness of the skin around each place: software reads one number, not four."""
@@ -101,12 +115,18 @@ class BumpMap(_Mipmaps):
     define: what programs that look it up are compiled with.
     """
 
-    def __init__(self, gl: moderngl.Context, texels: Image, steepest: float, channels: int) -> None:
+    def __init__(self, surface: Surface, texels: Image, steepest: float, channels: int = 4) -> None:
+        """Hand texels to the OpenGL of a surface, top row first, shape (H, W, channels), uint8.
+
+        Slope of the height along u and v (128 is level); of four, too, the depth of the furrow, and
+        which of the stream's two amounts counts (0 the first .. 255 the second).
+        Raises ValueError for another shape or type.
+        """
         kind, more = ("fine shape", "") if channels == 2 else ("bump map", ", depth, slot")
         _check(texels, kind, channels, f"slopes along u and v{more}")
         self.steepest = steepest
         self.define, self._unit = ("FINE", _FINE_UNIT) if channels == 2 else ("BUMPS", _BUMP_UNIT)
-        super().__init__(gl, texels)
+        super().__init__(surface, texels)
 
     def set_uniforms(self, program: moderngl.Program, strength: float) -> None:
         """Let a program that includes bumps.glsl look it up."""

@@ -35,7 +35,7 @@ def furrowed(
             renderer.view(facing()),
             style,
             values=values,
-            bumps=renderer.load_bumps(texels, STEEP),
+            bumps=render.BumpMap(renderer.surface, texels, STEEP),
         )
     return surface.read().astype(np.int32)
 
@@ -92,7 +92,7 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(surface: render.Surface) -> No
     shape = sphere()
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape, columns=8)
-    level = renderer.load_bumps(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     frames = []
     for share in (0.0, 0.5):
         rows = np.zeros((len(shape.positions), 2), np.float32)
@@ -108,11 +108,11 @@ def test_what_does_not_fit_is_refused(surface: render.Surface) -> None:
     """A map that is none, amounts for other vertices, a stream without texture coordinates."""
     renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match="the bump map has shape"):
-        renderer.load_bumps(np.zeros((4, 4, 3), np.uint8), STEEP)
+        render.BumpMap(renderer.surface, np.zeros((4, 4, 3), np.uint8), STEEP)
     shape = square()
     stream = lent(renderer, shape)
     with pytest.raises(ValueError, match="bump_amounts has shape"):
         stream.upload(4, 2, np.zeros((3, 2), np.float32))
-    level = renderer.load_bumps(np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
+    level = render.BumpMap(renderer.surface, np.full((4, 4, 4), LEVEL, np.uint8), STEEP)
     with pytest.raises(ValueError, match="8 columns"):
         renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, bumps=level)

@@ -53,8 +53,8 @@ def draw_all(surface: render.Surface) -> np.ndarray:
     stream.triangles[:] = shape.triangles
     amounts = np.linspace(0.0, 1.0, 2 * len(shape.positions), dtype=np.float32).reshape(-1, 2)
     stream.upload(len(shape.positions), len(shape.triangles), amounts)
-    texture = renderer.load_texture(np.full((8, 8, 3), 200, np.uint8))
-    bumps = renderer.load_bumps(np.full((8, 8, 4), 128, np.uint8), 1.0)
+    texture = render.Texture(renderer.surface, np.full((8, 8, 3), 200, np.uint8))
+    bumps = render.BumpMap(renderer.surface, np.full((8, 8, 4), 128, np.uint8), 1.0)
     values = np.arange(len(shape.triangles), dtype=np.uint8)
     styles = [
         replace(PLAIN, shadows=True),

@@ -30,7 +30,7 @@ def textured(
     stream = lent(renderer, shape, columns=8)
     stream.vertices[:, 6:] = shape.positions[:, :2] / 100.0 + 0.5
     stream.upload(len(shape.positions), len(shape.triangles))
-    texture = renderer.load_texture(image, occlusion, fine_shape)
+    texture = render.Texture(renderer.surface, image, occlusion, fine_shape)
     with fresh_frame(renderer, style):
         renderer.draw_mesh(
             stream, renderer.view(camera or facing()), style, values=values, texture=texture
@@ -135,7 +135,7 @@ def test_texture_needs_eight_columns(surface: render.Surface) -> None:
     """Without texture coordinates there is nothing to look up."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, square())
-    texture = renderer.load_texture(quarters())
+    texture = render.Texture(renderer.surface, quarters())
     with pytest.raises(ValueError, match="a texture meets a stream of 6 columns; it needs texture"):
         renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, texture=texture)
 
@@ -153,7 +153,7 @@ def test_texture_needs_eight_columns(surface: render.Surface) -> None:
 def test_bad_images(surface: render.Surface, image: npt.NDArray[np.uint8], message: str) -> None:
     """Images that are no sRGB images, or too large, are refused."""
     with pytest.raises(ValueError, match=message):
-        render.Renderer(surface).load_texture(image)
+        render.Texture(surface, image)
 
 
 @pytest.mark.parametrize("shading", render.Shading)
@@ -201,4 +201,4 @@ def test_fine_shape_that_is_none_is_refused(surface: render.Surface) -> None:
     """A map of wrinkles is none."""
     maps = None, (np.zeros((4, 4, 4), np.uint8), 1.0)
     with pytest.raises(ValueError, match=r"the fine shape has shape \(4, 4, 4\)"):
-        render.Renderer(surface).load_texture(plain_image((180, 140, 120)), *maps)
+        render.Texture(surface, plain_image((180, 140, 120)), *maps)
