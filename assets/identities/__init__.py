@@ -15,9 +15,7 @@ from .complexion import (
     drawn_irises,
     features_of,
     in_own_colours,
-    own_angle,
     recoloured,
-    typology_angle,
 )
 from .hair import CUTS, HAIR, Hairline
 from .named import NAMED, person_called, person_in_words
@@ -41,11 +39,9 @@ __all__ = [
     "features_of",
     "in_own_colours",
     "make_person",
-    "own_angle",
     "person_called",
     "person_in_words",
     "person_space",
     "recoloured",
     "sample_identity",
-    "typology_angle",
 ]

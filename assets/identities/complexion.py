@@ -49,6 +49,7 @@ LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
 BEARD_SHADOW = 0.12  # density of shaved hair in the shipped picture
 BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the hairline back
 GROWN = 0.94  # of a scalp, that is covered by long hair
+BEARD_BLUR = 14.0  # [texels]
 BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin is called brow
 DETAIL = 9  # [texels] below which relief is told from colour
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
@@ -352,6 +353,7 @@ def _tints() -> _Tints:
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
         soft[name] = np.asarray(finer, dtype=np.float32)
+    soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], BEARD_BLUR) * (1.0 - soft["lips"])
     hair = (arrays["hair"] / 100.0).astype(np.float32)
     hair_light = to_linear(np.array(OWN.hair)).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]

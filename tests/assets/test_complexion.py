@@ -22,11 +22,10 @@ from risorius.assets.identities import (
     features_of,
     in_own_colours,
     make_person,
-    own_angle,
     recoloured,
     sample_identity,
-    typology_angle,
 )
+from risorius.assets.identities.complexion import own_angle, typology_angle
 from risorius.assets.model import Head, Segment
 from risorius.geometry.colour import to_linear
 
