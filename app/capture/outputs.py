@@ -1,18 +1,32 @@
-"""What takes the frames of a film: a file through ffmpeg, or a folder of numbered pictures."""
+"""What takes the frames of a film: a file through ffmpeg, or a folder of numbered pictures.
+
+What a film can be is told by the suffix of its name. ffmpeg is a process of its own; its failures
+are told in one line. The writer of `imageio_ffmpeg` takes no notice of how it ends, so a film that
+a full disk cut short would pass as whole.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import os
 import re
+import signal
+import subprocess
+import sys
+import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import PIL.Image
 import scipy
 
+from ..errors import UserError
 from ..files import (
     QUICK,
     Image,
@@ -22,9 +36,194 @@ from ..files import (
     written_atomically,
 )
 from ..passes.labels import ENDS, Labelled
+from ..sound.decoding import ffmpeg, sound_form, sound_input
 from ..stopping import cleaned_up_if_stopped
 from ..workers import share_of_cores
-from .encoder import Encoder, Soundtrack, check_format, size_of_film
+
+# AAC and Opus, as players want them, at a quality that nobody tells from the source.
+AAC = "-acodec aac -b:a 192k"
+OPUS = "-acodec libopus -b:a 160k"
+# H.264; 4:2:0 as every player wants it, at a quality without blocks. The number of threads decides
+# the bytes, and with it the memory: left to x264 it is that of the cores and a half, 1 GB on 64.
+H264 = "-vcodec libx264 -threads 3 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
+PRORES = "-vcodec prores_ks -profile:v 4444 -pix_fmt yuva444p10le -alpha_bits 16"
+VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1"
+# Each frame has colours of its own: nothing is kept until the end of a long film.
+GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single{0}[p];[b][p]paletteuse=new=1{1}"
+WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -loop 0"
+DYING = 1.0  # [s] for the end of a process that is killed, or has given up
+
+
+@dataclass(frozen=True)
+class FilmFormat:
+    """One kind of film.
+
+    coding: for ffmpeg. transparent: the same where pictures have an alpha channel; None: it has
+    none. sound: for ffmpeg; None: it is silent. has_even_sizes: unless transparent it needs an even
+    width and height. fastest: [frames/s] that players show.
+    """
+
+    coding: str
+    transparent: str | None = None
+    sound: str | None = None
+    has_even_sizes: bool = False
+    fastest: float = 240.0
+
+
+FORMATS = {
+    ".mp4": FilmFormat(H264, None, AAC, has_even_sizes=True),
+    ".mov": FilmFormat(H264, PRORES, AAC, has_even_sizes=True),
+    ".mkv": FilmFormat(H264, None, AAC, has_even_sizes=True),
+    ".webm": FilmFormat(
+        f"{VP9} -pix_fmt yuv420p", f"{VP9} -pix_fmt yuva420p -auto-alt-ref 0", OPUS
+    ),
+    # Frames last whole hundredths of a second; what is shorter than two, players slow down.
+    ".gif": FilmFormat(
+        GIF.format("", "") + " -loop 0",
+        GIF.format(":reserve_transparent=1", ":alpha_threshold=128") + " -loop 0",
+        fastest=50.0,
+    ),
+    ".webp": FilmFormat(f"{WEBP} -pix_fmt yuv420p", f"{WEBP} -pix_fmt yuva420p"),
+}
+HEARD = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
+TRANSPARENT = tuple(suffix for suffix, each in FORMATS.items() if each.transparent)
+
+
+def format_of(target: Path) -> FilmFormat | None:
+    """What a file of this name is written as; None where it is no film."""
+    return FORMATS.get(target.suffix.lower())
+
+
+def check_name(output: Path) -> None:
+    """Raise UserError for a name that is neither a film's, nor a picture's, nor a folder's."""
+    suffix = output.suffix.lower()
+    if suffix not in (*FORMATS, ".png", "") and not output.is_dir():
+        raise UserError(
+            f"{output}: what is '{suffix}'? Allowed are {', '.join(FORMATS)} (a film), "
+            ".png (one picture) and a name without suffix (a folder of frames)"
+        )
+
+
+def check_format(target: Path, frames_per_second: float, *, is_transparent: bool) -> None:
+    """Raise UserError where a film of this name cannot hold such pictures, or so many a second."""
+    found = format_of(target)
+    if found is None:
+        return
+    if is_transparent and not found.transparent:
+        raise UserError(
+            f"{target}: a film of this kind is not transparent; take one of "
+            f"{', '.join(TRANSPARENT)}, a folder of pictures, or another --background"
+        )
+    if frames_per_second > found.fastest:
+        raise UserError(
+            f"{target}: has at most {found.fastest:g} frames a second, and --fps is "
+            f"{frames_per_second:g}; take fewer, or a film of another kind"
+        )
+
+
+def size_of_film(
+    target: Path, size: tuple[int, int], *, is_transparent: bool = False
+) -> tuple[int, int]:
+    """Width and height of a film of such pictures [pixels]: even, where its kind needs that."""
+    found = format_of(target)
+    if found is None or is_transparent or not found.has_even_sizes:
+        return size
+    return size[0] + size[0] % 2, size[1] + size[1] % 2
+
+
+@dataclass(frozen=True)
+class Soundtrack:
+    """What is heard in a film: a sound file from `begin` [s] on, for so many seconds at most."""
+
+    file: Path
+    seconds: float
+    begin: float = 0.0
+
+    def options(self, coding: str) -> list[str]:
+        """Of ffmpeg, which has the frames as its first input."""
+        source = sound_input(self.file, self.seconds, self.begin)
+        return [*source, "-map", "0:v", "-map", "1:a:0", *coding.split(), *sound_form()]
+
+
+class Encoder:
+    """An ffmpeg that takes frames and writes the file `part`; `target` names it in error texts."""
+
+    def __init__(
+        self,
+        target: Path,
+        part: Path,
+        size: tuple[int, int],
+        frames_per_second: float,
+        soundtrack: Soundtrack | None = None,
+        *,
+        is_transparent: bool = False,
+    ) -> None:
+        """Start it, for frames of `size` pixels; UserError where there is none."""
+        form = FORMATS[target.suffix.lower()]
+        coding = form.transparent if is_transparent else form.coding
+        assert coding is not None
+        self._target, self._part = target, part
+        rate = Fraction(frames_per_second).limit_denominator()
+        pixels = "rgba" if is_transparent else "rgb24"
+        frames = f"-f rawvideo -pix_fmt {pixels} -s {size[0]}x{size[1]} -r {rate} -i -"
+        sound = ["-an"]
+        if soundtrack is not None and form.sound is not None:
+            sound = soundtrack.options(form.sound)
+        name = ffmpeg()
+        self._messages = tempfile.TemporaryFile()
+        try:  # in a session of its own: Ctrl-C is for us alone
+            self._process = subprocess.Popen(
+                [name, "-v", "error", *frames.split(), *sound, *coding.split(), f"file:{part}"],
+                stdin=subprocess.PIPE,
+                stderr=self._messages,
+                bufsize=0,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise UserError(f"no film without ffmpeg: {name}: {error.strerror}") from None
+        assert self._process.stdin is not None
+        self._frames = self._process.stdin
+
+    def add(self, image: npt.NDArray[np.uint8]) -> None:
+        """Hand over a frame, (H, W, 3 or 4); UserError where ffmpeg has given up."""
+        left = np.ascontiguousarray(image).data.cast("B")
+        try:
+            while left:
+                left = left[self._frames.write(left) or 0 :]
+        except BrokenPipeError:
+            raise self._failure() from None
+
+    def finish(self) -> None:
+        """Wait until the file is whole; UserError if it is not."""
+        self._frames.close()
+        if self._process.wait():
+            raise self._failure()
+
+    def stop(self) -> None:
+        """End the process and those that it began, whatever they do; nothing after `finish`."""
+        if sys.platform == "win32":
+            self._process.kill()
+        else:
+            with contextlib.suppress(OSError):  # none of them is left
+                os.killpg(self._process.pid, signal.SIGKILL)  # its session is its group
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(DYING)
+        self._messages.close()
+        self._frames.close()
+
+    def _failure(self) -> UserError:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(DYING)
+        self._messages.seek(0)
+        said = self._messages.read().decode(errors="replace").strip().splitlines()
+        # Without the part of ffmpeg that speaks: "[out#0/mp4 @ 0x55e9629d] ".
+        why = (
+            re.sub(r"^(\[[^]]*\] )+", "", said[-1])
+            if said
+            else f"it ended with code {self._process.returncode}"
+        )
+        return UserError(f"{self._target}: cannot be written: ffmpeg: {why}")
+
 
 FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
 

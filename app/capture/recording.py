@@ -15,7 +15,7 @@ from ..sound import load_sound
 from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame
-from .encoder import HEARD, Soundtrack, check_name, format_of
+from .outputs import HEARD, Soundtrack, check_name, format_of
 
 
 def capture(

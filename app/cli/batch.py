@@ -164,6 +164,6 @@ def _check_files(
             raise UserError(f"{path}: there is no such file")
     check_apart(outputs, inputs)
     if name == "capture" and given["output"] is not None:
-        from ..capture.encoder import check_name
+        from ..capture.outputs import check_name
 
         check_name(given["output"])

@@ -134,7 +134,7 @@ def capture(
     the scene's own one is played, or a pose of controls is held: --set AU12=0.8.
     """
     from ..capture import capture as film_of
-    from ..capture.encoder import HEARD
+    from ..capture.outputs import HEARD
     from ..files import check_apart
     from ..passes.labels import beside
 

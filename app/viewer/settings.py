@@ -37,7 +37,7 @@ from risorius.schema import (
 
 from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
 from ..capture.captions import SPLITS_BAR, ColourBar
-from ..capture.encoder import FORMATS as FILMS
+from ..capture.outputs import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text

@@ -15,7 +15,7 @@ import pytest
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
-from risorius.app.capture.encoder import FORMATS, TRANSPARENT, size_of_film
+from risorius.app.capture.outputs import FORMATS, TRANSPARENT, size_of_film
 from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene

@@ -16,8 +16,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius.app.capture import outputs
-from risorius.app.capture.encoder import HEARD
-from risorius.app.capture.encoder import Soundtrack as Heard
+from risorius.app.capture.outputs import HEARD
+from risorius.app.capture.outputs import Soundtrack as Heard
 from risorius.app.errors import UserError
 from risorius.app.scenes import PlaneScene
 from risorius.app.script import Script
