@@ -69,10 +69,9 @@ class Exporter:
     def ask(self) -> Message:
         """Open the dialog, with what was used last."""
         self.is_asking = True
-        is_apart = bool(self.session.differing)
-        return (
-            "The script is exported; [Set key] puts the face as it is into it" if is_apart else None
-        )
+        if not self.session.differing:
+            return None
+        return "The script is exported; [Set key] puts the face as it is into it"
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
         """How `capture` is told to draw what the window shows, a comparison side by side."""
@@ -159,7 +158,7 @@ Value = TypeVar("Value")
 
 
 class ExportDialog:
-    """Draws both, and carries out what is done with them."""
+    """Draws the dialog, and how far an export is; carries out what is done with them."""
 
     def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: View) -> None:
         self._gui, self._exporter, self._files, self._view = gui, exporter, files, view
