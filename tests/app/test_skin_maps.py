@@ -38,7 +38,7 @@ def images(scene: FaceScene) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.floa
 
 
 def test_both_sides_wear_it(scene: FaceScene) -> None:
-    """Static and refined skin change alike; so do normals; background and eyes stay."""
+    """Static and refined skin change alike; so do normals of passes; the background stays."""
     (shown, plain), normals = images(scene)
     changed = np.abs(shown - plain).max(axis=2) > 3
     static, refined = (half.mean() for half in np.split(changed, 2, axis=1))
@@ -56,7 +56,7 @@ def test_persons_wear_it_and_own_heads_have_none(tmp_path: Path) -> None:
 
 
 def test_the_command_turns_it_off(tmp_path: Path) -> None:
-    """`--no-skin-maps` draws the picture without; anything else is refused in a line."""
+    """`--no-skin-maps` draws another picture."""
     files = [tmp_path / f"{k}.png" for k in (0, 1)]
     for file, more in zip(files, ((), ("--no-skin-maps",)), strict=True):
         done = risorius("capture", "--set", "joy", "--size", "160x120", *more, "-o", str(file))
