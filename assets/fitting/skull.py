@@ -35,9 +35,8 @@ COLOURS = {
     "throat": (np.array([0.10, 0.035, 0.035]), np.array([0.36, 0.13, 0.12])),
 }
 BROWS = slice(17, 27)  # landmarks
-CROWN, OCCIPUT = 55.0, -20.0  # [mm] above and behind which there are none
-BACK = 40.0  # [mm] behind the condyles
-COVERED, BESIDE = 2.0, 40.0  # [mm] of skin over bone at least, and to the skin that tells it
+CROWN, OCCIPUT, EARS = 55.0, -20.0, 65.0  # [mm] above and behind there are none; ears lie aside
+BACK, COVERED, BESIDE = 40.0, 2.0, 40.0  # [mm] behind condyles; skin on bone; to skin that tells
 FAT, FLESH = np.array([0.82, 0.62, 0.42]), np.array([0.50, 0.17, 0.15])
 RINGS = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)  # how far out; colour
 
@@ -51,12 +50,13 @@ def build_skull(
     Raises AssetError where the file is missing or broken.
     """
     arrays = read_arrays(FILE)
-    known = arrays["skin"].astype(np.float64)
+    known = arrays["skin"]
     kept, own = load("head").landmarks, head.landmarks
     is_known = hasattr(head, "anatomy")  # made of the built-in head's vertices
     if is_known:
-        is_far = (known[:, 1] > CROWN) | (known[:, 2] < OCCIPUT)
-        kept = own = np.concatenate([own, list(head.anatomy.values()), np.flatnonzero(is_far)])
+        is_far = (known[:, 1] > CROWN) | (known[:, 2] < OCCIPUT) & (abs(known[:, 0]) < EARS)
+        named = [at for name, at in head.anatomy.items() if not name.startswith("tragion")]
+        kept = own = np.concatenate([own, named, np.flatnonzero(is_far)])
     warp = ThinPlateSpline(
         np.vstack([known[kept], arrays["condyles"]]),
         np.vstack([head.vertices[own], pivots["mandible"]]),
