@@ -13,10 +13,10 @@ from tests.sim.poses import settled_displacement
 
 # Fields that are scored: what each is called -> the controls that make it on the built-in head.
 SCORED = {
-    "jawOpen": {"jaw_open": 1.0},
-    "JawForward": {"jaw_forward": 1.0},
+    "jawOpen": {"jawOpen": 1.0},
+    "JawForward": {"jawForward": 1.0},
     "jawLeft": {"jaw_sideways": 1.0},
-    "MouthRight": {"lips_sideways_right": 1.0},
+    "MouthRight": {"mouthRight": 1.0},
     "mouthRollLower": {"mouthRollLower": 1.0},
     "cheekPuff": {"cheekPuff": 1.0},
     "browInnerUp": {"browInnerUp": 1.0},
