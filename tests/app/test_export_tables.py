@@ -136,7 +136,7 @@ def test_expressions_become_shapes(scene: FaceScene, tmp_path: Path) -> None:
     assert columns["MouthSmileLeft"][-1] > 0.4
     assert np.allclose(columns["MouthSmileLeft"], columns["MouthSmileRight"], atol=1e-3)
     furthest, usual = apart(clip, replayed(path, scene, AS_IT_IS))
-    assert furthest < 4.0 and usual < 0.7
+    assert furthest < 5.0 and usual < 1.0
 
 
 def test_units_play_the_same_again(scene: FaceScene, tmp_path: Path) -> None:
