@@ -20,7 +20,7 @@ from .complexion import (
 from .hair import CUTS, HAIR, Hairline
 from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
-from .space import Identity, Sex, person_space, sample_identity
+from .space import Identity, PersonSpace, Sex, person_space, sample_identity
 
 __all__ = [
     "CUTS",
@@ -33,6 +33,7 @@ __all__ = [
     "Hairline",
     "Identity",
     "Person",
+    "PersonSpace",
     "Sex",
     "coloured",
     "drawn_irises",
