@@ -95,12 +95,39 @@ EASINGS: dict[str, Callable[[float], float]] = {
     "ease-out": ease_out,
     "hold": hold,
 }
-EASING_NAMES = tuple(EASINGS)
 
-_CURVES = tuple(EASINGS.values())
+
+def sloped(start: float, end: float) -> Callable[[float], float]:
+    """The cubic curve that leaves and arrives with these slopes, in mean speeds.
+
+    As none is above STEEPEST it never turns back (Fritsch and Carlson, "Monotone piecewise cubic
+    interpolation", 1980).
+    """
+
+    def curve(fraction: float) -> float:
+        rest = 1.0 - fraction
+        return smooth(fraction) + fraction * rest * (start * rest - end * fraction)
+
+    return curve
+
+
+def free_easing(start: float, end: float) -> str:
+    """The name of the easing whose slopes are nearest to these, as "0.5,2"."""
+    return ",".join(f"{min(max(0.0, round(slope, 1)), STEEPEST):g}" for slope in (start, end))
+
+
+STEEPEST = 3.0
+SLOPES = {"linear": (1.0, 1.0), "smooth": (0.0, 0.0), "ease-in": (0.0, 2.0), "ease-out": (2.0, 0.0)}
+_FREE = {(a / 10, b / 10) for a in range(31) for b in range(31)}  # in steps that a mouse can choose
+ALL_EASINGS = EASINGS | {free_easing(*slopes): sloped(*slopes) for slopes in sorted(_FREE)}
+SLOPES |= {free_easing(*slopes): slopes for slopes in _FREE}
+ALLOWED = f"{', '.join(EASINGS)}, or two slopes from 0 to 3 in tenths, as '0.5,2'"
+EASING_NAMES = tuple(ALL_EASINGS)
+
+_CURVES = tuple(ALL_EASINGS.values())
 Number = Annotated[float, Within(-LARGEST, LARGEST)]
 Moment = Annotated[float, Within(0.0, LARGEST)]
-Easing = Annotated[str, OneOf(EASING_NAMES)]
+Easing = Annotated[str, OneOf(EASING_NAMES, ALLOWED)]
 
 
 @dataclass(frozen=True)
@@ -277,7 +304,7 @@ class Script:
         if self.poses:
             before, after, share = _between(self._pose_times, time)
             previous, following = self.poses[before], self.poses[after]
-            share = EASINGS[following.easing](share)
+            share = ALL_EASINGS[following.easing](share)
             for name in {**previous.values, **following.values}:
                 start = previous.values.get(name, 0.0)
                 values[name] = start + (following.values.get(name, 0.0) - start) * share

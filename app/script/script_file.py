@@ -29,6 +29,7 @@ from risorius.schema import MadeFrom, Record, parsed_toml, quoted, read
 from ..errors import UserError, in_one_line
 from ..files import read_text, save_text
 from . import (
+    ALLOWED,
     EASING_NAMES,
     LARGEST,
     LONGEST_FILE,
@@ -73,7 +74,7 @@ def _channel_of_lines(text: str) -> Channel:
         except ValueError:
             raise ValueError(
                 f"key {number}: was {quoted(' '.join(words))}, must be a time, a value and perhaps "
-                f"an easing: {', '.join(EASING_NAMES)}"
+                f"an easing: {ALLOWED}"
             ) from None
     channel = Channel(times, values, easings)
     is_wrong = ~(np.abs(channel.values) <= LARGEST) | ~(channel.times <= LARGEST)

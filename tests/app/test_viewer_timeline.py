@@ -8,8 +8,8 @@ from imgui_bundle import imgui
 
 from risorius.app.script import Channel, Script
 from risorius.app.script.keyframes import POSES, on_frame
-from risorius.app.script.places import KeyPlace
-from risorius.app.script.script_file import load_script, save_script
+from risorius.app.script.places import KeyPlace, Places
+from risorius.app.script.script_file import load_script, parse_script, save_script, script_text
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.timeline.dope_sheet import ROW
 
@@ -331,3 +331,33 @@ def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
     graph = viewer.timeline.dope_sheet.graph
     hit = graph.at(*place_of(viewer, 2.9, 1.0))
     assert hit is not None and hit.curve.name == "pose joy" and not hit.key
+
+
+@pytest.mark.usefixtures("curves")
+def test_handles_set_slopes(viewer: Viewer) -> None:
+    """Handles of the way to a selected key bend it; face and file get the same; undo, Escape."""
+    before = viewer.session.script
+    viewer.selection.places = Places.of(KeyPlace(POSES, 1.0))
+    settle(viewer)
+    graph = viewer.timeline.dope_sheet.graph
+    first, last = (handle for handle in graph.handles() if handle.ends in ((0, 1), (1, 0)))
+    assert first.slopes == last.slopes == (2.0, 0.0)  # ease-out
+    drag(viewer, on_screen(viewer, *first.place), (0, 8))
+    move(viewer, 0, round(first.root[1] - first.place[1]))  # as low as the key before
+    drag(viewer, on_screen(viewer, *last.place), (0, 8))
+    move(viewer, 0, 12)
+    pose = viewer.session.script.poses[1]
+    start, end = map(float, pose.easing.split(","))
+    assert start == 0.0 < end < 3.0 and pose.values == before.poses[1].values
+    again = parse_script(script_text(viewer.session.script), source="again")
+    assert again.at(0.4) == viewer.session.script.at(0.4) != before.at(0.4)
+    viewer.session.seek(0.4)
+    assert viewer.session.values["joy"] == pytest.approx(again.at(0.4)["joy"])
+    xdotool(viewer, "key", "ctrl+z")
+    xdotool(viewer, "key", "ctrl+z")
+    assert viewer.session.script == before
+    drag(viewer, on_screen(viewer, *last.place), (0, 8))
+    assert viewer.session.script != before
+    xdotool(viewer, "key", "Escape")
+    xdotool(viewer, "mouseup", 1)
+    assert viewer.session.script == before

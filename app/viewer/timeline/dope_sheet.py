@@ -44,7 +44,7 @@ VALUES = 2.2  # [em] for the labels of values
 class Drag:
     """What the mouse holds on to."""
 
-    doing: str  # keys, box, scrub, end, pan
+    doing: str  # keys, box, scrub, end, pan, slope
     began: tuple[float, float]  # [window units]
     script: Script  # as it was then
     selected: Places  # then
@@ -206,14 +206,19 @@ class DopeSheet:
             imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
             return
         if self.settings.shows_curves:
-            hit = graph.at(x, y)
+            graph.handle = graph.handle_at(x, y)
+            hit = None if graph.handle else graph.at(x, y)
             under = hit.key if hit else NOWHERE
         elif track is not None:
             under = track.places.near(axis.time(x), axis.seconds(em(REACH)))
         if (under or hit) and not imgui.is_mouse_down(LEFT):
             value = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
             imgui.set_tooltip(f"{under.first:.2f} s  {value}".rstrip() if under else value)
-        if imgui.is_mouse_clicked(LEFT):
+        if self.settings.shows_curves and graph.handle is not None:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ns)
+            if imgui.is_mouse_clicked(LEFT):
+                self._begin("slope", io)
+        elif imgui.is_mouse_clicked(LEFT):
             graph.held = hit
             is_dense = hit is None and track is not None and self._are_dense.get(track.name, False)
             self._press(io, under, is_dense=is_dense)
@@ -278,10 +283,11 @@ class DopeSheet:
                 keyframes.lasting(drag.script, axis.time(x)), is_done=False
             ),
             "pan": lambda: axis.scroll(-axis.seconds(io.mouse_delta.x)),
+            "slope": lambda: self._bend(y, drag),
         }
         if drag.has_moved or drag.doing in ("scrub", "pan"):
             self._messages.attempt(act[drag.doing])
-        if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end"):
+        if imgui.is_key_pressed(imgui.Key.escape) and drag.doing in ("keys", "end", "slope"):
             self._drag = None
             self._messages.attempt(lambda: session.edit(drag.script, is_done=False))
             self.selection.places = drag.selected
@@ -314,6 +320,13 @@ class DopeSheet:
         self.selection.places = places
         imgui.set_tooltip(line)
 
+    def _bend(self, y: float, drag: Drag) -> None:
+        assert self.graph.handle is not None
+        easing = self.graph.bent(self.graph.handle, y)
+        script = keyframes.eased(drag.script, self.graph.handle.key, easing)
+        self._session.edit(script, is_done=False)
+        imgui.set_tooltip(f"slopes {easing}")
+
     def _select_box(self, io: Any, drag: Drag) -> None:
         corner, inside = (io.mouse_pos.x, io.mouse_pos.y), NOWHERE
         if self.settings.shows_curves:
@@ -338,6 +351,6 @@ class DopeSheet:
                 self.selection.places = self._grabbed
                 session.is_playing = False
                 line = session.seek(self._grabbed.first)
-        if drag.doing in ("keys", "end") and drag.has_moved:
+        if drag.doing in ("keys", "end", "slope") and drag.has_moved:
             session.note()
         return line

@@ -1,17 +1,19 @@
 """Keys as curves: the value of each control over time, just as the script plays it.
 
 A curve belongs to a track, or to one control of the poses: there a key that is dragged up changes
-that value of its pose. What the mouse does is in dope_sheet.py, as for rows of keys.
+that value of its pose. The way to a selected key has two handles, at its control points as a Bezier
+curve, that are dragged up and down. What the mouse does is in dope_sheet.py, as for rows of keys.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from imgui_bundle import imgui
 
+from ...script import EASING_NAMES, SLOPES, free_easing
 from ...script.keyframes import SAME
 from ...script.places import NOWHERE, KeyPlace, Places, among
 from ..interface.gui import Gui, em, ink_of
@@ -36,6 +38,17 @@ class Hit(NamedTuple):
     key: Places = NOWHERE
 
 
+class Handle(NamedTuple):
+    """A third of the way to a key, from the key before or to it: what sets the slope there."""
+
+    key: Places
+    number: int  # 0: at the start of the way, 1: at its end
+    slopes: tuple[float, float]  # in mean speeds
+    ends: tuple[float, float]  # the values there and at the other end of the way
+    place: Point
+    root: Point  # where its key is
+
+
 class Graph:
     """Draws curves between a time axis and one of values, and knows what is where."""
 
@@ -43,6 +56,7 @@ class Graph:
         self._gui, self._selection, self._axis = gui, selection, axis
         self.curves: list[Track] = []
         self.held: Hit | None = None  # what the mouse was pressed on
+        self.handle: Handle | None = None  # that it was pressed on
         self._low, self._high, self._bottom = 0.0, 1.0, 0.0  # values, and where the low one is
         self.slope = -1.0  # how far down 1 is from 0 [window units]
 
@@ -82,6 +96,44 @@ class Graph:
         distance, hit = min(hits, key=lambda each: each[0], default=(0.0, None))
         return hit if distance < 2.0 * reach else None
 
+    def handles(self) -> Iterator[Handle]:
+        """Of the ways to selected keys, where there is room for them."""
+        axis = self._axis
+        for curve in self.curves:
+            channel = curve.channel
+            chosen = self._selection.places.times.get(curve.track, channel.times[:0])
+            if not len(chosen) or self._is_dense(curve):
+                continue
+            begin, end = np.searchsorted(channel.times, (axis.start, axis.end))
+            visible = np.arange(max(begin, 1), min(end + 1, len(channel)))
+            for number in visible[among(channel.times[visible], chosen)].tolist():
+                slopes = SLOPES.get(EASING_NAMES[channel.easings[number]])
+                times, values = (
+                    part[number - 1 : number + 1] for part in (channel.times, channel.values)
+                )
+                (x, right), (y, there) = axis.x(times).tolist(), self.y(values).tolist()
+                if slopes is None or right - x < 3.0 * em(REACH) or abs(there - y) < em(REACH):
+                    continue  # held, or no room
+                key = Places.of(KeyPlace(curve.track, float(times[1])))
+                across, rise = (right - x) / 3.0, (there - y) / 3.0
+                first = x + across, y + slopes[0] * rise
+                last = right - across, there - slopes[1] * rise
+                low, high = values.tolist()
+                yield Handle(key, 0, slopes, (low, high), first, (x, y))
+                yield Handle(key, 1, slopes, (high, low), last, (right, there))
+
+    def handle_at(self, x: float, y: float) -> Handle | None:
+        """The handle there, if there is one."""
+        away = [(float(np.hypot(h.place[0] - x, h.place[1] - y)), h) for h in self.handles()]
+        distance, handle = min(away, key=lambda each: each[0], default=(0.0, None))
+        return handle if distance < em(REACH) else None
+
+    def bent(self, handle: Handle, y: float) -> str:
+        """The easing that the way has if its handle is dragged to a height."""
+        slopes, (own, other) = list(handle.slopes), map(self.y, handle.ends)
+        slopes[handle.number] = 3.0 * (y - own) / (other - own)
+        return free_easing(*slopes)
+
     def inside(self, first: Point, last: Point) -> Places:
         """The keys in a box."""
         (begin, end), (top, bottom) = (sorted(each) for each in zip(first, last, strict=True))
@@ -119,6 +171,7 @@ class Graph:
             times, values = curve.channel.outline(axis.start, axis.end, max(columns, 8))
             draw_line(axis.x(times), self.y(values), ink, em(0.12))
             self._draw_keys(curve, ink)
+        self._draw_handles()
         lines.pop_clip_rect()
 
     def _fit(self, edges: Point) -> None:
@@ -146,6 +199,13 @@ class Graph:
             lines.add_line((left, y), (right, y), ink_of(theme.muted, 0.2 if number else 0.5))
             place = left - em(0.3) - imgui.calc_text_size(label).x, y - 0.5 * em()
             lines.add_text(place, ink_of(theme.muted), label)
+
+    def _draw_handles(self) -> None:
+        """Of the ways to selected keys, each with the line that it bends."""
+        accent, lines = ink_of(self._gui.theme.accent), imgui.get_window_draw_list()
+        for handle in self.handles():
+            lines.add_line(handle.root, handle.place, accent)
+            lines.add_circle_filled(handle.place, em(0.8 * KEY), accent)
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
         """The visible keys; before selected ones the way that the script takes to them."""

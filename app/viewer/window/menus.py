@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ...controls import readable
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
-from ...script import EASING_NAMES
+from ...script import EASINGS
 from ..documents.export import Exporter
 from ..documents.file_drop import FileDrop
 from ..documents.scripts import ScriptCommands
@@ -134,7 +134,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
         change("A frame earlier", "Shift+Left", partial(selection.nudge, -1)),
         change("A frame later", "Shift+Right", partial(selection.nudge, 1)),
         command("Select all keys", "Ctrl+A", selection.select_all),
-        *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASING_NAMES),
+        *(change(f"Easing: {e}", "", partial(ease, e), partial(is_eased, e)) for e in EASINGS),
     )
 
 
