@@ -22,7 +22,7 @@ from risorius import refine, render
 from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Layers
 from .refining.presets import Refinement
 from .refining.refiners import refiner_for
-from .refining.wrinkling import Amounts, Compression, Relief, on_rows, relief_of
+from .refining.wrinkling import Amounts, Compression, on_rows
 from .scenes import Scene
 
 TEXTURED_COLUMNS = 8  # position, normal, u v
@@ -37,7 +37,6 @@ class DrawnMesh:
     label: str  # what it is called under the picture
     refiner: refine.Refiner
     stream: render.Stream | render.GpuStream
-    relief: Relief | None = None  # by which wrinkles move what was refined
     style: render.Style = render.Style()  # noqa: RUF009 - frozen; in which it was drawn last
     mesh: refine.RefinedMesh | None = None  # what was refined last, of:
     positions: npt.NDArray[np.float64] | None = None
@@ -54,12 +53,10 @@ class DrawnMesh:
         self.mesh, self.positions = self.refiner.refine(positions, out=out, view=view), positions
 
     def upload(self, style: render.Style, wrinkling: Amounts | None = None) -> None:
-        """Hand over what was refined last, moved as far as the scene's vertices wrinkle."""
+        """Hand over what was refined last, and how far the scene's vertices wrinkle."""
         assert self.mesh is not None and self.positions is not None
         self.style = style
         rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
-        if rows is not None and self.relief is not None and self.has_uv:
-            self.relief.move(self.mesh, style.bumps * rows)
         if isinstance(self.stream, render.GpuStream):
             frame: Any = self.mesh  # of a refiner that fetches rows on demand
             self.stream.show(frame, self.positions, rows)
@@ -112,7 +109,7 @@ class Pipeline:
 
     def bind(self, refinement: Refinement) -> DrawnMesh:
         """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
-        refiner = refiner_for(self.scene, refinement, self._compression)
+        refiner = refiner_for(self.scene, refinement)
         room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         stream: render.Stream | render.GpuStream
         is_on_gpu = isinstance(refiner, refine.BaseRefiner) and refiner.runs_on_gpu
@@ -122,7 +119,7 @@ class Pipeline:
             stream = self.renderer.lend_gpu_stream(*room, margin=float(longest))
         else:
             stream = self.renderer.lend_stream(*room)
-        return DrawnMesh(refinement.label, refiner, stream, relief_of(self.scene, refinement))
+        return DrawnMesh(refinement.label, refiner, stream)
 
     def set_tone(self, tone: float | None) -> None:
         """Hand the scene's albedo to the renderer, in a tone [deg] where it has any."""

@@ -122,10 +122,6 @@ class Layer:
     rows: Mapping[str, Mapping[str, Any]]
 
 
-HIGHEST_FOLD = 1.0
-"""[mm] that a wrinkle moves skin at most."""
-
-
 @dataclass(frozen=True)
 class Wrinkles:
     """What a face wrinkles like: furrows over its texture, and when its vertices show them.
@@ -136,15 +132,12 @@ class Wrinkles:
     steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
     across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
         its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
-    relief: the shape that triangles can show of it: height of the skin by either slot, 127 is
-        `HIGHEST_FOLD`; covers the same as `map`; shape (h, w, 2), int8.
     resting: how far it is wrinkled at rest, 0 to 1, as with age.
     """
 
     map: Image
     steepest: float
     across: SingleArray
-    relief: npt.NDArray[np.int8]
     resting: float = 0.0
 
 
@@ -273,11 +266,9 @@ class Head:
 
         Raises AssetError when the file is missing, broken or that of another head.
         """
-        names = ("map", "steepest", "across", "relief")
+        names = ("map", "steepest", "across")
         arrays = read_arrays_of(self.fingerprint, self.wrinkles_file, names)
-        return Wrinkles(
-            arrays["map"], float(arrays["steepest"]), arrays["across"], arrays["relief"]
-        )
+        return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
 
     @cached_property
     def segments(self) -> Image:

@@ -20,7 +20,6 @@ from ..errors import UserError
 from ..motion import play, scene_of
 from ..refining.presets import Refinement
 from ..refining.refiners import refiner_for
-from ..refining.wrinkling import Compression, on_rows, relief_of
 from ..scenes import FaceScene, Scene
 from ..script import Script
 
@@ -104,19 +103,12 @@ class Clip:
 
         Raises UserError for a refiner that has to know where somebody looks from.
         """
-        relief = relief_of(self.scene, refinement)
-        compression = None if relief is None else Compression(self.scene)
-        refiner = refiner_for(self.scene, refinement, compression)
+        refiner = refiner_for(self.scene, refinement)
         for frame in range(self.frame_count):
             try:
-                positions = self.skin.at(frame)
-                mesh = refiner.refine(positions)
+                mesh = refiner.refine(self.skin.at(frame))
             except ValueError as error:
                 raise UserError(f"refiner {refinement.on(self.scene.name)[0]}: {error}") from None
-            if relief is not None and compression is not None and mesh.uv is not None:
-                rows = on_rows(compression.amounts(positions), refiner)
-                if rows is not None:
-                    relief.carve(mesh, rows)
             yield mesh
 
 

@@ -10,9 +10,9 @@ too. The pupils, 68 the right one and 69 the left, are the points of the eyeball
 ahead.
 
 A point is visible where it is seen: what the depth map has at its own pixel is as far away as the
-point, within a tolerance. That is 2 mm for landmarks, since the drawn skin has wrinkles of up to
-1 mm and may be steep within a pixel, and 0.6 mm for pupils, over which a lid of a millimetre may
-close; and the width of a pixel where that is more.
+point, within a tolerance. That is 2 mm for landmarks, since the refined skin may pass them by and
+be steep within a pixel, and 0.6 mm for pupils, over which a lid of a millimetre may close; and the
+width of a pixel where that is more.
 
 Axes of the camera are those of OpenCV and of pictures: x right, y down, z away from it. A point p
 of the scene [mm] has the camera's coordinates c = R p + t and is seen at the pixel K c / c_z; pixel

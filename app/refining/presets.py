@@ -26,7 +26,6 @@ class Preset:
 
     refiner: str = "kahler"
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
-    raises_wrinkles: bool = False  # whether wrinkles get triangles and move them, see `wrinkling`
 
     def told(self, refiner: str) -> Mapping[str, Any]:
         """What a refiner is told where its defaults do not do; nothing, where this knows none."""
@@ -43,9 +42,7 @@ def _alike(told: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 
 # By `displacement` alone outlines of crown and chin would stay polygons: edges there are long, turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
-SMOOTH = Preset(
-    options=_alike({"scheme": "cubic", "criterion": "displacement+rest"}), raises_wrinkles=True
-)
+SMOOTH = Preset(options=_alike({"scheme": "cubic", "criterion": "displacement+rest"}))
 # The hem of a cloth turns in the sheet itself.
 SMOOTH_CLOTH = Preset(options=_alike({"scheme": "cubic", "criterion": "displacement+border"}))
 PAPER = Preset()
@@ -99,10 +96,6 @@ class Refinement:
 
     def _criterion(self, scene: str) -> str:
         return str(self.on(scene)[1].get("criterion", PAPERS_CRITERION))
-
-    def raises_wrinkles(self, scene: str) -> bool:
-        """Whether wrinkles become shape; the mesh as it is has no triangles for it."""
-        return PRESETS[self.preset][scene].raises_wrinkles and self.on(scene)[0] != STATIC
 
     @property
     def label(self) -> str:

@@ -14,7 +14,6 @@ from risorius import assets, refine
 from ..errors import UserError
 from ..scenes import FaceScene, Scene
 from .presets import PRESETS, STATIC, Refinement, named
-from .wrinkling import Compression, FoldCriterion
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
@@ -22,13 +21,8 @@ AS_IT_SUITS = "automatic"  # what an option is called that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
-def refiner_for(
-    scene: Scene, refinement: Refinement, compression: Compression | None = None
-) -> refine.Refiner:
-    """Bind the refiner that is asked for to the scene's mesh; UserError if it refuses an option.
-
-    compression: of the scene, where whoever asks measures it, too: it is measured once then.
-    """
+def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
+    """Bind the refiner that is asked for to the scene's mesh; UserError if it refuses an option."""
     name, options = refinement.on(scene.name)
     try:
         if refinement.options:
@@ -38,13 +32,8 @@ def refiner_for(
             options["detail"] = finer_mesh(scene)
             if options["detail"] is None:
                 raise UserError(f"refiner {name}: scheme=detail needs a head that has a finer mesh")
-        bound = dict(options)
-        chosen = options.get("criterion")
-        if isinstance(chosen, str) and scene.wrinkles and refinement.raises_wrinkles(scene.name):
-            folds = FoldCriterion(scene, compression or Compression(scene))
-            bound["criterion"] = [*chosen.split("+"), folds]
         return refine.create(
-            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **bound
+            name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
         )
     except (ValueError, TypeError) as error:
         raise UserError(f"refiner {name}: {error}{_of_preset(refinement, options)}") from None

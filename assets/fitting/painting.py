@@ -202,15 +202,6 @@ def sampled(picture: npt.NDArray[np.uint8], uv: FloatArray) -> npt.NDArray[np.ui
     return found
 
 
-def _between_texels(steps: npt.NDArray[np.int8], uv: FloatArray) -> FloatArray:
-    """Heights (H, W, k) at texture coordinates (n, 2): they are form, and must have no stairs."""
-    height, width = steps.shape[:2]
-    at = (uv * [width, -height] + [-0.5, height - 0.5]).T[::-1]
-    layers = np.moveaxis(steps.astype(np.float64), -1, 0)
-    found = [scipy.ndimage.map_coordinates(each, at, order=1, mode="nearest") for each in layers]
-    return np.stack(found, axis=1).round()
-
-
 def drawn_over(picture: Image, layout: Layout, colours: FloatArray | tuple[Image, Layout]) -> Image:
     """A picture with triangles of `layout` drawn over it.
 
@@ -243,9 +234,7 @@ def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image]:
     wrinkles = np.full((SIZE, SIZE, 4), (128, 128, 0, 0), np.uint8)
     level = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
-    relief = np.zeros((SIZE, SIZE, 2), np.int8)
-    relief[texels.rows, texels.columns] = _between_texels(known.wrinkles.relief, place)
-    return replace(known.wrinkles, map=wrinkles, steepest=steepest, relief=relief), segments
+    return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments
 
 
 def own_picture(

@@ -121,15 +121,6 @@ def test_lines_lie_across_the_muscles(scene: FaceScene) -> None:
         assert len(found) > 3 and np.median(found) > 0.8, muscle
 
 
-def test_what_is_asked_twice_is_measured_once(scene: FaceScene) -> None:
-    """A frame's refiner and its upload share the amounts; positions that moved in place do not."""
-    measure, moved = Compression(scene), scene.rest_positions.copy()
-    first = measure.amounts(moved)
-    assert measure.amounts(moved.copy()) is first
-    moved[:] *= 0.8
-    assert measure.amounts(moved).max() > 0.5 > first.max()
-
-
 @pytest.mark.slow
 def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Compression) -> None:
     """A fitted one of another shape and mesh does, as far as the built-in one."""
