@@ -1,4 +1,4 @@
-"""Load an asset by name: the built-in head, the paper's plane, or a cloth.
+"""Load an asset by name: the built-in head or the paper's plane.
 
 The head's numbers lie in `data/head.npz` (docs/head.md says where they are from); its rig and
 the layers of controls above the muscles are text files, written by hand (`rigs/face.toml`,
@@ -17,8 +17,8 @@ import numpy.typing as npt
 from .data_files import read_arrays, read_toml
 from .errors import AssetError
 from .eyeballs import with_irises
-from .model import Cloth, Eye, Head, Layer, Part, Plane
-from .sheets import make_cloth, make_plane
+from .model import Eye, Head, Layer, Part, Plane
+from .sheets import make_plane
 
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
@@ -36,7 +36,7 @@ LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
 
 def available() -> tuple[str, ...]:
     """Return the names that `load` knows."""
-    return ("head", "plane", "cloth")
+    return ("head", "plane")
 
 
 @overload
@@ -44,11 +44,9 @@ def load(name: Literal["head"]) -> Head: ...
 @overload
 def load(name: Literal["plane"]) -> Plane: ...
 @overload
-def load(name: Literal["cloth"]) -> Cloth: ...
-@overload
-def load(name: str) -> Head | Plane | Cloth: ...
-def load(name: str) -> Head | Plane | Cloth:
-    """Load the asset called `name` ("head", "plane" or "cloth"); its arrays are read-only.
+def load(name: str) -> Head | Plane: ...
+def load(name: str) -> Head | Plane:
+    """Load the asset called `name` ("head" or "plane"); its arrays are read-only.
 
     Raises AssetError for an unknown name and for a missing or broken file.
     """
@@ -56,8 +54,6 @@ def load(name: str) -> Head | Plane | Cloth:
         return load_head()
     if name == "plane":
         return make_plane()
-    if name == "cloth":
-        return make_cloth()
     raise AssetError(f"no asset is called {name!r}; available: {', '.join(available())}")
 
 

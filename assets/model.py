@@ -339,19 +339,3 @@ class Plane:
 
     vertices: FloatArray
     faces: IndexArray
-
-
-@dataclass(frozen=True)
-class Cloth:
-    """A square sheet, flat over a ball.
-
-    vertices: rest positions [mm], shape (625, 3), float64, in a plane of equal y.
-    faces: vertex numbers, counter-clockwise seen from above (+y), shape (1152, 3), int32.
-    ball: what lies under it, a part of the bone "ball" around the origin.
-    radius: of the ball [mm].
-    """
-
-    vertices: FloatArray
-    faces: IndexArray
-    ball: Part
-    radius: float

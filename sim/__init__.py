@@ -6,18 +6,16 @@
     simulation.positions        # (V, 3)
 
 Knows nothing of rendering or refinement. Start reading at face.py; rig.py defines the rig file.
-cloth.py lets a sheet fall over a ball, by the same springs.
 """
 
 from typing import Any
 
 from .anatomy import build_anatomy
-from .cloth import Cloth
 from .face import Simulation, SimulationUnstable
 from .pulling import Pull
 from .rig import Rig, read_rig
 
-__all__ = ["Cloth", "Pull", "Rig", "Simulation", "SimulationUnstable"]
+__all__ = ["Pull", "Rig", "Simulation", "SimulationUnstable"]
 __all__ += ["create", "read_rig"]
 
 

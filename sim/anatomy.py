@@ -184,7 +184,7 @@ def _masses(surface: Surface, springs: TissueSprings, edges: EdgeSprings, greate
 
 
 def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
-    """Checked copies of the vertices and faces of a head or a cloth; `what` names it in errors."""
+    """Checked copies of the vertices and faces of a head; `what` names it in errors."""
     for name in ("vertices", "faces"):
         if not hasattr(given, name):
             raise ValueError(

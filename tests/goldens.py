@@ -21,7 +21,7 @@ from PIL import Image
 
 COMMAND = Path(sys.executable).with_name("risorius")
 HEAD = Path(__file__).parents[1] / "assets" / "data"
-SCRIPTS = ("face", "plane", "cloth")
+SCRIPTS = ("face", "plane")
 FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit", "units")
 SUFFIXES = {"gltf": "glb", "vtkhdf": "vtkhdf", "arkit": "csv", "units": "csv"}
 POSES = ("joy", "anger", "fear", "disgust", "surprise", "sadness", "kiss", "AU43=1", "jawOpen=1")

@@ -114,7 +114,7 @@ class PersonName(click.ParamType[int | str]):
 
 Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
-SCENE_NAMES = click.Choice(["face", "plane", "cloth"])
+SCENE_NAMES = click.Choice(["face", "plane"])
 SOUND = click.option(
     "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
 )

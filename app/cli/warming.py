@@ -40,11 +40,11 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
     from risorius import refine
 
     from ..refining.refiners import parse_options
-    from ..scenes import ClothScene, FaceScene, PlaneScene
+    from ..scenes import FaceScene, PlaneScene
     from ..scenes.ambient_occlusion import ambient_occlusion
     from ..script.thinning import thinned
 
-    face, plane, cloth = FaceScene(), PlaneScene(), ClothScene()
+    face, plane = FaceScene(), PlaneScene()
     yield "muscles and springs", partial(_simulate, face)
     yield "keys of recordings", partial(thinned, [0.0, 1.0], [0.0, 1.0])
     yield "light", partial(ambient_occlusion, face.head, face.simulation)
@@ -55,7 +55,6 @@ def _jobs() -> Iterator[tuple[str, Callable[[], object]]]:
         options = parse_options(None, text.split())
         yield text, partial(_refine, face, Refinement(PAPERS_PRESET, options=options))
     yield "uniform subdivision", partial(_refine, face, Refinement(refiner="loop"))
-    yield "the cloth", partial(cloth.step, 1 / 60)
     rest = face.rest_positions
     yield "strain", partial(refine.Tension(face.faces, rest).measure, rest)
 

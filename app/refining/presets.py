@@ -43,8 +43,6 @@ def _alike(told: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 # By `displacement` alone outlines of crown and chin would stay polygons: edges there are long, turn
 # little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
 SMOOTH = Preset(options=_alike({"scheme": "cubic", "criterion": "displacement+rest"}))
-# The hem of a cloth turns in the sheet itself.
-SMOOTH_CLOTH = Preset(options=_alike({"scheme": "cubic", "criterion": "displacement+border"}))
 PAPER = Preset()
 # A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
 # makes about as many triangles at most as in Table 1 (1328).
@@ -54,8 +52,8 @@ SMOOTH_PLANE = Preset(options={**_alike(PLANE), "kahler": {"normals": "refined",
 
 PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then by scene
     {
-        FIRST_PRESET: {"face": SMOOTH, "plane": SMOOTH_PLANE, "cloth": SMOOTH_CLOTH},
-        PAPERS_PRESET: {"face": PAPER, "plane": PAPERS_PLANE, "cloth": PAPER},
+        FIRST_PRESET: {"face": SMOOTH, "plane": SMOOTH_PLANE},
+        PAPERS_PRESET: {"face": PAPER, "plane": PAPERS_PLANE},
     }
 )
 

@@ -1,4 +1,4 @@
-"""What can be animated: the built-in head with its muscles, the paper's plane (Fig. 9), a cloth.
+"""What can be animated: the built-in head with its muscles, or the paper's plane (Fig. 9).
 
 A scene owns a triangle mesh whose topology never changes, moves its vertices as time passes, and
 knows nothing of refinement or drawing. `build_scene` makes one by its name.
@@ -233,23 +233,7 @@ class FaceScene(Scene):
         return self._moved_by[name]
 
 
-class SheetScene(Scene):
-    """A scene without muscles: its controls have values, and nothing else moves them."""
-
-    _values: dict[str, float]
-
-    @property
-    def values(self) -> Mapping[str, float]:
-        return self._values
-
-    def pose(self, channels: Mapping[str, float]) -> None:
-        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
-
-    def reset(self) -> None:
-        self._values.update(dict.fromkeys(self.limits, 0.0))
-
-
-class PlaneScene(SheetScene):
+class PlaneScene(Scene):
     """The paper's plane: 154 triangles under a strong travelling sine (Fig. 9 and Table 1).
 
     The wave runs along the diagonals of the cells, so that every edge bends: across one along the
@@ -276,6 +260,13 @@ class PlaneScene(SheetScene):
     def positions(self) -> npt.NDArray[np.float64]:
         return self._positions
 
+    @property
+    def values(self) -> Mapping[str, float]:
+        return self._values
+
+    def pose(self, channels: Mapping[str, float]) -> None:
+        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
+
     def step(self, seconds: float) -> None:
         self._positions[:] = self.waved(self.rest_positions)[0]
 
@@ -293,60 +284,8 @@ class PlaneScene(SheetScene):
         return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def reset(self) -> None:
-        super().reset()
+        self._values.update(dict.fromkeys(self.limits, 0.0))
         self._positions[:] = self.rest_positions
-
-
-class ClothScene(SheetScene):
-    """A sheet of 1152 triangles that falls over a ball: folds wherever it hangs.
-
-    `drop` lets go of it, or takes it up again; `turn` is how far the ball has been turned, which
-    draws the sheet along.
-    """
-
-    name = "cloth"
-    groups = MappingProxyType({"Cloth": ("drop",), "Ball": ("turn",)})
-    limits = MappingProxyType({"drop": (0.0, 1.0), "turn": (-2.0, 2.0)})
-    actions = MappingProxyType(
-        {"drop": "lets the cloth fall", "turn": "turns the ball under the cloth, 1 once around"}
-    )
-
-    def __init__(self) -> None:
-        cloth = assets.load("cloth")
-        self.parts = (cloth.ball,)
-        self.sheet = sim.Cloth(cloth, np.zeros(3), cloth.radius)
-        self.faces, self.rest_positions = cloth.faces, cloth.vertices
-        self._values = dict.fromkeys(self.limits, 0.0)
-        # A corner hangs down from where it leaves the ball, half-way up.
-        from_middle = float(np.linalg.norm(cloth.vertices[0, [0, 2]]))
-        lowest = 0.5 * np.pi * cloth.radius - from_middle
-        self._extent = np.vstack([cloth.vertices, [0.0, lowest, 0.0]])
-        self.focus = np.array([0.0, 0.5 * (cloth.radius + lowest), 0.0])
-
-    @property
-    def positions(self) -> npt.NDArray[np.float64]:
-        return self.sheet.positions
-
-    @property
-    def extent(self) -> npt.NDArray[np.float64]:
-        """The sheet held up, and how low its corners hang."""
-        return self._extent
-
-    def step(self, seconds: float) -> None:
-        self.sheet.held = 1.0 - self._values["drop"]
-        left = 2.0 * np.pi * self._values["turn"] - self.sheet.turned
-        self.sheet.turning = left / seconds if seconds > 0.0 else 0.0
-        self.sheet.step(seconds)
-
-    def reset(self) -> None:
-        super().reset()
-        self.sheet.reset()
-
-    def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
-        cosine, sine = np.cos(self.sheet.turned), np.sin(self.sheet.turned)
-        turn = np.eye(4)
-        turn[0, [0, 2]], turn[2, [0, 2]] = (cosine, sine), (-sine, cosine)
-        return {"ball": turn}
 
 
 def clamped(
@@ -363,7 +302,6 @@ def clamped(
 SCENES: dict[str, Callable[[], Scene]] = {
     "face": FaceScene,
     "plane": PlaneScene,
-    "cloth": ClothScene,
 }
 
 

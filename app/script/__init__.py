@@ -3,7 +3,7 @@
 A script is a list of poses and, beside them, tracks::
 
     title = "Hello"              # optional
-    scene = "face"               # optional: face (default), plane or cloth
+    scene = "face"               # optional: face (default) or plane
     camera = "three-quarter"     # optional: a named view
     sound = "hello.wav"          # optional: what is heard with it, as seen from the script
     duration = 4.0               # optional [s]; the default is the time of the last key

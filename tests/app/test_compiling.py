@@ -15,7 +15,6 @@ COMMANDS = (
     "capture --set joy --option blend=on --option criterion=normal",
     "capture --set joy --refiner loop --option levels=2",
     "capture --set amplitude=1 --scene plane --compare",
-    "capture --set drop=1 --scene cloth --compare",
 )
 PROGRAM = """
 import sys

@@ -13,7 +13,7 @@ from .command_line import refusal, risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
-SCRIPT = 'scene = "cloth"\nduration = 0.2\n[[pose]]\ntime = 0.0\ndrop = 1.0\n'
+SCRIPT = 'scene = "plane"\nduration = 0.2\n[[pose]]\ntime = 0.0\namplitude = 1.0\n'
 FACE = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
 OUTPUTS = {
     each.name: f"out{each.suffixes[0]}" if each.suffixes else "out"
@@ -29,7 +29,7 @@ from risorius.app.export.formats import Request, format_for, write
 from risorius.app.script.script_file import load_script
 
 output = Path(sys.argv[1])
-clip = record(load_script(Path("cloth.toml")), None, 240.0, progress=False)
+clip = record(load_script(Path("plane.toml")), None, 240.0, progress=False)
 chosen = format_for(output, sys.argv[2])
 chosen.load()
 resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))  # [bytes] of any file
@@ -42,7 +42,7 @@ with report_user_errors():
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a script, in which the command runs."""
     monkeypatch.chdir(tmp_path)
-    Path("cloth.toml").write_text(SCRIPT)
+    Path("plane.toml").write_text(SCRIPT)
     Path("face.toml").write_text(FACE)
     return tmp_path
 
@@ -56,13 +56,13 @@ def export(*arguments: str) -> Result:
 def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path) -> None:
     """What the table of formats says lies beside the script, and may be written again."""
     for _ in range(2):
-        arguments = ("cloth.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
+        arguments = ("plane.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
         result = export(*arguments)
         assert result.exit_code == 0, result.output
         assert "7 frames" in result.output
     chosen = next(each for each in FORMATS if each.name == name)
     allowed = {path.name for path in chosen.outputs(Path(OUTPUTS[name]))}
-    found = {item.name for item in folder.iterdir()} - {"cloth.toml", "face.toml"}
+    found = {item.name for item in folder.iterdir()} - {"plane.toml", "face.toml"}
     assert OUTPUTS[name] in found and found <= allowed
     if not chosen.suffixes:
         assert len(list((folder / "out").glob(f"frame_*.{name}"))) == 7
@@ -70,8 +70,8 @@ def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path
 
 @pytest.mark.parametrize("name", ["arkit", "units"])
 def test_curves_need_muscles(name: str, folder: Path) -> None:
-    """A face has them; a cloth is told in one line, and leaves no file."""
-    assert "take the scene face" in refusal(export("cloth.toml", "--as", name, "-o", "x.csv"))
+    """A face has them; a plane is told in one line, and leaves no file."""
+    assert "take the scene face" in refusal(export("plane.toml", "--as", name, "-o", "x.csv"))
     assert not Path("x.csv").exists()
     result = export("face.toml", "--as", name, "-o", "x.csv")
     assert result.exit_code == 0 and Path("x.csv").stat().st_size > 1000
@@ -80,16 +80,16 @@ def test_curves_need_muscles(name: str, folder: Path) -> None:
 def test_files_of_somebody_else_stay(folder: Path) -> None:
     """What would lie beside the output, a head of the user's, and what is in a folder."""
     Path("x.obj").write_text("mine")
-    line = refusal(export("cloth.toml", "-o", "x.pc2"))
+    line = refusal(export("plane.toml", "-o", "x.pc2"))
     assert "x.obj: is there, and x.pc2 would come with such a file" in line
     Path("frames").mkdir()
     Path("frames/notes.txt").write_text("mine")
-    line = refusal(export("cloth.toml", "--as", "obj", "-o", "frames"))
+    line = refusal(export("plane.toml", "--as", "obj", "-o", "frames"))
     assert (
         line == "risorius: frames: is there and not empty; name another folder, or add --overwrite"
     )
     Path("frames/frame_00099.obj").write_text("of an earlier time")
-    result = export("cloth.toml", "--as", "obj", "-o", "frames", "--overwrite")
+    result = export("plane.toml", "--as", "obj", "-o", "frames", "--overwrite")
     assert result.exit_code == 0, result.output
     assert Path("frames/notes.txt").read_text() == Path("x.obj").read_text() == "mine"
     assert not Path("frames/frame_00099.obj").exists()
@@ -112,6 +112,6 @@ def test_a_full_disk_is_one_line(name: str, folder: Path) -> None:
     (line,) = result.stderr.splitlines()
     assert line.startswith(f"risorius: {output}: cannot be written: ")
     assert ".risorius-" not in line
-    left = {item.name for item in folder.iterdir()} - {"cloth.toml", "face.toml"}
+    left = {item.name for item in folder.iterdir()} - {"plane.toml", "face.toml"}
     assert left == ({output.name} if output.suffix else set())
     assert not output.suffix or output.read_text() == "mine"

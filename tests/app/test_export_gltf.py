@@ -243,8 +243,8 @@ def test_vertices_are_split_at_seams_of_the_texture(clip: Clip, tmp_path: Path) 
 
 
 def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
-    """A sheet by its targets, and the ball beneath it by its bone."""
-    text = 'scene = "cloth"\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\ndrop = 1.0\nturn = 0.4\n'
+    """A sheet by its targets."""
+    text = 'scene = "plane"\n[[pose]]\ntime = 0\n[[pose]]\ntime = 0.6\namplitude = 1\nphase = 0.4\n'
     clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
     assert written(clip, tmp_path / "sheet.glb") is None
     player = Player(tmp_path / "sheet.glb")

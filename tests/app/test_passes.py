@@ -14,7 +14,7 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.labels import CameraLabels, landmarks_in, points_of
 from risorius.app.passes.passes import IMAGES, Passes
 from risorius.app.refining.presets import Refinement
-from risorius.app.scenes import ClothScene, FaceScene
+from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.assets import Segment
 from risorius.assets.fitting.head import fit
 from tests.heads import stranger
@@ -287,11 +287,10 @@ def test_another_head_has_the_same_classes() -> None:
 
 
 def test_other_scenes_have_what_makes_sense() -> None:
-    """A cloth has depth, triangles and tension, but no classes; the ball under it is a part."""
-    scene = ClothScene()
-    scene.pose({"drop": 1.0})
-    for _ in range(30):
-        scene.step(1.0 / 60.0)
+    """A plane has depth, triangles and tension, but no classes."""
+    scene = PlaneScene()
+    scene.pose({"amplitude": 1.0})
+    scene.step(1.0 / 60.0)
     with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as studio:
         passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
         with pytest.raises(ValueError, match="nothing was drawn yet"):
@@ -299,5 +298,5 @@ def test_other_scenes_have_what_makes_sense() -> None:
         studio.draw_image()
         found = passes.draw(studio.camera, ["depth", "triangle", "tension"])
         assert found["tension"].max() > 0.01 and found["triangle"].max() < len(scene.faces)
-        with pytest.raises(ValueError, match="the scene cloth has no segmentation"):
+        with pytest.raises(ValueError, match="the scene plane has no segmentation"):
             passes.draw(studio.camera)

@@ -18,7 +18,6 @@ SIZE = (160, 120)
 MOVED = {
     "face": {"disgust": 1.0},
     "plane": {"amplitude": 1.0, "phase": 0.3},
-    "cloth": {"drop": 1.0},
 }
 
 

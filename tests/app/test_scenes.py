@@ -1,4 +1,4 @@
-"""Scenes: values are kept within limits, the plane waves, the cloth falls, the face obeys."""
+"""Scenes: values are kept within limits, the plane waves, the face obeys."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from risorius import refine
 from risorius.app.errors import UserError
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
-from risorius.app.scenes import ClothScene, FaceScene, PlaneScene, clamped
+from risorius.app.scenes import FaceScene, PlaneScene, clamped
 
 LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
 
@@ -31,33 +31,6 @@ def test_the_plane_waves() -> None:
     assert np.count_nonzero(np.abs(moved).max(axis=0) > 1e-9) == 1
     plane.reset()
     assert np.array_equal(plane.positions, plane.rest_positions)
-
-
-def test_the_cloth_falls_and_is_taken_up() -> None:
-    """Let go it hangs around the ball, of four to five times its triangles in every look."""
-    cloth = ClothScene()
-    assert len(cloth.faces) == 1152
-    refiners = {name: refiner_for(cloth, Refinement(name)) for name in PRESETS}
-    for refiner in refiners.values():
-        assert len(refiner.refine(cloth.positions).triangles) == 1152
-    cloth.pose({"drop": 1.0, "turn": -1.25})
-    cloth.step(3.0)
-    for name, (least, most) in {"paper": (3.3, 5.0), "smooth": (3.5, 5.5)}.items():
-        mesh = refiners[name].refine(cloth.positions)
-        refine.check(refiners[name], mesh, cloth.positions)
-        assert least * 1152 < len(mesh.triangles) < most * 1152, name
-    assert cloth.positions[:, 1].min() < -100.0
-    turn = cloth.bone_transforms()["ball"]
-    assert turn[:3, :3] @ [1.0, 0.0, 0.0] == pytest.approx([0.0, 0.0, 1.0], abs=1e-6)
-    cloth.pose({})
-    cloth.step(5.0)
-    assert np.abs(cloth.positions - cloth.rest_positions).max() < 1.0
-    cloth.pose({"drop": 1.0})
-    cloth.step(0.5)
-    cloth.reset()
-    assert np.array_equal(cloth.positions, cloth.rest_positions)
-    assert not any(cloth.values.values())
-    assert np.array_equal(cloth.bone_transforms()["ball"], np.eye(4))
 
 
 def test_the_face_takes_controls_of_every_layer(face: FaceScene) -> None:

@@ -12,7 +12,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
@@ -26,7 +25,7 @@ from risorius.app.viewer.session.recovery import INTERVAL, Recovery
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.settings import Display, Settings, load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, SIZE, run, settle, until, wait_for
+from .driving import NEEDS_A_SCREEN, SIZE, run, settle, wait_for
 
 GOOD = {"theme": "dark", "zoom": 1.5, "folds": {"Jaw": True}, "display": {"wireframe": True}}
 
@@ -343,21 +342,3 @@ def test_a_window_that_ended_is_recovered(
         viewer.drop(viewer.settings.recent[0].split("\n"))
         moved = {name: value for name, value in viewer.session.values.items() if value}
         assert moved == {"joy": 1.0}
-
-
-@pytest.mark.window
-@NEEDS_A_SCREEN[1]
-def test_the_cloth_falls_in_the_window(tmp_path: Path) -> None:
-    """Let go, it hangs after some seconds; the ball turns where nothing else moves, too."""
-    with Viewer(script_for(None, "cloth"), (480, 360), settings_path=tmp_path / "s.json") as viewer:
-        settle(viewer)
-        assert {"drop", "turn"} <= viewer.gui.places.keys()  # sliders are there at once
-        assert next(iter(viewer.layout._tabs)) == "Cloth###Face"  # it has none
-        scene = viewer.session.scene
-        viewer.session.set("turn", 0.25)
-        assert until(viewer, lambda: bool(np.isclose(scene.bone_transforms()["ball"][0, 2], 1.0)))
-        viewer.session.set("drop", 1.0)
-        assert until(viewer, lambda: float(scene.positions[:, 1].min()) < -100.0)
-        assert viewer.session.controls.limits["turn"] == (-2.0, 2.0)
-        frame = viewer.surface.read()
-        assert frame.std() > 10.0

@@ -13,22 +13,20 @@ from risorius import assets
 from risorius.assets import AssetError, loading
 from risorius.assets.loading import HEAD_FILE, load_head
 from risorius.assets.model import Head
-from risorius.assets.sheets import COLOURS
 
-COLOURS_OF_BALL = np.array(COLOURS, np.float32)
 MOST_DATA = 4_000_000  # bytes of all data files together; a quarter of it is the painted skin
 
 
 def test_available_names_can_be_loaded() -> None:
     """Every name that is offered works."""
-    assert assets.available() == ("head", "plane", "cloth")
+    assert assets.available() == ("head", "plane")
     for name in assets.available():
         assert len(assets.load(name).faces) > 0
 
 
 def test_unknown_name_is_refused_with_the_known_ones() -> None:
     """A typing error is answered with what there is."""
-    with pytest.raises(AssetError, match=r"'haed'; available: head, plane, cloth"):
+    with pytest.raises(AssetError, match=r"'haed'; available: head, plane"):
         assets.load("haed")
 
 
@@ -41,22 +39,6 @@ def test_plane_is_that_of_the_paper() -> None:
     assert plane.faces.shape == (154, 3)
     assert np.allclose(plane.vertices.mean(axis=0), 0.0)
     assert np.allclose(cross, [0.0, 0.0, 100.0])
-
-
-def test_cloth_lies_over_its_ball() -> None:
-    """A flat square of 1152 triangles that face up, just above the ball, which is round."""
-    cloth = assets.load("cloth")
-    corner = cloth.vertices[cloth.faces]
-    cross = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    assert cloth.faces.shape == (1152, 3)
-    assert np.allclose(cross, [0.0, 2500.0, 0.0])
-    assert (cloth.vertices[:, 1] > cloth.radius).all()
-    assert np.allclose(np.linalg.norm(cloth.ball.vertices, axis=1), cloth.radius, rtol=1e-5)
-    corner = cloth.ball.vertices[cloth.ball.faces]
-    outward = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    assert ((outward * corner[:, 0]).sum(axis=1) > -1e-3).all()
-    shares = [(cloth.ball.colours == colour).all(axis=1).mean() for colour in COLOURS_OF_BALL]
-    assert shares == pytest.approx([0.5, 0.5])
 
 
 def test_types_and_shapes_are_those_of_the_docstrings() -> None:

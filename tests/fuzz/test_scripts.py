@@ -52,7 +52,7 @@ TOKENS = (
 @pytest.fixture(scope="module")
 def scenes(face: FaceScene) -> dict[str, Scene]:
     """One of each kind."""
-    return {"face": face, "plane": SCENES["plane"](), "cloth": SCENES["cloth"]()}
+    return {"face": face, "plane": SCENES["plane"]()}
 
 
 def opened(path: Path, scenes: dict[str, Scene]) -> Script:

@@ -83,8 +83,7 @@ def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, di
 
 # Headings that are open as long as nobody has folded them.
 FIRST_OPEN = frozenset(
-    {"Expressions", "Wave", "Cloth", "Ball", "Refinement", "Style", "Anatomy", "Milliseconds"}
-    | {"Light and person"}
+    {"Expressions", "Wave", "Refinement", "Style", "Anatomy", "Milliseconds", "Light and person"}
 )
 
 
