@@ -8,6 +8,7 @@ what was asked of them is written so much later.
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import numpy as np
 
 from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
 from ..recordings.conversion import LEAD, lead_of
+from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
 from .clip import Clip, Floats, Surface
 from .formats import Request
@@ -29,7 +31,7 @@ OTHER_ORDER = {  # its columns are in ARKit's order but for these
     "mouthRight": "mouthLeft",
 }
 # Full controls in radians, and ARKit counts to the subject's right and down, where ours grow to the
-# left and up. The head rolls to the right shoulder there.
+# left and up. The head rolls to the right shoulder there, and eyes look ahead along OUTWARD axes.
 ANGLES = {
     "HeadYaw": ("head_yaw", -np.radians(45.0)),
     "HeadPitch": ("head_pitch", -np.radians(30.0)),
@@ -88,7 +90,8 @@ def write_arkit(clip: Clip, part: Path, _: Request) -> None:
     # As the app spells them: JawOpen.
     columns = {name[0].upper() + name[1:]: shapes.get(name, still) for name in names}
     for name, (control, radians) in ANGLES.items():
-        columns[name] = radians * lowest.get(control, still)
+        outward = math.radians(OUTWARD.get(control.replace("gaze_horizontal", "eye_yaw"), 0.0))
+        columns[name] = radians * lowest.get(control, still) - outward
     stamps = ([_timecode(time), len(columns)] for time in clip.times)
     _write(part, ["Timecode", "BlendShapeCount"], stamps, columns)
 

@@ -18,6 +18,7 @@ import math
 import struct
 from collections.abc import Mapping
 
+from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
 from .frame import LiveFrame, put_angle, put_shape, readable_subject
 
@@ -31,8 +32,6 @@ ANGLES = (
     "head_yaw", "head_pitch", "head_roll",
     "eye_yaw_left", "eye_pitch_left", None, "eye_yaw_right", "eye_pitch_right", None,
 )  # fmt: skip
-# [degrees] by which the axes of eyeballs stand outwards where eyes look ahead, in real packets.
-OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 _DEVICE = b"risorius"
 
 

@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import UserError
 from .gaps import whole_take
 from .named_columns import is_calibrated, shares
 from .names import HEAD_ANGLES, shape_of
@@ -39,9 +38,10 @@ def recognises(document: Any) -> bool:
 
 def read(document: Any, source: str, request: Request) -> Take:
     """The take in the document."""
+    request.refuse_face(source)
     notes: list[str] = []
     frames = _frames(document)
-    shapes, unknown = _shapes([_faces(frame) for frame in frames], source, request, notes)
+    shapes, unknown = _shapes([_faces(frame) for frame in frames], notes)
     keyed = [_plain(frame) for frame in frames]
     stamps = {
         key: np.array([_number(keys.get(key)) for keys in keyed])
@@ -116,21 +116,14 @@ def _category(item: Any) -> tuple[str, float] | None:
 
 
 def _shapes(
-    frames: Sequence[list[dict[str, float]]], source: str, request: Request, notes: list[str]
+    frames: Sequence[list[dict[str, float]]], notes: list[str]
 ) -> tuple[dict[str, Array], list[str]]:
     """Shape -> values, shape (frames,), NaN where there is no face; and names that none has."""
-    most = max(map(len, frames), default=0)
-    listed = [str(number) for number in range(most)]
-    if request.face is not None and request.face not in listed:
-        raise UserError(
-            f"{source}: no face '{request.face}'; in it are "
-            + ", ".join(f"'{number}'" for number in listed)
-        )
-    if request.face is None and most > 1:
-        notes.append(f"Up to {most} faces are in a frame; taken was '0', the first.")
-    face, values, unknown = int(request.face or 0), dict[str, Array](), dict[str, None]()
+    if (most := max(map(len, frames), default=0)) > 1:
+        notes.append(f"Up to {most} faces are in a frame; the first was taken.")
+    values, unknown = dict[str, Array](), dict[str, None]()
     for row, faces in enumerate(frames):
-        for written, score in faces[face].items() if face < len(faces) else ():
+        for written, score in faces[0].items() if faces else ():
             name = shape_of(written)
             if name is not None:
                 values.setdefault(name, np.full(len(frames), np.nan))[row] = score

@@ -1,24 +1,30 @@
 """Any table whose columns are shapes, action units, visemes or angles by name, in any spelling.
 
-Live Link Face's is one of them; so is what scripts write that read a phone or a tracker.
+Live Link Face's is one of them; so is what scripts write that read a phone or a tracker. Angles
+are in radians there, in others perhaps in degrees, and count down and to the subject's right.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from .angles import in_degrees
 from .gaps import whole_take
 from .names import ACTION_UNIT, ARKIT, angle_of, shape_of, viseme_of
 from .table import FACE_COLUMNS, Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
 
-PERCENT = 2.0  # shapes beyond are no shares: 0 to 100
-NONSENSE = 3.0  # and shares beyond are no measurements
-MOST_PERCENT = 110.0  # an intensity beyond is none in any unit
+NONSENSE = 3.0  # shares beyond are no measurements
+HIGHEST = 6.0  # an intensity beyond is none
+LARGEST_DEGREES = 360.0  # what is larger is no angle in any unit
+LARGEST_RADIANS = 1.6  # no head that is seen turns further, nor an eye
+# [degrees] by which the axes of eyeballs stand outwards where eyes look ahead, in the app's files
+# and packets, as those of real eyes do.
+OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
 OF_NO_USE = ("blendshapecount", "timecode", "index", "", "lefteyeroll", "righteyeroll")
@@ -87,8 +93,9 @@ def read(table: Table, request: Request) -> Take:
     shapes = shares({name: numbers[name] for name in columns.shapes}, notes)
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
     channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
-    channels |= in_degrees({name: numbers[name] for name in columns.angles}, shapes, notes)
     is_known = is_live_link(table.names)
+    outward = OUTWARD if is_known else {}
+    channels |= in_degrees({name: numbers[name] for name in columns.angles}, outward, notes)
     if columns.angles and not is_known:
         notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
     unknown = [table.names[number] for number in columns.unknown]
@@ -105,12 +112,6 @@ def read(table: Table, request: Request) -> Take:
 
 def shares(shapes: dict[str, Array], notes: list[str]) -> dict[str, Array]:
     """ARKit's shapes as shares 0 to 1; NaN where the value is none."""
-    if not shapes:
-        return {}
-    every = np.concatenate([values[np.isfinite(values)] for values in shapes.values()])
-    if len(every) and np.mean(every > PERCENT) > 0.01:
-        notes.append("Shapes go from 0 to 100 and were divided by 100.")
-        shapes = {name: values / 100.0 for name, values in shapes.items()}
     found, far, beyond = {}, 0, 0
     for name, values in shapes.items():
         is_far = np.abs(values) > NONSENSE
@@ -126,13 +127,39 @@ def shares(shapes: dict[str, Array], notes: list[str]) -> dict[str, Array]:
 
 
 def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
-    units = {name: np.where(np.abs(v) > MOST_PERCENT, np.nan, v) for name, v in units.items()}
+    """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) are divided."""
+    units = {name: np.where(np.abs(v) > HIGHEST, np.nan, v) for name, v in units.items()}
     highest = max((float(np.nanmax(values, initial=0.0)) for values in units.values()), default=0.0)
-    largest = 1.0 if highest <= 1.0 else 5.0 if highest <= 6.0 else 100.0
-    if units and largest > 1.0:
-        notes.append(f"Action units go from 0 to {largest:g} and were divided by it.")
-    return {name: np.clip(values / largest, 0.0, 1.0) for name, values in units.items()}
+    if highest > 1.0:
+        notes.append("Action units go from 0 to 5 and were divided by 5.")
+        units = {name: values / 5.0 for name, values in units.items()}
+    return {name: np.clip(values, 0.0, 1.0) for name, values in units.items()}
+
+
+def in_degrees(
+    angles: Mapping[str, Array], outward: Mapping[str, float], notes: list[str]
+) -> dict[str, Array]:
+    """Angles in degrees, + to the subject's left, up, to the left shoulder.
+
+    angles: name of ours -> as the file has it, shape (T,), NaN where nothing is known. outward: by
+    how much the axes of eyeballs are off [degrees].
+    """
+    moving = {}
+    for name, values in angles.items():
+        values = np.where(np.abs(values) > LARGEST_DEGREES, np.nan, values)
+        if np.nan_to_num(values).any():
+            moving[name] = values
+    if len(moving) < len(angles):
+        still = ", ".join(name for name in angles if name not in moving)
+        notes.append(f"Always 0, as if switched off, and left out: {still}.")
+    if not moving:
+        return {}
+    size = max(float(np.nanpercentile(np.abs(values), 99)) for values in moving.values())
+    is_radians = size <= LARGEST_RADIANS
+    unit = "radians" if is_radians else "degrees"
+    notes.append(f"Angles reach {size:.2g} and were taken for {unit}.")
+    scale = -180.0 / math.pi if is_radians else -1.0
+    return {name: scale * values - outward.get(name, 0.0) for name, values in moving.items()}
 
 
 def is_calibrated(shapes: dict[str, Array], notes: list[str]) -> bool:

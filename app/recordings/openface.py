@@ -79,7 +79,10 @@ def read(table: Table, request: Request) -> Take:
 
 
 def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """Both eyes' angles in the head: the gaze that the camera sees, less the head's own turn."""
+    """Both eyes' angles in the head: the gaze that the camera sees, less the head's own turn.
+
+    A camera stands above the screen that people look at, so that their gaze is never 0.
+    """
     if set(GAZE) <= numbers.keys():
         across, down = numbers[GAZE[0]], numbers[GAZE[1]]
     elif set(VECTORS) <= numbers.keys():
@@ -87,26 +90,13 @@ def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -
         across, down = np.arctan2(x, -z), np.arctan2(y, -z)
     else:
         return {}
-    still = np.zeros(len(across))
-    return eyes_in_head(
-        np.degrees(across), -np.degrees(down), head.get("head_yaw", still),
-        head.get("head_pitch", still), notes,
-    )  # fmt: skip
-
-
-def eyes_in_head(
-    left: Array, up: Array, head_yaw: Array, head_pitch: Array, notes: list[str]
-) -> dict[str, Array]:
-    """The eyes' angles from a gaze in the camera's frame; the middle of the take looks ahead.
-
-    A camera stands above the screen that people look at, so that their gaze is never 0.
-    """
-    if np.isfinite(left).any() and (np.nan_to_num(left).any() or np.nan_to_num(up).any()):
-        notes.append(
-            "Gaze is as the camera sees it: the head's turn was taken away, and the middle of the "
-            "take looks straight ahead."
-        )
-        yaw, pitch = left - head_yaw, up - head_pitch
-        yaw, pitch = yaw - np.nanmedian(yaw), pitch - np.nanmedian(pitch)
-        return {name: yaw if "yaw" in name else pitch for name in EYE_ANGLES}
-    return {}
+    if not (np.nan_to_num(across).any() or np.nan_to_num(down).any()):
+        return {}
+    notes.append(
+        "Gaze is as the camera sees it: the head's turn was taken away, and the middle of the "
+        "take looks straight ahead."
+    )
+    yaw = np.degrees(across) - head.get("head_yaw", 0.0)
+    pitch = -np.degrees(down) - head.get("head_pitch", 0.0)
+    yaw, pitch = yaw - np.nanmedian(yaw), pitch - np.nanmedian(pitch)
+    return {name: yaw if "yaw" in name else pitch for name in EYE_ANGLES}

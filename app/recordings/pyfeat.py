@@ -19,7 +19,6 @@ import numpy as np
 from .gaps import whole_take
 from .named_columns import shares
 from .names import shape_of
-from .openface import eyes_in_head
 from .table import Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
@@ -27,7 +26,6 @@ from .timing import times_of
 UNIT = re.compile(r"au(\d\d)$")
 BOX = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
 POSE = ("pitch", "yaw", "roll")
-GAZE = ("gaze_pitch", "gaze_yaw")
 NEVER_SEEN = ("cheekPuff", "cheekSquintLeft", "cheekSquintRight", "noseSneerLeft", "noseSneerRight")
 INSTEAD = ("AU6", "AU9")
 LARGEST_RADIANS = 1.6  # a head that is seen turns no further
@@ -54,14 +52,12 @@ def read(table: Table, request: Request) -> Take:
             "Shapes and action units tell the same face twice: the shapes were taken, and AU6 and "
             "AU9, which the shapes do not know."
         )
-    others = {name: places[name] for name in ("facescore", *POSE, *GAZE) if name in places}
+    others = {name: places[name] for name in ("facescore", *POSE) if name in places}
     wanted = units | shapes | others
     numbers = table.numbers_of(wanted)
     channels = {name: np.clip(numbers[name], 0.0, 1.0) for name in units}
     channels |= shares({name: numbers[name] for name in shapes}, notes)
     channels |= _head(numbers, bool(shapes), notes)
-    if not any(name.startswith("eyeLook") for name in shapes):
-        channels |= _eyes(numbers, channels, notes)
     lost = ~(numbers.get("facescore", np.ones(1)) > 0.0)
     channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
     return whole_take(
@@ -87,13 +83,3 @@ def _head(numbers: dict[str, Array], is_second: bool, notes: list[str]) -> dict[
     scale = 1.0 if is_early else 180.0 / np.pi
     signs = {"pitch": 1.0 if is_early else -1.0, "yaw": -1.0, "roll": -1.0 if is_second else 1.0}
     return {f"head_{name}": signs[name] * scale * values for name, values in pose.items()}
-
-
-def _eyes(numbers: dict[str, Array], head: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """The eyes' angles in the head; gaze_pitch + is up, gaze_yaw + to the subject's right."""
-    if not set(GAZE) <= numbers.keys():
-        return {}
-    up, left = np.degrees(numbers["gaze_pitch"]), -np.degrees(numbers["gaze_yaw"])
-    still = np.zeros(len(up))
-    yaw, pitch = head.get("head_yaw", still), head.get("head_pitch", still)
-    return eyes_in_head(left, up, yaw, pitch, notes)

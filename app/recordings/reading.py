@@ -6,7 +6,6 @@ that recognises it and one that reads it, and a row here.
 
 from __future__ import annotations
 
-import contextlib
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -22,7 +21,6 @@ from .take import Request, Take
 
 # Of each kind of table: whether the names of columns are its own, and how it is read.
 TABLES: Sequence[tuple[Callable[[tuple[str, ...]], bool], Callable[[Table, Request], Take]]] = (
-    (speech.recognises_rows, speech.read_rows),
     (named_columns.is_live_link, named_columns.read),
     (pyfeat.recognises, pyfeat.read),
     (openface.recognises, openface.read),
@@ -63,12 +61,15 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
     text = read_recording(path)
     request = Request(face, rate)
     if JSON.match(text):
-        document = _document(text, str(path))
+        try:
+            document = parsed_json(text)
+        except ValueError as error:
+            raise UserError(f"{path}: is {error}") from None
         for recognises, read in DOCUMENTS:
             if recognises(document):
                 return read(document, str(path), request)
         raise UserError(f"{path}: is JSON without shapes of a face; known are {KNOWN}")
-    names, _ = header_of(text)
+    names = header_of(text)
     for is_known, read_table in TABLES:
         if is_known(names):
             return read_table(table_in(text, source=str(path)), request)
@@ -83,21 +84,8 @@ def is_recording(path: Path) -> bool:
     text = read_beginning(path)
     if JSON.match(text):
         return bool(SPEAKS_OF_FACES.search(text))
-    names, _ = header_of(text)
+    names = header_of(text)
     return any(recognises(names) for recognises, _ in TABLES)
-
-
-def _document(text: str, source: str) -> Any:
-    """The JSON in a text, also where each line is a document of its own (JSON Lines)."""
-    try:
-        return parsed_json(text)
-    except ValueError as error:
-        why = error
-    lines = [line for line in text.split("\n") if line.strip()]
-    with contextlib.suppress(ValueError):
-        if len(lines) > 1:
-            return [parsed_json(line) for line in lines]
-    raise UserError(f"{source}: is {why}")
 
 
 def _strange(names: tuple[str, ...]) -> str:

@@ -3,13 +3,12 @@
 OpenFaceFX shares each moment among fifteen visemes, so that the lips' weight is about 0.4 where
 they meet: far too little to shut them. Its peaks of PP and FF are raised to what contact needs, and
 silence to 1, at the cost of all others. Rhubarb has one of nine mouth shapes for each stretch of
-time (its manual, "Mouth shapes"), in JSON or TSV.
+time (its manual, "Mouth shapes").
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -21,7 +20,6 @@ from risorius.schema import read as read_table
 from ..errors import UserError
 from .gaps import whole_take
 from .names import viseme_of
-from .table import Table
 from .take import Array, Request, Take
 
 CONTACTS = {"viseme_PP": 1.0, "viseme_FF": 0.9}  # what the peak of a sound needs
@@ -141,34 +139,16 @@ def recognises_cues(document: Any) -> bool:
 
 
 def read_cues(document: Any, source: str, request: Request) -> Take:
-    """The take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`."""
+    """The take in `{"mouthCues": [{"start": 0.0, "end": 0.2, "value": "A"}]}`.
+
+    Mouth shapes hold, and go over into each other around the moments of change.
+    """
     request.refuse_face(source)
-    cues = read_table(_Cues, document, source, error=UserError).mouth_cues
-    end = max((cue.end for cue in cues), default=0.0)
-    return _from_cues([(cue.start, cue.value) for cue in cues], end, source)
-
-
-def recognises_rows(names: tuple[str, ...]) -> bool:
-    """Whether a first line is one of Rhubarb's TSV: a time, a mouth shape."""
-    return len(names) == 2 and names[1] in MOUTHS and names[0].replace(".", "", 1).isdecimal()
-
-
-def read_rows(table: Table, request: Request) -> Take:
-    """The take in Rhubarb's TSV; its first row is no header."""
-    request.refuse_face(table.source)
-    starts = [float(table.names[0]), *table.numbers([0])[:, 0].tolist()]
-    cues = list(zip(starts, [table.names[1], *table.cells(1)], strict=True))
-    for number, (start, mouth) in zip([1, *table.line_numbers], cues, strict=True):
-        row = {"start": start, "value": mouth}
-        read_table(_Cue, row, f"{table.source}: line {number}", error=UserError)
-    return _from_cues(cues, cues[-1][0], table.source)
-
-
-def _from_cues(cues: Sequence[tuple[float, str]], end: float, source: str) -> Take:
-    """Mouth shapes that hold, and go over into each other around the moments of change."""
-    if not cues:
+    given = read_table(_Cues, document, source, error=UserError).mouth_cues
+    if not given:
         raise UserError(f"{source}: has no mouth cues; nothing is said")
-    cues = sorted(cues)
+    end = max(cue.end for cue in given)
+    cues = sorted((cue.start, cue.value) for cue in given)
     starts = np.array([start for start, _ in cues])
     ends = np.append(starts[1:], max(end, starts[-1]))
     half = np.minimum((ends - starts) / 2.0, TURN / 2.0)  # of its way out, and of the next one's in

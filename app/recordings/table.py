@@ -1,4 +1,4 @@
-"""A table in a text: names above columns, whatever stands between them.
+"""A table in a text: names above columns, with commas between cells.
 
 Numbers are read by `numpy.loadtxt`, whose parser is compiled: ten minutes of 60 frames a second
 (36 000 rows of 63 columns) take about 0.7 s. pandas and polars need 0.2 s, but bring 80 MB and more
@@ -8,7 +8,6 @@ csv module alone took 2 to 3 s.
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -19,8 +18,6 @@ import numpy as np
 from ..errors import UserError, counted
 from .take import Array, Request
 
-DELIMITERS = ",\t"
-UNIT_SEPARATOR = "\x1f"  # stands between cells that were quoted: it is in no cell
 LONGEST_NAME = 80  # [characters] of a column; what is longer is no header
 LARGEST = 1e30  # what is larger is no measurement; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
@@ -42,7 +39,6 @@ class Table:
     names: tuple[str, ...]
     lines: list[str]
     line_numbers: list[int]
-    delimiter: str
     notes: list[str] = field(default_factory=list)
 
     @property
@@ -52,7 +48,7 @@ class Table:
 
     def cells(self, column: int) -> list[str]:
         """The text in one column."""
-        return [line.split(self.delimiter, column + 1)[column].strip() for line in self.lines]
+        return [line.split(",", column + 1)[column].strip() for line in self.lines]
 
     def numbers_of(self, places: Mapping[str, int]) -> dict[str, Array]:
         """Name -> the numbers in its column, shape (rows,); NaN where there is none."""
@@ -62,7 +58,7 @@ class Table:
         """The numbers in some columns, shape (rows, columns); NaN where there is none."""
         if not columns or not self.lines:
             return np.empty((len(self.lines), len(columns)))
-        told: dict[str, Any] = {"delimiter": self.delimiter, "usecols": columns, "comments": None}
+        told: dict[str, Any] = {"delimiter": ",", "usecols": columns, "comments": None}
         try:
             values = np.loadtxt(self.lines, ndmin=2, **told)
         except ValueError:  # not all are numbers
@@ -76,102 +72,37 @@ class Table:
         return np.where(np.abs(values) < LARGEST, values, np.nan)
 
 
-def header_of(text: str) -> tuple[tuple[str, ...], str]:
-    """The names in the first line that is one, and the delimiter; no names: there is no table."""
-    line, start = _first_line(text)
-    following = text[start + len(line) :].lstrip("\n ").partition("\n")[0]
-
-    def fit(delimiter: str) -> tuple[bool, int]:
-        """How well the line is divided: first into as many cells as the next one."""
-        count = line.count(delimiter)
-        return 0 < count == following.count(delimiter), count
-
-    delimiter = max(DELIMITERS, key=fit)
-    try:
-        names = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
-    except csv.Error:
-        return (), delimiter
-    is_header = (
-        bool(names)
-        and all(len(name) <= LONGEST_NAME for name in names)
-        and any(re.search(r"[^\W\d]", name) for name in names)
+def header_of(text: str) -> tuple[str, ...]:
+    """The names in the first line that is one; none: there is no table."""
+    first = next((line for line in text.split("\n") if _is_row(line)), "")
+    names = tuple(name.strip() for name in first.split(","))
+    is_header = all(len(name) <= LONGEST_NAME for name in names) and any(
+        re.search(r"[^\W\d]", name) for name in names
     )
-    return tuple(name.strip() for name in names) if is_header else (), delimiter
+    return names if is_header else ()
 
 
 def table_in(text: str, *, source: str) -> Table:
-    """The table in a text. UserError where rows and header do not belong together."""
-    names, delimiter = header_of(text)
-    _, start = _first_line(text)
-    before, notes = text.count("\n", 0, start) + 1, list[str]()
-    rows = list(enumerate(text[start:].split("\n")))
-    delimiter_within = UNIT_SEPARATOR if '"' in text else delimiter
-    if delimiter_within != delimiter:
-        rows = [(number, _unquoted(line, delimiter)) for number, line in rows]
-    rows = [(before + number, line) for number, line in rows[1:] if line.strip(" \t,;|\x1f")]
+    """The table in a text, but a row at its end that is torn. UserError for other wrong rows."""
+    names, notes = header_of(text), list[str]()
+    rows = [(number, line) for number, line in enumerate(text.split("\n"), 1) if _is_row(line)][1:]
+    if len(rows) > 1 and rows[-1][1].count(",") + 1 < len(names):
+        notes.append(f"The last row, line {rows.pop()[0]}, is torn and was left out.")
     if not rows:
         raise UserError(f"{source}: has a header and no rows below it; nothing was recorded")
-    kept = _of_one_length(rows, len(names), delimiter_within, notes)
-    if 2 * len(kept) < len(rows):
-        fitting = {number for number, _ in kept}
-        number, line = next(row for row in rows if row[0] not in fitting)
-        raise UserError(
-            f"{source}: line {number} has {counted(line.count(delimiter_within) + 1, 'cell')}, the "
-            f"header has {len(names)} names, and so it is in most rows; each row needs as many"
-        )
-    return Table(
-        source,
-        names,
-        [line for _, line in kept],
-        [number for number, _ in kept],
-        delimiter_within,
-        notes,
-    )
-
-
-def _first_line(text: str) -> tuple[str, int]:
-    """The header's line, and where it begins."""
-    start = 0
-    for line in text.splitlines(keepends=True):
-        plain = line.strip("\ufeff \n")
-        if plain and not plain.startswith("#"):
-            return plain, start
-        start += len(line)
-    return "", start
-
-
-def _unquoted(line: str, delimiter: str) -> str:
-    """A row with quotes, its cells between UNIT_SEPARATOR; "" for what csv cannot read."""
-    try:
-        return UNIT_SEPARATOR.join(next(csv.reader([line], delimiter=delimiter), []))
-    except csv.Error:  # a cell of megabytes
-        return ""
-
-
-def _of_one_length(
-    rows: list[tuple[int, str]], length: int, delimiter: str, notes: list[str]
-) -> list[tuple[int, str]]:
-    """The rows that have as many cells as the header; an empty cell too many at the end is cut."""
-    kept, left_out = [], []
     for number, line in rows:
-        count = line.count(delimiter) + 1
-        if count == length + 1 and line.rstrip().endswith(delimiter.strip() or delimiter):
-            line = line[: line.rindex(delimiter)]
-            count = length
-        if count == length:
-            kept.append((number, line))
-        else:
-            left_out.append(number)
-    if left_out and kept:
-        what = (
-            f"The last row, line {left_out[0]}, is torn and was left out."
-            if left_out == [rows[-1][0]]
-            else f"{counted(len(left_out), 'row')} of other length "
-            f"{'was' if len(left_out) == 1 else 'were'} left out, "
-            f"the first in line {left_out[0]}."
-        )
-        notes.append(what)
-    return kept
+        if (count := line.count(",") + 1) != len(names):
+            raise UserError(
+                f"{source}: line {number} has {counted(count, 'cell')}, the header has "
+                f"{len(names)} names; each row needs as many"
+            )
+    numbers, lines = zip(*rows, strict=True)
+    return Table(source, names, [*lines], [*numbers], notes)
+
+
+def _is_row(line: str) -> bool:
+    """Whether a line has cells: it is no comment, and not empty."""
+    return bool(line.strip(" ,")) and not line.startswith("#")
 
 
 def one_face(table: Table, request: Request) -> Table:

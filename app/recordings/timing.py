@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -13,11 +11,10 @@ import numpy.typing as npt
 from .table import Table
 from .take import Array
 
-RATES = (24.0, 25.0, 30.0, 50.0, 60.0)  # [frames / s]
+RATES = (24.0, 25.0, 30.0, 50.0, 60.0, 120.0, 240.0, 1000.0)  # [frames / s]
 DEFAULT_RATE = 30.0  # of most cameras
-TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:[:;](\d+)(?:[.,](\d+))?)?$")
+TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})(?:[:;](\d{1,6}(?:\.\d+)?))?$")
 DAY = 86_400.0  # [s]
-LONGEST_PAUSE = 3600.0  # [s] over midnight; what goes back further is a wrong time
 SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
 UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
     (SHORTEST_STEP, 2.5, 1.0, "seconds"),
@@ -94,75 +91,26 @@ def stamp_times(stamps: Array, notes: list[str]) -> Array | None:
 
 def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
     """Times of SMPTE timecode, HH:MM:SS:FF.fraction, NaN where a cell has none."""
-    code = _Timecode.of(cells)
-    if np.isnan(code.seconds).all():
-        return code.seconds
-    counted = _rate_in(code, notes if rate is None else [])
-    rate = rate or counted
-    base = math.ceil(rate if code.frames.max() < rate <= RATES[-1] else counted)
-    numbers = code.numbers(base)
-    if not _mostly_rises(numbers + code.fractions):
-        notes.append("The timecode stands still, and was not used.")
-        return frame_times(None, len(cells), rate, notes)
-    if _jumps(numbers + code.fractions) > _jumps(numbers) + 0.005 * len(numbers):
-        notes.append("The fraction in the timecode makes frames jump to and fro, and was not used.")
-        return numbers / rate
-    return (numbers + code.fractions) / rate
-
-
-@dataclass(frozen=True)
-class _Timecode:
-    """What cells of timecode say; arrays of shape (rows,).
-
-    seconds: of the day, NaN where there is no timecode. frames: counted in this second.
-    fractions: of a frame.
-    """
-
-    seconds: Array
-    frames: Array
-    fractions: Array
-
-    @classmethod
-    def of(cls, cells: Sequence[str]) -> _Timecode:
-        """The timecode in these cells."""
-        rows = np.full((len(cells), 5), np.nan)
-        for row, cell in enumerate(cells):
-            if part := TIMECODE.match(cell):
-                *whole, fraction = part.groups(default="0")
-                rows[row] = *map(int, whole), float(f"0.{fraction}")
-        seconds = rows[:, :3] @ (3600.0, 60.0, 1.0)
-        return cls(seconds, np.nan_to_num(rows[:, 3]), np.nan_to_num(rows[:, 4]))
-
-    def numbers(self, base: int) -> Array:
-        """Frames since midnight of the first day, where a second has `base` of them."""
-        numbers: Array = _unwrapped(self.seconds) * base + self.frames
+    parts = np.full((len(cells), 4), np.nan)  # hours, minutes, seconds, frames with their fraction
+    for row, cell in enumerate(cells):
+        if found := TIMECODE.match(cell):
+            parts[row] = [float(part or 0.0) for part in found.groups()]
+    numbers, known = parts[:, 3].copy(), np.isfinite(parts[:, 0])
+    if not known.any():
         return numbers
-
-
-def _jumps(numbers: Array) -> int:
-    """How many steps differ from the usual one by more than half a frame."""
-    steps = np.diff(numbers[np.isfinite(numbers)])
-    return int(np.sum(np.abs(steps - np.median(steps)) > 0.5)) if len(steps) else 0
-
-
-def _rate_in(code: _Timecode, notes: list[str]) -> float:
-    """The frame rate of timecodes, from the highest number of a frame in a second."""
-    highest = int(code.frames.max())
-    rate = next((each for each in RATES if each > highest), 240.0)
-    if highest >= rate:  # no camera: thousandths
-        rate = 1000.0
-    if len(np.unique(code.seconds)) > 1:
-        notes.append(f"{rate:g} frames a second, as the timecode counts to {highest}.")
-    elif len(code.frames) > 1:
-        rate = max(rate, 60.0)
-        notes.append(f"Less than a second of timecode: {rate:g} frames a second were assumed.")
-    return rate
-
-
-def _unwrapped(seconds: Array) -> Array:
-    """Seconds of the day that go on after midnight."""
-    steps = np.diff(seconds, prepend=seconds[:1])
-    return seconds + DAY * np.cumsum(np.nan_to_num(steps) < LONGEST_PAUSE - DAY)
+    seconds = np.unwrap(parts[known, :3] @ (3600.0, 60.0, 1.0), period=DAY)  # also over midnight
+    highest = int(numbers[known].max())
+    base = next((each for each in RATES if each > highest), highest + 1.0)
+    if rate is None and np.ptp(seconds) > 0.0:
+        notes.append(f"{base:g} frames a second, as the timecode counts to {highest}.")
+    elif rate is None and len(cells) > 1:
+        base = max(base, 60.0)
+        notes.append(f"Less than a second of timecode: {base:g} frames a second were assumed.")
+    numbers[known] += seconds * base
+    if not _mostly_rises(numbers):
+        notes.append("The timecode stands still, and was not used.")
+        return frame_times(None, len(cells), rate or base, notes)
+    return numbers / (rate or base)
 
 
 def _mostly_rises(values: Array) -> bool:

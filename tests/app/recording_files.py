@@ -35,13 +35,13 @@ def take_of(
     return Take(kind, "take.csv", times, arrays)
 
 
-def table(columns: Columns, delimiter: str = ",") -> str:
+def table(columns: Columns) -> str:
     """A table in text."""
     rows = zip(*columns.values(), strict=True)
-    lines = [delimiter.join(columns)]
+    lines = [",".join(columns)]
     for row in rows:
         cells = [f"{cell:.6f}" if isinstance(cell, float) else str(cell) for cell in row]
-        lines.append(delimiter.join(cells))
+        lines.append(",".join(cells))
     return "\n".join(lines) + "\n"
 
 
@@ -67,7 +67,8 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
     """A raw take of Live Link Face that looks around, its angles in a unit of `unit` radians.
 
     Eyes and shapes move as those of the app: pitch = 0.61 down - 0.44 up, yaw = 0.62 in - 0.59 out
-    of the left eye, the opposite of the right eye [rad]; + is down and to the subject's right.
+    of the left eye, the opposite of the right eye [rad]; + is down and to the subject's right. The
+    axes of the eyeballs stand 4 degrees outwards of where the eyes look.
     """
     time = np.arange(count) / 60.0
     down, right = 0.3 * np.sin(3.0 * time), 0.2 * np.sin(5.0 * time + 1.0)
@@ -80,7 +81,8 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
     angles = {name: np.zeros(count) for name in ANGLES}
     angles |= {"HeadYaw": 0.5 * np.sin(time), "HeadPitch": 0.2 * np.cos(time)}
     angles |= {"HeadRoll": 0.1 * np.sin(2.0 * time)}
-    angles |= {"LeftEyeYaw": right, "RightEyeYaw": right}
+    outward = np.radians(4.0)
+    angles |= {"LeftEyeYaw": right - outward, "RightEyeYaw": right + outward}
     angles |= {"LeftEyePitch": down, "RightEyePitch": down}
     named = {name[0].upper() + name[1:]: values for name, values in shapes.items()}
     return {

@@ -124,7 +124,7 @@ def test_arkit_tells_what_was_set_when_it_is_seen(scene: FaceScene, tmp_path: Pa
         assert np.allclose(columns[name[0].upper() + name[1:]], asked, atol=0.01), name
     assert columns["MouthSmileRight"].max() == 0.0
     assert columns["HeadYaw"].min() == pytest.approx(np.radians(-22.5), abs=0.02)
-    assert columns["LeftEyeYaw"].min() == pytest.approx(np.radians(-15.0), abs=0.02)
+    assert columns["LeftEyeYaw"].min() == pytest.approx(np.radians(-15.0 - 4.0), abs=0.02)
 
 
 def test_expressions_become_shapes(scene: FaceScene, tmp_path: Path) -> None:

@@ -167,7 +167,7 @@ def test_pyfeat_2(tmp_path: Path) -> None:
 
 
 def test_pyfeat_of_the_time_between(tmp_path: Path) -> None:
-    """Radians without shapes: pitch + down, roll + to the left shoulder; a gaze of its own."""
+    """Radians without shapes: pitch + down, roll + to the left shoulder."""
     columns = pyfeat_2()
     columns = {name: values for name, values in columns.items() if name not in ARKIT}
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -176,8 +176,6 @@ def test_pyfeat_of_the_time_between(tmp_path: Path) -> None:
     assert take.channels["head_pitch"][-1] == pytest.approx(-10.0, abs=1e-3)
     assert take.channels["head_roll"][-1] == pytest.approx(3.0, abs=1e-3)
     assert take.channels["AU12"][-1] == pytest.approx(0.9)
-    assert np.median(take.channels["eye_yaw_left"]) == pytest.approx(0.0, abs=1e-9)
-    assert np.ptp(take.channels["eye_yaw_left"] + take.channels["head_yaw"]) < 1e-3
 
 
 def test_pyfeat_names_persons(tmp_path: Path) -> None:
@@ -228,9 +226,9 @@ def test_spellings_of_units_and_visemes(
     )
 
 
-@pytest.mark.parametrize("largest", [1.0, 5.0, 100.0])
+@pytest.mark.parametrize("largest", [1.0, 5.0])
 def test_units_of_action_units(largest: float, tmp_path: Path) -> None:
-    """0 to 1, 0 to 5 (A to E), and percent."""
+    """0 to 1, and 0 to 5 (A to E)."""
     columns = {"t": np.arange(11) / 30.0, "AU12": np.linspace(0.0, largest, 11)}
     take = read_take(written(tmp_path / "take.csv", columns))
     assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 1.0, 11))
