@@ -22,8 +22,8 @@ from PIL import Image
 COMMAND = Path(sys.executable).with_name("risorius")
 HEAD = Path(__file__).parents[1] / "assets" / "data"
 SCRIPTS = ("face", "plane")
-FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit", "units")
-SUFFIXES = {"gltf": "glb", "vtkhdf": "vtkhdf", "arkit": "csv", "units": "csv"}
+FORMATS = ("gltf", "usd", "pc2", "vtkhdf", "npz", "arkit")
+SUFFIXES = {"gltf": "glb", "usd": "usdz", "vtkhdf": "vtkhdf", "arkit": "csv"}
 POSES = ("joy", "anger", "fear", "disgust", "surprise", "sadness", "kiss", "AU43=1", "jawOpen=1")
 CAMERAS = ("three-quarter", "profile", "top", "0,0,3")
 LARGEST_STEP, FEW_PIXELS = 2, 0.001  # of 255; as a share of all

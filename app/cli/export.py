@@ -32,8 +32,7 @@ class Exporting:
     name: str | None = option(
         "--as",
         type=click.Choice([each.name for each in FORMATS]),
-        help="The format, where a suffix does not tell: obj is a folder of one file a frame; "
-        "of a .csv, arkit is meant unless told.",
+        help="The format, where a suffix does not tell: obj is a folder of one file a frame.",
     )
     fps: float = option(
         type=FiniteRange(1, 240), default=30.0, show_default=True, help="Frames a second."

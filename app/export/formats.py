@@ -92,22 +92,17 @@ class Format:
 MESH = (".obj", ".mtl", "_skin.png")  # a mesh file, its materials, and their picture
 FORMATS = (
     Format("gltf", "glTF", (".glb",), "gltf:write_gltf"),
-    Format("usd", "USD", (".usdc", ".usda", ".usd"), "usd:write_usd", True, beside=("_skin.png",)),
-    Format("usdz", "USD in one file", (".usdz",), "usd:write_usdz", True),
+    Format("usd", "USD", (".usdz",), "usd:write_usd", True),
     Format("pc2", "PC2 point cache", (".pc2",), "obj:write_pc2", beside=MESH),
     Format("obj", "OBJ sequence", (), "obj:write_obj", True),
     Format("vtkhdf", "VTKHDF", (".vtkhdf", ".hdf"), "vtkhdf:write_vtkhdf", True),
     Format("npz", "numpy arrays", (".npz",), "tables:write_npz"),
     Format("arkit", "ARKit shapes over time", (".csv",), "tables:write_arkit"),
-    Format("units", "action units over time", (".csv",), "tables:write_units"),
 )
 
 
 def format_for(output: Path, name: str | None) -> Format:
-    """The format that an output's name means, or that `--as` names; UserError where there is none.
-
-    Of two formats with one suffix, the first is meant.
-    """
+    """The format that an output's name means, or that `--as` names; UserError for none."""
     suffix = output.suffix.lower()
     known = dict.fromkeys(suffix for each in FORMATS for suffix in each.suffixes)
     for each in FORMATS:

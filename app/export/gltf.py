@@ -14,7 +14,6 @@ and what other programs make of it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,11 +27,11 @@ from risorius.geometry.colour import to_linear
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.texels import Texels, rates
 
-from ..scenes import FaceScene, Scene
+from ..scenes import FaceScene
 from .clip import METRES, Clip, Surface
 from .formats import Request
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
-from .morphs import TOLERANCE, Floats, Singles, decompose, follow, parts_of
+from .morphs import TOLERANCE, Floats, decompose, follow
 
 LONGEST_SHORT = 65535  # vertices that 16 bits can number
 HEAD, NECK = "cranium", "neck"  # names of bones
@@ -77,45 +76,28 @@ def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
             none, normals = np.zeros((0, *surface.rest.shape)), part.normals.astype(np.float64)
             pieces.append(Piece(surface, bone, normals, none, none, np.zeros((0, 0))))
             continue
-        moved = _moved(clip, surface.rest, surface.shapes, is_skin=part is None)
-        morphs = decompose(moved)
+        shapes = surface.shapes.astype(np.float64)
+        if part is None:
+            _take_pose_out(clip, shapes)
+        morphs = decompose(shapes - surface.rest)
         normals = vertex_normals(surface.rest, surface.faces)
-        shapes = (surface.rest + moved[some] for some in parts_of(len(moved)))
-        bent = (
-            np.array([vertex_normals(shape, surface.faces) for shape in some]) - normals
-            for some in shapes
-        )
-        bends = follow(morphs.weights, bent)
+        bent = np.array([vertex_normals(shape, surface.faces) for shape in shapes])
+        bends = follow(morphs.weights, bent - normals)
         pieces.append(Piece(surface, bone, normals, morphs.targets, bends, morphs.weights))
         error = max(error, morphs.error)
     return pieces, error
 
 
-def _moved(clip: Clip, rest: Floats, shapes: Singles, *, is_skin: bool) -> Singles:
-    """How far the vertices are from rest in each frame, before bones move them, shape (N, V, 3)."""
-    moved = np.empty_like(shapes)
-    for some in parts_of(len(shapes)):
-        there: npt.NDArray[np.floating] = shapes[some]
-        if is_skin:
-            bones = {name: matrices[some] for name, matrices in clip.bones.items()}
-            there = _without_pose(clip.scene, there, bones)
-        moved[some] = there - rest
-    return moved
-
-
-def _without_pose(
-    scene: Scene, shapes: npt.NDArray[np.floating], bones: Mapping[str, Floats]
-) -> Floats:
-    """Shapes of the skin, (N, V, 3), as the head's bone finds them; bones: matrices (N, 4, 4)."""
-    there = shapes.astype(np.float64)
-    if isinstance(scene, FaceScene):
-        share = scene.simulation.head_weight[:, None]
-        for shape, matrix in zip(there, bones[HEAD], strict=True):
-            if not np.array_equal(matrix, np.eye(4)):
-                turns = np.eye(3) + share[:, :, None] * (matrix[:3, :3] - np.eye(3))
-                unmoved = (shape - share * matrix[:3, 3])[:, :, None]
-                shape[:] = np.linalg.solve(turns, unmoved)[:, :, 0]
-    return there
+def _take_pose_out(clip: Clip, shapes: Floats) -> None:
+    """Leave shapes of the skin, (N, V, 3), as the head's bone finds them."""
+    if not isinstance(clip.scene, FaceScene):
+        return
+    share = clip.scene.simulation.head_weight[:, None]
+    for shape, matrix in zip(shapes, clip.bones[HEAD], strict=True):
+        if not np.array_equal(matrix, np.eye(4)):
+            turns = np.eye(3) + share[:, :, None] * (matrix[:3, :3] - np.eye(3))
+            unmoved = (shape - share * matrix[:3, 3])[:, :, None]
+            shape[:] = np.linalg.solve(turns, unmoved)[:, :, 0]
 
 
 def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
@@ -166,7 +148,7 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         texels = top_down[coordinates].astype(np.float32)
         attributes["TEXCOORD_0"] = glb.accessor(texels, ARRAY_BUFFER)
     if surface.colours is not None:
-        attributes["COLOR_0"] = of_vertices(to_linear(_colours(clip, surface)))
+        attributes["COLOR_0"] = of_vertices(to_linear(surface.colours))
     if share is not None:
         none = np.zeros_like(share)
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
@@ -187,16 +169,6 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         names = [f"motion {index + 1}" for index in range(len(piece.targets))]
         mesh["extras"] = {"targetNames": names}  # where all readers look for names
     return glb.add("meshes", mesh)
-
-
-def _colours(clip: Clip, surface: Surface) -> npt.NDArray[Any]:
-    """sRGB of the vertices, (V, 3), as other programs light them.
-
-    Ours darkens the depth of the mouth further, since nothing casts shadows there.
-    """
-    head = clip.scene.head if isinstance(clip.scene, FaceScene) else None
-    painted = {part.name: part.colours for part in head.parts} if head is not None else {}
-    return np.asarray(painted.get(surface.name, surface.colours))
 
 
 def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:

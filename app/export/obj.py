@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import PIL.Image
 
-from .clip import METRES, Clip, Floats, FrameSurface, Indices, frame_surfaces
+from .clip import METRES, Clip, FrameSurface, Indices, frame_surfaces
 from .formats import FRAME, Request
 
 PC2_HEAD = "<12siiffi"  # signature, version, vertices, first frame, frames a sample, samples
@@ -29,7 +30,7 @@ def write_obj(clip: Clip, folder: Path, request: Request) -> None:
     frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
     for number, frame in enumerate(frames):
         path = folder / f"{FRAME.format(number)}.obj"
-        path.write_text(_obj_text(frame, material))
+        path.write_text(_obj_text(clip, frame, material))
 
 
 def write_pc2(clip: Clip, part: Path, request: Request) -> None:
@@ -38,7 +39,7 @@ def write_pc2(clip: Clip, part: Path, request: Request) -> None:
     for number, frame in enumerate(request.counted(frame_surfaces(clip), clip.frame_count)):
         if number == 0:
             material = _write_material(clip, part.with_suffix(".mtl"))
-            part.with_suffix(".obj").write_text(_obj_text(frame, material))
+            part.with_suffix(".obj").write_text(_obj_text(clip, frame, material))
         points.append(METRES * np.concatenate([surface.points for surface in frame]))
     vertices = len(points[0])
     with part.open("wb") as file:
@@ -57,21 +58,24 @@ def _write_material(clip: Clip, path: Path) -> str:
     return path.name
 
 
-def _obj_text(frame: Sequence[FrameSurface], material: str) -> str:
+def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
     """One OBJ of one object, a group for each surface; material: the MTL that the skin has.
 
-    Vertices have colours behind their coordinates, as MeshLab writes and Blender reads them.
+    Vertices have colours behind their coordinates, as MeshLab writes and Blender reads them: white
+    where there is a texture.
     """
     texts = [f"mtllib {material}\n" if material else ""]
     points = coordinates = 1
-    for surface in frame:
-        texts.append(_rows("v", np.hstack([surface.points * METRES, surface.colours])))
+    for whole, surface in zip(clip.surfaces, frame, strict=True):
+        white = np.ones_like(surface.points)
+        colours = white if whole.colours is None else whole.colours.astype(np.float64)
+        texts.append(_rows("v", np.hstack([surface.points * METRES, colours])))
         texts.append(_rows("vn", surface.normals))
         uv, face_uv = surface.uv, surface.face_uv
         if uv is None or face_uv is None:  # for readers that expect one at all corners
             uv, face_uv = np.zeros((1, 2), np.float32), np.zeros_like(surface.faces)
         texts.append(_rows("vt", uv))
-        texts.append(f"g {surface.name}\n")
+        texts.append(f"g {whole.name}\n")
         if material:
             texts.append(f"usemtl {'parts' if surface.uv is None else 'skin'}\n")
         texts.append(
@@ -82,9 +86,9 @@ def _obj_text(frame: Sequence[FrameSurface], material: str) -> str:
     return "".join(texts)
 
 
-def _rows(name: str, rows: Floats | np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> str:
+def _rows(name: str, rows: npt.NDArray[np.floating]) -> str:
     """A line of each row, its numbers after a name."""
-    line = name + " %.6g" * rows.shape[1] + "\n"
+    line: str = name + " %.6g" * rows.shape[1] + "\n"
     return (line * len(rows)) % tuple(rows.ravel().tolist())
 
 

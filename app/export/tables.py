@@ -1,25 +1,24 @@
-"""Numbers: a clip as numpy arrays [mm], or its curves as CSV.
+"""Numbers: a clip as numpy arrays [mm], or the shapes of ARKit as Live Link Face's CSV.
 
-Curves are action units, or the shapes of ARKit as Live Link Face writes them. They tell the face
-that is seen. Muscles, eyes and head follow late what they are asked, each in its own time, so that
-what was asked of them is written so much later.
+Curves tell the face that is seen. Muscles, eyes and head follow late what they are asked, each in
+its own time, so that what was asked of them is written so much later.
 """
 
 from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..motion.curves import ACTION_UNITS, ARKIT_SHAPES, solved
+from ..motion.curves import ARKIT_SHAPES, solved
 from ..recordings.conversion import LEAD, lead_of
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
-from .clip import Clip, Floats, Surface
+from .clip import Clip, Floats
 from .formats import Request
 
 DECIMALS = 6  # of numbers, whose zeros at the end are left out: three quarters of a table
@@ -47,38 +46,19 @@ ANGLES = {
 
 def write_npz(clip: Clip, part: Path, _: Request) -> None:
     """Write what a clip holds; docs/export.md lists the names."""
-    arrays: dict[str, Any] = {
-        "positions": clip.skin.shapes,
-        "rest_positions": clip.skin.rest,
-        "faces": clip.skin.faces,
-        "times": clip.times,
-        "frames_per_second": clip.frames_per_second,
-        **{name: array for name, array in _rest_of(clip.skin).items() if name.endswith("uv")},
-    }
-    for surface in clip.surfaces[1:]:
-        arrays[f"parts/{surface.name}/rest_positions"] = surface.rest
-        arrays[f"parts/{surface.name}/faces"] = surface.faces
-        for name, array in _rest_of(surface).items():
-            arrays[f"parts/{surface.name}/{name}"] = array
+    arrays: dict[str, Any] = {"times": clip.times, "frames_per_second": clip.frames_per_second}
+    for surface in clip.surfaces:
+        is_skin = surface is clip.skin
+        start = "" if is_skin else f"parts/{surface.name}/"
+        arrays[f"{start}rest_positions"] = surface.rest
+        for name in ("faces", "uv", "face_uv", "colours", "matrices", "shapes"):
+            if (array := getattr(surface, name)) is not None:
+                arrays["positions" if is_skin and name == "shapes" else f"{start}{name}"] = array
     for kind in ("bones", "controls", "activations"):
         for name, values in getattr(clip, kind).items():
             arrays[f"{kind}/{name}"] = values
     with part.open("wb") as file:
         np.savez_compressed(file, **arrays)
-
-
-def _rest_of(surface: Surface) -> dict[str, Any]:
-    """What not every surface has, by name."""
-    names = ("shapes", "matrices", "colours", "uv", "face_uv")
-    own = {name: getattr(surface, name) for name in names}
-    return {name: array for name, array in own.items() if array is not None}
-
-
-def write_units(clip: Clip, part: Path, _: Request) -> None:
-    """Write the action units, 0 to 1, by side, behind a column of seconds."""
-    units = solved(clip.scene, ACTION_UNITS, clip.activations, clip.controls)
-    stamps = ([f"{time:.6f}"] for time in clip.times)
-    _write(part, ["time"], stamps, _as_seen(clip, units))
 
 
 def write_arkit(clip: Clip, part: Path, _: Request) -> None:
@@ -92,8 +72,13 @@ def write_arkit(clip: Clip, part: Path, _: Request) -> None:
     for name, (control, radians) in ANGLES.items():
         outward = math.radians(OUTWARD.get(control.replace("gaze_horizontal", "eye_yaw"), 0.0))
         columns[name] = radians * lowest.get(control, still) - outward
-    stamps = ([_timecode(time), len(columns)] for time in clip.times)
-    _write(part, ["Timecode", "BlendShapeCount"], stamps, columns)
+    with part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["Timecode", "BlendShapeCount", *columns])
+        for time, *values in zip(clip.times, *columns.values(), strict=True):
+            numbers = np.round(values, DECIMALS) + 0.0  # -0 is 0
+            texts = (np.format_float_positional(number, trim="-") for number in numbers)
+            writer.writerow([_timecode(time), len(columns), *texts])
 
 
 def _timecode(time: float) -> str:
@@ -111,15 +96,3 @@ def _as_seen(clip: Clip, curves: Mapping[str, Floats]) -> dict[str, Floats]:
         name: np.interp(clip.times - lead_of(name, LEAD), clip.times, values)
         for name, values in curves.items()
     }
-
-
-def _write(
-    part: Path, names: list[str], stamps: Iterable[Sequence[object]], columns: Mapping[str, Floats]
-) -> None:
-    """Write a table: a row for each frame."""
-    with part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*names, *columns])
-        for stamp, *values in zip(stamps, *columns.values(), strict=True):
-            numbers = np.round(values, DECIMALS) + 0.0  # -0 is 0
-            writer.writerow([*stamp, *(np.format_float_positional(n, trim="-") for n in numbers)])

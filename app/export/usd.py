@@ -1,6 +1,6 @@
 """USD: every surface as a mesh under one root, with time samples of what moves. Millimetres.
 
-The texture is a picture beside the file; a package (.usdz) holds both in one.
+The file is a package (.usdz) of a layer and the picture of the skin.
 
 Source: Pixar, OpenUSD's schemas UsdGeomMesh (points, normals, primvars) and UsdPreviewSurface.
 """
@@ -28,34 +28,28 @@ Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
 )
 
 DULL, WET = 0.6, 0.1  # roughness
-UNWRITTEN = "USD did not get to its end; the disk may be full"
+PICTURE = "skin.png"
 ALWAYS = Usd.TimeCode.Default()
 
 
 def write_usd(clip: Clip, part: Path, request: Request) -> None:
-    """Write a stage of one file, .usdc, .usda or .usd, and the picture of the skin beside it."""
-    picture = part.with_name(f"{part.stem}_skin.png")
-    if clip.scene.albedo is not None:
-        PIL.Image.fromarray(clip.scene.albedo).save(picture)
-    try:
-        stage = Usd.Stage.CreateNew(str(part))
-        _fill(stage, clip, request, picture.name)
-        stage.Save()
-    except Tf.ErrorException as error:
-        raise OSError(UNWRITTEN) from error
-
-
-def write_usdz(clip: Clip, part: Path, request: Request) -> None:
-    """Write the same as a package."""
+    """Write the package; OSError where the disk is full."""
     with tempfile.TemporaryDirectory(dir=part.parent) as folder:
-        layer = Path(folder) / f"{part.stem}.usdc"
-        write_usd(clip, layer, request)
-        is_made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(part))
+        layer, picture = Path(folder) / f"{part.stem}.usdc", Path(folder) / PICTURE
+        if clip.scene.albedo is not None:
+            PIL.Image.fromarray(clip.scene.albedo).save(picture)
+        try:
+            stage = Usd.Stage.CreateNew(str(layer))
+            _fill(stage, clip, request)
+            stage.Save()
+            is_made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(part))
+        except Tf.ErrorException:
+            is_made = False
     if not is_made:
-        raise OSError(UNWRITTEN)
+        raise OSError("USD did not get to its end; the disk may be full")
 
 
-def _fill(stage: Any, clip: Clip, request: Request, picture: str) -> None:
+def _fill(stage: Any, clip: Clip, request: Request) -> None:
     """Put the clip on the stage: a time code for each frame."""
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, METRES)
@@ -74,7 +68,7 @@ def _fill(stage: Any, clip: Clip, request: Request, picture: str) -> None:
         else:
             _add_surface(mesh, surface, request)
         has_picture = surface.uv is not None and clip.scene.albedo is not None
-        _add_material(stage, mesh, surface, picture if has_picture else None)
+        _add_material(stage, mesh, surface, has_picture=has_picture)
 
 
 def _add_surface(mesh: Any, surface: Surface, request: Request) -> None:
@@ -138,7 +132,7 @@ def _primvar(mesh: Any, name: str, kind: Any, interpolation: Any) -> Any:
     return UsdGeom.PrimvarsAPI(mesh).CreatePrimvar(name, kind, interpolation)
 
 
-def _add_material(stage: Any, mesh: Any, surface: Surface, picture: str | None) -> None:
+def _add_material(stage: Any, mesh: Any, surface: Surface, *, has_picture: bool) -> None:
     """What the surface looks like: the picture, or the colours of its vertices."""
     path = mesh.GetPath().GetParentPath().AppendChild(f"{mesh.GetPrim().GetName()}_material")
     material = UsdShade.Material.Define(stage, path)
@@ -149,7 +143,7 @@ def _add_material(stage: Any, mesh: Any, surface: Surface, picture: str | None) 
     reader = UsdShade.Shader.Define(stage, path.AppendChild("reader"))
     name = reader.CreateInput("varname", Sdf.ValueTypeNames.String)
     diffuse = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
-    if picture is None:
+    if not has_picture:
         reader.CreateIdAttr("UsdPrimvarReader_float3")
         name.Set("displayColor")
         colours = reader.CreateOutput("result", Sdf.ValueTypeNames.Float3)
@@ -158,7 +152,7 @@ def _add_material(stage: Any, mesh: Any, surface: Surface, picture: str | None) 
         name.Set("st")
         texture = UsdShade.Shader.Define(stage, path.AppendChild("texture"))
         texture.CreateIdAttr("UsdUVTexture")
-        texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(f"./{picture}")
+        texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(f"./{PICTURE}")
         texture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set("sRGB")
         st = reader.CreateOutput("result", Sdf.ValueTypeNames.Float2)
         texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(st)

@@ -21,8 +21,7 @@ from .formats import Request
 h5py = needed("h5py", "VTKHDF", "export")
 
 VERSION = (2, 0)
-TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
-OURS = np.array([0, 0, 1, 0])  # of these four, polygons alone have cells
+OURS = np.array([0, 0, 1, 0])  # of vertices, lines, polygons, strips; polygons alone have cells
 
 
 def write_vtkhdf(clip: Clip, part: Path, request: Request) -> None:
@@ -68,7 +67,6 @@ class _Steps:
         shifted = [surface.faces + start for surface, start in zip(frame, starts, strict=True)]
         triangles = np.concatenate(shifted)
         surfaces = np.repeat(np.arange(len(frame)), [len(surface.faces) for surface in frame])
-        counts = {"NumberOfCells": len(triangles), "NumberOfConnectivityIds": triangles.size}
         self._begins = {
             "PartOffsets": len(self._meshes["NumberOfPoints"]),
             "CellOffsets": OURS * self._length("CellData/surface"),
@@ -81,9 +79,8 @@ class _Steps:
         self._append("CellData/surface", surfaces.astype(np.int32))
         self._append("CellData/source", np.concatenate([surface.source for surface in frame]))
         self._meshes["NumberOfPoints"].append(sum(points))
-        for topology, is_ours in zip(TOPOLOGIES, OURS, strict=True):
-            for name, count in counts.items():
-                self._meshes[f"{topology}/{name}"].append(count if is_ours else 0)
+        self._meshes["Polygons/NumberOfCells"].append(len(triangles))
+        self._meshes["Polygons/NumberOfConnectivityIds"].append(triangles.size)
 
     def add(self, time: float, points: Any, values: dict[str, Any]) -> None:
         """Add where the vertices of a frame are, and what they have."""
@@ -101,11 +98,11 @@ class _Steps:
         """Write what is known at the end."""
         for name, numbers in self._meshes.items():
             self._root.create_dataset(name, data=numbers, dtype=np.int64)
+        none = np.zeros(len(self._meshes["NumberOfPoints"]), np.int64)
         for topology in ("Vertices", "Lines", "Strips"):
-            empty = np.zeros(0, np.int64)
-            self._root.create_dataset(f"{topology}/Connectivity", data=empty)
-            begins = np.zeros(len(self._meshes["NumberOfPoints"]), np.int64)
-            self._root.create_dataset(f"{topology}/Offsets", data=begins)
+            self._root.create_dataset(f"{topology}/Connectivity", data=none[:0])
+            for name in ("Offsets", "NumberOfCells", "NumberOfConnectivityIds"):
+                self._root.create_dataset(f"{topology}/{name}", data=none)
         steps = self._root.create_group("Steps")
         steps.attrs["NSteps"] = len(self._steps["Values"])
         for name, numbers in self._steps.items():

@@ -18,7 +18,7 @@ FACE = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
 OUTPUTS = {
     each.name: f"out{each.suffixes[0]}" if each.suffixes else "out"
     for each in FORMATS
-    if each.name not in ("arkit", "units")
+    if each.name != "arkit"
 }
 FULL = """
 import resource, sys
@@ -68,12 +68,11 @@ def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path
         assert len(list((folder / "out").glob(f"frame_*.{name}"))) == 7
 
 
-@pytest.mark.parametrize("name", ["arkit", "units"])
-def test_curves_need_muscles(name: str, folder: Path) -> None:
+def test_curves_need_muscles() -> None:
     """A face has them; a plane is told in one line, and leaves no file."""
-    assert "take the scene face" in refusal(export("plane.toml", "--as", name, "-o", "x.csv"))
+    assert "take the scene face" in refusal(export("plane.toml", "-o", "x.csv"))
     assert not Path("x.csv").exists()
-    result = export("face.toml", "--as", name, "-o", "x.csv")
+    result = export("face.toml", "-o", "x.csv")
     assert result.exit_code == 0 and Path("x.csv").stat().st_size > 1000
 
 

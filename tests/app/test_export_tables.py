@@ -40,20 +40,6 @@ head_roll = 0.3
 time = 1.2
 browInnerUp = 0.5
 """
-UNITS = """
-duration = 1.0
-[[pose]]
-time = 0.0
-[[pose]]
-time = 0.4
-AU12 = 0.7
-AU26 = 0.5
-AU1_left = 0.4
-[[pose]]
-time = 0.8
-AU4 = 0.6
-AU61 = 0.5
-"""
 AS_IT_IS = Playback(neutral="none", gains=("eyeBlink*=1",))  # a face that needs no calibration
 
 
@@ -62,9 +48,9 @@ def script_of(text: str) -> Script:
     return parse_script(text, source="test")
 
 
-def table(clip: Clip, path: Path, name: str | None = None) -> Columns:
+def table(clip: Clip, path: Path) -> Columns:
     """The columns of the CSV that a clip was written to; a timecode as seconds."""
-    write(clip, path, format_for(path, name), Request(progress=False))
+    write(clip, path, format_for(path, None), Request(progress=False))
     with path.open(newline="") as file:
         names, *rows = csv.reader(file)
     found = {}
@@ -137,18 +123,6 @@ def test_expressions_become_shapes(scene: FaceScene, tmp_path: Path) -> None:
     assert np.allclose(columns["MouthSmileLeft"], columns["MouthSmileRight"], atol=1e-3)
     furthest, usual = apart(clip, replayed(path, scene, AS_IT_IS))
     assert furthest < 5.0 and usual < 1.0
-
-
-def test_units_play_the_same_again(scene: FaceScene, tmp_path: Path) -> None:
-    """By side, 0 to 1, in a table that is read without being told what it is."""
-    clip = record(script_of(UNITS), scene, RATE, progress=False)
-    path = tmp_path / "take.csv"
-    columns = table(clip, path, "units")
-    assert "AU12" not in columns and columns["AU12_left"].max() == pytest.approx(0.7, abs=0.01)
-    assert np.array_equal(columns["AU12_left"], columns["AU12_right"])
-    assert columns["AU1_right"].max() == 0.0
-    furthest, usual = apart(clip, replayed(path, scene, Playback(neutral="none")))
-    assert furthest < 0.4 and usual < 0.1
 
 
 @pytest.mark.parametrize("rate", [12.0, 24.0, 29.97, 120.0])

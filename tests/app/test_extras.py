@@ -83,7 +83,7 @@ def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
         ("films", "bench capture"),
         ("films", "capture --set joy -o joy.mp4 --size 64x48 --quiet"),
         ("live", "view --live vmc"),
-        ("export", "export --set joy -o joy.usd --quiet"),
+        ("export", "export --set joy -o joy.usdz --quiet"),
         ("export", "export --set joy -o joy.vtkhdf --quiet"),
         ("passes", "capture --set joy -o joy.png --passes depth --size 64x48 --quiet"),
         ("cluster", "batch list.txt --scheduler tcp://127.0.0.1:9 --quiet"),

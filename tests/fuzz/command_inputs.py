@@ -170,11 +170,11 @@ REFUSED = {
     "dataset --count 2 -o set --sample nowhere.toml": "no such table",
     "dataset --count 2 -o set --refiner mine": "refiner 'mine' is unknown; there are",
     # Exports.
-    "export good.toml -o x.pc2 --refined": "it goes with usd, usdz, obj, vtkhdf",
+    "export good.toml -o x.pc2 --refined": "it goes with usd, obj, vtkhdf",
     "export good.toml -o x.obj": "and folders with --as obj",
     "export good.toml -o x": "x: has no suffix. Allowed are .glb",
     "export good.toml -o x.glb --as obj": "leave out .glb or --as obj",
-    "export good.toml -o x.usdc --as npz": "numpy arrays is written as .npz",
+    "export good.toml -o x.usdz --as npz": "numpy arrays is written as .npz",
     "export good.toml -o good.toml --as obj": "good.toml: is read and would be written",
     "export good.toml -o deep/none --as obj --fps 0": "0.0 is not in the range 1<=x<=240",
     "export good.toml -o x.usdz --refined --option threshold_twice=1": "the criterion normal alone",
