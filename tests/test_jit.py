@@ -87,17 +87,6 @@ def test_code_is_kept_and_never_old(package: Package) -> None:
     assert package.run() == [RESULT]  # as after `git switch`, there and back
 
 
-def test_folders_of_other_digests_are_bounded(package: Package) -> None:
-    """Of what nobody has used for a day, the newest stay."""
-    for number in range(12):
-        folder = package.code / f"compiled-{number:02}"
-        folder.mkdir(parents=True)
-        os.utime(folder, (number, number))
-    package.run()
-    assert [folder.name[-2:] for folder in package.kept()[:7]] == [f"{k:02}" for k in range(5, 12)]
-    assert len(package.kept()) == 8
-
-
 @pytest.mark.parametrize("fault", ["no folder", "open", "a link", "of somebody else"])
 def test_without_a_folder_code_is_compiled_each_time(package: Package, fault: str) -> None:
     """What others could have written is not run; one line says what it costs."""
@@ -120,15 +109,6 @@ def test_without_a_folder_code_is_compiled_each_time(package: Package, fault: st
         assert lines == [*COMPILED, RESULT]
         assert warned.startswith("compiled code is not kept (")
         assert "NUMBA_CACHE_DIR" in warned
-
-
-def test_other_programs_keep_their_own_cache(package: Package) -> None:
-    """Kernels of others in the same process lie where numba puts them, not in our folder."""
-    (package.folder / "others.py").write_text(
-        "import numba\n@numba.njit(cache=True)\ndef one():\n    return 1\n"
-    )
-    told = package.run(f"{PROGRAM}import others\nprint(others.one(), others.one.stats.cache_path)")
-    assert told[-1] == f"1 {package.folder / '__pycache__'}"
 
 
 def test_runs_as_python(package: Package) -> None:
@@ -197,9 +177,3 @@ def test_threads_and_python_agree(tmp_path: Path) -> None:
         np.testing.assert_allclose(plain[name], array, rtol=0, atol=1e-5, err_msg=name)
         k, what = name.split()
         assert np.array_equal(compiled[f"{(int(k) + 9) % 18} {what}"], array)
-
-
-@pytest.mark.slow
-def test_threads_on_nothing_compiled(tmp_path: Path) -> None:
-    """The same where every thread has to compile first."""
-    frames_of_threads(tmp_path / "frames.npz", NUMBA_CACHE_DIR=str(tmp_path))

@@ -215,25 +215,3 @@ def test_installed_wheel_works_beside_files_of_the_same_names(built: Built, tmp_
     assert {path.name for path in site.iterdir()} == {
         "needed.pth", "risorius", f"risorius-{version}.dist-info"
     }  # fmt: skip
-
-
-@pytest.mark.slow
-def test_types_reach_who_uses_it(built: Built, tmp_path: Path) -> None:
-    """`py.typed` is honoured: a client's mistake is found by mypy, in annotations of ours."""
-    client = tmp_path / "client.py"
-    client.write_text(
-        "import numpy as np\nfrom risorius import refine\n"
-        "faces, positions = np.zeros((1, 3), np.int32), np.zeros((3, 3))\n"
-        "refiner = refine.create('kahler', faces, positions)\n"
-        "refined: refine.RefinedMesh = refiner.refine(positions)\n"
-        "wrong: str = refiner.refine(positions)\n"
-    )
-    result = subprocess.run(
-        [sys.executable, "-m", "mypy", "--python-executable", str(built.python), str(client)],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-    )
-    mistakes = [line for line in result.stdout.splitlines() if line.startswith("client.py")]
-    assert len(mistakes) == 1, result.stdout
-    assert mistakes[0].startswith("client.py:6: error: Incompatible types in assignment")

@@ -83,20 +83,6 @@ def test_data_go_along() -> None:
     assert (refined.point_data.active_normals[:, 2] > 0.0).all()
 
 
-def test_a_frame_may_bring_its_own_data() -> None:
-    """A mesh carries its own data; points alone those of the mesh at rest."""
-    mesh = plane()
-    refiner = mesh.risorius.refiner()
-    frame = mesh.copy()
-    frame.points = wavy(mesh)
-    frame.point_data["heat"] = np.full(mesh.n_points, 3.0)
-    refined = refiner.refine(frame)
-    assert set(refined["heat"]) == {3.0}
-    assert "heat" not in refiner.refine(frame.points).array_names
-    np.testing.assert_array_equal(refiner.refine(frame.points).points, refined.points)
-    assert "Normals" in refined.array_names and mesh.n_points == plane().n_points
-
-
 def test_the_paper_asks_what_has_bent() -> None:
     """By the paper's rule, a mesh is refined against its own form at rest."""
     mesh = plane()

@@ -1,12 +1,10 @@
 """Opens the window on a screen of twice the density and prints what a test wants to know.
 
-A program of its own, because GLFW asks for the density once, when it starts. `first DOTS` opens it
-in the size that it chooses itself, on a screen of so many dots per inch.
+A program of its own, because GLFW asks for the density once, when it starts.
 """
 
 import contextlib
 import json
-import sys
 from collections.abc import Iterator
 
 from Xlib import Xatom, display
@@ -21,14 +19,8 @@ SIZE = (1200, 800)
 
 
 def main() -> None:
-    """Look at the window on a dense screen, or at the size that it chooses itself."""
-    if sys.argv[1:2] == ["first"]:
-        with _screen_of(int(sys.argv[2])), Viewer(script_for(None, "plane")) as viewer:
-            settle(viewer)
-            found = {"window": viewer.gui.window_size, "panel": viewer.view.area[0]}
-            print(json.dumps(found))
-        return
-    with _screen_of(DOTS_PER_INCH), Viewer(script_for(None, "face"), SIZE) as viewer:
+    """Look at the window on a dense screen."""
+    with _dense_screen(), Viewer(script_for(None, "face"), SIZE) as viewer:
         first = viewer.view.viewport[0]
         settle(viewer)
         is_settled = viewer.view.viewport[0] == first
@@ -36,11 +28,11 @@ def main() -> None:
 
 
 @contextlib.contextmanager
-def _screen_of(dots_per_inch: int) -> Iterator[None]:
+def _dense_screen() -> Iterator[None]:
     """Tell X how dense its screen is, and in the end nothing of it any more."""
     screen = display.Display()
     root, resources = screen.screen().root, screen.intern_atom("RESOURCE_MANAGER")
-    root.change_property(resources, Xatom.STRING, 8, f"Xft.dpi:\t{dots_per_inch}\n".encode())
+    root.change_property(resources, Xatom.STRING, 8, f"Xft.dpi:\t{DOTS_PER_INCH}\n".encode())
     screen.flush()
     screen.sync()
     try:

@@ -35,25 +35,6 @@ def test_outside_and_inside_of_a_ball() -> None:
         assert inside.max() < 2.0 * size / 45.0
 
 
-def test_light_on_the_head(face: FaceScene) -> None:
-    """Forehead and crown are open, nostrils, lips that touch and the back of ears are not."""
-    before = face.positions.copy()
-    image = face.ambient_occlusion()
-    assert image is not None and image.shape == face.head.albedo.shape[:2]
-    height, width = image.shape
-    places = face.head.uv * [width, -height] + [0, height]
-    columns, rows = np.clip(places.astype(int), 0, width - 1).T
-    shade = np.full(len(before), 255)
-    shade[face.faces] = image[rows, columns][face.head.face_uv]
-    crown = before[:, 1] > before[:, 1].max() - 40.0
-    assert shade[crown].min() > 240
-    assert (shade < 100).any()
-    assert np.median(shade) > 200  # a face, not a soot
-    mirrored = before * [-1.0, 1.0, 1.0]
-    clones = np.linalg.norm(before[:, None] - mirrored, axis=2).argmin(axis=1)
-    assert abs(shade - shade[clones]).max() < 40
-
-
 def test_shipped_light_is_what_the_program_makes() -> None:
     """What rays find on the finest mesh is in the picture: it belongs to the shipped head."""
     head = assets.load("head")

@@ -59,16 +59,6 @@ def test_a_sample_follows_from_seed_and_number_alone(seed: int, index: int) -> N
     assert draw(TABLE, seed, index) == first
 
 
-def test_another_camera_leaves_the_faces_as_they_are() -> None:
-    camera = replace(TABLE.camera, yaw=(0.0, 0.0), pitch=(5.0, 10.0), zoom=(1.0, 1.0))
-    other = replace(TABLE, camera=camera)
-    for index in range(50):
-        one, two = draw(TABLE, 4, index), draw(other, 4, index)
-        assert replace(two, view=one.view) == one
-        assert (two.view.yaw, two.view.zoom) == (0.0, 1.0)
-        assert 5.0 <= two.view.pitch <= 10.0
-
-
 @pytest.fixture(scope="module")
 def many() -> list[Sample]:
     """Samples enough for shares: of a share of a third, the deviation is 0.01."""
@@ -83,25 +73,6 @@ def test_kinds_and_units_come_as_often_as_the_table_says(many: list[Sample]) -> 
         )
     for unit in TABLE.units:
         assert any(unit in units_of(sample) for sample in many), f"{unit} never comes"
-
-
-def test_units_come_with_those_that_they_go_with(many: list[Sample]) -> None:
-    """6 with 12 and 1 with 2: far more often than they would by themselves."""
-    for unit, other in (("AU6", "AU12"), ("AU2", "AU1"), ("AU27", "AU25"), ("AU15", "AU17")):
-        units = [units_of(sample) for sample in many]
-        alone = sum(other in each for each in units) / len(units)
-        there = [other in each for each in units if unit in each]
-        assert sum(there) / len(there) > 1.8 * alone
-
-
-def test_sides_differ_in_some(many: list[Sample]) -> None:
-    """In as many as the table says; contempt is on one side alone."""
-    sided = [s for s in many if any(name.endswith(("_left", "_right")) for name in s.controls)]
-    assert 0.25 < len(sided) / len(many) < 0.5
-    for sample in many:
-        if sample.name == "contempt":
-            sides = {name.rpartition("_")[2] for name in sample.controls if name.startswith("AU1")}
-            assert len(sides) == 1 and sides <= {"left", "right"}
 
 
 def read(tmp_path: Path, text: str) -> SampleTable:
@@ -125,17 +96,11 @@ def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
     ("text", "told"),
     [
         ("[kind]", "unknown key 'kind'; did you mean 'kinds'? Allowed: kinds"),
-        ("kinds = 3", "'kinds': was 3"),
         ("[kinds]\nsmile = 1", "'kinds', 'smile': was 'smile', must be one of neutral"),
-        ("[letters]\nA = 0", "'letters': all shares are 0"),
-        ("[units]\nAU51 = 1.0", "'units', 'AU51': was"),
         ("[units]\nAU12 = nan", "'units', 'AU12': was nan"),
-        ("[together]\nAU6 = { AU12 = 1.5 }", "'together', 'AU6', 'AU12': was 1.5"),
-        ("[expressions]\njoy = { AU12 = 1 }", "'expressions': all shares are 0"),
         ("[expressions]\njoy = { share = 1, AU12 = 2 }", "'expressions', 'joy', 'AU12': was 2"),
         ("[excluded]\npairs = [['AU1', 'AU1']]", "'excluded', 'pairs': was ['AU1', 'AU1']"),
         ("[camera]\nyaw = [3, 1]", "'camera', 'yaw': was [3.0, 1.0]"),
-        ("[persons]\ncount = 0", "'persons', 'count': was 0"),
         ("[kinds", "not valid TOML"),
     ],
 )

@@ -4,21 +4,17 @@ import functools
 import io
 import json
 import struct
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import PIL.Image
 import pytest
 import trimesh
-from threadpoolctl import threadpool_limits
 
 from risorius.app.export import gltf
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
-from risorius.app.performances import script_for
-from risorius.app.scenes import build_scene
 from risorius.app.script.script_file import parse_script
 from risorius.geometry.normals import vertex_normals
 
@@ -224,24 +220,6 @@ def test_vertex_colours_are_linear_light(clip: Clip, glb: Path) -> None:
     assert np.abs(shown - painted).max() < 1e-4 and np.ptp(painted) > 0.3
 
 
-def test_vertices_are_split_at_seams_of_the_texture(clip: Clip, tmp_path: Path) -> None:
-    """A vertex with two texture coordinates becomes two; corners keep their places."""
-    skin = clip.skin
-    assert skin.uv is not None and skin.face_uv is not None
-    seam = skin.face_uv.copy()
-    seam[::3] += len(skin.uv)  # every third triangle lies elsewhere on the texture
-    cut = replace(skin, uv=np.vstack([skin.uv, skin.uv * 0.5]), face_uv=seam)
-    written(replace(clip, surfaces=(cut, *clip.surfaces[1:])), tmp_path / "cut.glb")
-    player = Player(tmp_path / "cut.glb")
-    corners = player.values(player.primitive("skin").indices).reshape(-1, 3)
-    assert len(player.attribute("skin", "POSITION")) > len(skin.rest)
-    uv = player.attribute("skin", "TEXCOORD_0")[corners]
-    assert np.abs(uv - (cut.uv[seam] * [1, -1] + [0, 1])).max() < 1e-6
-    for frame in (0, clip.frame_count - 1):
-        found, expected = player.positions("skin", frame), skin.at(frame) / 1000.0
-        assert np.linalg.norm(found[corners] - expected[skin.faces], axis=2).max() < NEAR
-
-
 def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
     """A sheet by its targets."""
     text = 'scene = "plane"\n[[pose]]\ntime = 0\n[[pose]]\ntime = 0.6\namplitude = 1\nphase = 0.4\n'
@@ -262,17 +240,6 @@ def test_blender_sees_the_same(clip: Clip, glb: Path, tmp_path: Path) -> None:
             expected = np.stack([surface.at(k) for k in range(clip.frame_count)]) / 1000.0
             off = np.linalg.norm(positions[surface.name] - expected, axis=2)
             assert off.max() < NEAR, surface.name
-
-
-@pytest.mark.slow
-def test_bytes_are_the_same_on_any_number_of_cores(tmp_path: Path) -> None:
-    """However many threads sum up, as two do where a file is written alone."""
-    clip = record(script_for(None, "face"), build_scene("face", None), 10.0)
-    paths = [tmp_path / f"{threads}.glb" for threads in (1, 2)]
-    for threads, path in enumerate(paths, 1):
-        with threadpool_limits(threads):
-            written(clip, path)
-    assert paths[0].read_bytes() == paths[1].read_bytes()
 
 
 def test_what_targets_cannot_follow_is_told(

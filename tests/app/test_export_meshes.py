@@ -20,7 +20,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.refining.presets import Refinement
-from risorius.app.scenes import FaceScene, build_scene
+from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
 
 from .command_line import positions_in_blender
@@ -207,20 +207,6 @@ def test_vtkhdf_has_every_frame(clip: Clip, tmp_path: Path) -> None:
         assert list(file["VTKHDF"].attrs["surfaces"]) == [each.name for each in clip.surfaces]
 
 
-def test_vtkhdf_has_the_refined_skin(clip: Clip, tmp_path: Path) -> None:
-    """Triangles of each frame's own, and which triangle of the mesh each is part of."""
-    steps = vtk_steps(written(clip, tmp_path / "fine.vtkhdf", refinement=REFINED))
-    assert len(steps) == FRAMES
-    for (_, data), (points, triangles) in zip(steps, refined_skins(clip), strict=True):
-        found = vtk_to_numpy(data.GetPoints().GetData())
-        assert is_near(found[: len(points)], points)
-        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        assert np.array_equal(corners[: len(triangles)], triangles)
-        assert corners.max() == len(found) - 1
-        source = vtk_to_numpy(data.GetCellData().GetArray("source"))[: len(triangles)]
-        assert set(source) == set(range(len(clip.skin.faces)))
-
-
 # ---------- Point caches ------------------------------------------------------------------------
 
 
@@ -315,20 +301,6 @@ def test_npz_has_all_of_a_clip(clip: Clip, tmp_path: Path) -> None:
             assert np.array_equal(arrays[f"{part}/faces"], surface.faces)
         assert set(arrays) >= {"uv", "face_uv", "bones/mandible", "controls/joy"}
         assert np.array_equal(arrays["activations/jaw_open"], clip.activations["jaw_open"])
-
-
-def test_a_scene_without_a_face(tmp_path: Path) -> None:
-    """A mesh without texture, eyes or muscles is exported all the same."""
-    text = 'scene = "plane"\nduration = 0.2\n[[pose]]\ntime = 0\namplitude = 1.0\n'
-    clip = record(parse_script(text, source="test"), build_scene("plane"), RATE, progress=False)
-    stage = Usd.Stage.Open(str(written(clip, tmp_path / "a.usdz")))
-    points = UsdGeom.Mesh(stage.GetPrimAtPath(f"/plane/{clip.skin.name}")).GetPointsAttr()
-    assert is_near(points.Get(2), clip.skin.at(2))
-    written(clip, tmp_path / "a.pc2")
-    assert is_near(obj_rows(tmp_path / "a.obj", "v")[:, :3], whole(clip, 0), METRES)
-    frames = written(clip, tmp_path / "frames", "obj", REFINED)
-    assert len(trimesh.load_mesh(frames / "frame_00003.obj").faces) > len(clip.skin.faces)
-    assert len(vtk_steps(written(clip, tmp_path / "a.vtkhdf"))) == clip.frame_count
 
 
 @pytest.mark.blender

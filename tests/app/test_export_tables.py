@@ -123,13 +123,3 @@ def test_expressions_become_shapes(scene: FaceScene, tmp_path: Path) -> None:
     assert np.allclose(columns["MouthSmileLeft"], columns["MouthSmileRight"], atol=1e-3)
     furthest, usual = apart(clip, replayed(path, scene, AS_IT_IS))
     assert furthest < 5.0 and usual < 1.0
-
-
-@pytest.mark.parametrize("rate", [12.0, 24.0, 29.97, 120.0])
-def test_times_come_back_at_any_rate(scene: FaceScene, tmp_path: Path, rate: float) -> None:
-    """The timecode counts sixtieths with a fraction, whatever the frame rate is."""
-    text = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njawOpen = 1.0\n"
-    clip = record(script_of(text), scene, rate, progress=False)
-    path = tmp_path / "take.csv"
-    table(clip, path)
-    assert np.allclose(read_take(path).times, clip.times, atol=1e-3)

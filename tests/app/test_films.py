@@ -1,11 +1,8 @@
 """Films of every kind: their frames, in order and complete, at any size, transparent or not."""
 
-import errno
-import os
 import subprocess
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import imageio_ffmpeg
 import numpy as np
@@ -17,7 +14,6 @@ from risorius import render
 from risorius.app.capture import Capture, CaptureOptions, capture, outputs, processes
 from risorius.app.capture.outputs import FORMATS, TRANSPARENT, size_of_film
 from risorius.app.errors import UserError
-from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script
 
@@ -85,20 +81,6 @@ def test_frames_are_in_order_and_complete(tmp_path: Path, suffix: str) -> None:
         assert off.mean() < 6.0  # the next frame is off by 20
     assert seconds_of(path) == pytest.approx(COUNT / RATE, abs=0.02)
     assert list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize("suffix", [".mp4", ".mov", ".mkv"])
-def test_odd_sizes_become_even_by_a_row_and_a_column_more(tmp_path: Path, suffix: str) -> None:
-    """Nothing is cut off, and what is added goes on as the picture does."""
-    path = tmp_path / f"film{suffix}"
-    rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH]
-    ramp = np.repeat((rows + columns)[..., None], 3, axis=2).astype(np.uint8)
-    with outputs.film(path, (WIDTH, HEIGHT), RATE) as add:
-        add(ramp)
-    picture = decoded(path, (WIDTH + 1, HEIGHT + 1))[0].astype(int)
-    assert np.abs(picture[:HEIGHT, :WIDTH] - ramp).max() < 8
-    assert np.abs(picture[-1, :WIDTH] - ramp[-1]).max() < 8
-    assert np.abs(picture[:HEIGHT, -1] - ramp[:, -1]).max() < 8
 
 
 @pytest.mark.parametrize("suffix", TRANSPARENT)
@@ -169,53 +151,6 @@ def test_backgrounds_by_name(tmp_path: Path, word: str, corner: tuple[int, int, 
 def several(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let so many processes draw, however little there is to do."""
     monkeypatch.setattr(processes, "worthwhile", lambda *_: count)
-
-
-@pytest.mark.slow
-def test_processes_draw_the_same_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bit for bit, in order, with the triangles of all; also where a refiner remembers frames."""
-    script = replace(script_for(None, "plane"), duration=0.5)
-    refinement = replace(SMALL.refinement, preset="paper", options={"coherent": True})
-    options = replace(SMALL, size=(160, 90), refinement=refinement)
-    most = []
-    for count in (1, 3):
-        several(count, monkeypatch)
-        most.append(capture(script, options, output=tmp_path / str(count), progress=False))
-    names = sorted(path.name for path in (tmp_path / "1").iterdir())
-    assert len(names) == 16 and most[0] == most[1]
-    for name in names:
-        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "3" / name).read_bytes()
-
-
-@pytest.mark.slow
-def test_what_fails_in_a_process_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As if it had failed here, and nothing is left."""
-    several(2, monkeypatch)
-    options = replace(SMALL, camera="nowhere")
-    with pytest.raises(UserError, match="camera 'nowhere': allowed are"):
-        capture(script_for(None, "plane"), options, output=tmp_path / "film.mp4", progress=False)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_disk_that_fills_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Frames are written in threads; what goes wrong there is one line, and nothing is left."""
-    save = PIL.Image.Image.save
-
-    def until_it_is_full(image: PIL.Image.Image, path: Any, **options: Any) -> None:
-        """Write the first few pictures."""
-        if "00003" in str(path):
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        save(image, path, **options)
-
-    monkeypatch.setattr(PIL.Image.Image, "save", until_it_is_full)
-    target = tmp_path / "frames"
-    with (
-        pytest.raises(UserError, match="frames: cannot be written: No space left on device"),
-        outputs.folder(target, overwrite=False) as add,
-    ):
-        for frame in numbered_frames():
-            add(frame)
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from risorius.app.scenes import FaceScene
 from risorius.render.hidden import Occluder
 
 POSES = ({}, {"jaw_open": 1.0, "tongue_out": 1.0}, {"AU43": 1.0, "AU12": 1.0}, {"head_yaw": 1.0})
-CAMERAS = ("front", "three-quarter", "180,0", "20,-60", "-30,10,6")
+CAMERAS = ("front", "20,-60", "-30,10,6")
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from risorius.app.capture.drawing import camera_for
 from risorius.app.capture.recording import Capture, CaptureOptions
@@ -17,15 +15,11 @@ from risorius.app.motion.life import (
     Life,
     looking_at,
 )
-from risorius.app.performances import limits_of, script_for
-from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.scenes import FaceScene
 from risorius.app.script import Channel, Key, Script
-from risorius.app.viewer.session.physics import SEEN, STEP, FrameTimes, Physics
-from risorius.app.viewer.session.session import Session
 
 HOUR = 3600.0
 NOBODY = frozenset[str]()
-VIEWER = np.array([0.0, 0.0, 900.0])
 
 
 def lids_gap(scene: FaceScene) -> float:
@@ -67,28 +61,6 @@ def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
     assert off.max() < 12.5
     changes = np.flatnonzero(np.diff(off > 3.0))
     assert np.diff(times[changes])[::2].max() < 6.0  # as long as they are away
-
-
-@pytest.mark.slow
-@given(st.integers(0, 2**32), st.lists(st.floats(0.0, 900.0), min_size=1, max_size=20))
-def test_the_same_seed_and_time_give_the_same_values(seed: int, times: list[float]) -> None:
-    """In whatever order they are asked for, and whatever was asked before."""
-    one, other = Life(seed), Life(seed)
-    found = [one.parts(time) for time in times]
-    assert [other.parts(time) for time in reversed(times)] == found[::-1]
-
-
-@pytest.mark.slow
-@given(st.integers(0, 1000), st.floats(0.0, 3600.0))
-def test_values_stay_within_reach(seed: int, time: float) -> None:
-    """All are controls of the face within their limits; but for lids and eyes all are small."""
-    limits = limits_of("face")
-    parts = Life(seed).parts(time).values()
-    for name, value in (item for part in parts for item in part.items()):
-        low, high = limits[name]
-        assert low <= value <= high, name
-        if not name.startswith((LID, "gaze")):
-            assert abs(value) < 0.2, name
 
 
 def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene: FaceScene) -> None:
@@ -181,11 +153,6 @@ def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
     assert smiling == whole
 
 
-def test_what_is_no_face_has_no_life() -> None:
-    """A scene without eyes stays as it is."""
-    assert Idle(PlaneScene()).beneath(NOBODY, np.array([0.0, 0.0, 900.0]), 3.0) == {}
-
-
 @pytest.mark.slow
 def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> None:
     """What a script names anywhere is the script's for the whole film; the rest lives beneath."""
@@ -205,33 +172,3 @@ def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> Non
     assert max(each[f"{LID}_left"] for each in values) == 1.0
     assert any(each["gaze_horizontal_left"] for each in values)
     assert [each["AU12"] for each in values] == [script.at(n / 30.0)["AU12"] for n in range(91)]
-
-
-@pytest.mark.slow
-def test_only_what_can_be_seen_is_drawn() -> None:
-    """Between blinks most steps move the face by less than a part of a pixel."""
-    scene = FaceScene()
-    session = Session(scene, script_for(None, "face"))
-    physics, idle, time = Physics(session, FrameTimes()), Idle(scene), 0.0
-
-    def life(seconds: float) -> dict[str, float]:
-        nonlocal time
-        time += seconds
-        return idle.beneath(frozenset(), VIEWER, time)
-
-    drawn, last = [], scene.positions.copy()
-    for _ in range(1200):
-        physics.advance(STEP, is_skin_dragged=False, life=life)
-        drawn.append(physics.has_moved)
-        if physics.has_moved:
-            last = scene.positions.copy()
-        assert not physics.is_left_alone or np.abs(scene.positions - last).max() <= SEEN
-    assert all(drawn[:20])  # until it is left alone
-    assert 0.02 < np.mean(drawn[60:]) < 0.6
-    assert not physics.is_at_rest
-    for _ in range(200):  # switched off
-        physics.advance(STEP, is_skin_dragged=False)
-    assert physics.is_at_rest and not physics.has_stepped
-    session.set("jaw_open", 0.5)
-    physics.advance(0.1 * STEP, is_skin_dragged=False)
-    assert not physics.is_at_rest  # or the window sleeps before the face has moved

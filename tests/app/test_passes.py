@@ -6,18 +6,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from risorius import refine, render
 from risorius.app.capture import Capture, CaptureOptions
-from risorius.app.passes.labels import CameraLabels, landmarks_in, points_of
+from risorius.app.passes.labels import CameraLabels, landmarks_in
 from risorius.app.passes.passes import IMAGES, Passes
 from risorius.app.refining.presets import Refinement
-from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
-from risorius.assets.fitting.head import fit
-from tests.heads import stranger
 
 SIZE = (500, 500)
 EXPRESSIONS: dict[str, dict[str, float]] = {
@@ -205,57 +201,6 @@ def test_landmarks_lie_on_the_depth_map(
     assert np.median(off) < 0.5 and off.max() <= 2.0
 
 
-IN_THE_PICTURE = (  # of each landmark, what iBug has it on the border of
-    *[(Segment.SKIN, Segment.NECK, Segment.LEFT_EAR, Segment.RIGHT_EAR)] * 17,
-    *[(Segment.RIGHT_BROW,)] * 5,
-    *[(Segment.LEFT_BROW,)] * 5,
-    *[(Segment.NOSE,)] * 9,
-    *[(Segment.RIGHT_EYE,)] * 6,
-    *[(Segment.LEFT_EYE,)] * 6,
-    *[(Segment.TOP_LIP, Segment.BOTTOM_LIP, Segment.MOUTH_INTERIOR)] * 20,
-)
-
-
-@pytest.mark.parametrize("expression", list(EXPRESSIONS))
-def test_landmarks_lie_where_they_are_called_by(studio: Capture, expression: str) -> None:
-    """Each of the 68 is at most 4 mm from pixels of its lips, eye, brow, nose or outline.
-
-    Half of them within a millimetre. Lips taper off toward their corners, lids toward theirs.
-    """
-    scene = posed(studio, EXPRESSIONS[expression])
-    camera = seen_from(studio)
-    classes = passes_of(studio, ["segmentation"])["segmentation"]
-    points = points_of(scene)[:68]
-    pixels, widths = camera.project(points), camera.to_camera(points)[:, 2]
-    off = np.array([
-        np.linalg.norm(np.argwhere(np.isin(classes, wanted))[:, ::-1] + 0.5 - pixel, axis=1).min()
-        for wanted, pixel in zip(IN_THE_PICTURE, pixels, strict=True)
-    ]) * widths / camera.intrinsics[0, 0]  # fmt: skip
-    assert off.max() < 4.0 and np.median(off) < 1.0, off.argmax()
-
-
-@pytest.mark.slow
-@settings(max_examples=15, deadline=None)
-@given(
-    side=st.sampled_from([-1.0, 1.0]), yaw=st.floats(82.0, 105.0), expression=st.sampled_from(
-        list(EXPRESSIONS)
-    )
-)  # fmt: skip
-def test_a_profile_hides_the_far_side(
-    studio: Capture, side: float, yaw: float, expression: str
-) -> None:
-    """Of eyes, brows and the jaw-line what is beyond the nose is hidden, what is before it seen."""
-    controls = {k: v for k, v in EXPRESSIONS[expression].items() if not k.startswith("head")}
-    scene = posed(studio, controls)
-    camera = seen_from(studio, side * yaw)
-    depth = passes_of(studio, ["depth"])["depth"]
-    visible = landmarks_in(scene, camera, depth).visible
-    right = [*range(0, 6), *range(17, 20), 36, 37, 40, 41, 68]
-    left = [*range(11, 17), *range(24, 27), 44, 45, 46, 47, 69]
-    near, far = (left, right) if side > 0.0 else (right, left)
-    assert visible[near].mean() > 0.5 and not visible[far].any()
-
-
 def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio: Capture) -> None:
     """A closed eye has no pupil to be seen; what is beside the picture is not visible."""
     for controls, is_seen in (({}, True), ({"AU43": 1.0}, False)):
@@ -267,36 +212,3 @@ def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio: Capture) 
         assert found.visible[17:36].all()
     cut = landmarks_in(scene, camera, depth[:, :200])
     assert not cut.visible[cut.pixels[:, 0] > 200.0].any()
-
-
-@pytest.mark.slow
-def test_another_head_has_the_same_classes() -> None:
-    """A head of one's own wears the same texture coordinates, so the same map."""
-    other = stranger()
-    scene = FaceScene(fit(other.mesh, other.landmarks))
-    with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as studio:
-        camera = seen_from(studio)
-        found = passes_of(studio, ["segmentation", "depth"])
-        landmarks = landmarks_in(scene, camera, found["depth"])
-    classes = found["segmentation"]
-    columns, rows = np.floor(landmarks.pixels).astype(int).T
-    at = classes[rows, columns]
-    assert at[68:].tolist() == [Segment.RIGHT_EYE, Segment.LEFT_EYE]
-    assert (at[28:31] == Segment.NOSE).all()
-    assert {Segment.RIGHT_BROW, Segment.TOP_LIP, Segment.NECK} <= set(np.unique(classes))
-
-
-def test_other_scenes_have_what_makes_sense() -> None:
-    """A plane has depth, triangles and tension, but no classes."""
-    scene = PlaneScene()
-    scene.pose({"amplitude": 1.0})
-    scene.step(1.0 / 60.0)
-    with Capture(scene, CaptureOptions(size=SIZE, camera="front")) as studio:
-        passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
-        with pytest.raises(ValueError, match="nothing was drawn yet"):
-            passes.draw(studio.camera)
-        studio.draw_image()
-        found = passes.draw(studio.camera, ["depth", "triangle", "tension"])
-        assert found["tension"].max() > 0.01 and found["triangle"].max() < len(scene.faces)
-        with pytest.raises(ValueError, match="the scene plane has no segmentation"):
-            passes.draw(studio.camera)

@@ -10,9 +10,6 @@ import OpenEXR
 import pytest
 from PIL import Image
 
-from risorius.app.errors import UserError
-from risorius.app.passes.labels import NOTHING, Labelled, save_labelled, write_exr
-
 from .command_line import risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
@@ -105,55 +102,3 @@ def test_no_input_is_written_over(tmp_path: Path) -> None:
     result = risorius(*CAPTURE, recording, "--passes", "depth", "-o", tmp_path / "take.png")
     assert result.exit_code == 2 and "take.json: is read and would be written" in result.output
     assert names_in(tmp_path) == ["take.json"] and recording.read_text() == "[]"
-
-
-@pytest.mark.slow
-def test_new_frames_take_the_place_of_old_ones_and_their_passes(tmp_path: Path) -> None:
-    """With --overwrite nothing of an earlier film is left, and what is not of one stays."""
-    frames = tmp_path / "frames"
-    for passes, count in ((("--passes", ALL), 5), ((), 1)):
-        arguments = ("--set", "joy", "--overwrite", "-o", frames)
-        assert risorius(*CAPTURE, *arguments, "--fps", "1", *passes).exit_code == 0
-        found = [name for name in names_in(frames) if name.startswith("frame_00000")]
-        assert len(found) == count
-        (frames / "frame_notes.json").write_text("mine")
-    assert all(name.endswith(".png") or "notes" in name for name in names_in(frames))
-
-
-def test_failed_files_leave_no_part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A full disk in the last file of a picture: one line, and none of its files."""
-    grey = np.full((4, 4, 3), 90, np.uint8)
-    known = Labelled({"depth": np.ones((4, 4), np.float32)}, {"camera": {}})
-    save_labelled(tmp_path / "good.png", grey, known)
-
-    def fail(*_: object, **__: object) -> None:
-        """The disk is full."""
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_text", fail)
-    with pytest.raises(UserError, match=r"bad\.png: cannot be written: No space left on device"):
-        save_labelled(tmp_path / "bad.png", grey, known)
-    assert names_in(tmp_path) == ["good.exr", "good.json", "good.png"]
-
-
-def test_numbers_come_back_as_they_were(tmp_path: Path) -> None:
-    """Floats to the last bit, and -1 as the largest integer without sign."""
-    random = np.random.default_rng(5)
-    passes = {
-        "depth": random.normal(size=(3, 5)).astype(np.float32),
-        "normal": random.normal(size=(3, 5, 3)).astype(np.float32),
-        "triangle": random.integers(-1, 5000, (3, 5)).astype(np.int32),
-        "splits": random.integers(0, 7, (3, 5)).astype(np.uint8),
-        "tension": random.normal(size=(3, 5, 2)).astype(np.float32),
-    }
-    passes["triangle"][0, 0] = -1
-    write_exr(tmp_path / "x.exr", passes)
-    channels = channels_of(tmp_path / "x.exr")
-    assert np.array_equal(channels["depth.Z"], passes["depth"])
-    for k, axis in enumerate("XYZ"):
-        assert np.array_equal(channels[f"normal.{axis}"], passes["normal"][..., k])
-    assert channels["triangle.ID"][0, 0] == NOTHING
-    assert np.array_equal(channels["triangle.ID"].astype(np.int32), passes["triangle"])
-    assert np.array_equal(channels["tension.compression"], passes["tension"][..., 1])
-    with pytest.raises(OSError, match="No such file or directory"):
-        write_exr(tmp_path / "none" / "x.exr", passes)

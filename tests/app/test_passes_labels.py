@@ -95,18 +95,6 @@ def test_eyes_look_where_they_were_told(face: FaceScene) -> None:
     assert gaze(face, "right")[1] > 0.3 and abs(gaze(face, "right")[0]) < 0.01
 
 
-def test_gaze_in_the_head_does_not_turn_with_it(face: FaceScene) -> None:
-    """In the camera's axes it does."""
-    found = []
-    for turn in (0.0, 1.0):
-        face.reset()
-        face.pose({"gaze_horizontal_left": 0.6, "head_yaw": turn})
-        face.step(2.0)
-        found.append(labels_of(face, camera_at(20.0, 5.0), (64, 64))["gaze"]["left"])
-    assert np.allclose(found[0]["head"], found[1]["head"], atol=1e-3)
-    assert not np.allclose(found[0]["camera"], found[1]["camera"], atol=0.2)
-
-
 def test_labels_hold_what_was_set_and_what_it_moves(face: FaceScene) -> None:
     """Controls and activations that are not 0, and plain numbers that JSON keeps."""
     face.reset()

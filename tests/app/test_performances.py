@@ -8,7 +8,6 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image
 
 from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance
@@ -75,25 +74,6 @@ def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
     assert abs(late[LEAD]) <= 1
 
 
-@pytest.mark.parametrize(("a_second", "share"), [(1.0, 0.9), (2.0, 0.8)])
-def test_recorded_nods_come_through(face: FaceScene, a_second: float, share: float) -> None:
-    """They keep most of their size, and come when they were recorded, within a frame."""
-    times = np.arange(3 * RATE + 1) / RATE
-    nods = 9.0 * np.sin(2.0 * np.pi * a_second * times)  # [degrees], up
-    script, _ = script_of(take_of(head_pitch=nods), Playback(neutral="none"), face.limits)
-    face.reset()
-    seen = []
-    for moment in times:
-        face.pose(script.at(float(moment)))
-        face.step(1.0 / RATE)
-        seen.append(np.degrees(np.arcsin(face.bone_transforms()["cranium"][1, 2])))
-    shown = np.array(seen)[RATE:-RATE]  # without start and end
-    shifts = range(-8, 9)
-    fits = [np.corrcoef(np.roll(nods, shift)[RATE:-RATE], shown)[0, 1] for shift in shifts]
-    assert abs(shifts[int(np.argmax(fits))]) <= 1
-    assert share < np.ptp(shown) / np.ptp(nods) < 1.0
-
-
 @given(
     st.dictionaries(
         st.sampled_from([*ARKIT, "AU12", "viseme_PP"]), st.floats(0.0, 1.0), min_size=1
@@ -146,25 +126,6 @@ def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path: Path) -> Non
     assert script.tracks == converted.tracks and script.duration == converted.duration
     assert script.at(1.0)["mouthSmileLeft"] == pytest.approx(0.5, abs=0.01)
     assert script.at(1.0)["head_yaw"] == pytest.approx(-20.0 / 45.0, abs=0.01)
-
-
-@pytest.mark.slow
-def test_a_recording_is_filmed_as_its_script_is(tmp_path: Path) -> None:
-    """The same picture of both; mirrored it is another one."""
-    path, script = written(tmp_path), tmp_path / "script.toml"
-    assert risorius("convert", path, "-o", script, "--quiet").exit_code == 0
-
-    def picture(played: Path, *options: str) -> npt.NDArray[np.uint8]:
-        """What is filmed at the end, of a file."""
-        still = tmp_path / "still.png"
-        size = ("--size", "96x96", "--time", 1, "--quiet")
-        result = risorius("capture", played, "-o", still, *size, *options)
-        assert result.exit_code == 0 and "frames in" not in result.stderr
-        return np.asarray(Image.open(still))
-
-    recorded = picture(path)
-    np.testing.assert_array_equal(recorded, picture(script))
-    assert np.abs(recorded.astype(int) - picture(path, "--mirror")).mean() > 5.0
 
 
 @pytest.mark.parametrize(

@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from risorius import refine, render
+from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.motion import SETTLING
-from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport, side_by_side
+from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene, PlaneScene
 from risorius.app.script.script_file import parse_script
-from risorius.refine.border.registry import refiners
 
 SIZE = (320, 240)
 
@@ -33,17 +32,6 @@ def image(pipeline: Pipeline, drawn: DrawnMesh) -> Any:
     pipeline.draw(camera, render.Style(), [Viewport(drawn, (0, 0, *SIZE))])
     surface.end()
     return surface.read()
-
-
-def test_rows_without_texture_coordinates_are_drawn(
-    surface: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A refiner from outside may hand out positions and normals alone: it is drawn untextured."""
-    monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
-    refine.refiners.register("bare", lambda faces, rest, **_: refine.PassThrough(faces, rest))
-    scene = FaceScene()
-    pipeline = Pipeline(scene, render.Renderer(surface))
-    assert image(pipeline, pipeline.bind(Refinement(refiner="bare"))).std() > 10.0
 
 
 def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
@@ -68,16 +56,6 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
     pipeline = Pipeline(FaceScene(), render.Renderer(surface))
     asked = Refinement(refiner="none"), Refinement("paper")
     assert np.array_equal(*(image(pipeline, pipeline.bind(each)) for each in asked))
-
-
-def test_side_by_side_covers_the_frame() -> None:
-    """Viewports share no column and leave none out, also for odd widths."""
-    meshes: Any = [None] * 3
-    first, second, third = (each.area for each in side_by_side((101, 10), meshes))
-    assert first[0] == 0
-    assert first[0] + first[2] == second[0]
-    assert second[0] + second[2] == third[0]
-    assert third[0] + third[2] == 101
 
 
 @pytest.mark.parametrize(("first", "settling"), [(0.0, 0.0), (0.5, SETTLING)])

@@ -219,11 +219,3 @@ def test_wrong_mouth_shapes(cues: Any, words: str, tmp_path: Path) -> None:
     """The cue is counted, and what is allowed is named."""
     with pytest.raises(UserError, match=words):
         read_take(written(tmp_path / "take", {"mouthCues": cues}))
-
-
-def test_clear_tracks_stay_as_they_are(tmp_path: Path) -> None:
-    """Weights that reach far are not raised."""
-    take = read_take(written(tmp_path / "take", tracks(height=0.95)))
-    assert take.channels["viseme_PP"].max() == pytest.approx(0.95)
-    assert take.channels["viseme_sil"][0] == pytest.approx(0.44)
-    assert not take.notes

@@ -42,21 +42,6 @@ def test_the_name_of_the_file_does_not_count(name: str, tmp_path: Path) -> None:
     assert read_take(path).kind == "Live Link Face"
 
 
-def test_the_other_spelling_and_order(tmp_path: Path) -> None:
-    """Writers differ in the header's count, in capitals, and in which side comes first."""
-    columns = live_link()
-    columns["JawLeft"], columns["JawRight"] = np.full(120, 0.3), np.full(120, 0.1)
-    names = list(columns)
-    left, right = names.index("JawLeft"), names.index("JawRight")
-    names[left], names[right] = names[right], names[left]
-    turned = {name: columns[name] for name in reversed(names[2:])}
-    head = {"timecode": columns["Timecode"], " BlendshapeCount": columns["BlendShapeCount"]}
-    for several in (head | turned, head | {name: columns[name] for name in names[2:]}):
-        take = read_take(written(tmp_path / "take.csv", several))
-        assert take.channels["jawLeft"] == pytest.approx(0.3)
-        assert take.channels["jawRight"] == pytest.approx(0.1)
-
-
 @pytest.mark.parametrize("left_out", [("TongueOut",), (), ("TongueOut", *ANGLES), ANGLES])
 def test_fewer_columns(left_out: tuple[str, ...], tmp_path: Path) -> None:
     """60, 61, 51 and 52 columns; what is not there is no channel."""
@@ -64,15 +49,6 @@ def test_fewer_columns(left_out: tuple[str, ...], tmp_path: Path) -> None:
     take = read_take(written(tmp_path / "take.csv", columns))
     assert ("tongueOut" in take.channels) == ("TongueOut" not in left_out)
     assert ("head_yaw" in take.channels) == ("HeadYaw" not in left_out)
-
-
-def test_sixty_eight_columns(tmp_path: Path) -> None:
-    """Seven emotions from 0 to 100 are unknown."""
-    emotions = ("Angry", "Disgusted", "Fearful", "Happy", "Neutral", "Sad", "Surprised")
-    columns = live_link() | {name: np.full(120, 88.0) for name in emotions}
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.unknown == emotions
-    assert take.channels["jawOpen"].max() > 0.2
 
 
 def test_values_that_are_none(tmp_path: Path) -> None:
@@ -178,19 +154,3 @@ def test_thousandths(tmp_path: Path) -> None:
     codes = [f"10:00:{n // 25:02}:{n % 25 * 40:03}" for n in range(100)]
     times, _ = take_of(tmp_path, codes)
     assert times == pytest.approx(np.arange(100) / 25.0, abs=1e-9)
-
-
-def test_whole_seconds(tmp_path: Path) -> None:
-    """A clock that many rows share tells nothing: rows are frames."""
-    codes = [f"10:00:{n // 30:02}" for n in range(90)]
-    times, notes = take_of(tmp_path, codes, rate=30.0)
-    assert times == pytest.approx(np.arange(90) / 30.0)
-    assert told(notes, "stands still")
-
-
-def test_rows_out_of_order(tmp_path: Path) -> None:
-    """Times that come twice are left out, with their number."""
-    frames = [0.0, 1.0, 1.0, 2.0, 1.0, 3.0]
-    times, notes = take_of(tmp_path, timecodes(frames))
-    assert times == pytest.approx(np.arange(4) / 60.0)
-    assert told(notes, "2 rows without a time of their own")

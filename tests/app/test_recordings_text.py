@@ -6,12 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from risorius.app.errors import UserError
 from risorius.app.recordings import is_recording, read_take
-from risorius.app.recordings.table import table_in
 
 from .recording_files import live_link, table, told, written
 
@@ -71,17 +68,6 @@ def test_a_torn_last_row(tmp_path: Path) -> None:
     assert told(check(path), "The last row, line 8, is torn")
 
 
-def test_rows_of_other_length(tmp_path: Path) -> None:
-    """The message counts cells and names: this is no table."""
-    path = tmp_path / "take.csv"
-    path.write_text("time,jawOpen\n0,1,0,2\n0,3,0,4\n")
-    with pytest.raises(UserError, match=r"line 2 has 4 cells, the header has 2 names"):
-        read_take(path)
-    path.write_text("time,jawOpen\n0,1\n0,3,0,4\n0,5,0,6\n")
-    with pytest.raises(UserError, match=r"line 3 has 4 cells"):
-        read_take(path)
-
-
 @pytest.mark.parametrize(
     ("content", "words"),
     [
@@ -139,18 +125,3 @@ def test_files_of_ours_are_no_recordings(text: str, tmp_path: Path) -> None:
     path = tmp_path / "take.csv"
     path.write_text(text)
     assert not is_recording(path)
-
-
-@given(
-    st.lists(
-        st.lists(st.floats(allow_nan=False, width=32, min_value=-1e6, max_value=1e6), min_size=3,
-                 max_size=3),
-        min_size=1, max_size=8,
-    ),
-)  # fmt: skip
-def test_numbers_are_read_as_they_are(rows: list[list[float]]) -> None:
-    """Also where one cell of the table is none, and each cell is read by itself."""
-    for odd in (False, True):
-        lines = ["a,b,c", *(",".join(map(repr, row)) for row in rows), *["1,none,1"] * odd]
-        found = table_in("\n".join(lines), source="x")
-        assert np.array_equal(found.numbers([0, 2])[: len(rows)], np.array(rows)[:, [0, 2]])

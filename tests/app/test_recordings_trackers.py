@@ -7,9 +7,8 @@ import pytest
 
 from risorius.app.errors import UserError
 from risorius.app.recordings import read_take
-from risorius.app.recordings.names import ARKIT
 
-from .recording_files import live_link, openface, pyfeat, pyfeat_2, table, told, written
+from .recording_files import openface, pyfeat, pyfeat_2, table, told, written
 
 # OpenFace
 
@@ -69,16 +68,6 @@ def test_openface_1(tmp_path: Path) -> None:
     assert eye == pytest.approx(np.degrees(turn - np.median(turn)), abs=1e-3)
 
 
-def test_stamps_of_nonsense(tmp_path: Path) -> None:
-    """Steps of a millisecond are no camera's; frames are counted, and the rate is the user's."""
-    columns = openface() | {"timestamp": np.arange(60) / 1000.0}
-    path = written(tmp_path / "take.csv", columns)
-    take = read_take(path)
-    assert take.duration == pytest.approx(59 / 30.0)
-    assert told(take.notes, "no camera")
-    assert read_take(path, rate=25.0).duration == pytest.approx(59 / 25.0)
-
-
 @pytest.mark.parametrize(("unit", "name"), [(1e3, "milli"), (1e6, "micro"), (1e9, "nano")])
 def test_stamps_in_other_units(unit: float, name: str, tmp_path: Path) -> None:
     """Time stamps are in seconds, milliseconds, microseconds or nanoseconds, by their steps."""
@@ -126,13 +115,6 @@ def test_several_faces(tmp_path: Path) -> None:
         read_take(path, face="0")
 
 
-def test_a_face_where_none_is_named(tmp_path: Path) -> None:
-    """A file that names no faces has none to choose from."""
-    path = written(tmp_path / "take.csv", live_link())
-    with pytest.raises(UserError, match="names no faces"):
-        read_take(path, face="1")
-
-
 # py-feat
 
 
@@ -164,18 +146,6 @@ def test_pyfeat_2(tmp_path: Path) -> None:
     assert take.channels["AU6"] == pytest.approx(0.4)
     assert told(take.notes, "twice")
     assert told(take.notes, "one in 2 frames")
-
-
-def test_pyfeat_of_the_time_between(tmp_path: Path) -> None:
-    """Radians without shapes: pitch + down, roll + to the left shoulder."""
-    columns = pyfeat_2()
-    columns = {name: values for name, values in columns.items() if name not in ARKIT}
-    take = read_take(written(tmp_path / "take.csv", columns))
-    assert take.kind == "py-feat 1"
-    assert not take.unknown
-    assert take.channels["head_pitch"][-1] == pytest.approx(-10.0, abs=1e-3)
-    assert take.channels["head_roll"][-1] == pytest.approx(3.0, abs=1e-3)
-    assert take.channels["AU12"][-1] == pytest.approx(0.9)
 
 
 def test_pyfeat_names_persons(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 import socket
 from collections.abc import Callable, Iterator
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,6 @@ from risorius.app.live import LOOPBACK
 from risorius.app.live.livelink import parse
 from risorius.app.live.sender import Sender
 from risorius.app.recordings import Take
-from risorius.app.recordings.reading import read_take
 
 from .command_line import risorius
 
@@ -65,19 +63,6 @@ def test_a_recording_comes_along(
     assert sent[0].channels["jawOpen"].max() > 0.2
     assert sent[0].channels["eyeBlinkLeft"].max() > 0.6
     assert Path(sent[0].source).stat().st_size < 60_000
-
-
-@pytest.mark.slow
-def test_the_recording_that_comes_along_is_our_script(tmp_path: Path) -> None:
-    """`risorius export` makes it anew; processors round apart."""
-    folder = Path(str(files("risorius.assets")))
-    arguments = ["export", str(folder / "scripts" / "speech.toml"), "-o"]
-    result = risorius(*arguments, tmp_path / "speech.csv", "--quiet")
-    assert result.exit_code == 0, result.output
-    made, shipped = (read_take(each / "speech.csv") for each in (tmp_path, folder / "data"))
-    assert made.times == pytest.approx(shipped.times)
-    for name, values in shipped.channels.items():
-        assert made.channels[name] == pytest.approx(values, abs=0.02), name
 
 
 class Stopped(Exception):  # noqa: N818, what ends the test is no error

@@ -5,16 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import pytest
 
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.passes import Passes
 from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
-from risorius.assets.fitting import fit_head
-from risorius.assets.identities import person_called
-from tests.heads import stranger
 
 from .command_line import risorius
 
@@ -45,14 +41,6 @@ def test_both_sides_wear_it(scene: FaceScene) -> None:
     assert 0.1 < static < 0.9 and abs(static - refined) < 0.03
     assert not changed[:8].any()
     assert 0.05 < (np.abs(normals[0] - normals[1]).max(axis=2) > 0.02).mean() < 0.9
-
-
-@pytest.mark.slow
-def test_persons_wear_it_and_own_heads_have_none(tmp_path: Path) -> None:
-    """A person has the built-in head's triangles; of another mesh the map would tell nothing."""
-    (shown, plain), _ = images(FaceScene(person_called("ada")))
-    assert (np.abs(shown - plain).max(axis=2) > 3).mean() > 0.05
-    assert FaceScene(fit_head(*stranger().write(tmp_path))).fine_shape is None
 
 
 def test_the_command_turns_it_off(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import time
 from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
@@ -12,8 +11,6 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import scipy.signal
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from risorius.app.capture import outputs
 from risorius.app.capture.outputs import HEARD
@@ -23,7 +20,6 @@ from risorius.app.scenes import PlaneScene
 from risorius.app.script import Script
 from risorius.app.script.script_file import load_script, parse_script, save_script, script_text
 from risorius.app.sound import Player, Sound, load_sound, player
-from risorius.app.sound.decoding import Peaks
 from risorius.app.viewer.session.physics import STEP, Clock
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.session.soundtrack import Soundtrack
@@ -174,47 +170,6 @@ def test_capture_takes_the_sound_of_script_and_option(
     assert not (tmp_path / "gone.mp4").exists()
 
 
-# The waveform
-
-
-@settings(max_examples=200, deadline=None)
-@given(
-    length=st.integers(1, 20_000),
-    channels=st.integers(1, 2),
-    start=st.floats(0.0, 1.0),
-    span=st.floats(0.001, 2.0),
-    count=st.integers(1, 300),
-    seed=st.integers(0, 9),
-)
-def test_every_swing_is_seen_where_it_is(
-    length: int, channels: int, start: float, span: float, count: int, seed: int
-) -> None:
-    """Each stretch has all extremes of its own samples, and none from far beside it."""
-    rate = 10_000
-    samples = np.random.default_rng(seed).integers(-9000, 9000, (length, channels))
-    samples[samples < 8000] //= 4  # extremes are rare
-    low, high = Peaks(Sound(Path("x"), samples.astype(np.int16), rate)).between(
-        start, start + span, count
-    )
-    assert low.shape == high.shape == (count,)
-    assert -1.0 <= low.min() and high.max() <= 1.0
-    loudest = max(int(np.abs(samples).max()), 1)
-    edges = np.linspace(start, start + span, count + 1) * rate
-    near = max((edges[1] - edges[0]) / 4.0, 1.0) + 1.0  # a quarter of a stretch, or a sample
-    for stretch in range(0, count, 7):
-        first, end = edges[stretch], edges[stretch + 1]
-        inside = samples[int(np.ceil(first + near)) : max(int(end - near), 0)]
-        around = samples[max(int(first - near), 0) : int(np.ceil(end + near))]
-        if inside.size:
-            assert low[stretch] * loudest <= inside.min() + 1e-6
-            assert high[stretch] * loudest >= inside.max() - 1e-6
-        if around.size:
-            assert low[stretch] * loudest >= min(int(around.min()), 0) - 1e-6
-            assert high[stretch] * loudest <= max(int(around.max()), 0) + 1e-6
-        else:
-            assert low[stretch] == high[stretch] == 0.0
-
-
 # Playing
 
 
@@ -279,25 +234,6 @@ def test_a_player_gives_the_sound_from_the_place_on(device: HandDevice, speed: f
     assert not device.running
 
 
-def test_the_position_is_that_of_what_is_heard(device: HandDevice) -> None:
-    """What was given is heard after what the device still holds; in between the clock goes on."""
-    played = Player(ramp(9.0), clock=lambda: device.now)
-    played.play(3.0)
-    assert played.position == 3.0
-    for _ in range(player.PERIODS):  # it fills itself at once
-        device.ask(COUNT)
-    assert played.position == pytest.approx(3.0)
-    for asked in range(1, 20):
-        device.now = asked * player.PERIOD
-        device.ask(COUNT)
-        assert played.position == pytest.approx(3.0 + device.now)
-        device.now += 0.3 * player.PERIOD
-        assert played.position == pytest.approx(3.0 + device.now)
-    held_at = played.position
-    device.now += 10.0  # it hangs
-    assert played.position < held_at + 2.0 * player.PERIOD
-
-
 @pytest.mark.parametrize("pace", [0.99, 1.0, 1.01])
 @pytest.mark.parametrize("frames_per_second", [12.0, 60.0, 144.0])
 def test_the_picture_keeps_to_the_sound(
@@ -337,59 +273,3 @@ def test_the_picture_keeps_to_the_sound(
         off.append(now * pace - session.time)
     assert np.abs(off).max() < FRAME
     assert abs(np.median(off)) < 0.5 * FRAME
-
-
-def ramp_with(device: HandDevice, monkeypatch: pytest.MonkeyPatch) -> tuple[Session, Soundtrack]:
-    """A script of 20 s with a ramp to be heard, on the device."""
-    monkeypatch.setattr(
-        "risorius.app.viewer.session.soundtrack.Player",
-        lambda sound: Player(sound, clock=lambda: device.now),
-    )
-    monkeypatch.setattr(
-        "risorius.app.viewer.session.soundtrack.load_sound", lambda file: ramp(30.0)
-    )
-    session = Session(PlaneScene(), Script("", 20.0, "s", "plane", sound=Path("ramp")))
-    soundtrack = Soundtrack(session)
-    soundtrack.refresh()
-    return session, soundtrack
-
-
-def test_the_sound_goes_where_the_user_goes(
-    device: HandDevice, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """While it plays, in a loop, by scrubbing, at another speed."""
-    session, soundtrack = ramp_with(device, monkeypatch)
-    assert soundtrack.elapsed(0.02) == 0.02 and not soundtrack.is_heard
-    session.toggle_playing()
-    for place in (0.0, 5.0, 19.0, 0.0):
-        session.time = place
-        soundtrack.elapsed(0.02)
-        assert soundtrack.is_heard and device.ask(COUNT)[0, 0] == 1000 * place
-    session.speed = 0.5
-    soundtrack.elapsed(0.02)
-    slow = device.ask(COUNT)
-    assert slow[-1, 0] == pytest.approx(1000 * 0.5 * player.PERIOD, abs=1)
-    session.is_playing = False
-    soundtrack.elapsed(0.02)
-    session.seek(7.0)
-    soundtrack.elapsed(0.02)
-    assert device.ask(COUNT)[0, 0] == 7000  # a snippet of what is gone to
-    session.edit(replace(session.script, sound=None))
-    soundtrack.refresh()
-    assert soundtrack.sound is None and soundtrack.elapsed(0.02) == 0.02
-
-
-def test_a_real_device_asks_and_the_position_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Through miniaudio, on the device that it has for machines that have none."""
-    miniaudio = pytest.importorskip("miniaudio")
-    monkeypatch.setattr(player, "backends", lambda: [miniaudio.Backend.NULL])
-    played = Player(ramp(30.0))
-    played.play(1.0)
-    end = time.monotonic() + 20.0
-    while played.position < 1.2 and time.monotonic() < end:
-        time.sleep(0.01)
-    assert 1.2 <= played.position < 1.2 + 20.0 and played.is_heard
-    played.rest()
-    played.play(5.0)
-    assert played.position == pytest.approx(5.0, abs=1.0)
-    played.close()

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.picture.stage import pointed_lines
@@ -244,33 +243,6 @@ def test_the_window_remembers(tmp_path: Path) -> None:
 MAJOR = "zygomaticus_major"
 
 
-def photograph(viewer: Viewer) -> np.ndarray:
-    """What F12 writes."""
-    before = set(Path.cwd().glob("*.png"))
-    xdotool(viewer, "key", "F12")
-    (path,) = set(Path.cwd().glob("*.png")) - before
-    return np.asarray(Image.open(path)).astype(int)
-
-
-def point_at_slider(viewer: Viewer) -> None:
-    """The mouse on a muscle's slider."""
-    show_controls(viewer, "zygom maj")
-    xdotool(viewer, "key", "Return")
-    xdotool(viewer, "mousemove", *middle(viewer, f"{MAJOR}_left"))
-    assert until(viewer, lambda: f"{MAJOR}_left" in viewer.view.pointed)
-
-
-def test_pictures_have_no_lines_of_a_slider_that_is_pointed_at(viewer: Viewer) -> None:
-    """F12 writes the same picture whether the mouse is on a slider or not."""
-    point_at_slider(viewer)
-    with_mouse = photograph(viewer)
-    assert viewer.view.pointed and with_mouse.shape[1::-1] == viewer.view.viewport[2:]
-    xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
-    assert until(viewer, lambda: not viewer.view.pointed)
-    assert np.abs(with_mouse - photograph(viewer)).max() <= 2
-    clear_search(viewer)
-
-
 def landmark(viewer: Viewer, number: int) -> tuple[int, int]:
     """A landmark of the face, on the screen."""
     scene = viewer.session.scene
@@ -295,18 +267,6 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:
     xdotool(viewer, "key", "ctrl+z")
     assert not any(viewer.session.values.values())
     assert until(viewer, lambda: moved(viewer) < 0.3)
-
-
-def test_linked_sides_are_pulled_together(viewer: Viewer) -> None:
-    """With the sides linked, the other corner of the mouth goes along."""
-    viewer.settings.is_linked = True
-    drag(viewer, landmark(viewer, 48), (-12, -14))
-    assert until(viewer, lambda: viewer.session.values[f"{MAJOR}_right"] > 0.2)
-    xdotool(viewer, "mouseup", 1)
-    values = viewer.session.values
-    assert values[f"{MAJOR}_right"] == values[f"{MAJOR}_left"] > 0.3
-    assert not any(values[name] for name in values if "sideways" in name), "nothing to one side"
-    assert viewer.messages.text.startswith("Smile muscle, both sides 0.")
 
 
 def test_a_click_shows_the_muscle_in_the_panel(viewer: Viewer) -> None:

@@ -1,7 +1,6 @@
 """The window among others: what is seen first, hidden panels, minimised, the first size."""
 
 import contextlib
-import json
 import os
 import subprocess
 import sys
@@ -10,16 +9,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import glfw
 import numpy as np
 import pytest
 from Xlib import X, display
 from Xlib.error import XError
 from Xlib.protocol import event
 
-from risorius.app.viewer import Viewer
 from risorius.app.viewer.interface.gui import THEMES
-from risorius.app.viewer.window.splash_screen import COMPILING, FIRST_SIZE, LOADING, picture
+from risorius.app.viewer.window.splash_screen import COMPILING, LOADING, picture
 
 from .driving import (
     DEADLINE,
@@ -30,47 +27,6 @@ pytestmark = NEEDS_A_SCREEN
 
 
 ROOT = Path(__file__).parents[2]
-
-
-def screen_size() -> tuple[int, int]:
-    """Of the whole screen."""
-    screen = display.Display().screen()
-    return screen.width_in_pixels, screen.height_in_pixels
-
-
-@pytest.mark.usefixtures("calm")
-def test_a_minimised_window_draws_nothing(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As long as the desktop hides it, though it plays; then it goes on."""
-    ask, hidden, drawn = glfw.get_window_attrib, [True, True, True], []
-
-    def attribute(window: Any, name: int) -> int:
-        return bool(hidden and hidden.pop()) if name == glfw.ICONIFIED else ask(window, name)
-
-    def frame() -> None:
-        drawn.append(len(hidden))
-        viewer.session.is_playing = False
-
-    monkeypatch.setattr(glfw, "get_window_attrib", attribute)
-    monkeypatch.setattr(viewer, "frame", frame)
-    viewer.run(playing=True, once=True)
-    assert drawn == [0]
-
-
-@pytest.mark.slow
-def test_the_first_size_suits_the_screen(tmp_path: Path) -> None:
-    """Without a size the window is no larger than the screen; on a dense one it grows with it."""
-    for dots, wanted in ((96, FIRST_SIZE), (192, (2 * FIRST_SIZE[0], 2 * FIRST_SIZE[1]))):
-        result = subprocess.run(
-            [sys.executable, "-m", "tests.app.dense_window", "first", str(dots)],
-            capture_output=True, text=True, timeout=120, check=False, cwd=ROOT,
-        )  # fmt: skip
-        assert result.returncode == 0, result.stderr
-        found = json.loads(result.stdout)
-        width, height = screen_size()
-        least = min(wanted[0], width - 20), min(wanted[1], height - 120)  # frames take some
-        assert least[0] <= found["window"][0] <= min(wanted[0], width), dots
-        assert least[1] <= found["window"][1] <= min(wanted[1], height), dots
-        assert found["panel"] == pytest.approx(22.5 * 15 * dots / 96, abs=3), dots
 
 
 def ask_to_close(window: int) -> None:

@@ -2,14 +2,13 @@
 
 import signal
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from risorius.app import stopping, workers
+from risorius.app import workers
 from risorius.app.capture import CaptureOptions
 from risorius.app.capture import capture as film_of
 from risorius.app.capture.drawing import camera_for
@@ -86,26 +85,6 @@ def test_a_film_is_what_capture_writes(viewer: Viewer, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_film_shows_what_the_window_shows(viewer: Viewer, tmp_path: Path) -> None:
-    """A comparison, side by side, and colours that only the window has are in the film, too."""
-    display = viewer.settings.display
-    display.compare, display.colours = "side by side", "tension"
-    open_script(
-        viewer,
-        "duration = 0.1\n[[pose]]\ntime = 0.0\njaw_open = 0.4\n[tracks]\n"
-        "AU4 = [{ time = 0.0, value = 0.0 }, { time = 0.1, value = 0.0 }]\n",
-    )
-    viewer.session.seek(0.1)
-    settle(viewer)
-    assert until(viewer, lambda: viewer.physics.is_at_rest)
-    viewer.settings.export.size = viewer.view.viewport[2:]
-    seen = viewer.stage.draw_image(viewer.view).astype(int)
-    finish(viewer)
-    filmed = pictures(tmp_path / "smile")[-1]
-    assert np.quantile(np.abs(filmed - seen), 0.8) <= 2.0  # captions are as large as each wants
-
-
-@pytest.mark.slow
 def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -> None:
     """What `risorius export` writes, under the name that was typed."""
     xdotool(viewer, "key", "ctrl+e")
@@ -147,25 +126,6 @@ def test_the_window_lives_and_cancel_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_signal_ends_the_export_too(
-    viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What stops the window stops the other process, and nothing stays."""
-    open_script(viewer, SCRIPT.replace("0.5", "100.0"))
-    xdotool(viewer, "key", "F10")
-    begin(viewer)
-
-    def stop() -> None:
-        """As a signal does, but for the end of this process."""
-        for clean_up in reversed(stopping._cleanups):
-            clean_up()
-        viewer.session.is_playing = False
-
-    monkeypatch.setattr(viewer, "frame", stop)
-    viewer.run(playing=True, once=True)
-    assert not list(tmp_path.rglob("*"))
-
-
 @pytest.mark.parametrize("kind", ["mp4", "npz"])
 def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     """It is told at once, and all that was chosen is there when it is tried again."""
@@ -175,15 +135,3 @@ def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     assert until(viewer, lambda: "cannot be written" in viewer.messages.text)
     assert viewer.messages.is_error and "\n" not in viewer.messages.text
     assert viewer.exporter.job is None and viewer.settings.export.kind == kind
-
-
-def test_what_fails_over_there_is_one_line(viewer: Viewer, tmp_path: Path) -> None:
-    """What fails in the other process is told here, and nothing is left."""
-    viewer.settings.export.kind = "mp4"
-    viewer.session.edit(replace(viewer.session.script, sound=tmp_path / "gone.wav"))
-    settle(viewer)
-    assert "plays without" in viewer.messages.text
-    finish(viewer)
-    assert viewer.messages.is_error and "gone.wav: no such sound file" in viewer.messages.text
-    assert "plays without" not in viewer.messages.text
-    assert list(tmp_path.iterdir()) == []

@@ -8,13 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.scenes import build_scene
 from risorius.app.script.script_file import load_script
 from risorius.app.sound import player
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.settings import Display
 from tests.heads import stranger
-from tests.render.test_release import counting
 
 from .driving import (
     NEEDS_A_SCREEN,
@@ -229,25 +226,6 @@ def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
     assert until(viewer, lambda: viewer.session.scene is not before)
     assert viewer.settings.recent[0].split("\n") == [str(mesh), str(landmarks)]
     viewer.show_scene(before)
-
-
-@pytest.mark.slow
-def test_heads_come_and_go_without_leaving_anything(
-    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Changes of head, each drawn until it is at rest: OpenGL holds as much as after one."""
-    scenes = [viewer.session.scene, build_scene("face", None)]
-    viewer.settings.display = Display(compare="wipe", overlays=["muscles", "springs"])
-    count = counting(monkeypatch)
-    held = []
-    for turn in range(4):
-        viewer.show_scene(scenes[(turn + 1) % 2])
-        viewer.session.set("jaw_open", 0.3)
-        settle(viewer)
-        assert until(viewer, lambda: viewer.is_idle)
-        held.append(count())
-    viewer.show_scene(scenes[0])
-    assert held[-1] == held[0] and held[0]["Program"] > 3
 
 
 def written(path: Path) -> Path:

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import load_settings, save_settings
 
-from .driving import NEEDS_A_SCREEN, clear_search, click, middle, show_controls, until, xdotool
+from .driving import NEEDS_A_SCREEN, click, middle, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
@@ -32,31 +32,6 @@ def slowly(viewer: Viewer, *words: object, frames: int = 3) -> None:
 def typed(words: object) -> tuple[object, ...]:
     """Events of words that are written at once, and entered."""
     return "type", "--delay", 2, "--args", 1, words, "key", "Return"
-
-
-@pytest.mark.slow
-def test_a_number_is_typed_into_a_slow_window(viewer: Viewer) -> None:
-    """A double click and the number after it go to the slider, and to nothing else."""
-    show_controls(viewer, "jaw open")
-    xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"))
-    for number, delay in ((0.3, 100), (0.85, 220)):
-        double = ("click", "--repeat", 2, "--delay", delay, 1)
-        slowly(viewer, *double, *typed(number))
-        assert until(viewer, lambda: viewer.session.values["jaw_open"] == number), number  # noqa: B023
-        assert [name for name, value in viewer.session.values.items() if value] == ["jaw_open"]
-    slowly(viewer, "click", 1, "sleep", 2, "click", 1)
-    assert not imgui.get_io().want_text_input  # two clicks, no double click
-    clear_search(viewer)
-
-
-@pytest.mark.slow
-def test_chords_keep_their_modifier(viewer: Viewer) -> None:
-    """Ctrl let go with the key, in one frame with it, counts as held."""
-    for _ in range(6):
-        viewer.session.toggle_alone("joy")
-        slowly(viewer, "key", "--delay", 2, "ctrl+z", frames=1)
-        assert not viewer.session.is_alone("joy")
-        viewer.session.neutral()
 
 
 def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:

@@ -58,20 +58,6 @@ def test_a_script_moves_the_face_alone(viewer: Viewer) -> None:
     assert viewer.life.is_on
 
 
-def test_a_recording_has_only_what_the_user_did(viewer: Viewer) -> None:
-    """Life rests while something is recorded, and no track is of it."""
-    session = viewer.session
-    assert until(viewer, lambda: moved(viewer) > 0.1)
-    before = session.script.tracks
-    session.toggle_recording()
-    assert not viewer.life.is_on
-    session.set("jaw_open", 0.5)
-    settle(viewer)
-    session.toggle_recording()
-    after = session.script.tracks
-    assert {name for name in after if after[name] is not before.get(name)} == {"jaw_open"}
-
-
 def test_it_sleeps_when_nobody_is_there(viewer: Viewer) -> None:
     """After some minutes without input the window rests; a key wakes the face."""
     viewer.life.after(ASLEEP_AFTER, is_held=False)

@@ -14,7 +14,6 @@ from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import plate
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import SKINS, Display
-from risorius.app.viewer.window.window import REFRESH
 from risorius.assets.loading import read_words
 
 from .driving import (
@@ -22,9 +21,7 @@ from .driving import (
     SIZE,
     clear_search,
     click,
-    drag,
     drag_and_release,
-    middle,
     moved,
     on_screen,
     settle,
@@ -185,23 +182,6 @@ def test_the_number_pad_looks_from_all_sides(viewer: Viewer) -> None:
     assert not any(viewer.session.values.values())  # alt+3 is no expression
 
 
-@pytest.mark.slow
-def test_light_background_and_tone_are_chosen(viewer: Viewer) -> None:
-    """Each changes the picture at once, and none keeps the others."""
-    only_open(viewer, "Light and person")
-    assert until(viewer, lambda: viewer.is_idle)
-    pages = [viewer.surface.read()[:, 400:].astype(int)]
-    for row, choice in (("Background", "white"), ("Light", "hard"), ("Skin tone", "dark")):
-        in_panel(viewer, (row, choice))
-        assert until(viewer, lambda: viewer.is_idle)
-        pages.append(viewer.surface.read()[:, 400:].astype(int))
-        assert np.abs(pages[-1] - pages[-2]).mean() > 1.0
-    assert viewer.settings.display == Display(background="white", light="hard", tone="dark")
-    click(viewer, "Reset all")
-    assert until(viewer, lambda: viewer.is_idle)
-    assert np.abs(viewer.surface.read()[:, 400:] - pages[0]).mean() < 0.1
-
-
 def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
     """U switches them on and off; nothing stays behind."""
     settle(viewer)
@@ -300,26 +280,3 @@ def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
     assert found["frame"] == found["window"] == [1200, 800]
     assert found["slid"] > 0.3
     assert found["dragged"] > 4.0
-
-
-def test_a_slider_answers_at_once_while_the_face_moves(viewer: Viewer) -> None:
-    """A slider that is dragged shows it in the same frame, however long panels may be kept."""
-    show_controls(viewer, "jaw open")
-    place = middle(viewer, "jaw_open")
-    left, top, right, bottom = map(round, viewer.gui.places["jaw_open"])
-    viewer.refresh = 60.0
-    try:
-        viewer.view.camera.orbit(3.0, 0.0)
-        drag(viewer, place, (1, 0))
-        for _ in range(3):
-            before = viewer.surface.read()[top:bottom, left:right].astype(int)
-            value = viewer.session.values["jaw_open"]
-            subprocess.run(["xdotool", "mousemove_relative", "--", "12", "0"], check=True)
-            viewer.view.camera.orbit(3.0, 0.0)
-            assert until(viewer, lambda old=value: viewer.session.values["jaw_open"] != old)
-            after = viewer.surface.read()[top:bottom, left:right].astype(int)
-            assert (np.abs(after - before).max(axis=2) > 40).sum() > 20
-    finally:
-        viewer.refresh = REFRESH
-        xdotool(viewer, "mouseup", 1)
-        clear_search(viewer)

@@ -16,7 +16,7 @@ from risorius.app.script.script_file import load_script
 from risorius.app.viewer.session.physics import STEP
 from risorius.app.viewer.session.session import Session
 
-from .driving import run, set_by_hand
+from .driving import run
 
 MAJOR = "zygomaticus_major_left"
 
@@ -42,38 +42,6 @@ def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -
         assert after.at(time) == before.at(time) | {"jaw_open": before.at(time)["jaw_open"]}
     session.undo()
     assert session.script == before and not session.script_is_unsaved
-
-
-def test_a_pose_by_hand_is_where_a_recording_begins(session: Session) -> None:
-    """What was set before is recorded, not dropped; buttons do not pause the recording."""
-    session.seek(1.5)
-    set_by_hand(session, jaw_open=0.7)
-    session.toggle_recording()
-    run(session, 20)
-    session.toggle_alone("anger")
-    run(session, 20)
-    assert session.is_playing
-    session.toggle_recording()
-    assert session.script.at(1.7)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
-    assert session.script.at(2.0) | {"blink": 0.0} == pytest.approx(
-        {"anger": 1.0, "jaw_open": 0.0, "joy": 0.0, "blink": 0.0}, abs=2e-3
-    )
-
-
-def test_a_recording_makes_the_script_longer(session: Session) -> None:
-    """At the script's end it goes on, and what was held then stays."""
-    for step in range(5):  # lengths that are rounded up and down
-        session.seek(3.8 + 0.001 * step)
-        session.toggle_recording()
-        session.set("jaw_open", 0.3 + 0.1 * step)
-        run(session, 60)
-        session.toggle_recording()
-        assert session.time == session.script.duration
-        assert session.script.duration == pytest.approx(4.8 + 0.001 * step, abs=1e-5)
-    session.toggle_playing()
-    assert session.time == 0.0 and session.script.at(4.8)["jaw_open"] == pytest.approx(
-        0.7, abs=2e-3
-    )
 
 
 LIMITS = dict.fromkeys(("a", "b", "c"), (0.0, 1.0))
@@ -168,18 +136,6 @@ def paused(session: Session) -> None:
     run(session, 30)
     session.toggle_playing()
     run(session, 30)
-
-
-def test_moves_in_a_pause_are_recorded_when_it_goes_on(session: Session) -> None:
-    """They begin where it was paused."""
-    paused(session)
-    session.set("AU4", 0.8)
-    run(session, 30)
-    session.toggle_playing()
-    run(session, 30)
-    session.toggle_recording()
-    assert session.is_following and session.script.at(1.95).get("AU4", 0.0) == 0.0
-    assert session.script.at(2.05)["AU4"] == session.script.at(2.35)["AU4"] == 0.8
 
 
 def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:

@@ -11,11 +11,9 @@ from risorius.app.script.keyframes import POSES, on_frame
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script, parse_script, save_script, script_text
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.timeline.dope_sheet import ROW
 
 from .driving import (
     NEEDS_A_SCREEN,
-    SIZE,
     clear_search,
     click,
     drag,
@@ -186,44 +184,6 @@ def take(viewer: Viewer, own: Path, dense: Script) -> Script:
     return viewer.session.script
 
 
-def test_a_dense_script_is_scrubbed_and_edited(viewer: Viewer, take: Script) -> None:
-    """A click in the ruler shows that moment, a box is one edit, and one undo takes it back."""
-    axis = viewer.time_axis
-    _, ruler = middle(viewer, "time")
-    place = on_screen(viewer, axis.x(300.0), 0.0)[0], ruler
-    press(viewer, place)
-    assert abs(viewer.session.time - 300.0) < 2.0 * axis.seconds(1.0)
-    for name, value in take.at(viewer.session.time).items():
-        assert viewer.session.values[name] == pytest.approx(value)
-    first, second = list(take.tracks)[:2]
-    row = where_key(viewer, KeyPlace(second, float(take.tracks[second].times[0])))[1]
-    # The first row that has it is that of all tracks, then come its group and the first track.
-    row += 3.0 * ROW * imgui.get_font_size()
-    low = on_screen(viewer, axis.x(100.0), row)
-    drag_and_release(viewer, low, (round(axis.x(200.0) - axis.x(100.0)), 2))
-    chosen = viewer.selection.places
-    assert set(chosen.times) == {second}
-    assert 0.9 * 1500 < len(chosen) < 1.1 * 1500
-    xdotool(viewer, "key", "Delete")
-    edited = viewer.session.script
-    assert len(edited.tracks[second]) == 9000 - len(chosen)
-    assert edited.tracks[first] is take.tracks[first]
-    xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script is take
-    drag_and_release(viewer, low, (1, 1))  # a click on the curve: the key there, and its moment
-    assert len(viewer.selection.places) == 1
-    assert viewer.session.time == viewer.selection.places.first == pytest.approx(100.0, abs=5.0)
-
-
-def test_a_dense_script_is_drawn_with_little(viewer: Viewer, take: Script) -> None:
-    """However many keys there are, and all of them selected: no more than a few for each column."""
-    viewer.selection.select_all()
-    viewer.wait_for_frame()
-    viewer._draw_gui(is_visible=True)
-    assert len(viewer.selection.places) == 60 * 9000
-    assert imgui.get_draw_data().total_vtx_count < 40 * SIZE[0]
-
-
 def open_jaw(viewer: Viewer) -> float:
     """Drag the jaw's slider with the mouse, and let it go; what it is then."""
     show_controls(viewer, "jaw open")
@@ -297,22 +257,6 @@ def test_a_key_is_dragged_in_time_and_value(viewer: Viewer) -> None:
     xdotool(viewer, "key", "Escape")
     xdotool(viewer, "mouseup", 1)
     assert viewer.session.script == before
-
-
-@pytest.mark.usefixtures("curves")
-def test_a_box_selects_by_value(viewer: Viewer) -> None:
-    """Only keys inside move, all by as much; poses keep the values of other curves."""
-    left, top = at(viewer, 0.9, 1.0)
-    right, bottom = at(viewer, 2.3, 0.7)
-    drag(viewer, (left, top - 6), (10, 10))
-    move(viewer, right - left - 10, bottom - top - 4)
-    chosen = viewer.selection.places
-    assert chosen == {KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12), KeyPlace("blink", 2.22)}
-    drag(viewer, at(viewer, 2.22, 1.0), (0, 20))
-    move(viewer, 0, 20)
-    keys = viewer.session.script.tracks["blink"].values.tolist()
-    assert keys[0] == keys[3] == 0.0 and keys[1] == keys[2] < 0.9
-    assert values(viewer, "joy")[1] == 1.0 and viewer.selection.places == chosen
 
 
 @pytest.mark.usefixtures("curves")

@@ -8,9 +8,7 @@ from risorius.app.scenes import FaceScene
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script
-from risorius.app.viewer.panels.face import rows_of, search_rows
 from risorius.app.viewer.picture.stage import FULL, LEVELS, PATIENCE, LevelOfDetail
-from risorius.app.viewer.session.physics import MOST_STEPS, STEP, Clock
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 
@@ -114,35 +112,6 @@ def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -
     assert session.script.poses[1].name == "joy"
     session.undo()
     assert places_of(session.script) == {KeyPlace(POSES, 0.0)}
-
-
-def test_rows_join_sides() -> None:
-    """Twins share a row; a control for both sides stands for them unless they differ."""
-    names = ["AU12", "AU12_left", "AU12_right", "lid_left", "lid_right", "procerus"]
-    values = dict.fromkeys(names, 0.0)
-    linked = {row.label: row.names for row in rows_of(names, values, linked=True)}
-    assert linked["AU12"] == ("AU12",) and linked["lid"] == ("lid_left",)
-    apart = {row.label: row.names for row in rows_of(names, values, linked=False)}
-    assert apart["AU12"] == ("AU12_right", "AU12_left") and apart["procerus"] == ("procerus",)
-    values["AU12_left"] = 0.5
-    assert rows_of(names, values, linked=True)[0].names == ("AU12_right", "AU12_left")
-    values["AU12"] = 0.5
-    assert rows_of(names, values, linked=True)[0].names == ("AU12", "AU12_right", "AU12_left")
-    rows = rows_of(names, values, linked=True)
-    assert [
-        row.label for row in search_rows(rows, "smile au", group="", actions={"AU12": "Smile"})
-    ] == ["AU12"]
-
-
-def test_clock_steps_at_its_own_rate() -> None:
-    """Steps are as many as the time wants, whatever the frames; a stall is mostly forgotten."""
-    for frame in (1.0 / 144.0, 1.0 / 60.0, 1.0 / 20.0):
-        clock = Clock()
-        steps = sum(clock.steps(frame) for _ in range(round(2.0 / frame)))
-        assert abs(steps - 2.0 / STEP) <= 1
-    clock = Clock()
-    assert clock.steps(30.0) == MOST_STEPS
-    assert clock.steps(STEP) == 1
 
 
 def test_detail_falls_once_and_does_not_flicker() -> None:

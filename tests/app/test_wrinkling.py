@@ -1,7 +1,5 @@
 """Wrinkles that follow the simulated skin: when, where, which way, and on which heads."""
 
-from itertools import pairwise
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,12 +7,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import assets
 from risorius.app.refining.wrinkling import Compression, on_rows
 from risorius.app.scenes import FaceScene
-from risorius.assets.fitting import fit_head
 from risorius.assets.identities import person_called
-from tests.heads import stranger
 
 Array = npt.NDArray[np.float64]
 SETTLED = 1.2  # [s]
@@ -67,18 +62,6 @@ def test_amounts_grow_with_the_muscle_and_never_jump(
     assert sums[-1] > 1.0 and (np.diff(sums) > -0.01 * sums[-1]).all()
 
 
-@pytest.mark.parametrize("name", ["AU1", "AU4", "AU6", "AU12"])
-def test_mirrored_input_gives_mirrored_amounts(
-    scene: FaceScene, wrinkling: Compression, name: str
-) -> None:
-    """Left and right of the face, though furrows themselves differ."""
-    assert isinstance(scene.head, assets.Head)
-    left = amounts(scene, wrinkling, **{f"{name}_left": 1.0})
-    right = amounts(scene, wrinkling, **{f"{name}_right": 1.0})
-    assert left.any()
-    np.testing.assert_allclose(right[scene.head.mirror], left, atol=1e-3)
-
-
 @pytest.mark.parametrize(
     ("name", "low", "high", "slot"),
     [
@@ -100,37 +83,6 @@ def test_each_wrinkles_where_it_does_in_people(
     assert found[region(scene, low, high), slot].max() > 0.3
     if name in ("AU6", "AU17", "AU18"):
         assert found[forehead(scene)].max() < 0.05
-
-
-def test_lines_lie_across_the_muscles(scene: FaceScene) -> None:
-    """The skin shortens along the fibres: level lines under the frontalis, upright ones between."""
-    assert scene.wrinkles is not None
-    for muscle, slot, level in (
-        ("frontalis_medial_left", 0, False),
-        ("corrugator_supercilii_left", 1, True),
-    ):
-        rest, found = scene.rest_positions, []
-        for fibre in scene.simulation.fibres()[muscle]:
-            for start, end in pairwise(fibre):
-                nearest = int(np.linalg.norm(rest - 0.5 * (start + end), axis=1).argmin())
-                across = scene.wrinkles.across[nearest, slot].astype(np.float64)
-                if across.any():
-                    way = (end - start)[:2] / np.linalg.norm((end - start)[:2])
-                    found.append(abs(across[:2] @ way) / np.linalg.norm(across[:2]))
-                    assert (abs(across[0]) > abs(across[1])) == level
-        assert len(found) > 3 and np.median(found) > 0.8, muscle
-
-
-@pytest.mark.slow
-def test_other_heads_wrinkle_too(tmp_path: Path, scene: FaceScene, wrinkling: Compression) -> None:
-    """A fitted one of another shape and mesh does, as far as the built-in one."""
-    built_in = amounts(scene, wrinkling, AU1=1.0, AU2=1.0)[forehead(scene).astype(bool), 0].mean()
-    another = FaceScene(fit_head(*stranger().write(tmp_path)))
-    measure = Compression(another)
-    assert not amounts(another, measure).any()
-    found = amounts(another, measure, AU1=1.0, AU2=1.0)
-    mean = found[forehead(another).astype(bool), 0].mean()
-    assert 0.5 * built_in < mean < 1.6 * built_in
 
 
 def test_furrows_of_age_are_pulled_flat() -> None:

@@ -30,25 +30,6 @@ def test_every_example_is_tested() -> None:
     assert found == {"plain_script", "own_refiner", "read_dataset"}
 
 
-@pytest.mark.parametrize(
-    ("program", "words", "code", "told"),
-    [
-        ("read_dataset.py", (), 2, "required: folder"),
-        ("blender/build.py", ("--help",), 0, "linux-x64"),
-        ("blender/build.py", ("amiga",), 2, "invalid choice: 'amiga'"),
-    ],
-)
-def test_programs_say_what_they_take(
-    program: str, words: tuple[str, ...], code: int, told: str
-) -> None:
-    """In place of a traceback, as every command does."""
-    ended = subprocess.run(
-        [sys.executable, FOLDER / program, *words], capture_output=True, text=True, check=False
-    )
-    assert ended.returncode == code and told in ended.stdout + ended.stderr
-    assert "Traceback" not in ended.stderr
-
-
 def test_plain_script(tmp_path: Path) -> None:
     """As a user starts it: triangles grow with the bend, and the file has them."""
     target = tmp_path / "tube.obj"

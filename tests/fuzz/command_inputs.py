@@ -3,7 +3,6 @@ values for every option of every command."""
 
 import shlex
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import click
 
@@ -13,30 +12,21 @@ IMAGE = "capture good.toml -o x.png --size 16x16 --samples 0 --fps 5 --quiet"
 
 ACCEPTED = (
     "--help",
-    "--version",
-    "capture --help",
     "bench --help",
     "reproduce figure8",
-    "reproduce figure9",
     "reproduce figure10 -o new/folder",
     "reproduce all -o new/folder",
-    "controls --scene plane",
     "doctor --offscreen --quiet",
     "view --size 320x200",
     "replay good.toml --once",
     IMAGE,
-    f"{IMAGE} --time 0",
     f"{IMAGE} --time 0.1 --camera 1e3,-1e3,1e-3",
-    f"{IMAGE} --camera front",
     f"{IMAGE} --wrinkles 0 --skin clay --splits --wireframe --shading flat",
-    f"{IMAGE} --refiner none",
     f"{IMAGE} --refiner loop --option levels=2",
     f"{IMAGE} --look paper --compare smooth,none,loop",
     f"{IMAGE} --option scheme=cubic --option blend=OFF",
     f"{IMAGE} --option criterion=displacement+normal+rest --option scheme=cubic",
-    f"{IMAGE} --option criterion=normal+rest --option threshold_twice=1e30",
     f"{IMAGE} --look paper --option threshold_once=1e-300 --option coherent=true",
-    "capture --set AU12 -o x.png --size 16x16 --quiet",
     "capture good.toml -o full --overwrite --size 16x16 --fps 5 --quiet",
     "capture good.toml -o x.mp4 --size 16x16 --fps 5 --quiet",
     "capture good.toml --sheet new/x.png --size 16x16 --fps 5 --quiet",
@@ -46,56 +36,38 @@ ACCEPTED = (
 REFUSED = {
     # Commands and options that are not there.
     "captur good.toml": "No such command 'captur'",
-    "--wrong": "No such option '--wrong'",
     "bench nothing": "No such command 'nothing'",
     "reproduce table2": "'table2' is not one of",
-    "demo x": "unexpected extra argument",
-    "controls --scene moon": "'moon' is not one of",
     "replay": "Missing argument 'SCRIPT'",
-    "view --script": "requires an argument",
     "bench motion": "Missing option '--reference'",
     "bench reference folder -o x": "has no FaceXModel/generic_neutral_mesh.obj",
-    "bench reference folder -o notes.txt": "cannot be written",
     # Numbers.
     f"{IMAGE} --fps 0": "is not in the range",
-    f"{IMAGE} --fps nan": "nan is not a finite number",
     f"{IMAGE} --samples {'9' * 5000}": "is not",
-    "bench refine --size 3k": "'3k' is not one of",
     "bench window --size 9x9": "each 16 to 8192",
     # Live faces.
     "view --live osc": "'osc' is not one of",
     "view --live vmc --scene plane": "moves the scene 'face'",
-    "view --port 11111": "--port goes with --live",
     "send good.toml": "is no table and no JSON",
     # Sizes.
     "capture good.toml -o x.png --size 16": "'16' is no size",
     # Cameras.
     f"{IMAGE} --camera behind": "camera 'behind': allowed are",
-    f"{IMAGE} --camera 1,2,3,4": "allowed are",
     f"{IMAGE} --camera 0,0,0": "zoom above 0",
     # Options of refiners.
     f"{IMAGE} --look Paper": "'Paper' is not one of 'smooth', 'paper'",
     f"{IMAGE} --compare=": "'' is neither a look (smooth, paper) nor a refiner",
     f"{IMAGE} --compare none,none": "would stand beside itself",
     f"{IMAGE} --refiner magic": "refiner 'magic' is unknown; there are",
-    f"{IMAGE} --refiner 'kah\nler'": "is unknown; there are",
     f"{IMAGE} --option ''": "write NAME=VALUE",
-    f"{IMAGE} --option 'sche\nme=cubic'": "unknown option",
     f"{IMAGE} --option scheme=1": "option scheme was 1, must be a word",
-    f"{IMAGE} --option criterion=+": "criterion '' is unknown",
     f"{IMAGE} --option scheme=loop": "the look smooth has criterion=displacement+rest",
-    f"{IMAGE} --option criterion={'+'.join(['normals'] * 5000)}": "'normals' is unknown",
     f"{IMAGE} --option threshold_once=nan": "not a finite number",
-    f"{IMAGE} --option threshold_twice=1e300": "not a finite number up to 1e+30",
     f"{IMAGE} --option threshold_once=0.01": "counts for the criterion normal alone",
-    f"{IMAGE} --look paper --option threshold_once=on": "must be a number",
     f"{IMAGE} --option uv=1": "unknown option uv; it takes",
-    f"{IMAGE} --option __class__=1": "unknown option __class__; it takes",
-    f"{IMAGE} --option blend=None": "must be on or off",
     f"{IMAGE} --option coherent=on --option blend=on": "coherent",
     f"{IMAGE} --refiner loop --option levels=0": "levels",
     f"{IMAGE} --refiner loop --option scheme=cubic": "unknown option scheme; it takes levels",
-    f"{IMAGE} --refiner none --option levels=1": "has no options",
     f"{IMAGE} --compare --refiner none": "other than none",
     # What is asked for does not go together.
     "capture": "nothing to write",
@@ -104,12 +76,9 @@ REFUSED = {
     "capture --head head.obj -o x.png": "go together",
     "view --script nowhere.toml": "no such script",
     # Poses.
-    "capture --set joy= -o x.png": "'' is no number",
     "capture --set joy=nan -o x.png": "'nan' is no number",
     "capture --set joy=2 -o x.png": "must be from 0 to 1",
     "capture --set Joy=1 -o x.png": "unknown name 'Joy'; did you mean joy",
-    "capture --set 'jo\ny=1' -o x.png": "unknown name",
-    "capture --set joy=1 --scene plane -o x.png": "unknown name 'joy'",
     # Outputs.
     "capture good.toml -o x.avi": "what is '.avi'",
     "capture good.toml -o good.toml": "is read and would be written",
@@ -119,81 +88,53 @@ REFUSED = {
     "capture good.toml -o x.png --sheet x.png": "two outputs at once",
     "capture good.toml -o x.png --sound hum.wav": "only a film is heard",
     "capture good.toml -o x.mp4 --sound notes.txt": "there is no sound in it",
-    "capture good.toml -o x.mp4 --sound pipe.png": "is a pipe",
-    "capture good.toml -o x.mp4 --sound 'http://localhost/x.wav'": "no such sound file",
     "capture good.toml -o pipe.png": "is a device",
     "capture good.toml -o /dev/full": "/dev/full",
-    "capture good.toml -o /dev/null --overwrite": "/dev/null",
     "capture good.toml -o loop.png": "loop.png",
     f"capture good.toml -o {'x' * 300}.png": "File name too long",
     "bench quality --expression nobody": "--expression nobody: there are joy, ",
-    "bench quality --reference folder": "face.npz: is not there",
     # What other rooms refuse.
     "capture --compare good.toml -o x.mp4": "a SCRIPT goes before --compare",
     "capture good.toml -o x.mp4 --size ²x²": "'²x²' is no size",
-    "capture good.toml -o x.mp4 --scene plane": "unknown name 'joy'; `risorius controls --scene pl",
-    f"{IMAGE} --shading toon": "'toon' is not one of",
     "capture good.toml -o x.png --time 86400": "good.toml ends at",
     "capture --light moon -o x.png": "'moon' is not one of 'studio', 'side', 'overcast',",
-    "capture --scene plane --set phase=-1 -o x.png": "phase is -1; it must be from 0 to 100",
     "capture --scene plane -o x.mp4 --background transparent": "take one of .mov, .webm, .gif, ",
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
-    "convert nothing.csv -o .": ".: is a folder",
     "convert good.toml -o out.toml": "is a script already",
-    "bench motion --reference nowhere": "Directory 'nowhere' does not exist",
     # Persons.
     "capture --head no.obj --person 3 -o x.png": "goes with neither --head nor --landmarks",
     "capture --person 3 --scene plane -o x.png": "--head and --person go with the scene face",
     "capture --person -1 -o x.png": "'-1' is nobody; write a number, 0 or more, or ada, kofi",
-    "capture --person 4294967296 -o x.png": "4294967296 is not in the range 0<=x<=4294967295",
     # Recordings.
     "convert take.csv -o out.toml --neutral last": "--neutral last: allowed are",
     "convert take.csv -o out.toml --gain mouth=1": "--gain mouth=1: no channel",
     "convert take.csv -o out.toml --rate 0": "--rate",
-    "convert take.csv -o out.toml --lead -1": "--lead",
     "convert good.toml -o out.toml --gain all=2": "is a script, and --gain is for recordings",
-    "capture good.toml -o x.png --mirror": "is a script, and --mirror is for recordings",
     "capture --set joy -o x.png --lead 0": "--lead is for recordings, and none is given",
     "send take.csv --address nobody.invalid": "address 'nobody.invalid'",
-    "send take.csv --address ''": "that is no name",
     "send take.csv --port 0": "not in the range",
     # Passes and data sets.
     "capture good.toml --passes depth -o x.mp4": "--passes are files beside each picture: give -o ",
-    "capture good.toml --passes depth --sheet x.png": "--passes are files beside each picture",
     "capture good.toml --passes depth --compare -o x.png": "leave --compare out",
     "capture --scene plane --passes depth,landmarks -o x.png": "the scene plane has no face; ",
     f"{IMAGE} --passes depth,colour": "'colour' is no pass; allowed are depth, normal, triangle",
-    f"{IMAGE} --passes ''": "'' is no pass; allowed are depth",
     "dataset --count 2 -o set --passes colour": "'colour' is no pass",
     "dataset --count 2 -o set --background 'no such'": "neither a folder nor a colour",
     "dataset --count 2 -o set --background broken": "face.png: cannot be read as a picture",
     "dataset --count 2 -o set --sample nowhere.toml": "no such table",
-    "dataset --count 2 -o set --refiner mine": "refiner 'mine' is unknown; there are",
     # Exports.
     "export good.toml -o x.pc2 --refined": "it goes with usd, obj, vtkhdf",
     "export good.toml -o x.obj": "and folders with --as obj",
     "export good.toml -o x": "x: has no suffix. Allowed are .glb",
-    "export good.toml -o x.glb --as obj": "leave out .glb or --as obj",
-    "export good.toml -o x.usdz --as npz": "numpy arrays is written as .npz",
+    "export good.toml -o x.usdc --as npz": "numpy arrays is written as .npz",
     "export good.toml -o good.toml --as obj": "good.toml: is read and would be written",
-    "export good.toml -o deep/none --as obj --fps 0": "0.0 is not in the range 1<=x<=240",
-    "export good.toml -o x.usdz --refined --option threshold_twice=1": "the criterion normal alone",
     # More options and outputs.
     f"{IMAGE} --look paper --option threshold_once=0.2": "0 <= threshold_once <= threshold_twice",
-    f"{IMAGE} --option blend=True --option coherent=1": "option coherent was 1, must be on or off",
-    f"{IMAGE} --option threshold_twice={'9' * 400}": "is not a finite number up to 1e+30",
     f"{IMAGE} --refiner kahler-gl --option scheme=detail": "refiner kahler-gl: scheme must be one",
     f"{IMAGE} --compare papre": "'papre' is neither a look (smooth, paper) nor a refiner (kahler, ",
-    f"{IMAGE} --compare none,": "'' is neither a look",
-    f"{IMAGE} --compare smooth": "'smooth' would stand beside itself",
-    "capture good.toml --sheet folder.png": "is a folder",
-    "capture good.toml --sheet pipe.png": "is a device",
     "capture good.toml --sheet same.png": "same.png: is read and would be written",
-    "capture good.toml -o x.png --sheet ./x.png": "two outputs at once",
     "capture good.toml -o loop.mp4": "is a link that leads back to itself; choose another name",
-    "capture good.toml -o loop/x.png": "cannot be written: Too many levels of symbolic links",
     "capture good.toml -o notes.txt/x.mp4": "cannot be written: Not a directory",
-    "reproduce figure9 -o notes.txt": "cannot be written",
 }
 
 HOSTILE = {
@@ -202,14 +143,9 @@ HOSTILE = {
     "inf": "-inf",
     "long_number": "9" * 5000,
     "line_end": "a\nb",
-    "right_to_left": "\u202egnp.x",
     "no_unicode": "x\udcff",
-    "dash": "-",
     "format": "%s%n{}{0}",
     "long": "x" * 5000,
-    "full": "/dev/full",
-    "pipe": "pipe.png",
-    "loop": "loop.png",
 }
 
 GIVEN = {  # what else a command needs to come as far as the option
@@ -226,16 +162,8 @@ INSTEAD = {  # where one option excludes what is given
 }
 
 
-@dataclass(frozen=True)
-class HostileValue:
-    """One value of one option."""
-
-    name: str
-    arguments: tuple[str, ...]
-
-
-def hostile_values() -> Iterator[HostileValue]:
-    """Each hostile value for every option of every command that takes one."""
+def hostile_values() -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Each hostile value for every option that takes one: a name, and words of the command."""
     for path, command in commands(risorius(), ()):
         words = " ".join(path)
         for option in command.params:
@@ -248,7 +176,7 @@ def hostile_values() -> Iterator[HostileValue]:
                     arguments = (*path, *shlex.split(given), f"{option.opts[-1]}={value}")
                 else:  # the first word that is given
                     arguments = (*path, *shlex.split(GIVEN.get(words, ""))[1:], "--", value)
-                yield HostileValue(f"{'-'.join(path)}-{option.name}-{name}", arguments)
+                yield f"{'-'.join(path)}-{option.name}-{name}", arguments
 
 
 def commands(

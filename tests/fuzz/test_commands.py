@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from .command_inputs import ACCEPTED, REFUSED, HostileValue, hostile_values
+from .command_inputs import ACCEPTED, REFUSED, hostile_values
 from .sandbox import check_end, contents, run_command
 
 pytestmark = pytest.mark.usefixtures("ready_face", "no_long_work")
@@ -36,8 +36,8 @@ def test_mistakes(line: str, sandbox: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("hostile", list(hostile_values()), ids=lambda each: each.name)
-def test_hostile_values(hostile: HostileValue, sandbox: Path) -> None:
+@pytest.mark.parametrize("words", [pytest.param(w, id=name) for name, w in hostile_values()])
+def test_hostile_values(words: tuple[str, ...], sandbox: Path) -> None:
     """Whatever an option is given: success, or one line."""
     before = contents(sandbox)
-    check_end(run_command(hostile.arguments), sandbox, before)
+    check_end(run_command(words), sandbox, before)

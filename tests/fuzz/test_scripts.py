@@ -25,18 +25,10 @@ KEY = "[[pose]]\ntime = 1\njoy = 1\n"
 ACCEPTED: dict[str, bytes] = {
     "a mark of byte order": b"\xef\xbb\xbf" + KEY.encode(),
     "line ends of Windows": KEY.replace("\n", "\r\n").encode(),
-    "only comments above": f"# {'x' * 9000}\n{KEY}".encode(),
-    "the smallest time": b"[[pose]]\ntime = 0\n[[pose]]\ntime = 5e-324\njoy = 1\n",
     "tiny value": b"[[pose]]\ntime = 1\njoy = 1e-320\n",
-    "minus zero": b"[[pose]]\ntime = 1\njoy = -0.0\n",
     "a day": b"duration = 86400\n[[pose]]\ntime = 86400.0\njoy = 1\n",
-    "negative in a track": b"[tracks]\njoy = [{time = 1, value = -1}]\n",
-    "an empty name": b"[[pose]]\ntime = 1\nname = ''\n",
     "a name in all scripts": "[[pose]]\ntime = 1\nname = 'радость 喜び 😀'\n".encode(),
-    "hexadecimal": b"[[pose]]\ntime = 0x1\njoy = 0b1\n",
-    "underscores": b"[[pose]]\ntime = 1_0.0\n",
     "a track of lines": b"[tracks]\njoy = '''\n0 0\n 1\t0.5 hold \r\n\n2 -1e-320\n'''\n",
-    "numbers of Python in lines": b"[tracks]\njoy = '1_0 +.5'\n",
     "a million lines": b"[tracks]\njoy = '''\n"
     + b"\n".join(b"%d.%02d 0" % divmod(n, 100) for n in range(1_000_000))
     + b"'''\n",

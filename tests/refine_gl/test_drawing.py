@@ -90,18 +90,6 @@ def test_nothing_comes_back(scene: FaceScene, monkeypatch: pytest.MonkeyPatch) -
         assert card.refiner._fetched_splits is None  # type: ignore[attr-defined]
 
 
-def test_numbers_of_each_pixel(pipeline: Pipeline) -> None:
-    """Depth, normals and triangles of pixels, as passes and data sets take them."""
-    camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="front")
-    found = []
-    for drawn in both(pipeline):
-        image(pipeline, drawn, PLAIN)
-        view = pipeline.renderer.view(camera)
-        found.append(pipeline.renderer.draw_geometry(drawn.stream, [], {}, view))
-    for ours, theirs in zip(*found, strict=True):
-        np.testing.assert_array_equal(ours, theirs)
-
-
 @pytest.mark.parametrize("options", [["paper"], ["paper", "--compare", "none"], ["smooth"]])
 def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
     """`capture --refiner kahler-gl` draws what `--refiner kahler` draws."""

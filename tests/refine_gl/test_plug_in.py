@@ -1,8 +1,6 @@
 """How the refiner on the graphics card is bound, lent to and asked; and what is done without."""
 
-import copy
 import logging
-import pickle
 import re
 from collections.abc import Iterator
 from types import SimpleNamespace
@@ -12,8 +10,7 @@ import numpy as np
 import pytest
 
 from risorius import refine, render
-from risorius.refine_gl import GpuError, KahlerGl, context, frames, refiner, tables
-from risorius.refine_gl.frames import Frames
+from risorius.refine_gl import GpuError, KahlerGl, frames, refiner, tables
 from risorius.refine_gl.refined import GpuBuffers
 from tests import meshes
 
@@ -72,18 +69,6 @@ def test_lent_arrays_are_filled() -> None:
     np.testing.assert_array_equal(mesh.source, wanted.source)
     with pytest.raises(ValueError, match=re.escape("stream.triangles must be a writable")):
         card.refine(BENT, out=SimpleNamespace(**{**vars(stream), "triangles": None}))
-
-
-def test_a_frame_can_be_kept() -> None:
-    """A copy, and what was pickled, stays as it was when the next frame overwrites the card."""
-    _, card = bound()
-    mesh = card.refine(BENT)
-    kept, sent = copy.copy(mesh), pickle.loads(pickle.dumps(mesh))
-    wanted = mesh.positions.copy()
-    card.refine(MESH.vertices)
-    for each in (kept, sent):
-        assert isinstance(each, refine.RefinedMesh)
-        np.testing.assert_array_equal(each.positions, wanted)
 
 
 @pytest.fixture
@@ -161,14 +146,6 @@ def test_without_opengl_the_processor_refines(caplog: pytest.LogCaptureFixture) 
     np.testing.assert_array_equal(other.refine(BENT).triangles, wanted.triangles)
 
 
-def test_an_old_context_is_refused() -> None:
-    """A context that has no compute shaders says which version it is."""
-    _, card = bound()
-    old: Any = SimpleNamespace(version_code=410)
-    with pytest.raises(GpuError, match=re.escape("OpenGL 4.3 is needed, and this context has 4.1")):
-        Frames(old, card._tables, card._rules, card.rest_positions)
-
-
 def test_a_driver_that_refuses_a_shader(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -180,15 +157,6 @@ def test_a_driver_that_refuses_a_shader(
         assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
     (told,) = caplog.messages
     assert told.startswith("kahler-gl: the driver refuses mark.glsl: ") and "error" in told
-
-
-def test_meshes_beyond_the_drivers_buffers(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A mesh that the driver has no room for is refined by the processor."""
-    own = context.own_context()
-    refiner._tell.cache_clear()
-    small = {**own.gl.info, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE": 1 << 12}
-    monkeypatch.setattr(own, "gl", SimpleNamespace(info=small, gc=own.gl.gc, version_code=450))
-    assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
 
 
 def test_shaders_take_eight_buffers() -> None:
