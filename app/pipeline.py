@@ -200,8 +200,6 @@ class Pipeline:
             fade=self.scene.fade,
         )
         renderer.draw_parts(layers.over, bones, view, style)
-        if not (renderer.surface.samples or layers.is_opened):
-            renderer.draw_outline(stream, view, style, texture=texture, fade=self.scene.fade)
 
     def _values(
         self, drawn: DrawnMesh, style: render.Style, values: SourceValues | None

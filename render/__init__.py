@@ -42,7 +42,6 @@ from .style import (
     Light,
     Shading,
     Style,
-    toward,
 )
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
 from .texture import BumpMap, Texture
@@ -88,5 +87,4 @@ __all__ = [
     "open_window",
     "probe",
     "size_on_screen",
-    "toward",
 ]

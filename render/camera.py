@@ -24,7 +24,6 @@ FIELD_OF_VIEW = 25.0  # [degrees] a portrait lens: about 80 mm on 35 mm film, so
 MARGIN = 0.06  # of the frame, left free on each side when framing; mouths open and brows rise
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
 _STEEPEST = 89.0  # [degrees] to which one rises by steps; beyond 90 "up" would tip over
-_AWAY = 100.0  # scene radii from the target to an orthographic eye: rays part by half a degree
 
 # Name -> yaw and pitch [degrees]: yaw walks toward the subject's left, pitch rises above.
 VIEWS: dict[str, tuple[float, float]] = {
@@ -49,7 +48,6 @@ class OrbitCamera:
     narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
         width, but more of its height; framing sets it.
     scene_centre, scene_radius: a sphere that holds what is framed; sets the clipping planes.
-    is_orthographic: all is as large as perspective shows the target; the eye stands far back.
     """
 
     target: FloatArray
@@ -60,7 +58,6 @@ class OrbitCamera:
     scene_radius: float
     field_of_view: float = FIELD_OF_VIEW
     narrowest_aspect: float = 0.0
-    is_orthographic: bool = False
 
     @classmethod
     def framing(
@@ -130,11 +127,7 @@ class OrbitCamera:
     @property
     def eye(self) -> FloatArray:
         """Where the camera stands, shape (3,), float64."""
-        return self.target + self._eye_distance * self.axes()[2]
-
-    @property
-    def _eye_distance(self) -> float:
-        return _AWAY * self.scene_radius if self.is_orthographic else self.distance
+        return self.target + self.distance * self.axes()[2]
 
     def view_matrix(self) -> Matrix44:
         """World -> camera (x right, y up, looking along -z)."""
@@ -145,19 +138,12 @@ class OrbitCamera:
     def projection_matrix(self, aspect: float) -> Matrix44:
         """Camera -> clip space, for a frame of that width / height."""
         near, far = self._depth_range()
-        half = self._half_height(aspect)
-        if self.is_orthographic:
-            up = self.distance * half
-            right = aspect * up
-            return Matrix44.orthogonal_projection(
-                -right, right, -up, up, near, far, dtype=np.float64
-            )
-        degrees = 2.0 * math.degrees(math.atan(half))
+        degrees = 2.0 * math.degrees(math.atan(self._half_height(aspect)))
         return Matrix44.perspective_projection(degrees, aspect, near, far, dtype=np.float64)
 
     def focal(self, aspect: float, height: float) -> float:
         """Pixels that a length of 1 covers at distance 1 from the eye, in `height` pixels."""
-        return 0.5 * height * (self._eye_distance / self.distance) / self._half_height(aspect)
+        return 0.5 * height / self._half_height(aspect)
 
     def _half_height(self, aspect: float) -> float:
         """Half the frame's height at distance 1."""
@@ -177,7 +163,6 @@ class OrbitCamera:
         """Centre `points`, shape (n, 3), in the frame and step as close as the margin allows."""
         usable = (1.0 - 2.0 * margin) * math.tan(math.radians(0.5 * self.field_of_view))
         axes = np.stack(self.axes())
-        axes[2] *= not self.is_orthographic  # else what is nearer is larger
         for _ in range(8):  # each round centres better; perspective makes one round inexact
             x, y, z = axes @ (points - self.target).T
             self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius

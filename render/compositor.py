@@ -115,15 +115,14 @@ class Backdrop:
     def paint(
         self, target: RenderTarget, viewports: tuple[Rectangle, ...], background: Background | None
     ) -> None:
-        """Paint the background over each viewport; what was drawn there is gone.
+        """Paint the background over viewports of a frame on which nothing was drawn yet.
 
         None: nothing is there, not even black.
         """
         if background is None:
+            target.use_frame()
             for viewport in viewports:
-                target.use_frame(viewport)
-                target.frame.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=viewport)
-            target.is_empty = False
+                target.frame.clear(0.0, 0.0, 0.0, 0.0, viewport=viewport)
             return
         if self._store is None or self._store.size != target.size:
             self._store = self._gl.framebuffer([self._gl.renderbuffer(target.size, 4)])
@@ -135,19 +134,8 @@ class Backdrop:
             for viewport in viewports:
                 self._paint(viewport, background)
             self._stored = viewports, background
-        if target.is_empty:
-            target.use_frame((0, 0, *target.size))
-            self._gl.scissor = None
-            self._gl.copy_framebuffer(target.frame, self._store)
-            target.is_empty = False
-            return
-        for viewport in viewports:
-            target.use_frame(viewport)  # its scissor restricts the copy to the viewport
-            self._gl.copy_framebuffer(target.frame, self._store)
-            if not target.samples:  # the frame has depth, and it was drawn on
-                target.frame.color_mask = False, False, False, False
-                target.frame.clear(depth=1.0, viewport=viewport)
-                target.frame.color_mask = True, True, True, True
+        target.use_frame()
+        self._gl.copy_framebuffer(target.frame, self._store)
 
     def _paint(self, viewport: Rectangle, background: Background) -> None:
         gl = self._gl

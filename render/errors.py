@@ -9,37 +9,26 @@ import os
 import re
 
 OFFSCREEN = "offscreen OpenGL"
-_MESA = "apt install libegl1 libgl1-mesa-dri"
-_SOFTWARE = "set LIBGL_ALWAYS_SOFTWARE=1"
 
 # raw text -> (why, cure); the first pattern found wins.
 _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
-    (r"invalid literal for int", "a GLCONTEXT_ variable is not a whole number", "unset it"),
-    (r"found 0 devices", "no OpenGL driver offers itself to EGL", "apt install libgl1-mesa-dri"),
-    (r"requested device index", "there is no EGL device of that number", "unset it"),
-    (r"libGL\S* not loaded", "the OpenGL library is missing", "apt install libgl1 libgl1-mesa-dri"),
-    (r"not loaded", "the EGL library is missing", _MESA),
-    (r"egl\w+ not found|gl\w+ not found", "that library is not OpenGL", _MESA),
-    (r"eglInitialize failed", "the EGL driver does not start", "apt install libgl1-mesa-dri"),
-    (r"eglCreateContext|0x3009", "the driver has no OpenGL of that version", _SOFTWARE),
-    (r"Requested OpenGL version", "the driver is older than OpenGL 3.3", _SOFTWARE),
+    (r"invalid literal", "a GLCONTEXT_ variable is not a whole number", "unset it"),
+    (r"glfw'|GLFW3", "GLFW is not installed, or broken", "pip install 'risorius[window]'"),
     (
-        r"(DISPLAY|display).*(missing|open)|(open|connect).*display|XOpenDisplay|platform",
+        r"(?i)display|platform",
         "there is no screen to open a window on",
         "run it under `xvfb-run -a`, or render offscreen",
     ),
     (
-        r"GLX extension|Failed to load GLX|libGL|No GLXFBConfigs",
-        "the X server or this machine has no OpenGL for windows",
-        "apt install libgl1 libgl1-mesa-dri",
+        r"not loaded|not found|devices|device index|eglInitialize|load GLX|No GLXFBConfigs",
+        "there is no OpenGL driver",
+        "apt install libegl1 libgl1 libgl1-mesa-dri",
     ),
-    (r"GLXBadFBConfig|version|WGL|NSGL|EGL", "the driver is older than OpenGL 3.3", _SOFTWARE),
     (
-        r"GLFW3 shared library",
-        "the GLFW library cannot be loaded",
-        "pip install --force-reinstall glfw",
+        r"eglCreateContext|0x3009|version|FBConfig|WGL|NSGL|EGL",
+        "the driver is older than OpenGL 3.3",
+        "set LIBGL_ALWAYS_SOFTWARE=1",
     ),
-    (r"No module named 'glfw'", "GLFW is not installed", "pip install 'risorius[window]'"),
 )
 
 

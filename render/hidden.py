@@ -22,7 +22,7 @@ from .stream import MeshBuffers, Share
 from .style import ColourBy, Style
 
 TILE = 8  # [pixels] each way
-SIDES = 1, 2, 4, 8  # tiles: of squares of which the farthest depth is kept, and of twice them
+LEVELS = 5  # tables of the farthest depth: of tiles, and of squares of 2, 4, 8 and 16 of them
 MARGIN = 1e-4  # of the range of depths: beyond the rounding of drivers, 0.05 mm on a head
 SLIVER = 0.5 / TILE**2  # [tiles**2], twice the area up to which a triangle may turn to either side
 _UNIT = 1  # texture unit: the one of the layer
@@ -39,7 +39,7 @@ class Occluder:
         self._pass = gl.vertex_array(program, [])
         columns, rows = (-(-pixels // TILE) for pixels in target.size)
         self._tiles = gl.framebuffer([gl.texture((columns, rows), 1, dtype="f4")])
-        self._farthest = np.ones((1, 1, 1), np.float32)  # level, row, column
+        self._farthest: list[npt.NDArray[np.float32]] = []  # by level: row, column
         self._view: CameraView | None = None
         self._layer_number = -1
 
@@ -67,12 +67,12 @@ class Occluder:
         self._gl.scissor = None
         self._gl.enable_only(moderngl.DEPTH_TEST)
         read = np.frombuffer(self._tiles.read(components=1, dtype="f4"), np.float32)
-        tables = [read.reshape(rows, columns)]
-        for side in SIDES:  # from squares of so many tiles to twice as large ones
-            padded = np.pad(tables[-1], ((0, side), (0, side)))
-            wider = np.maximum(padded[:, :-side], padded[:, side:])
-            tables.append(np.maximum(wider[:-side], wider[side:]))
-        self._farthest = np.stack(tables)  # each square is named by its lowest tile
+        self._farthest = [read.reshape(rows, columns)]
+        for _ in range(1, LEVELS):
+            last = self._farthest[-1]
+            even = np.pad(last, [(0, count % 2) for count in last.shape])
+            by_twos = even.reshape(len(even) // 2, 2, -1, 2)
+            self._farthest.append(by_twos.max(axis=(1, 3)))
 
     def choose_parts(self, placed: Sequence[PlacedPart]) -> None:
         """Choose the faces of parts that are not surely hidden; all at once, which takes less."""
@@ -129,22 +129,21 @@ class Occluder:
         self, low: list[npt.NDArray[np.float32]], high: list[npt.NDArray[np.float32]]
     ) -> npt.NDArray[np.float32]:
         """The farthest depth of all tiles between two places [tiles]; 1 between distant ones."""
-        rows, columns = self._farthest.shape[1:]
+        rows, columns = self._farthest[0].shape
         # What is no number may be in any tile.
-        first, last = (
-            [np.fmin(np.fmax(at, 0.0), count - 1).astype(np.intp) for at, count in pairs]
-            for pairs in (zip(ends, (columns, rows), strict=True) for ends in (low, high))
+        (left, right), (bottom, top) = (
+            [np.fmin(np.fmax(at[axis], 0.0), count - 1).astype(np.intp) for at in (low, high)]
+            for axis, count in enumerate((columns, rows))
         )
-        # Squares as large as fit, one in each corner, hold all tiles that a triangle touches.
-        reach = np.maximum(last[0] - first[0], last[1] - first[1]) + 1
-        level = np.clip(np.frexp(reach)[1] - 1, 0, len(SIDES))
-        side = 1 << level
-        ends = [np.maximum(last[axis] + 1 - side, first[axis]) for axis in (0, 1)]
-        flat = self._farthest.ravel()
-        above = [(level * rows + row) * columns for row in (first[1], ends[1])]
-        corners = [flat[row + column] for row in above for column in (first[0], ends[0])]
-        farthest = np.maximum(np.maximum(*corners[:2]), np.maximum(*corners[2:]))
-        return np.where(reach <= 2 * side, farthest, np.float32(1.0))
+        farthest = np.ones(len(left), np.float32)
+        for level in reversed(range(LEVELS)):  # the finest at which two squares each way hold it
+            ends = [at >> level for at in (left, right, bottom, top)]
+            fits = np.flatnonzero((ends[1] - ends[0] <= 1) & (ends[3] - ends[2] <= 1))
+            x0, x1, y0, y1 = (at[fits] for at in ends)
+            table = self._farthest[level]
+            corners = [table[y, x] for y in (y0, y1) for x in (x0, x1)]
+            farthest[fits] = np.maximum.reduce(corners)
+        return farthest
 
 
 def draw_sides(

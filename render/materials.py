@@ -60,8 +60,7 @@ def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_sca
     set_light(program, style.light)
     if "albedo" in program:  # not where a texture takes its place
         program["albedo"] = tuple(to_linear(style.albedo))
-    if "inner_albedo" in program:  # fringes along contours have no inner side
-        program["inner_albedo"] = tuple(to_linear(style.inside))
+    program["inner_albedo"] = tuple(to_linear(style.inside))
     program["subsurface"] = style.scattering
     program["gloss"] = 0.26 * style.gloss
     program["sharpness"] = SKIN_SHARPNESS

@@ -71,8 +71,8 @@ class PartBuffers:
         if columns:
             self.kind, layout, *more = STRIPED[columns]
         self._layout = (f"3f 3f 3f{layout}", "in_position", "in_normal", "in_colour", *more)
-        # What is enclosed is seen before what encloses it.
-        self.is_outlined = self.kind == "RIGID" and not part.is_enclosed
+        # Over what was drawn before, by its opacity.
+        self.is_mixed = self.kind in ("STRANDS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
         self.upload()
@@ -89,9 +89,7 @@ class PartBuffers:
         self.corners = box_corners(vertices)
         more = [] if part.striation is None else [part.striation]
         rows = np.hstack([vertices, part.normals, to_linear(part.colours), *more])
-        rows = rows.astype(np.float32)
-        self._vertices.write(rows.tobytes())
-        self.rows = rows if self.is_outlined else rows[:0]  # for fringes
+        self._vertices.write(rows.astype(np.float32).tobytes())
         self._uploaded = vertices
 
     def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:

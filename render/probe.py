@@ -50,10 +50,6 @@ def probe(*, offscreen_only: bool = False) -> list[Finding]:
 
 
 def _probe_in_process(name: str) -> Finding:
-    def failed(message: str) -> Finding:
-        """A way to draw that does not work."""
-        return Finding(name, is_ok=False, message=message)
-
     code = f"from {__package__}.probe import write_finding; write_finding({name!r})"
     try:
         process = subprocess.run(
@@ -62,32 +58,21 @@ def _probe_in_process(name: str) -> Finding:
             text=True,
             errors="replace",
             timeout=_PATIENCE,
-            check=False,
+            check=True,
         )
-    except subprocess.TimeoutExpired:
-        return failed(f"the driver did not answer within {_PATIENCE:.0f} s. Cure: update it")
-    except OSError as error:
-        return failed(f"cannot start {sys.executable} to try it ({error})")
-    if process.returncode != 0 or not process.stdout.strip():
-        lines = process.stderr.strip().splitlines()
-        return failed(
-            f"the driver crashed the process that tried it (exit code {process.returncode}; "
-            f"{lines[-1] if lines else 'no message'}). Cure: set LIBGL_ALWAYS_SOFTWARE=1"
-        )
-    found = json.loads(process.stdout.strip().splitlines()[-1])
-    return Finding(name, **found)
+    except subprocess.SubprocessError as error:
+        status = getattr(error, "returncode", "none")
+        message = f"the driver crashed the process that tried it, or hung (exit code {status})"
+        return Finding(name, is_ok=False, message=f"{message}. Cure: set LIBGL_ALWAYS_SOFTWARE=1")
+    return Finding(name, **json.loads(process.stdout.strip().splitlines()[-1]))
 
 
 def write_finding(name: str) -> None:
-    """Try one way to draw in this very process, and write what was found to standard output."""
-    sys.stdout.write(json.dumps(_examine(name)) + "\n")
-
-
-def _examine(name: str) -> dict[str, object]:
-    """Open a small surface here and describe its OpenGL; the fields of a Finding."""
+    """Try one way to draw in this very process; the fields of a Finding to standard output."""
     from .surface import NEWEST, Surface, open_offscreen
     from .window import open_window
 
+    found: dict[str, object]
     try:
         surface: Surface
         if name == "window":
@@ -98,7 +83,7 @@ def _examine(name: str) -> dict[str, object]:
             surface.begin()
             surface.end()
             surface.read()
-            return {
+            found = {
                 "is_ok": True,
                 "vendor": surface.gl.info["GL_VENDOR"],
                 "renderer": surface.gl.info["GL_RENDERER"],
@@ -108,6 +93,7 @@ def _examine(name: str) -> dict[str, object]:
                 "lends_gpu_streams": surface.gl.version_code >= NEWEST,
             }
     except GLError as error:
-        return {"is_ok": False, "message": str(error)}
+        found = {"is_ok": False, "message": str(error)}
     except Exception as error:
-        return {"is_ok": False, "message": f"{type(error).__name__}: {error}"}
+        found = {"is_ok": False, "message": f"{type(error).__name__}: {error}"}
+    sys.stdout.write(json.dumps(found) + "\n")

@@ -22,11 +22,7 @@ _INCLUDE = re.compile(r'^#include "([\w.]+)"$', re.MULTILINE)
 @cache
 def shader_text(name: str) -> str:
     """The text of a GLSL file of this package, its includes filled in."""
-    path = SHADER_FOLDER / name
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise GLError(f"shader {name} cannot be read ({error}). Cure: reinstall risorius") from None
+    text = (SHADER_FOLDER / name).read_text(encoding="utf-8")
 
     # Line numbers in the driver's messages are those of the file: an include counts as no line.
     def fill(match: re.Match[str]) -> str:
@@ -66,16 +62,12 @@ def write_uniform(program: moderngl.Program, name: str, values: npt.NDArray[Any]
 
 
 def _compile_error(name: str, defines: tuple[str, ...], raw: str) -> GLError:
-    """One line from moderngl's page of text: file, stage, defines, the driver's first complaint."""
-    lines = [line.strip() for line in raw.splitlines() if line.strip(" =\n")]
-    stage = next(
-        (word for word in ("vertex", "geometry", "fragment") if f"{word}_shader" in raw), "link"
+    """One line from moderngl's page of text: file, defines, stage, the driver's first complaint."""
+    stage, complaint = (
+        found[0].strip() if (found := re.search(pattern, raw)) else "?"
+        for pattern in (r"\w+(?=_shader)", r"(?i).*error[:( ].*")
     )
-    complaint = next(
-        (line for line in lines if "error" in line.lower()), lines[-1] if lines else "?"
-    )
-    variant = f" ({' '.join(defines)})" if defines else ""
     return GLError(
-        f"shader {name}{variant}, {stage} stage: {complaint}. "
+        f"shader {' '.join([name, *defines])}, {stage} stage: {complaint}. "
         "Cure: update the OpenGL driver, or set LIBGL_ALWAYS_SOFTWARE=1"
     )

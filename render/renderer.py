@@ -10,7 +10,6 @@ Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from types import MappingProxyType
-from typing import Any
 
 import moderngl
 import numpy as np
@@ -20,7 +19,7 @@ from .camera import CameraView, OrbitCamera, box_corners
 from .compositor import Backdrop
 from .geometry_buffer import Geometry, GeometryBuffer
 from .hidden import Occluder, draw_sides
-from .lines import Lines, draw_fringes, fringes
+from .lines import Lines
 from .materials import (
     mesh_shader,
     part_shader,
@@ -34,7 +33,7 @@ from .programs import compile_program, write_uniform
 from .render_target import Rectangle, scaled
 from .shadow import ShadowMap, Thrower
 from .stream import GpuStream, MeshBuffers, Share, Stream
-from .style import ColourBy, Shading, Style
+from .style import ColourBy, Style
 from .surface import NEWEST, Surface
 from .texture import BumpMap, Texture
 from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
@@ -95,7 +94,7 @@ class Renderer:
         return scaled(viewport, self.surface.scale)
 
     def draw_background(self, style: Style, *viewports: Rectangle) -> None:
-        """Paint the style's background over viewports, and over what was drawn there; none: all."""
+        """Paint the background of a style over viewports, before anything is drawn; none: all."""
         areas = tuple(self._viewport(each) for each in viewports or (None,))
         self._backdrop.paint(self.surface.target, areas, style.background)
 
@@ -176,31 +175,6 @@ class Renderer:
             self._shadow = ShadowMap(self._gl)
         self._shadow.draw(throwers, view, self.surface.target.frame_number, style.light.to_key)
 
-    def draw_outline(
-        self,
-        stream: MeshBuffers,
-        view: CameraView,
-        style: Style,
-        *,
-        texture: Texture | None = None,
-        fade: Plane | None = None,
-    ) -> None:
-        """Smooth the edges of a mesh that was drawn just now, where pixels have a single sample.
-
-        Draw it after the parts. Flat shading, colours by values and wireframes stay as they are.
-        """
-        is_smooth = style.shading is not Shading.FLAT and not style.wireframe
-        if not is_smooth or style.colour_by is not ColourBy.NONE or not stream.triangle_count:
-            return
-        rows = fringes(stream.frame.vertices, stream.frame.triangles, view)
-        if not len(rows):
-            return
-        if self._use_layer(view, stream.corners):
-            seen = fade_seen(fade, stream, view)
-            program = self._mesh_program(view, style, texture, None, seen, "FRINGE")
-            with blending(self._gl):
-                draw_fringes(self._gl, program, rows)
-
     def _mesh_program(
         self,
         view: CameraView,
@@ -208,17 +182,15 @@ class Renderer:
         texture: Texture | None,
         bumps: BumpMap | None,
         fade: Plane | None,
-        *more: str,
     ) -> moderngl.Program:
         """The program of a mesh, with all that it asks for."""
         maps = {} if bumps is None else {bumps: style.bumps}
-        # In the fringes beside a mesh there is no slope to be measured.
-        fine = None if texture is None or more else texture.fine_shape
+        fine = None if texture is None else texture.fine_shape
         if fine is not None and style.shows_fine_shape:
             maps[fine] = 1.0
         texture = texture if style.textured else None
         names = mesh_shader(style, texture is not None, maps, fade is not None)
-        program = self._program(*names, *more)
+        program = self._program(*names)
         write_uniform(program, "model_view", view.world_to_view)
         write_uniform(program, "projection", view.projection)
         if fade is not None:
@@ -249,7 +221,7 @@ class Renderer:
 
         Draw them after the mesh: it throws its shadow on them. A part's arrays are uploaded when it
         is first seen and must not change after; a part that changes its shape hands out others.
-        Raises ValueError for a bone without transform. What is not enclosed has smooth edges.
+        Raises ValueError for a bone without transform.
         cut: in front of it an opaque mesh will hide them, even where they come out of it.
         """
         shadow = self._shadow if style.shadows else None
@@ -262,31 +234,23 @@ class Renderer:
         occluder = self._occluder
         if is_chosen := occluder is not None and occluder.is_of(view, self.surface.target):
             occluder.choose_parts(placed)
-        drawn: list[Any] = sorted(placed, key=lambda each: each[0].kind in ("STRANDS", "SHELLS"))
-        if not self.surface.samples and cut is None:
-            drawn += [(*each, "FRINGE") for each in placed if each[0].is_outlined]
         programs = {}
-        for kind, *fringe in {(each.kind, *fringe) for each, _, *fringe in drawn}:
-            names = *part_shader(kind, shadow is not None, cut is not None), *fringe
-            programs[kind, *fringe] = program = self._program(*names)
+        for kind in {each.kind for each, _ in placed}:
+            names = part_shader(kind, shadow is not None, cut is not None)
+            programs[kind] = program = self._program(*names)
             write_uniform(program, "projection", view.projection)
             set_light(program, style.light)
             if cut is not None and "cut" in program:
                 set_cut(program, view, cut, SUNK)
             if shadow is not None and "shadow_map" in program:
                 shadow.set_uniforms(program, view, _SHADOW_UNIT)
-        for buffers, bone, *fringe in drawn:
-            program = programs[buffers.kind, *fringe]
+        for buffers, bone in sorted(placed, key=lambda each: each[0].is_mixed):
+            program = programs[buffers.kind]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
             set_part(program, buffers.kind, buffers.part, style.light, view)
             hides = buffers.kind == "SHELLS"
-            is_mixed = hides or buffers.kind == "STRANDS" or bool(fringe)
-            with blending(self._gl, hides=hides) if is_mixed else nullcontext():
-                if fringe:
-                    rows = fringes(buffers.rows, buffers.part.faces, view, bone)
-                    draw_fringes(self._gl, program, rows)
-                else:
-                    buffers.draw(program, chosen=is_chosen and not hides)
+            with blending(self._gl, hides=hides) if buffers.is_mixed else nullcontext():
+                buffers.draw(program, chosen=is_chosen and not hides)
 
     def draw_geometry(
         self,

@@ -262,7 +262,7 @@ class GpuStream(MeshBuffers):
     """Buffers of such a mesh, lent to a program on the graphics card that makes it there.
 
     It is drawn by the command that this program writes, without anybody on this side learning how
-    much there is. What needs rows or triangles here fetches them, and waits: bumps, outlines,
+    much there is. What needs rows or triangles here fetches them, and waits: bumps,
     colours by triangle, and software that leaves hidden triangles out.
 
     vertex_buffer, index_buffer: rows and triangles, as in a `Stream`.

@@ -71,8 +71,7 @@ class Surface:
     def resolve(self) -> None:
         """End the scene: what is drawn from here on (a panel) lies on top, not multisampled."""
         self.make_current()
-        self.target.use_frame((0, 0, *self.size))
-        self.gl.scissor = None
+        self.target.use_frame()
 
     def end(self) -> None:
         """Finish the frame; a window shows it."""

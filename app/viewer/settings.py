@@ -191,7 +191,6 @@ class Display(Record):
     light: Annotated[str, OneOf(render.LIGHTS)] = "studio"
     background: Annotated[str, OneOf(BACKGROUNDS)] = "theme"
     tone: Annotated[str, OneOf(TONES)] = "own"  # of textured skin
-    is_orthographic: Flag = False  # the camera
     overlays: list[Annotated[str, OneOf(STRUCTURES)]] = field(default_factory=list)
     # Of the skin over muscles and skull, and on which side of the face it lets them show.
     skin_opacity: Share = OPACITY

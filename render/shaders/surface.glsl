@@ -1,8 +1,7 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
 // stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
-// a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), FRINGE (fading fringes along
-// contours, see outline.py), STRANDS (thin cones, never drawn thinner than a pixel: they fade instead),
+// a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones, never drawn thinner than a pixel: they fade instead),
 // FIBRES (striation), TRANSLUCENT (skin that shows what is under it), SUNK (what is under
 // it, hidden where skin is whole), FADED (skin that fades toward a plane).
 
@@ -49,10 +48,10 @@ uniform float sharpness;
 #else
 #define SHADOW_VARYING
 #endif
-#if defined(FRINGE) || defined(STRANDS)
-#define FRINGE_VARYING float coverage;
+#if defined(STRANDS)
+#define STRAND_VARYING float coverage;
 #else
-#define FRINGE_VARYING
+#define STRAND_VARYING
 #endif
 #if defined(FIBRES)
 #define FIBRE_VARYING vec2 fibre;
@@ -60,7 +59,7 @@ uniform float sharpness;
 #define FIBRE_VARYING
 #endif
 #define VARYINGS vec3 position; NORMAL_VARYING LIT_VARYING COLOUR_VARYING TEXTURE_VARYING \
-    SHADOW_VARYING BUMP_VARYING FRINGE_VARYING FIBRE_VARYING
+    SHADOW_VARYING BUMP_VARYING STRAND_VARYING FIBRE_VARYING
 
 #if defined(VERTEX_STAGE)
 
@@ -77,9 +76,6 @@ in vec2 in_bumps;
 #endif
 #if defined(FIBRES)
 in vec2 in_fibre;  // across and along the fibres [mm]
-#endif
-#if defined(FRINGE)
-in vec3 in_fringe;  // how far aside in clip space, coverage
 #endif
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -143,10 +139,6 @@ void main() {
     float beyond = clamp(dot(cut, position), 0.0, cut_width);
     vec4 sunk = projection * vec4(position.xyz * (1.0 + beyond / length(position.xyz)), 1.0);
     gl_Position.z = sunk.z / sunk.w * gl_Position.w;
-#endif
-#if defined(FRINGE)
-    gl_Position.xy += in_fringe.xy * gl_Position.w;
-    surface.coverage = in_fringe.z;
 #endif
 }
 
@@ -254,11 +246,6 @@ uniform vec4 cut;  // plane, view space; in front of it the skin is whole
 uniform float cut_width;
 const vec3 FAT = vec3(0.78, 0.50, 0.34);  // linear light
 #endif
-#if defined(FRINGE)
-#define IS_FRONT true
-#else
-#define IS_FRONT gl_FrontFacing
-#endif
 #if defined(FADED)
 uniform vec4 fade;  // view space: at a place it says how much of the skin shows, from 0 to 1
 #endif
@@ -306,7 +293,7 @@ vec3 shading_normal() {
 #elif defined(COLOURED)
     return normalize(surface.normal);
 #else
-    return normalize(IS_FRONT ? surface.normal : -surface.normal);
+    return normalize(gl_FrontFacing ? surface.normal : -surface.normal);
 #endif
 }
 #endif
@@ -315,7 +302,7 @@ void main() {
     float solid = 1.0;
 #if defined(FADED)
     solid = smoothstep(0.0, 1.0, dot(fade, vec4(surface.position, 1.0)));
-    if (!IS_FRONT && solid < 1.0) discard;
+    if (!gl_FrontFacing && solid < 1.0) discard;
 #endif
 #if defined(GOURAUD)
     Lit lit = Lit(surface.key, surface.rest, surface.specular);
@@ -329,7 +316,7 @@ void main() {
 #endif
     vec3 normal = shading_normal();
 #if defined(RELIEF)
-    Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, IS_FRONT);
+    Bump bump = bump_at(surface.uv, BUMP_AMOUNTS, gl_FrontFacing);
     normal = bumped(normal, surface.position, surface.uv, bump);
 #endif
 #if defined(FIBRES)
@@ -375,7 +362,7 @@ void main() {
 #else
     // Skin that only just turns away is the outline, where front and back have the same depth: it
     // keeps its colour, or dark specks of the inner side would come through there.
-    float inwardness = IS_FRONT ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
+    float inwardness = gl_FrontFacing ? 0.0 : clamp(5.0 * facing - 0.75, 0.0, 1.0);
     light = mix(light, inner_albedo * inner, inwardness);
 #endif
     vec3 shown = display(light);
@@ -385,12 +372,12 @@ void main() {
     float coverage = clamp(wire_half_width + 0.5 - nearest, 0.0, 1.0);
     shown = mix(shown, wire_colour.rgb, wire_colour.a * surface.wire_strength * coverage);
 #endif
-#if defined(FRINGE) || defined(STRANDS)
+#if defined(STRANDS)
     pixel_colour = vec4(shown, solid * surface.coverage);
 #elif defined(TRANSLUCENT)
     // Where it is seen from the side there is more of it: so the outline of the face reads.
     float from_cut = dot(cut, vec4(surface.position, 1.0));
-    if (!IS_FRONT && from_cut < 0.0) discard;
+    if (!gl_FrontFacing && from_cut < 0.0) discard;
     float grazing = 1.0 - clamp(facing, 0.0, 1.0);
     float veil = grazing * grazing * min(3.0 * opacity, 1.0);
     float shown_share = from_cut > 0.0 ? 1.0 : mix(opacity, 1.0, veil);

@@ -38,20 +38,9 @@ def run_python(code: str, **environment: str) -> str:
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        (
-            "GLCONTEXT_LINUX_LIBEGL",
-            "nonexistent",
-            r'EGL library is missing \("nonexistent not loaded"\). '
-            r"Cure: unset GLCONTEXT_LINUX_LIBEGL",
-        ),
-        ("GLCONTEXT_LINUX_LIBEGL", "libc.so.6", "not OpenGL.*Cure: unset GLCONTEXT_LINUX_LIBEGL"),
-        ("GLCONTEXT_DEVICE_INDEX", "77", "no EGL device of that number.*found 1 dev.*Cure: unset"),
-        (
-            "GLCONTEXT_DEVICE_INDEX",
-            "first",
-            "not a whole number.*'first'.*Cure: unset GLCONTEXT_DEVICE_INDEX",
-        ),
-        ("GLCONTEXT_GLVERSION", "990", "no OpenGL of that version.*0x3009.*unset GLCONTEXT_GLVER"),
+        ("GLCONTEXT_LINUX_LIBEGL", "nonexistent", r'no OpenGL driver \("nonexistent not loaded"\)'),
+        ("GLCONTEXT_DEVICE_INDEX", "first", "is not a whole number.*'first'"),
+        ("GLCONTEXT_GLVERSION", "990", "the driver is older.*0x3009"),
     ],
 )
 def test_broken_egl_is_one_line(
@@ -60,7 +49,7 @@ def test_broken_egl_is_one_line(
     """Each way to break EGL by the environment names itself and its cure."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv(name, value)
-    with pytest.raises(render.GLError, match=message) as caught:
+    with pytest.raises(render.GLError, match=f"{message}.*Cure: unset {name}") as caught:
         render.open_offscreen((8, 8))
     assert "\n" not in str(caught.value)
 
@@ -92,15 +81,12 @@ def test_no_screen_is_one_line_without_warnings() -> None:
 @pytest.mark.parametrize(
     ("raw", "cure"),
     [
-        ("libEGL.so not loaded", "Cure: apt install libegl1 libgl1-mesa-dri"),
-        ("libGL.so not loaded", "Cure: apt install libgl1 libgl1-mesa-dri"),
-        ("requested device index 0, but found 0 devices", "Cure: apt install libgl1-mesa-dri"),
-        ("eglInitialize failed (0x3001)", "Cure: apt install libgl1-mesa-dri"),
+        ("libEGL.so not loaded", "Cure: apt install libegl1 libgl1 libgl1-mesa-dri"),
+        ("requested device index 0, but found 0 devices", "Cure: apt install libegl1"),
         ("Requested OpenGL version 330, got version 210", "Cure: set LIBGL_ALWAYS_SOFTWARE=1"),
         ("X11: Failed to open display :99", "Cure: run it under `xvfb-run -a`"),
-        ("GLX: GLX extension not found", "Cure: apt install libgl1 libgl1-mesa-dri"),
         ("GLX: Failed to create context: GLXBadFBConfig", "Cure: set LIBGL_ALWAYS_SOFTWARE=1"),
-        ("Failed to load GLFW3 shared library.", "Cure: pip install --force-reinstall glfw"),
+        ("Failed to load GLFW3 shared library.", "Cure: pip install 'risorius[window]'"),
         ("No module named 'glfw'", "Cure: pip install 'risorius[window]'"),
         ("", 'failed ("no reason given"). Cure: `risorius doctor`'),
         ("something\nnew", 'failed ("something new"). Cure: `risorius doctor`'),
@@ -127,10 +113,8 @@ def test_shader_error_names_file_and_stage(
         "#endif\n"
     )
     monkeypatch.setattr(programs, "SHADER_FOLDER", tmp_path)
-    with pytest.raises(render.GLError, match=r"broken\.glsl \(WIDE 3\), fragment stage: .*missing"):
+    with pytest.raises(render.GLError, match=r"broken\.glsl WIDE 3, fragment stage: .*missing"):
         programs.compile_program(surface.gl, "broken.glsl", "WIDE 3")
-    with pytest.raises(render.GLError, match=r"shader absent\.glsl cannot be read"):
-        programs.compile_program(surface.gl, "absent.glsl")
 
 
 def test_probe_finds_what_is_there() -> None:

@@ -27,25 +27,6 @@ def test_parts_move_with_their_bones(surface: render.Surface) -> None:
     assert places[1] == pytest.approx(47.5 + 21.5, abs=1.5)
 
 
-def test_what_is_not_enclosed_has_smooth_edges() -> None:
-    """Without samples a shirt fades over a pixel; within the head nothing pays for that."""
-    counts = {}
-    for is_enclosed in (False, True):
-        with render.open_offscreen((96, 96), samples=0) as surface:
-            renderer = render.Renderer(surface)
-            with fresh_frame(renderer):
-                renderer.draw_parts(
-                    [Ball(is_enclosed=is_enclosed)], STILL, renderer.view(facing()), PLAIN
-                )
-            assert surface.gl.error == "GL_NO_ERROR"
-            frame = surface.read().astype(np.int32)
-        lightest = frame[40:56, 40:56, 0].max()  # of the ball's red, before white
-        counts[is_enclosed] = ((frame[..., 0] > lightest + 40) & (frame[..., 0] < 245)).sum()
-    edge = np.pi * np.ptp(np.nonzero(drawn(frame))[1])
-    assert counts[True] < 0.1 * edge
-    assert 0.4 * edge < counts[False] < 1.5 * edge
-
-
 def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) -> None:
     """Other arrays of the same part are uploaded, whatever was drawn before."""
     renderer, pixels = render.Renderer(surface), []

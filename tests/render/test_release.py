@@ -66,7 +66,6 @@ def draw_all(surface: render.Surface) -> np.ndarray:
                 stream, renderer.view(camera), style, values=values, texture=texture, bumps=bumps
             )
             renderer.draw_parts([Ball()], STILL, renderer.view(camera), style)
-            renderer.draw_outline(stream, renderer.view(camera), style, texture=texture)
             renderer.draw_lines(
                 render.Lines([shape.positions[:5]], (1.0, 0.0, 0.0)), renderer.view(camera)
             )

@@ -6,7 +6,7 @@ import numpy as np
 
 from risorius import render
 
-from .scenes import PLAIN, Shape, at, draw_image, sphere, square
+from .scenes import PLAIN, Shape, at, draw_image, facing, fresh_frame, lent, sphere, square
 
 FLAT = replace(PLAIN, shading=render.Shading.FLAT)
 GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
@@ -63,3 +63,18 @@ def test_inner_side_is_dark_flesh(surface: render.Surface) -> None:
         behind = at(draw_image(surface, turned, style), 5.0, 5.0)
         assert behind.sum() < 0.4 * front.sum()
         assert behind[0] > 1.5 * behind[1] and behind[0] > 20
+
+
+def test_skin_fades_toward_a_plane(surface: render.Surface) -> None:
+    """All of it at 1, half where the way is half done, nothing at 0."""
+    renderer = render.Renderer(surface)
+    stream = lent(renderer, square(30.0))
+    pictures = []
+    for fade in (None, (0.0, 1.0 / 60.0, 0.0, 0.5)):  # from the lower edge to the upper one
+        with fresh_frame(renderer):
+            renderer.draw_mesh(stream, renderer.view(facing()), PLAIN, fade=fade)
+        pictures.append(255.0 - surface.read().astype(np.float64).mean(axis=2))
+    whole, faded = pictures
+    rows = np.flatnonzero(whole[:, 48] > 1.0)
+    top, middle, bottom = (faded[rows, 48] / whole[rows, 48])[[1, len(rows) // 2, -2]]
+    assert top > 0.98 and abs(middle - 0.5) < 0.05 and bottom < 0.02

@@ -239,7 +239,7 @@ def style_of(display: Display, background: render.Background | None) -> render.S
     )
 
 
-# One sample, outlines smoothed by fringes (render/outline.py); then a little blurred, too.
+# One sample; then a little blurred, too.
 # Two samples would not help: software draws four. Processor time of a whole frame at 1280 x 720,
 # as parts of the first: 1, 0.53, 0.47, 0.39 (measured 2026-11-21); with four samples at 0.75: 0.8.
 LEVELS = (

@@ -164,7 +164,6 @@ def view_menu(settings: Settings, view: View) -> Menu:
         setting("Curves", "G", "shows_curves"),
         command("Frame the face", "F", view.fit_scene),
         *(command(name, key, partial(view.look_from, name)) for name, key in VIEW_KEYS.items()),
-        display_switch("Orthographic", "Keypad5, Alt+5", "is_orthographic"),
         setting("Dark theme", "F2", "theme", "dark", "light"),
         command("Larger text", "Ctrl+Equal", partial(settings.enlarge, 1.1)),
         command("Smaller text", "Ctrl+Minus", partial(settings.enlarge, 1.0 / 1.1)),

@@ -234,7 +234,6 @@ class Viewer(Application):
                 partial(draw_question, gui, self.question, self.session, self.scripts),
             ):
                 messages.attempt(draw)
-            self.view.camera.is_orthographic = self.settings.display.is_orthographic
             if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
                 run_pressed(commands, messages, gui)
                 (self if room is None else room).mouse.follow()
