@@ -122,8 +122,6 @@ $(READY): pyproject.toml constraints.txt
 	@[ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
 	@echo "Installing Risorius and what it needs into .venv"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt --editable ".[dev]"
-	@echo "Compiling what is compiled, half a minute"
-	@$(BIN)/risorius warm
 	@touch $(READY)
 
 opengl: setup

@@ -87,7 +87,7 @@ class _CompilingNote(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         if record.levelno not in self._said:
             self._said |= {record.levelno}
-            line = "Compiling, this once; it takes half a minute (risorius warm: all at once)."
+            line = "Compiling, this once; it takes half a minute."
             if record.levelno >= logging.WARNING:
                 line = f"risorius: {record.getMessage()}"
             click.echo(line, err=True)

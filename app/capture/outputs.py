@@ -20,11 +20,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import PIL.Image
-import scipy
 
 from ..errors import UserError
 from ..files import (
@@ -43,50 +43,36 @@ from ..workers import share_of_cores
 # AAC and Opus, as players want them, at a quality that nobody tells from the source.
 AAC = "-acodec aac -b:a 192k"
 OPUS = "-acodec libopus -b:a 160k"
-# H.264; 4:2:0 as every player wants it, at a quality without blocks. The number of threads decides
-# the bytes, and with it the memory: left to x264 it is that of the cores and a half, 1 GB on 64.
-H264 = "-vcodec libx264 -threads 3 -pix_fmt yuv420p -crf 16 -preset veryfast -movflags +faststart"
-PRORES = "-vcodec prores_ks -profile:v 4444 -pix_fmt yuva444p10le -alpha_bits 16"
-VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1"
+# H.264; 4:2:0 as every player wants it, which needs even sides, at a quality without blocks. The
+# number of threads decides the bytes, and with it the memory: left to x264 it is that of the cores
+# and a half, 1 GB on 64.
+H264 = (
+    "-vf crop=trunc(iw/2)*2:trunc(ih/2)*2 -vcodec libx264 -threads 3 -pix_fmt yuv420p -crf 16 "
+    "-preset veryfast -movflags +faststart"
+)
+VP9 = "-vcodec libvpx-vp9 -crf 18 -b:v 0 -deadline good -cpu-used 5 -row-mt 1 -pix_fmt yuv420p"
 # Each frame has colours of its own: nothing is kept until the end of a long film.
-GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single{0}[p];[b][p]paletteuse=new=1{1}"
-WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -loop 0"
+GIF = "-filter_complex split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1"
+WEBP = "-vcodec libwebp_anim -quality 88 -compression_level 4 -pix_fmt yuv420p"
 DYING = 1.0  # [s] for the end of a process that is killed, or has given up
 
 
-@dataclass(frozen=True)
-class FilmFormat:
-    """One kind of film.
-
-    coding: for ffmpeg. transparent: the same where pictures have an alpha channel; None: it has
-    none. sound: for ffmpeg; None: it is silent. has_even_sizes: unless transparent it needs an even
-    width and height. fastest: [frames/s] that players show.
-    """
+class FilmFormat(NamedTuple):
+    """One kind of film: its coding and that of its sound, for ffmpeg; None: it is silent."""
 
     coding: str
-    transparent: str | None = None
     sound: str | None = None
-    has_even_sizes: bool = False
-    fastest: float = 240.0
+    fastest: float = 240.0  # [frames/s] that players show
 
 
 FORMATS = {
-    ".mp4": FilmFormat(H264, None, AAC, has_even_sizes=True),
-    ".mov": FilmFormat(H264, PRORES, AAC, has_even_sizes=True),
-    ".mkv": FilmFormat(H264, None, AAC, has_even_sizes=True),
-    ".webm": FilmFormat(
-        f"{VP9} -pix_fmt yuv420p", f"{VP9} -pix_fmt yuva420p -auto-alt-ref 0", OPUS
-    ),
+    ".mp4": FilmFormat(H264, AAC),
+    ".webm": FilmFormat(VP9, OPUS),
     # Frames last whole hundredths of a second; what is shorter than two, players slow down.
-    ".gif": FilmFormat(
-        GIF.format("", "") + " -loop 0",
-        GIF.format(":reserve_transparent=1", ":alpha_threshold=128") + " -loop 0",
-        fastest=50.0,
-    ),
-    ".webp": FilmFormat(f"{WEBP} -pix_fmt yuv420p", f"{WEBP} -pix_fmt yuva420p"),
+    ".gif": FilmFormat(f"{GIF} -loop 0", fastest=50.0),
+    ".webp": FilmFormat(f"{WEBP} -loop 0"),
 }
 HEARD = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
-TRANSPARENT = tuple(suffix for suffix, each in FORMATS.items() if each.transparent)
 
 
 def format_of(target: Path) -> FilmFormat | None:
@@ -102,33 +88,6 @@ def check_name(output: Path) -> None:
             f"{output}: what is '{suffix}'? Allowed are {', '.join(FORMATS)} (a film), "
             ".png (one picture) and a name without suffix (a folder of frames)"
         )
-
-
-def check_format(target: Path, frames_per_second: float, *, is_transparent: bool) -> None:
-    """Raise UserError where a film of this name cannot hold such pictures, or so many a second."""
-    found = format_of(target)
-    if found is None:
-        return
-    if is_transparent and not found.transparent:
-        raise UserError(
-            f"{target}: a film of this kind is not transparent; take one of "
-            f"{', '.join(TRANSPARENT)}, a folder of pictures, or another --background"
-        )
-    if frames_per_second > found.fastest:
-        raise UserError(
-            f"{target}: has at most {found.fastest:g} frames a second, and --fps is "
-            f"{frames_per_second:g}; take fewer, or a film of another kind"
-        )
-
-
-def size_of_film(
-    target: Path, size: tuple[int, int], *, is_transparent: bool = False
-) -> tuple[int, int]:
-    """Width and height of a film of such pictures [pixels]: even, where its kind needs that."""
-    found = format_of(target)
-    if found is None or is_transparent or not found.has_even_sizes:
-        return size
-    return size[0] + size[0] % 2, size[1] + size[1] % 2
 
 
 @dataclass(frozen=True)
@@ -155,25 +114,20 @@ class Encoder:
         size: tuple[int, int],
         frames_per_second: float,
         soundtrack: Soundtrack | None = None,
-        *,
-        is_transparent: bool = False,
     ) -> None:
         """Start it, for frames of `size` pixels; UserError where there is none."""
         form = FORMATS[target.suffix.lower()]
-        coding = form.transparent if is_transparent else form.coding
-        assert coding is not None
         self._target, self._part = target, part
         rate = Fraction(frames_per_second).limit_denominator()
-        pixels = "rgba" if is_transparent else "rgb24"
-        frames = f"-f rawvideo -pix_fmt {pixels} -s {size[0]}x{size[1]} -r {rate} -i -"
+        frames = f"-f rawvideo -pix_fmt rgb24 -s {size[0]}x{size[1]} -r {rate} -i -"
         sound = ["-an"]
         if soundtrack is not None and form.sound is not None:
             sound = soundtrack.options(form.sound)
-        name = ffmpeg()
+        name, coding = ffmpeg(), form.coding.split()
         self._messages = tempfile.TemporaryFile()
         try:  # in a session of its own: Ctrl-C is for us alone
             self._process = subprocess.Popen(
-                [name, "-v", "error", *frames.split(), *sound, *coding.split(), f"file:{part}"],
+                [name, "-v", "error", *frames.split(), *sound, *coding, f"file:{part}"],
                 stdin=subprocess.PIPE,
                 stderr=self._messages,
                 bufsize=0,
@@ -185,7 +139,7 @@ class Encoder:
         self._frames = self._process.stdin
 
     def add(self, image: npt.NDArray[np.uint8]) -> None:
-        """Hand over a frame, (H, W, 3 or 4); UserError where ffmpeg has given up."""
+        """Hand over a frame, (H, W, 3); UserError where ffmpeg has given up."""
         left = np.ascontiguousarray(image).data.cast("B")
         try:
             while left:
@@ -237,28 +191,25 @@ def film(
     size: tuple[int, int],
     frames_per_second: float,
     soundtrack: Soundtrack | None = None,
-    *,
-    is_transparent: bool = False,
 ) -> Iterator[FrameSink]:
     """A film through ffmpeg, as its name ends, with sound where there is some and it may be heard.
 
-    size: of the frames. A kind that needs an even width and height has the last row or column
-    twice. Raises UserError where no such film can be written.
+    size: of the frames; H.264 leaves out the last row or column of an odd one. Raises UserError
+    where no such film can be written.
     """
-    check_format(target, frames_per_second, is_transparent=is_transparent)
-    check_file(target)
-    whole = size_of_film(target, size, is_transparent=is_transparent)
-    more = (0, whole[1] - size[1]), (0, whole[0] - size[0]), (0, 0)
-    with written_atomically(target) as part:
-        encoder = Encoder(
-            target, part, whole, frames_per_second, soundtrack, is_transparent=is_transparent
+    fastest = FORMATS[target.suffix.lower()].fastest
+    if frames_per_second > fastest:
+        raise UserError(
+            f"{target}: has at most {fastest:g} frames a second, and --fps is "
+            f"{frames_per_second:g}; take fewer, or a film of another kind"
         )
+    check_file(target)
+    with written_atomically(target) as part:
+        encoder = Encoder(target, part, size, frames_per_second, soundtrack)
 
-        def add(image: Image, beside: Labelled | None = None) -> None:
+        def add(image: Image, _: Labelled | None = None) -> None:
             """Hand a frame over; nothing lies beside a film."""
-            if is_transparent:
-                image = with_colours_around(image)
-            encoder.add(np.pad(image, more, mode="edge") if whole != size else image)
+            encoder.add(image)
 
         with cleaned_up_if_stopped(encoder.stop):
             try:
@@ -302,20 +253,3 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
         yield add
         while waiting:
             waiting.popleft().result()
-
-
-def with_colours_around(image: Image) -> Image:
-    """The same picture, (H, W, 4), with colours of its edges where it is fully transparent.
-
-    What codes blocks of pixels, or colours at half the size, mixes edges with what is around them;
-    black there would be seen as a dark fringe.
-    """
-    is_clear = image[..., 3] == 0
-    if is_clear.all():
-        return image
-    nearest = scipy.ndimage.distance_transform_edt(
-        is_clear, return_distances=False, return_indices=True
-    )
-    filled = image.copy()
-    filled[..., :3] = image[..., :3][tuple(nearest)]
-    return filled

@@ -126,6 +126,10 @@ def _check(
         check_name(output)
     if output is not None and _is_image(output):
         check_png(output)
+    elif output is not None and format_of(output) and options.is_transparent:
+        raise UserError(
+            f"{output}: a film has a background; take a folder of pictures, or another --background"
+        )
     elif output is not None and script.sound is not None and output.suffix.lower() in HEARD:
         load_sound(script.sound)
 
@@ -157,11 +161,5 @@ def _sink_for(
 ) -> contextlib.AbstractContextManager[outputs.FrameSink]:
     """A film or a folder of frames, by what the output is called."""
     if format_of(output):
-        return outputs.film(
-            output,
-            options.size,
-            options.frames_per_second,
-            soundtrack,
-            is_transparent=options.is_transparent,
-        )
+        return outputs.film(output, options.size, options.frames_per_second, soundtrack)
     return outputs.folder(output, overwrite=overwrite)

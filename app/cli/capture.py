@@ -108,9 +108,7 @@ class Filming:
 @click.command()
 @SCRIPT
 @SETTINGS
-@click.option(
-    "-o", "--output", type=PATH, help="out.mp4, .mov, .webm, .gif, .webp, a folder, or .png"
-)
+@click.option("-o", "--output", type=PATH, help="out.mp4, .webm, .gif, .webp, a folder, or .png")
 @click.option("--sheet", type=PATH, help="Contact sheet of the named poses.")
 @SCENE
 @SOUND

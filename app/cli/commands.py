@@ -25,7 +25,6 @@ from .options import (
     PATH,
     QUIET,
     SCENE_NAMES,
-    SILENT,
     SOUND,
     Drawing,
     Size,
@@ -278,16 +277,4 @@ def doctor(offscreen: bool, quiet: bool) -> None:
     sys.exit(int(health))
 
 
-@click.command()
-@SILENT
-def warm(quiet: bool) -> None:
-    """Compile everything once, so that no later start has to."""
-    from .warming import warm as compile_all
-
-    compile_all(quiet)
-
-
-ALL = (
-    capture, export, batch, dataset, view, replay, convert, send, demo, controls, doctor,
-    warm,
-)  # fmt: skip
+ALL = (capture, export, batch, dataset, view, replay, convert, send, demo, controls, doctor)

@@ -141,10 +141,7 @@ class Kind(NamedTuple):
     fastest: float = 240.0
 
 
-KINDS = {
-    end[1:]: Kind(f"Film ({end})", end, True, bool(each.transparent), each.fastest)
-    for end, each in FILMS.items()
-}
+KINDS = {end[1:]: Kind(f"Film ({end})", end, fastest=each.fastest) for end, each in FILMS.items()}
 KINDS[FRAMES] = Kind("Pictures in a folder (.png)", "", True, True)
 for _each in MOTION:
     _end = (*_each.suffixes, "")[0]

@@ -179,7 +179,7 @@ class Refiner(Protocol):
         The result views the arrays of `out`, or of the refiner's own stream without it. `view`:
         for criteria that ask where the eye is. One frame at a time: threads take a refiner each. A
         process must not be forked while one of its threads compiles: numba's lock stays shut in the
-        child. (`risorius warm`, or a first frame before the fork, and there is nothing to compile.)
+        child. (After a first frame before the fork there is nothing to compile.)
         """
 
     @abstractmethod

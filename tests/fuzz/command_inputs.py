@@ -98,7 +98,7 @@ REFUSED = {
     "capture good.toml -o x.mp4 --size ²x²": "'²x²' is no size",
     "capture good.toml -o x.png --time 86400": "good.toml ends at",
     "capture --light moon -o x.png": "'moon' is not one of 'studio', 'side', 'overcast',",
-    "capture --scene plane -o x.mp4 --background transparent": "take one of .mov, .webm, .gif, ",
+    "capture --scene plane -o x.mp4 --background transparent": "a film has a background; take",
     "convert nothing.csv -o c.png": "c.png: scripts are written as .toml",
     "convert good.toml -o out.toml": "is a script already",
     # Persons.
