@@ -126,7 +126,7 @@ class Pipeline:
         scene = self.scene
         if scene.albedo is not None:
             albedo = scene.albedo if tone is None or scene.in_tone is None else scene.in_tone(tone)
-            maps = scene.ambient_occlusion(), scene.fine_shape
+            maps = scene.ambient_occlusion, scene.fine_shape
             self.texture = render.Texture(self.renderer.surface, albedo, *maps)
 
     def step(self, seconds: float) -> None:

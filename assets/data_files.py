@@ -18,38 +18,33 @@ Arrays = dict[str, npt.NDArray[Any]]
 AGAIN = "install risorius again"  # what mends a file that is part of the package
 
 
-def read_arrays(path: Path, *, mend: str = AGAIN) -> Arrays:
-    """Read an npz file, array name -> array, read-only; `mend` is what helps if it cannot.
-
-    Raises AssetError if the file is missing or broken.
-    """
+def read_arrays(path: Path) -> Arrays:
+    """Read an npz file, array name -> array, read-only; AssetError if it is missing or broken."""
     try:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
     except FileNotFoundError as error:
-        raise AssetError(f"the data file {path} is missing; {mend}") from error
+        raise AssetError(f"the data file {path} is missing; {AGAIN}") from error
     except Exception as error:  # zip, its compression and numpy have their own kinds each
         raise AssetError(
-            f"the data file {path} is not a readable npz file ({error}); {mend}"
+            f"the data file {path} is not a readable npz file ({error}); {AGAIN}"
         ) from error
     for array in arrays.values():
         array.flags.writeable = False
     return arrays
 
 
-def read_arrays_of(
-    fingerprint: int, path: Path, names: tuple[str, ...], *, mend: str = AGAIN
-) -> Arrays:
+def read_arrays_of(fingerprint: int, path: Path, names: tuple[str, ...]) -> Arrays:
     """Read a file that was made from the mesh with this fingerprint and has arrays of these names.
 
     Raises AssetError if it is missing or broken, or belongs to another mesh.
     """
-    arrays = read_arrays(path, mend=mend)
+    arrays = read_arrays(path)
     if int(arrays.get("made_from", -1)) != fingerprint:
-        raise AssetError(f"{path} was made for another head; {mend}")
+        raise AssetError(f"{path} was made for another head; {AGAIN}")
     for name in names:
         if name not in arrays:
-            raise AssetError(f"{path} has no array '{name}'; {mend}")
+            raise AssetError(f"{path} has no array '{name}'; {AGAIN}")
     return arrays
 
 

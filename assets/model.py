@@ -206,7 +206,7 @@ class Head:
     tints_file: maps with which that image takes on another tone.
     wrinkles_file: the map of its wrinkles.
     segments_file: the map of what is nose, lip, neck, ...
-    ambient_occlusion_file: app/scenes/ambient_occlusion.py makes it.
+    ambient_occlusion_file: the map of the light that reaches it.
     fine_shape_file: the map of its fine shape.
     finer_file: what the finer meshes of the same form need; read by `finer`.
     rig: the parsed rig file, {} where there is none.
@@ -285,18 +285,12 @@ class Head:
         Texel by texel that of `albedo`. Raises AssetError when the file is missing, broken or that
         of another head.
         """
-        names, file = ("ambient_occlusion",), self.ambient_occlusion_file
-        mend = "bake it with 'python -m risorius.app.scenes.ambient_occlusion'"
-        return read_arrays_of(self.fingerprint, file, names, mend=mend)["ambient_occlusion"]
+        name, file = "ambient_occlusion", self.ambient_occlusion_file
+        return read_arrays_of(self.fingerprint, file, (name,))[name]
 
     @cached_property
-    def fine_shape(self) -> FineShape | None:
-        """The fine shape of the skin; None where there is no file of it.
-
-        Raises AssetError when the file is broken or that of another head.
-        """
-        if not self.fine_shape_file.exists():
-            return None
+    def fine_shape(self) -> FineShape:
+        """The fine shape of the skin; AssetError for a file that is missing or of another head."""
         arrays = read_arrays_of(self.fingerprint, self.fine_shape_file, ("steps", "steepest"))
         slopes = np.cumsum(arrays["steps"], axis=0, dtype=np.uint8)  # steps take less room
         slopes.flags.writeable = False

@@ -184,7 +184,7 @@ def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:
         rough["baseColorFactor"] = [*to_linear(render.CLAY), 1.0]
         return glb.add("materials", material)
     rough["baseColorTexture"] = glb.texture(scene.albedo)
-    ambient_occlusion = scene.ambient_occlusion()
+    ambient_occlusion = scene.ambient_occlusion
     if ambient_occlusion is not None:
         material["occlusionTexture"] = glb.texture(ambient_occlusion)
     if scene.fine_shape is not None:

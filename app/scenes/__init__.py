@@ -71,11 +71,9 @@ class Scene:
         """What each control is set to."""
         raise NotImplementedError
 
+    @property
     def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
-        """How open the skin is to light from all around, over the texture (H, W); None: all.
-
-        The scene stays as it is.
-        """
+        """How open the skin is to light from all around, over the texture (H, W); None: all."""
         return None
 
     @property
@@ -180,19 +178,9 @@ class FaceScene(Scene):
     def fine_shape(self) -> assets.FineShape | None:
         return self.head.fine_shape
 
+    @property
     def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
-        """That of the built-in head's file, or baked now; see `Scene.ambient_occlusion`."""
-        head, simulation = self.head, self.simulation
-        if isinstance(head, Person):  # same triangles, hardly another form
-            return head.ambient_occlusion
-        if isinstance(head, assets.Head) and head.ambient_occlusion_file.exists():
-            return head.ambient_occlusion
-        # Only who brings a head waits for it to be compiled.
-        from .ambient_occlusion import ambient_occlusion
-
-        if any(self.values.values()) or not np.array_equal(self.positions, self.rest_positions):
-            simulation = sim.create(head)  # baking moves it
-        return ambient_occlusion(head, simulation)
+        return self.head.ambient_occlusion
 
     def pose(self, channels: Mapping[str, float]) -> None:
         try:

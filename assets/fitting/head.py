@@ -51,7 +51,7 @@ from .landmark_file import (
 )
 from .mesh_validation import SkinPiece, check_manifold, check_openings, skin_of, without_bag
 from .organs import FittedSkin, place_eyes, place_parts, with_eyelid_rims
-from .painting import Layout, drawn_over, maps_in, own_picture, plain_picture, spread_uv
+from .painting import Layout, drawn_over, maps_in, own_light, own_picture, plain_picture, spread_uv
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
@@ -92,6 +92,7 @@ class FittedHead:
     albedo: Image
     wrinkles: Wrinkles
     segments: Image
+    ambient_occlusion: Image
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
     to_millimetres: Similarity
@@ -184,6 +185,7 @@ def fit(
         albedo=painted.albedo,
         wrinkles=replace(painted.wrinkles, across=across),
         segments=painted.segments,
+        ambient_occlusion=painted.ambient_occlusion,
         rig=known.rig,
         layers=known.layers,
         to_millimetres=similarity,
@@ -209,6 +211,7 @@ class Painted:
     albedo: Image
     wrinkles: Wrinkles
     segments: Image
+    ambient_occlusion: Image
 
 
 def _painted(
@@ -234,7 +237,7 @@ def _painted(
     elif mesh.colours is not None:
         colours = mesh.colours[whole.file_vertices].astype(np.float64)
         picture = drawn_over(picture, layout, colours[whole.faces])
-    return Painted(built_in, picture, known.wrinkles, known.segments)
+    return Painted(built_in, picture, known.wrinkles, known.segments, own_light(known))
 
 
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:

@@ -167,6 +167,14 @@ def plain_picture(known: Head) -> Image:
     return picture
 
 
+def own_light(known: Head) -> Image:
+    """The built-in head's ambient occlusion, but for the shade of its ears."""
+    is_ear = scipy.ndimage.binary_dilation(np.isin(known.segments, EARS), iterations=5 * MARGIN)
+    over = scipy.ndimage.gaussian_filter(is_ear.astype(np.float32), 2.0 * MARGIN)
+    light: Image = (255.0 * over + (1.0 - over) * known.ambient_occlusion).astype(np.uint8)
+    return light
+
+
 @dataclass(frozen=True)
 class Layout:
     """Where the corners of triangles lie in a picture: texture coordinates and their numbers."""
@@ -217,8 +225,8 @@ def drawn_over(picture: Image, layout: Layout, colours: FloatArray | tuple[Image
     return drawn
 
 
-def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image]:
-    """The built-in head's maps of wrinkles and of segments, in a layout of another mesh's own.
+def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image, Image]:
+    """The built-in head's wrinkles, segments and light, in a layout of another mesh's own.
 
     theirs: where the same triangles lie in the built-in layout.
     """
@@ -226,6 +234,8 @@ def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image]:
     place = texels.interpolate(theirs.corners)
     segments = np.full((SIZE, SIZE), Segment.SKIN, np.uint8)
     segments[texels.rows, texels.columns] = sampled(known.segments, place)
+    light = np.full((SIZE, SIZE), 255, np.uint8)
+    light[texels.rows, texels.columns] = sampled(own_light(known), place)
     found = sampled(known.wrinkles.map, place)
     change = rates(own.corners, theirs.corners)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
@@ -234,7 +244,7 @@ def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image]:
     wrinkles = np.full((SIZE, SIZE, 4), (128, 128, 0, 0), np.uint8)
     level = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
-    return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments
+    return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments, light
 
 
 def own_picture(

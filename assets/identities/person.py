@@ -47,8 +47,6 @@ class Person(FittedHead):
 
     mandible_weight, jaw_axis, anatomy, mirror: as of `Head`. `mirror` is that of the built-in head
         where left and right differ, too.
-    ambient_occlusion: how open the skin is to light from all around, that of the built-in head but
-        for what hair takes away.
     identity: what it was made from.
     called: its number or name, "" for none.
     in_tone: makes the texture in another tone, from the angle of `recoloured` [deg].
@@ -58,7 +56,6 @@ class Person(FittedHead):
     jaw_axis: FloatArray
     anatomy: Mapping[str, int]
     mirror: IndexArray
-    ambient_occlusion: Image
     identity: Identity
     called: str = field(default="", kw_only=True)
     in_tone: Callable[[float], Image] | None = field(default=None, kw_only=True)

@@ -193,7 +193,7 @@ def test_expressions_work_on_persons(
 def test_person_is_a_scene(person: Person, head: Head) -> None:
     """A scene takes it as any head, with light of its own at once: that of the built-in head."""
     scene = FaceScene(person)
-    assert scene.ambient_occlusion() is person.ambient_occlusion
+    assert scene.ambient_occlusion is person.ambient_occlusion
     assert scene.albedo is not None and scene.albedo.shape == head.albedo.shape
     scene.pose({"joy": 1.0})
     scene.step(0.1)

@@ -119,7 +119,7 @@ def test_maps_go_along_to_the_own_layout(other: Stranger, tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-def test_slopes_turn_with_the_layout() -> None:
+def test_maps_turn_with_the_layout() -> None:
     """In a layout turned by a quarter and half as large, slopes are turned and doubled."""
     head = assets.load("head")
     smooth = ndimage.gaussian_filter(head.wrinkles.map.astype(np.float64), (12.0, 12.0, 0.0))
@@ -127,12 +127,17 @@ def test_slopes_turn_with_the_layout() -> None:
     vars(known)["wrinkles"] = replace(head.wrinkles, map=smooth.round().astype(np.uint8))
     theirs = Layout(known.uv, known.face_uv)
     turned = 0.5 * np.column_stack([-known.uv[:, 1], known.uv[:, 0]]) + [0.5, 0.0]
-    wrinkles, _ = maps_in(known, theirs, Layout(turned.astype(np.float32), known.face_uv))
+    wrinkles, _, light = maps_in(known, theirs, Layout(turned.astype(np.float32), known.face_uv))
     place, image = ((layout[known.face_uv].mean(axis=1)) for layout in (known.uv, turned))
     before, after = (
         (sampled(each.map, where.astype(np.float64))[:, :2] - 128.0) * (each.steepest / 127.0)
         for each, where in ((known.wrinkles, place), (wrinkles, image))
     )
+    dark, found = (
+        sampled(each, where.astype(np.float64)).astype(int)
+        for each, where in ((known.ambient_occlusion, place), (light, image))
+    )
+    assert np.median(abs(found - dark)) < 3 and (dark < 128).sum() > 50 < (found < 128).sum()
     wanted = 2.0 * np.column_stack([-before[:, 1], before[:, 0]])
     is_within = (abs(wanted) < 0.9 * wrinkles.steepest).all(axis=1)
     assert np.median(abs(after - wanted)[is_within].max(axis=1)) < 0.05 * wrinkles.steepest

@@ -26,11 +26,8 @@ LONG_WORK = (
 
 @pytest.fixture(scope="session")
 def face() -> FaceScene:
-    """The built-in face, with its light already baked."""
-    scene = FaceScene()
-    image = scene.ambient_occlusion()
-    scene.ambient_occlusion = lambda: image  # type: ignore[method-assign]
-    return scene
+    """The built-in face."""
+    return FaceScene()
 
 
 @pytest.fixture

@@ -1,0 +1,21 @@
+"""What is in the mouth: the farther back, the darker."""
+
+from risorius.app.scenes import FaceScene
+from risorius.app.scenes.mouth import shaded_mouth
+
+
+def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
+    """Molars lose more than incisors, eyes nothing."""
+    head, shown = face.head.parts, face.parts
+    for given, drawn in zip(head, shown, strict=True):
+        if given.name.startswith("eye"):
+            assert drawn is given
+        elif given.name.startswith("teeth"):
+            left = (drawn.colours / given.colours).mean(axis=1)
+            assert left[given.vertices[:, 2].argmax()] > 0.9
+            assert left[given.vertices[:, 2].argmin()] < 0.9
+    lower = {part.name: part.colours for part in shown}["teeth_lower"]
+    given = {part.name: part for part in head}["teeth_lower"]
+    red, _, blue = (lower / given.colours)[given.vertices[:, 2].argmin()]
+    assert blue < 0.75 and blue < 0.95 * red  # grey ones look like one broken tooth
+    assert shaded_mouth(()) == ()
