@@ -26,7 +26,6 @@ from .refining.wrinkling import Amounts, Compression, on_rows
 from .scenes import Scene
 
 TEXTURED_COLUMNS = 8  # position, normal, u v
-SourceValues = Callable[[Scene, refine.Refiner], npt.NDArray[np.uint8]]
 Timer = Callable[[str], AbstractContextManager[Any]]
 
 
@@ -146,15 +145,12 @@ class Pipeline:
         viewports: Sequence[Viewport],
         *,
         anatomy: AnatomyView = SKIN_ALONE,
-        values: SourceValues | None = None,
         overlays: Sequence[render.Lines] = (),
         timer: Timer = nullcontext,
     ) -> None:
         """The lower half: refine the mesh for each viewport, hand it over, and draw it there.
 
-        values: what each triangle of the mesh is coloured by, where the style wants an amount;
-        those that it is refined into take it over. overlays: over every viewport.
-        timer: measures "refinement", "upload" and "draw".
+        overlays: over every viewport. timer: measures "refinement", "upload" and "draw".
         """
         with timer("refinement"):
             measure = self._compression if style.shows_bumps else None
@@ -169,21 +165,19 @@ class Pipeline:
             self.renderer.draw_background(style, *areas)
             for drawn, area, clip in viewports:
                 view = self.renderer.view(camera, area, clip)
-                self._draw(drawn, view, style, layers, values)
+                self._draw(drawn, view, style, layers)
                 for lines in overlays:
                     self.renderer.draw_lines(lines, view)
 
     def _draw(
-        self,
-        drawn: DrawnMesh,
-        view: render.CameraView,
-        style: render.Style,
-        layers: Layers,
-        values: SourceValues | None,
+        self, drawn: DrawnMesh, view: render.CameraView, style: render.Style, layers: Layers
     ) -> None:
         """Draw the skin and all parts of the scene, below it and over it, into one viewport."""
         stream, renderer, bones = drawn.stream, self.renderer, self.scene.bone_transforms()
         texture = self.texture if drawn.has_uv else None
+        values = None
+        if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
+            values = splits_of_source(drawn.refiner, drawn.mesh)
         if style.shadows:
             skin = None if layers.is_opened else stream
             renderer.cast_shadows(layers.shadow_casters, bones, view, style, stream=skin)
@@ -193,23 +187,13 @@ class Pipeline:
             stream,
             view,
             replace(style, opacity=style.opacity * layers.opacity),
-            values=self._values(drawn, style, values),
+            values=values,
             texture=texture,
             bumps=self.wrinkle_map if drawn.has_uv else None,
             cut=layers.cut,
             fade=self.scene.fade,
         )
         renderer.draw_parts(layers.over, bones, view, style)
-
-    def _values(
-        self, drawn: DrawnMesh, style: render.Style, values: SourceValues | None
-    ) -> npt.NDArray[np.uint8] | None:
-        """One value for each triangle that is drawn: that of the one that it comes from."""
-        if style.colour_by is render.ColourBy.NONE or drawn.mesh is None:
-            return None
-        if style.colour_by is render.ColourBy.SPLITS:
-            return splits_of_source(drawn.refiner, drawn.mesh)
-        return None if values is None else values(self.scene, drawn.refiner)[drawn.mesh.source]
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:

@@ -11,24 +11,13 @@ from risorius.geometry.colour import to_linear
 from .camera import CameraView
 from .parts import LAYERS, Part
 from .programs import write_uniform
-from .style import AMOUNT_RAMP, SIGNED_RAMP, SPLIT_PALETTE, ColourBy, Light, Style
+from .style import SPLIT_PALETTE, ColourBy, Light, Style
 from .texture import BumpMap
 
 SKIN_SHARPNESS = 28.0  # of the skin's highlight; chosen by eye: a soft sheen, not wet
 STRAND_PIXELS = 1.4  # that a strand is wide at least: a triangle seen from its side is narrower
 VALUES_PER_ROW = 1024  # texels per row of the value texture; surface.glsl reads it so
 _PALETTE = np.array([to_linear(colour) for colour in SPLIT_PALETTE], np.float32)
-_RAMPS = {
-    kind: np.array([(*to_linear(colour), cover) for colour, cover in ramp], np.float32)
-    for kind, ramp in ((ColourBy.AMOUNT, AMOUNT_RAMP), (ColourBy.SIGNED, SIGNED_RAMP))
-}
-# Of surface.glsl.
-COLOUR_DEFINES: dict[ColourBy, tuple[str, ...]] = {
-    ColourBy.NONE: (),
-    ColourBy.SPLITS: ("VALUES", "SPLITS"),
-    ColourBy.AMOUNT: ("VALUES", "RAMP"),
-    ColourBy.SIGNED: ("VALUES", "RAMP"),
-}
 
 
 def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades: bool) -> list[str]:
@@ -37,7 +26,7 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
         "surface.glsl",
         style.shading.name,
         *(["WIREFRAME"] if style.wireframe else []),
-        *COLOUR_DEFINES[style.colour_by],
+        *(["SPLITS"] if style.colour_by is ColourBy.SPLITS else []),
         *(["TEXTURED"] if has_texture else []),
         *(["TRANSLUCENT"] if style.opacity < 1.0 else []),
         *(["SHADOWS"] if style.shadows else []),
@@ -70,8 +59,6 @@ def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_sca
         program["wire_colour"] = *style.wire_colour, style.wire_opacity
     if style.colour_by is ColourBy.SPLITS:
         write_uniform(program, "split_palette", _PALETTE)
-    elif style.colour_by is not ColourBy.NONE:
-        write_uniform(program, "ramp", _RAMPS[style.colour_by])
 
 
 def set_part(

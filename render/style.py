@@ -33,8 +33,6 @@ class ColourBy(Enum):
 
     NONE = "none"  # the texture, or the albedo of the style
     SPLITS = "splits"  # how many splits the edges of its source triangle have: 0..6
-    AMOUNT = "amount"  # some amount of its source triangle: 0 (none) .. 255 (most)
-    SIGNED = "signed"  # some amount with a sign: 0 (least) .. 128 (none) .. 255 (most)
 
 
 # Albedos, chosen by eye under this package's light.
@@ -54,22 +52,6 @@ SPLIT_PALETTE: tuple[Colour, ...] = (
     (0.14, 0.48, 0.70),
     (0.19, 0.31, 0.62),
     (0.25, 0.14, 0.46),
-)
-
-# Five colours from the least to the most, and how much of each covers the skin, 0..1.
-AMOUNT_RAMP: tuple[tuple[Colour, float], ...] = (
-    ((0.98, 0.90, 0.55), 0.0),
-    ((0.98, 0.80, 0.40), 0.8),
-    ((0.93, 0.52, 0.27), 0.9),
-    ((0.74, 0.21, 0.34), 0.95),
-    ((0.36, 0.06, 0.36), 1.0),
-)
-SIGNED_RAMP: tuple[tuple[Colour, float], ...] = (
-    ((0.10, 0.28, 0.62), 1.0),
-    ((0.40, 0.65, 0.86), 0.85),
-    ((0.93, 0.92, 0.88), 0.0),
-    ((0.95, 0.60, 0.36), 0.85),
-    ((0.66, 0.11, 0.13), 1.0),
 )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import PIL.Image
@@ -18,6 +17,7 @@ from ..files import Image
 INK = (245, 245, 245)
 FAINT = (200, 203, 208)
 SHADE = (24, 26, 30)
+BAR_TITLE = "Splits of a triangle's edges"
 PLATE = 185  # of 255: how far a plate hides what is behind it
 LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixels stays readable
 LANCZOS = PIL.Image.Resampling.LANCZOS
@@ -27,22 +27,6 @@ LANCZOS = PIL.Image.Resampling.LANCZOS
 def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
     """Pillow's own typeface at a size [pixels]; read once, for that takes longer than writing."""
     return ImageFont.load_default(size=size)
-
-
-class ColourBar(NamedTuple):
-    """What colours stand for, from the least to the most: `ticks` are numbers, evenly far apart.
-
-    ramp: sRGB 0..1, and how much of it covers the skin. is_smooth: colours run into each other.
-    """
-
-    title: str
-    ramp: tuple[tuple[render.Colour, float], ...]
-    ticks: tuple[str, ...]
-    is_smooth: bool = True
-
-
-PALETTE = tuple((colour, 1.0) for colour in render.SPLIT_PALETTE)
-SPLITS_BAR = ColourBar("Splits of a triangle's edges", PALETTE, tuple("123456"), is_smooth=False)
 
 
 # A picture on a picture: x, y of its lower left corner [pixels]; RGBA, premultiplied.
@@ -62,23 +46,19 @@ def plate(text: str, size: float) -> Image:
 
 
 @functools.lru_cache(maxsize=8)
-def colour_bar(bar: ColourBar, albedo: render.Colour, size: float) -> Image:
-    """An upright bar over skin of some colour, its numbers and its title, on a plate."""
-    small, count, pad = font(0.82 * size), len(bar.ramp), round(0.65 * size)
+def colour_bar(size: float) -> Image:
+    """What colours of splits stand for: an upright bar, its numbers and its title, on a plate."""
+    small, count, pad = font(0.82 * size), len(render.SPLIT_PALETTE), round(0.65 * size)
     tall, wide, numbers = round(13.0 * size), round(0.8 * size), round(3.1 * size)
-    ends = numbers + max(map(small.getlength, bar.ticks)) + pad
-    page, draw = _page(ends, tall + 2 * pad, size)
-    colours = np.array([np.add(albedo, np.subtract(c, albedo) * cover) for c, cover in bar.ramp])
-    rows = np.linspace(1.0, 0.0, tall)
-    places = rows * (count - 1) if bar.is_smooth else np.floor(rows * (count - 1e-6))
-    shades = np.stack([np.interp(places, np.arange(count), each) for each in colours.T], axis=1)
-    column = np.rint(255.0 * shades).astype(np.uint8)[:, None].repeat(wide, axis=1)
-    page.paste(PIL.Image.fromarray(column), (round(1.85 * size), pad))
-    inner = 0.4 * size if bar.is_smooth else 0.5 * tall / count
-    for y, tick in zip(np.linspace(tall - inner, inner, len(bar.ticks)), bar.ticks, strict=True):
-        draw.text((numbers, pad + y), tick, font=small, fill=INK, anchor="lm")
+    page, draw = _page(numbers + small.getlength(f"{count}") + pad, tall + 2 * pad, size)
+    step, left = tall / count, round(1.85 * size)
+    for index, shade in enumerate(render.SPLIT_PALETTE):
+        low = pad + tall - step * index
+        ink = tuple(round(255.0 * part) for part in shade)
+        draw.rectangle((left, round(low - step), left + wide - 1, round(low) - 1), fill=ink)
+        draw.text((numbers, low - 0.5 * step), f"{index + 1}", font=small, fill=INK, anchor="lm")
     title, middle = PIL.Image.new("RGBA", (tall, wide + pad)), (0.5 * tall, 0.65 * size)
-    ImageDraw.Draw(title).text(middle, bar.title, font=small, fill=FAINT, anchor="mm")
+    ImageDraw.Draw(title).text(middle, BAR_TITLE, font=small, fill=FAINT, anchor="mm")
     page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
     return np.asarray(page.convert("RGBa"))
 
@@ -94,11 +74,11 @@ def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, Im
 def labels(
     texts: Sequence[str],
     viewports: Sequence[render.Rectangle],
-    bar: ColourBar | None,
-    style: render.Style,
+    *,
+    has_bar: bool,
     least: float = 11.0,
 ) -> list[Label]:
-    """Captions at the foot of viewports, and a colour bar at the upper right.
+    """Captions at the foot of viewports, and the colour bar at the upper right.
 
     A caption stands at the left, the second of two at the right, away from line and face; without
     room it is left out. least: size of letters [pixels], which are larger in a high picture.
@@ -110,9 +90,9 @@ def labels(
         room = width - image.shape[1] - 2 * pad
         aside = room if (index, len(texts)) == (1, 2) else 0
         made += [(left + pad + aside, bottom + pad, image)] if room >= 0 else []
-    if bar is not None:
+    if has_bar:
         left, bottom, width, height = viewports[-1]
-        image = colour_bar(bar, style.albedo, min(0.78 * size, height / 26.0))
+        image = colour_bar(min(0.78 * size, height / 26.0))
         x, y = width - image.shape[1] - pad, height - image.shape[0] - pad
         made += [(left + x, bottom + y, image)] if min(x, y) >= 0 else []
     return made

@@ -17,11 +17,11 @@ from ..files import Image
 from ..motion import play
 from ..passes.labels import Labelled, labelled
 from ..passes.passes import Passes
-from ..pipeline import Pipeline, SourceValues, side_by_side
+from ..pipeline import Pipeline, side_by_side
 from ..refining.presets import Refinement
 from ..scenes import Scene
 from ..script import Script
-from .captions import SPLITS_BAR, ColourBar, captioned, labels
+from .captions import captioned, labels
 
 DEFAULT_VIEW = "front"  # the face looks at whoever looks at it
 
@@ -88,8 +88,6 @@ class CaptureOptions:
     span: tuple[float, float] | None = None  # [s] of the script that is seen; None: all of it
     style: render.Style = render.Style()  # noqa: RUF009 - frozen
     tone: float | None = None  # of the skin [deg]; None: its own
-    values: SourceValues | None = None  # by which triangles are coloured, as the style says
-    bar: ColourBar | None = None  # of these colours
     anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
@@ -141,22 +139,16 @@ class Capture:
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
         self.surface.begin()
-        options = self.options
-        self.pipeline.draw(
-            self.camera,
-            options.style,
-            self.viewports,
-            anatomy=options.anatomy,
-            values=options.values,
-        )
+        options, style = self.options, self.options.style
+        self.pipeline.draw(self.camera, style, self.viewports, anatomy=options.anatomy)
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
-        if options.captions and (options.beside or options.bar):
-            style, areas = options.style, [viewport.area for viewport in self.viewports]
+        has_bar = style.colour_by is render.ColourBy.SPLITS
+        if options.captions and (options.beside or has_bar):
+            areas = [viewport.area for viewport in self.viewports]
             texts = [drawn.caption for drawn, *_ in self.viewports if options.beside]
-            is_split = style.colour_by is render.ColourBy.SPLITS
-            bar = SPLITS_BAR if is_split else options.bar
-            image = captioned(image, labels(texts, areas, bar, style), [left for left, *_ in areas])
+            shown = labels(texts, areas, has_bar=has_bar)
+            image = captioned(image, shown, [left for left, *_ in areas])
         return straight(image) if self.options.is_transparent else image
 
     def refine(self) -> None:

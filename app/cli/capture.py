@@ -47,7 +47,9 @@ class Filming:
         help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
     )
     captions: bool = option(
-        "--captions/--no-captions", default=True, help="Words under a comparison."
+        "--captions/--no-captions",
+        default=True,
+        help="Words under a comparison, and what colours stand for.",
     )
     camera: str | None = option(help="Named view, or yaw,pitch[,zoom] in degrees.")
     turntable: bool = option(is_flag=True, help="The camera goes round once.")

@@ -3,14 +3,10 @@
 One JSON file in the user's configuration folder, replaced whole or not at all. Every value stands
 for itself: one that is of no use gives way to what it is at first, the others stay, and the window
 names it in one line.
-
-Colours of triangles tell how often they were split, how far they bend, how they are strained. Every
-amount belongs to a triangle of the mesh that is simulated; refined ones take it from their source.
 """
 
 from __future__ import annotations
 
-import functools
 import json
 import os
 import sys
@@ -18,12 +14,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from risorius import refine, render
-from risorius.geometry.normals import vertex_normals
-from risorius.render.style import AMOUNT_RAMP, SIGNED_RAMP
 from risorius.schema import (
     Flag,
     MadeFrom,
@@ -36,78 +27,13 @@ from risorius.schema import (
 )
 
 from ..anatomy import OPACITY, SIDES, SKIN_ALONE, STRUCTURES, AnatomyView
-from ..capture.captions import SPLITS_BAR, ColourBar
 from ..capture.outputs import FORMATS as FILMS
 from ..errors import UserError, in_one_line
 from ..export.formats import FORMATS as MOTION
 from ..files import NoSuchFileError, read_text, save_text
-from ..pipeline import SourceValues
 from ..refining.presets import CHANGED, FIRST_PRESET, PRESETS, STATIC, Refinement
 from ..scenes import FaceScene, Scene
 from .interface.gui import THEMES
-
-MOST_DROP = 0.3  # of the normals' dot product, drawn darkest: a bend of 45 degrees
-MOST_STRAIN = 0.35  # of a length, drawn darkest; skin stiffens well before
-
-FloatArray = npt.NDArray[np.float64]
-Amounts = npt.NDArray[np.uint8]
-
-
-@dataclass(frozen=True)
-class Colours:
-    """A way to colour triangles: how the renderer takes the values, and what they mean."""
-
-    kind: render.ColourBy
-    bar: ColourBar | None = None
-    of_source: SourceValues | None = None
-
-
-def curvature_drops(scene: Scene, refiner: refine.Refiner) -> Amounts:
-    """How far the dot product of the normals fell along the worst edge of each triangle."""
-    edges = refiner.edges
-    now, rest = (
-        _dots(vertex_normals(positions, scene.faces), edges)
-        for positions in (scene.positions, scene.rest_positions)
-    )
-    worst = (rest - now)[refiner.triangle_edges].max(axis=1)
-    return np.asarray(np.clip(255.0 * worst / MOST_DROP, 0.0, 255.0), np.uint8)
-
-
-def tensions(scene: Scene, refiner: refine.Refiner) -> Amounts:
-    """How far each triangle is stretched, less how far it is compressed."""
-    anything: Any = scene
-    stretch, compression = _tension_of(anything).measure(scene.positions)
-    tension = (stretch - compression)[scene.faces].mean(axis=1)
-    return np.asarray(np.clip(128.0 + 127.0 * tension / MOST_STRAIN, 0.0, 255.0), np.uint8)
-
-
-@functools.lru_cache(maxsize=1)  # the scene that is shown; one before it may go
-def _tension_of(scene: Any) -> refine.Tension:
-    return refine.Tension(scene.faces, scene.rest_positions)
-
-
-def _dots(normals: FloatArray, edges: npt.NDArray[np.int32]) -> FloatArray:
-    dots: FloatArray = (normals[edges[:, 0]] * normals[edges[:, 1]]).sum(axis=1)
-    return dots
-
-
-DROPS = ("0", f"{MOST_DROP / 2.0:g}", f"{MOST_DROP:g}")
-STRAINS = (f"-{100 * MOST_STRAIN:g} %", "0", f"+{100 * MOST_STRAIN:g} %")
-COLOURS = {
-    "none": Colours(render.ColourBy.NONE),
-    "splits": Colours(render.ColourBy.SPLITS, SPLITS_BAR),
-    "curvature drop": Colours(
-        render.ColourBy.AMOUNT,
-        ColourBar("Curvature: drop of n · n at rest", AMOUNT_RAMP, DROPS),
-        curvature_drops,
-    ),
-    "tension": Colours(
-        render.ColourBy.SIGNED,
-        ColourBar("Tension: change of length", SIGNED_RAMP, STRAINS),
-        tensions,
-    ),
-}
-
 
 LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
@@ -181,7 +107,7 @@ class Display(Record):
     divider: Share = 0.5  # of a wipe, of the picture's width
     shading: Annotated[str, OneOf([each.value for each in render.Shading])] = "pixel"
     wireframe: Flag = False
-    colours: Annotated[str, OneOf(COLOURS)] = "none"
+    splits: Flag = False  # colour triangles by them
     skin: Annotated[str, OneOf(SKINS)] = "textured"
     skin_maps: Flag = True  # fine shape, and less light in folds, from maps over the skin
     wrinkles: Share = 1.0  # how deep they are where skin is compressed
@@ -290,7 +216,7 @@ def display_of(
     """How the scene of this name is shown as the command line asks for; style: further fields."""
     display = Display(
         look=refinement.preset,
-        colours="splits" if splits else "none",
+        splits=splits,
         overlays=list(anatomy.structures),
         skin_opacity=anatomy.opacity,
         dissect=anatomy.side,
@@ -306,14 +232,8 @@ def display_of(
 
 
 def settings_path() -> Path:
-    """Where this system keeps a user's settings."""
-    home = Path.home()
-    if sys.platform == "win32":
-        folder = Path(os.environ.get("APPDATA", home / "AppData" / "Roaming"))
-    elif sys.platform == "darwin":
-        folder = home / "Library" / "Application Support"
-    else:
-        folder = Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config")
+    """Where a user's settings are kept."""
+    folder = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
     return folder / "risorius" / "viewer.json"
 
 

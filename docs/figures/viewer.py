@@ -56,7 +56,7 @@ def wipe(viewer: Viewer) -> None:
     viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
     # Of the panel show what says how the mesh is refined, and its colours.
     viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
-    viewer.settings.display = Display(compare="wipe", wireframe=True, colours="splits", skin="clay")
+    viewer.settings.display = Display(compare="wipe", wireframe=True, splits=True, skin="clay")
     viewer.view.camera = camera_for(viewer.session.scene, "front")
     viewer.view.camera.zoom(1.08)
 

@@ -1,9 +1,10 @@
 // Skin and rigid parts.
 // One of FLAT, GOURAUD, PIXEL: where light meets the surface. Any of WIREFRAME (adds the geometry
-// stage), VALUES (colour by a value per triangle: SPLITS a count, RAMP an amount), COLOURED (vertex colours), TEXTURED (skin's albedo from
-// a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones, never drawn thinner than a pixel: they fade instead),
-// FIBRES (striation), TRANSLUCENT (skin that shows what is under it), SUNK (what is under
-// it, hidden where skin is whole), FADED (skin that fades toward a plane).
+// stage), SPLITS (colour by a count per triangle), COLOURED (vertex colours), TEXTURED (skin's albedo
+// from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones,
+// never drawn thinner than a pixel: they fade instead), FIBRES (striation), TRANSLUCENT (skin that
+// shows what is under it), SUNK (what is under it, hidden where skin is whole), FADED (skin that fades
+// toward a plane).
 
 #include "lighting.glsl"
 
@@ -223,13 +224,9 @@ uniform float occlusion;  // how much the ambient_occlusion in the picture's alp
 #elif !defined(COLOURED)
 uniform vec3 albedo;
 #endif
-#if defined(VALUES)
-uniform usampler2D triangle_values;
-#endif
 #if defined(SPLITS)
+uniform usampler2D triangle_values;
 uniform vec3 split_palette[6];
-#elif defined(RAMP)
-uniform vec4 ramp[5];  // colour, and how much of it
 #endif
 #if defined(SHADOWS)
 #include "shadowed.glsl"
@@ -265,16 +262,9 @@ vec3 front_albedo() {
 #else
     vec3 front = albedo;
 #endif
-#if defined(VALUES)
+#if defined(SPLITS)
     ivec2 texel = ivec2(gl_PrimitiveID & 1023, gl_PrimitiveID >> 10);
     int value = int(texelFetch(triangle_values, texel, 0).r);
-#endif
-#if defined(RAMP)
-    float step = float(value) * (4.0 / 255.0);
-    int below = min(int(step), 3);
-    vec4 tint = mix(ramp[below], ramp[below + 1], step - float(below));
-    front = mix(front, tint.rgb, tint.a);
-#elif defined(SPLITS)
 #if defined(TEXTURED)
     const float STRENGTH = 0.8;  // brows and lips still show through the tint
 #else

@@ -5,14 +5,13 @@ import numpy as np
 from risorius import render
 from risorius.app.capture.captions import LEAST_CAPTION, captioned, contact_sheet, labels
 
-STYLE = render.Style()
 GREY = np.full((200, 400, 3), 128, np.uint8)
 
 
 def test_a_caption_for_each_half_and_a_line_between() -> None:
     """Text in both outer corners, the line from top to bottom, the image left as it was."""
     halves = [(0, 0, 200, 200), (200, 0, 200, 200)]
-    made = labels(["static", "kahler"], halves, None, STYLE)
+    made = labels(["static", "kahler"], halves, has_bar=False)
     with_captions = captioned(GREY, made, [0, 200])
     is_drawn = (with_captions != 128).any(axis=2)
     assert is_drawn[:, 200].all()
@@ -26,8 +25,18 @@ def test_a_caption_for_each_half_and_a_line_between() -> None:
 
 def test_a_caption_without_room_is_left_out() -> None:
     """It would lie over the other side, and over the face."""
-    made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], None, STYLE)
+    made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], has_bar=False)
     assert [x > 300 for x, _, _ in made] == [True]
+
+
+def test_the_bar_tells_the_colours_of_splits_from_one_to_six() -> None:
+    """At the upper right, each colour of the palette above the one of fewer splits."""
+    ((x, y, image),) = labels([], [(0, 0, 400, 200)], has_bar=True)
+    assert x > 300 and y > 50
+    column = image[:, round(0.45 * image.shape[1]), :3].astype(float) / 255.0
+    nearest = [np.abs(column - shade).max(axis=1).argmin() for shade in render.SPLIT_PALETTE]
+    assert np.abs(column[nearest] - render.SPLIT_PALETTE).max() < 0.01
+    assert (np.diff(nearest) < 0).all()
 
 
 def test_a_sheet_has_a_cell_for_each_pose() -> None:

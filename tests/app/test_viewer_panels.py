@@ -125,7 +125,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer: Viewer, tmp_path: Pa
     """In the window and in a screenshot alike; none where nothing is compared or coloured."""
     assert not viewer.surface.labels
     only_open(viewer, "Style")
-    in_panel(viewer, ("Colours", "tension"))
+    click(viewer, "Colour by splits")
     xdotool(viewer, "key", "d")
     assert until(viewer, lambda: viewer.is_idle)
     assert len(viewer.surface.labels) == 3

@@ -1,4 +1,4 @@
-"""Wireframe, and colours by a value of each triangle: splits and amounts."""
+"""Wireframe, and colours by the splits of each triangle."""
 
 from dataclasses import replace
 
@@ -70,21 +70,3 @@ def test_split_values_must_fit(
     """Missing or misshapen numbers are refused."""
     with pytest.raises(ValueError, match=message):
         draw_image(surface, square(), SPLITS, values=values)
-
-
-@pytest.mark.parametrize("kind", [render.ColourBy.AMOUNT, render.ColourBy.SIGNED])
-def test_amounts_colour_triangles(surface: render.Surface, kind: render.ColourBy) -> None:
-    """None leaves the skin as it is; the most is another colour; the least only with a sign."""
-    nothing = 128 if kind is render.ColourBy.SIGNED else 0
-    style, shape = replace(PLAIN, colour_by=kind), sphere()
-    plain = draw_image(surface, shape)
-    images = {
-        value: draw_image(
-            surface, shape, style, values=np.full(len(shape.triangles), value, np.uint8)
-        )
-        for value in (0, nothing, 255)
-    }
-    difference = {value: np.abs(image - plain).max() for value, image in images.items()}
-    assert difference[nothing] < 8
-    assert difference[255] > 60
-    assert (difference[0] > 60) == (kind is render.ColourBy.SIGNED)

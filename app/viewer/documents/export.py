@@ -27,7 +27,7 @@ from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
 from ..messages import Message
 from ..picture.stage import Stage, View, style_of
 from ..session.session import Session
-from ..settings import COLOURS, FRAMES, KINDS, TONES, ExportChoices, Kind, Settings
+from ..settings import FRAMES, KINDS, TONES, ExportChoices, Kind, Settings
 from .file_dialogs import FileDialogs
 
 
@@ -79,7 +79,6 @@ class Exporter:
         is_clear = choices.is_transparent and self.kind.can_be_transparent
         is_compared, static = display.compare != "off", Refinement(refiner=STATIC)
         is_refined = display.is_refined or is_compared
-        colours = COLOURS[display.colours]
         return CaptureOptions(
             choices.size,
             choices.rate,
@@ -88,8 +87,6 @@ class Exporter:
             camera=view.camera.copy(),
             style=style_of(display, None if is_clear else view.background),
             tone=TONES[display.tone],
-            values=colours.of_source,
-            bar=colours.bar,
             anatomy=display.anatomy,
             head=head,
             is_alive=self._settings.is_alive,

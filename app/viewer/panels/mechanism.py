@@ -22,7 +22,7 @@ from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..interface.widgets import LabelledRows, button, heading, muted
 from ..session.physics import PHASES
-from ..settings import BACKGROUNDS, COLOURS, COMPARISONS, SKINS, TONES, Display, switch
+from ..settings import BACKGROUNDS, COMPARISONS, SKINS, TONES, Display, switch
 
 # What the mouse is told that rests on a label or on what it is the label of.
 HINTS = {
@@ -43,7 +43,7 @@ HINTS = {
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
-    "Colours": "of the simulated mesh's triangles, however refined ([Colour by splits]: splits)",
+    "Colour by splits": "of the edges of the simulated mesh's triangles ([Colour by splits])",
     "Wrinkles": "how deep they are where the simulated skin is compressed; pixel shading has them",
     "Wireframe": "the edges of all triangles that are drawn ([Wireframe])",
     "Skin maps": "fine shape (with pixel shading), and less light in folds (with texture)",
@@ -55,7 +55,7 @@ HINTS = {
     "Dissect": "the side of the face whose skin is translucent",
 }
 # Rows of fields of the display, by their labels.
-FIELDS = {"Refine": "is_refined", "Skin tone": "tone"}
+FIELDS = {"Refine": "is_refined", "Skin tone": "tone", "Colour by splits": "splits"}
 FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
 UNNAMED = 20  # persons that the list has beside those with names
 LABEL_SHARE = 0.45  # of a row
@@ -153,7 +153,6 @@ class MechanismPanel:
     def _draw_style(self) -> None:
         display = self._display
         self._pick("Shading", [shading.value for shading in render.Shading])
-        self._pick("Colours", tuple(COLOURS))
         self._pick("Skin", tuple(SKINS))
         if self._stage.scene.wrinkles is not None:
             now = display.wrinkles
@@ -161,6 +160,7 @@ class MechanismPanel:
         self._switch("Wireframe")
         imgui.same_line(self._rows.second)
         self._switch("Skin maps")
+        self._switch("Colour by splits")
 
     def _draw_light_and_person(self) -> None:
         scene = self._stage.scene

@@ -17,7 +17,7 @@ from imgui_bundle import imgui
 
 from risorius import render
 
-from ...capture.captions import SPLITS_BAR, Label, captioned, labels
+from ...capture.captions import Label, captioned, labels
 from ...capture.drawing import whole_scene
 from ...files import Image
 from ...pipeline import Pipeline, Viewport
@@ -27,7 +27,7 @@ from ..interface.gui import THEMES, em
 from ..messages import Messages
 from ..session.physics import CALM, FrameTimes
 from ..session.session import Session
-from ..settings import BACKGROUNDS, COLOURS, SKINS, TONES, Display, Settings
+from ..settings import BACKGROUNDS, SKINS, TONES, Display, Settings
 
 WHITE = (1.0, 1.0, 1.0)
 
@@ -172,7 +172,6 @@ class Stage:
             style,
             viewports,
             anatomy=display.anatomy,
-            values=COLOURS[display.colours].of_source,
             overlays=overlays,
             timer=timed,
         )
@@ -186,10 +185,10 @@ class Stage:
     ) -> list[Label]:
         """What each side of a comparison is, and what colours stand for."""
         texts = [each.drawn.caption for each in viewports if len(viewports) > 1]
-        places, bar = [each.seen for each in viewports], COLOURS[view.display.colours].bar
-        if bar is SPLITS_BAR and all(each.drawn is self.static for each in viewports):
-            bar = None  # nothing is split there
-        return labels(texts, places, bar, style, least=view.letter)
+        places = [each.seen for each in viewports]
+        has_splits = any(each.drawn is not self.static for each in viewports)
+        has_bar = view.display.splits and has_splits
+        return labels(texts, places, has_bar=has_bar, least=view.letter)
 
     def draw_image(self, view: View) -> Image:
         """The picture without panels, in full detail, with captions and a colour bar."""
@@ -229,7 +228,7 @@ def style_of(display: Display, background: render.Background | None) -> render.S
     return render.Style(
         shading=render.Shading(display.shading),
         wireframe=display.wireframe,
-        colour_by=COLOURS[display.colours].kind,
+        colour_by=render.ColourBy.SPLITS if display.splits else render.ColourBy.NONE,
         textured=is_textured,
         skin_maps=display.skin_maps,
         albedo=albedo,

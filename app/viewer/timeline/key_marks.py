@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -111,13 +112,10 @@ class TrackPainter:
             heights = bottom - unit * (0.15 + 0.7 * (values - least) / (most - least))
             draw_line(axis.x(times), heights, ink_of(theme.muted))
         self._draw_names(track, top)
-        return self._draw_keys(track, middle, unit)
+        return self._draw_keys(track, middle)
 
-    def _draw_keys(self, track: Track, middle: float, unit: float) -> bool:
-        """The visible keys, selected ones on top: one by one, or if they are dense as bars.
-
-        In rows with a curve, which tells more, bars show what is selected only.
-        """
+    def _draw_keys(self, track: Track, middle: float) -> bool:
+        """The visible keys, selected ones on top; where they are dense, no others hide a curve."""
         size = em(KEY if track.is_whole else 0.8 * KEY)
         ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
         names = track.places.times
@@ -126,29 +124,12 @@ class TrackPainter:
             for places in (track.places, self._selected)
         )
         is_dense = len(marks) * 2.0 * size > MOST_COVERED * (self._high - self._low)
-        if not is_dense:
-            accent = ink_of(self._theme.accent)
-            for xs, reach, fill in ((marks, size, ink), (chosen, 1.2 * size, accent)):
-                for x in xs.tolist():
-                    self._lines.add_ngon_filled((x, middle), reach, fill, 4)
-        elif not len(track.channel):
-            self._draw_bars(marks, size, (middle - 0.5 * size, middle + 0.5 * size), ink)
-            bar = middle - 0.6 * size, middle + 0.6 * size
-            self._draw_bars(chosen, size, bar, ink_of(self._theme.accent))
-        else:
-            row = middle - 0.5 * unit + 1.0, middle + 0.5 * unit - 1.0
-            self._draw_bars(chosen, size, row, ink_of(self._theme.accent, 0.35))
+        seen = marks[:0] if is_dense and len(track.channel) else marks
+        accent = ink_of(self._theme.accent)
+        for xs, reach, fill in ((seen, size, ink), (chosen, 1.2 * size, accent)):
+            for x in xs.tolist():
+                self._lines.add_ngon_filled((x, middle), reach, fill, 4)
         return is_dense
-
-    def _draw_bars(self, marks: Floats, reach: float, edges: Point, fill: int) -> None:
-        """A bar for all marks of which each is near the next, between an upper and a lower edge."""
-        if not len(marks):
-            return
-        ends = np.flatnonzero(np.diff(marks) > 4.0 * reach)
-        lasts = marks[np.append(ends, -1)].tolist()
-        for first, last in zip(marks[np.append(0, ends + 1)].tolist(), lasts, strict=True):
-            left, right = max(first - reach, self._low), min(last + reach, self._high)
-            self._lines.add_rect_filled((left, edges[0]), (right, edges[1]), fill, 0.5 * reach)
 
     def _draw_names(self, track: Track, top: float) -> None:
         """The names of poses above them, as much of each as there is room for before the next."""
@@ -177,6 +158,7 @@ def draw_box(theme: Theme, first: Point, last: Point) -> None:
 
 HEIGHT = 2.6  # [em]
 LEAST = 0.5  # [window units] from the middle: silence is a thin line
+peaks_of = functools.lru_cache(maxsize=1)(Peaks)
 
 
 class Waveform:
@@ -184,7 +166,6 @@ class Waveform:
 
     def __init__(self, gui: Gui, soundtrack: Soundtrack, axis: TimeAxis) -> None:
         self._gui, self._soundtrack, self._axis = gui, soundtrack, axis
-        self._known: tuple[object, Peaks | None] = None, None
 
     @property
     def height(self) -> float:
@@ -202,8 +183,8 @@ class Waveform:
 
         time, duration: that is shown, and of the script [s].
         """
-        peaks, axis, theme = self._peaks(), self._axis, self._gui.theme
-        if peaks is None:
+        sound, axis, theme = self._soundtrack.sound, self._axis, self._gui.theme
+        if sound is None:
             return
         lines, (left, top) = imgui.get_window_draw_list(), corner
         bottom = top + self.height - 1.0
@@ -212,7 +193,7 @@ class Waveform:
             (first - em(0.5), top + 1.0), (last + em(0.5), bottom), ink_of(theme.field), em(0.2)
         )
         draw_label("Sound", (left, top + 0.5 * (self.height - em())), ink_of(theme.muted))
-        low, high = peaks.between(axis.time(first), axis.time(last), max(last - first, 1))
+        low, high = peaks_of(sound).between(axis.time(first), axis.time(last), max(last - first, 1))
         middle, reach = 0.5 * (top + bottom), 0.5 * (bottom - top) - em(0.2)
         inside, outside = ink_of(theme.muted), ink_of(theme.muted, 0.35)
         ends = axis.x(duration)
@@ -221,9 +202,3 @@ class Waveform:
         for x, (upper, lower) in enumerate(zip(uppers, lowers, strict=True), start=first):
             lines.add_rect_filled((x, upper), (x + 1.0, lower), inside if x < ends else outside)
         draw_playhead(theme, axis, time, (top, bottom + 1.0))
-
-    def _peaks(self) -> Peaks | None:
-        sound = self._soundtrack.sound
-        if self._known[0] is not sound:
-            self._known = sound, Peaks(sound) if sound is not None else None
-        return self._known[1]

@@ -157,7 +157,7 @@ def view_menu(settings: Settings, view: View) -> Menu:
         display_switch("Compare: wipe", "D", "compare", "wipe", "off"),
         display_switch("Compare: side by side", "Shift+D", "compare", "side by side", "off"),
         display_switch("Wireframe", "W", "wireframe"),
-        display_switch("Colour by splits", "C", "colours", "splits", "none"),
+        display_switch("Colour by splits", "C", "splits"),
         display_switch("Texture", "T", "skin", "textured", "plain"),
         muscles("Muscles", "U", lambda: settings.display.toggle_overlay("muscles")),
         setting("Idle life", "A", "is_alive"),
