@@ -9,7 +9,7 @@ Visual Computer 2003. The package stands alone: it needs numpy and numba and not
 
 Refiners by name: `none` hands the mesh through, `kahler` is the paper's, `loop` subdivides the
 whole mesh for comparison. `refine(positions, out=stream)` writes straight into lent arrays.
-`Tension` measures how far the skin is stretched. `check` is for tests: it names the relation that a
+`Shortening` measures how far the skin is. `check` is for tests: it names the relation that a
 refined mesh breaks.
 
 `kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
@@ -61,7 +61,7 @@ from .kahler.smoothing import LoopScheme, Scheme, schemes
 from .mesh.connectivity import Connectivity, connect
 from .mesh.seams import weld
 from .others import Loop, PassThrough
-from .strain import Shortening, Tension, TensionMap
+from .strain import Shortening
 
 __all__ = [
     "THRESHOLD_ONCE",
@@ -92,8 +92,6 @@ __all__ = [
     "Silhouette",
     "Stream",
     "StreamArrays",
-    "Tension",
-    "TensionMap",
     "TrimeshRefiner",
     "Values",
     "View",

@@ -1,4 +1,4 @@
-"""How far the skin is stretched, compressed and shortened, from rest and deformed positions alone.
+"""How far the skin is shortened, from rest and deformed positions alone.
 
 *Shortening*: how much shorter the skin is than at rest along given directions, which wrinkles
 follow. They stay where they are, so the directions are given at rest, d at each vertex, and only
@@ -14,39 +14,19 @@ squared lengths l of the triangle's edges,
 so neither a rigid motion nor a bend counts, and the mean over the triangles around a vertex,
 weighted by area, is a sum with weights that never change. At rest it is 0 to the last bit.
 
-*Tension map*: how far the skin is stretched and compressed at each vertex at most.
-As an engineer does with a rosette of three strain gauges, shortening is measured along three
-directions in the tangent plane, 60 degrees apart, the first across the x axis (y where that stands
-on the skin). The squared lengths that they find are those of
-
-    |F d|^2 = mean + range cos 2 (angle - direction)
-
-of which mean + range and mean - range are the squares of the principal stretches, the largest and
-the smallest:
-
-    stretch     = max(largest - 1, 0)       0.2: a fifth longer than at rest
-    compression = max(1 - smallest, 0)      0.2: a fifth shorter than at rest
-
-Both may be at work at once, across each other: that is where folds run.
-
 Not in the paper.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
 from .mesh.arrays import Doubles, Floats, Unsigned, Wide
-from .mesh.normals import vertex_normals
 from .mesh.validation import checked_indices, checked_positions, not_finite, round_finite
 from .mesh.vectors import difference, dot
 
 THINNEST = 1e-6
 """Height over length below which a triangle at rest has no plane to measure strain in."""
-GAUGES = np.pi / 3.0 * np.arange(3)
-"""Angles of a rosette [rad]."""
 
 
 class Shortening:
@@ -100,54 +80,6 @@ class Shortening:
             raise ValueError(not_finite(given))
         _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
         return self._lost
-
-
-class TensionMap(NamedTuple):
-    """Tension of one frame."""
-
-    stretch: Floats
-    """Growth of length where it is largest, 0 = none, shape (V,)."""
-    compression: Floats
-    """Loss of length where it is largest, 0 = none, up to 1, shape (V,)."""
-
-
-class Tension:
-    """Measures deformed positions of one mesh against its rest positions.
-
-        tension = refine.Tension(faces, rest_positions)
-        stretch, compression = tension.measure(positions)
-
-    The rows of a refined mesh get theirs through `origins()`, like any other attribute.
-    """
-
-    def __init__(self, faces: npt.ArrayLike, rest_positions: npt.ArrayLike) -> None:
-        """Learn the mesh at rest: `faces`, shape (F, 3), `rest_positions`, shape (V, 3).
-
-        Raises ValueError as `Shortening` does.
-        """
-        rest = checked_positions(rest_positions)
-        triangles = checked_indices("faces", faces, len(rest), "rest_positions")
-        normals = np.zeros(rest.shape, dtype=np.float32)
-        vertex_normals(rest, triangles.astype(np.uint32), normals)
-        lateral = np.cross(normals, np.where(np.abs(normals[:, :1]) < 0.6, [1, 0, 0], [0, 1, 0]))
-        lateral /= np.maximum(np.linalg.norm(lateral, axis=1, keepdims=True), THINNEST)
-        axes = np.stack([lateral, np.cross(normals, lateral)], axis=1)  # (V, 2, 3)
-        rosette = np.stack([np.cos(GAUGES), np.sin(GAUGES)], axis=1) @ axes
-        self._shortening = Shortening(triangles, rest, rosette)
-
-    def measure(self, positions: npt.NDArray[np.floating]) -> TensionMap:
-        """Measure deformed `positions`, shape (V, 3), any float type; they are only read.
-
-        Raises ValueError for another shape and for positions that are not finite.
-        """
-        squared = np.square(1.0 - self._shortening.measure(positions).astype(np.float64))
-        mean = squared.mean(axis=1)
-        across = 2.0 / 3.0 * squared @ np.stack([np.cos(2.0 * GAUGES), np.sin(2.0 * GAUGES)], 1)
-        range_ = np.linalg.norm(across, axis=1)
-        return TensionMap(
-            np.maximum(np.sqrt(mean + range_) - 1.0, 0.0).astype(np.float32),
-            np.maximum(1.0 - np.sqrt(np.maximum(mean - range_, 0.0)), 0.0).astype(np.float32),
-        )
 
 
 def _weights(rest: Doubles, faces: Wide, directions: Doubles) -> Floats:

@@ -37,8 +37,6 @@ class Geometry(NamedTuple):
     """Whether a triangle of the stream is seen from its back, shape (H, W)."""
     uv: Floats
     """Texture coordinates; 0 on parts and in streams without, shape (H, W, 2)."""
-    values: Floats
-    """What was given for the vertices of the stream, shape (H, W, 2)."""
 
 
 class GeometryBuffer:
@@ -48,7 +46,7 @@ class GeometryBuffer:
         self.size = size
         self._gl = gl
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}  # by their defines
-        self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4, 2)]
+        self._textures = [gl.texture(size, components, dtype="f4") for components in (4, 4)]
         self._target = gl.framebuffer(self._textures, gl.depth_renderbuffer(size))
 
     def draw(
@@ -56,7 +54,6 @@ class GeometryBuffer:
         stream: MeshBuffers,
         parts: Sequence[PlacedPart],
         view: CameraView,
-        values: Floats | None,
         maps: Mapping[BumpMap, float],
     ) -> Geometry:
         """Draw what `stream` last uploaded, and parts; see `Renderer.draw_geometry`."""
@@ -65,7 +62,6 @@ class GeometryBuffer:
         gl.viewport, gl.scissor = (0, 0, *self.size), None
         gl.enable_only(moderngl.DEPTH_TEST)
         self._target.clear()
-        stream.upload_values(values)
         skin = self._program_of(maps)
         for each in (program, skin):
             write_uniform(each, "projection", view.projection)
@@ -93,7 +89,7 @@ class GeometryBuffer:
     def _read(self) -> Geometry:
         """Fetch the textures, top row first."""
         width, height = self.size
-        normal_depth, number_side_uv, values = (
+        normal_depth, number_side_uv = (
             np.frombuffer(texture.read(), np.float32).reshape(height, width, -1)[::-1]
             for texture in self._textures
         )
@@ -103,5 +99,4 @@ class GeometryBuffer:
             triangle=number_side_uv[..., 0].astype(np.int32) - 1,  # exact up to 2^24 triangles
             is_inside=number_side_uv[..., 1] < 0.0,
             uv=number_side_uv[..., 2:],
-            values=values,
         )

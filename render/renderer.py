@@ -259,23 +259,19 @@ class Renderer:
         transforms: Mapping[str, npt.NDArray[np.float64]],
         view: CameraView,
         *,
-        values: npt.NDArray[np.float32] | None = None,
         maps: Mapping[BumpMap, float] = MappingProxyType({}),
     ) -> Geometry:
         """Numbers of what is seen, for each pixel of the surface; nothing on it changes.
 
-        values: two numbers for each vertex that `stream` last uploaded, (vertex_count, 2), to be
-            interpolated; None: zeros. Raises ValueError for another shape, or a bone without
-            transform.
         maps: fine shape that tilts normals, and how much of each, 0 to 1; what needs amounts counts
-            for nothing where none were uploaded.
+            for nothing where none were uploaded. Raises ValueError for a bone without transform.
         """
         if self._geometry_buffer is None or self._geometry_buffer.size != self.surface.target.size:
             self._geometry_buffer = GeometryBuffer(self._gl, self.surface.target.size)
         placed = self._parts.placed(parts, transforms)
         if not stream.has_bumps:
             maps = {each: strength for each, strength in maps.items() if each.define != "BUMPS"}
-        return self._geometry_buffer.draw(stream, placed, view, values, maps)
+        return self._geometry_buffer.draw(stream, placed, view, maps)
 
     def draw_lines(self, lines: Lines, view: CameraView) -> None:
         """Draw polylines over the scene; where something hides them they shine through."""

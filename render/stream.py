@@ -97,8 +97,8 @@ class MeshBuffers:
         self._room = vertex_capacity, triangle_capacity
         self.vertex_buffer = gl.buffer(reserve=NUMBER * columns * vertex_capacity, dynamic=True)
         self.index_buffer = gl.buffer(reserve=3 * NUMBER * triangle_capacity, dynamic=True)
-        # Made when they are first needed: amounts of bumps and values by vertex; and triangles
-        # parted by bumps, and chosen.
+        # Made when they are first needed: amounts of bumps by vertex; and triangles parted by
+        # bumps, and chosen.
         self._more: dict[str, moderngl.Buffer] = {}
         self._ranges: _Ranges = {}
         self._vertex_arrays: dict[
@@ -142,20 +142,6 @@ class MeshBuffers:
                 "texture"
             )
 
-    def upload_values(self, values: npt.NDArray[np.float32] | None) -> None:
-        """Hand two numbers for each uploaded vertex to OpenGL, (vertex_count, 2); None: zeros.
-
-        ValueError for another shape. Programs that are first drawn with after that have in_values.
-        """
-        if values is None:
-            values = np.zeros((self.vertex_count, 2), np.float32)
-        if values.shape != (self.vertex_count, 2):
-            raise ValueError(
-                f"values has shape {values.shape}; it must be ({self.vertex_count}, 2), two "
-                "numbers for each uploaded vertex"
-            )
-        self._rewrite("in_values", values.astype(np.float32, copy=False))
-
     def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
         """Choose among the uploaded triangles, (triangle_count,), for `draw`."""
         chosen = self.frame.triangles[is_chosen]
@@ -190,10 +176,11 @@ class MeshBuffers:
         if array is None:
             names = ("in_position", "in_normal")
             layout = ("3f 3f", *names) if self.columns == 6 else ("3f 3f 2f", *names, "in_uv")
-            by_vertex = (name for name in ("in_bumps", "in_values") if name in self._more)
+            bumps = self._more.get("in_bumps")
+            by_vertex = [] if bumps is None else [(bumps, "2f", "in_bumps")]
             array = self.context.vertex_array(
                 program,
-                [(self.vertex_buffer, *layout), *((self._more[n], "2f", n) for n in by_vertex)],
+                [(self.vertex_buffer, *layout), *by_vertex],
                 index_buffer=indices,
                 index_element_size=4,
                 skip_errors=True,  # flat shading has no use for normals, plain skin none for uv

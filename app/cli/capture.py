@@ -67,8 +67,7 @@ class Filming:
     )
     passes: str | None = option(
         metavar="NAME,...",
-        help="Beside each picture: depth, normal, triangle, splits, tension, segmentation, "
-        "landmarks.",
+        help="Beside each picture: depth, normal, triangle, splits, segmentation, landmarks.",
     )
     alive: bool = option(
         is_flag=True, help="What the script leaves alone lives: eyes blink and look at the camera."

@@ -1,6 +1,6 @@
 """All that is told of one picture beside its pixels, and the files that lie beside it, by passes.
 
-frame_00000.exr         depth, normal, triangle, splits, tension: 32 bits a channel, lossless
+frame_00000.exr         depth, normal, triangle, splits: 32 bits a channel, lossless
 frame_00000_seg.png     segmentation: 8 bits, one class number a pixel
 frame_00000_ldmks.txt   landmarks: x and y of each in a row [pixels]
 frame_00000.json        camera, head, gaze, landmarks, controls: plain numbers
@@ -202,7 +202,6 @@ CHANNELS = {
     "normal": ("normal.X", "normal.Y", "normal.Z"),
     "triangle": ("triangle.ID",),
     "splits": ("splits",),
-    "tension": ("tension.stretch", "tension.compression"),
 }
 NOTHING = 0xFFFFFFFF  # of triangles, where integers have no sign: -1 when read as signed
 ENDS = (".exr", "_seg.png", "_ldmks.txt", ".json")

@@ -4,7 +4,6 @@
     normal        unit normal, x right, y down, z away from the camera          (H, W, 3) float32
     triangle      of the simulated mesh, -1 = nothing or an eye, a tooth, ...   (H, W) int32
     splits        how many splits the edges of that triangle have               (H, W) uint8
-    tension       stretch and compression of the skin there, 0.2 = a fifth      (H, W, 2) float32
     segmentation  what it is, by the numbers of FaceSynthetics (assets.Segment) (H, W) uint8
 
 The top row comes first. Where nothing is drawn all are 0, but `triangle` is -1.
@@ -19,15 +18,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from risorius import refine, render
+from risorius import render
 from risorius.assets import Segment
 from risorius.assets.identities import HAIR
 
 from ..pipeline import DrawnMesh, Pipeline, splits_of_source
-from ..refining.wrinkling import on_rows
 from ..scenes import FaceScene
 
-IMAGES = ("depth", "normal", "triangle", "splits", "tension", "segmentation")
+IMAGES = ("depth", "normal", "triangle", "splits", "segmentation")
 OF_FACES = ("segmentation", "landmarks")  # what other scenes have not
 NAMES = (*IMAGES, "landmarks")
 Bytes = npt.NDArray[np.uint8]
@@ -39,7 +37,6 @@ class Passes:
     def __init__(self, pipeline: Pipeline, drawn: DrawnMesh) -> None:
         self.scene = scene = pipeline.scene
         self._pipeline, self.drawn = pipeline, drawn
-        self._tension = refine.Tension(scene.faces, scene.rest_positions)
         # Thin hairs are what is behind them, as in pictures that people label.
         self._parts = [part for part in scene.parts if not part.strand_radius]
         self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, self._parts)])
@@ -60,10 +57,6 @@ class Passes:
         scene, pipeline, drawn = self.scene, self._pipeline, self.drawn
         if drawn.mesh is None:
             raise ValueError("nothing was drawn yet; call Pipeline.draw first")
-        values = None
-        if "tension" in wanted:
-            stretch, compression = self._tension.measure(scene.positions)
-            values = on_rows(np.stack([stretch, compression], axis=1), drawn.refiner)
         maps = {}
         if pipeline.wrinkle_map is not None and drawn.has_uv:
             maps[pipeline.wrinkle_map] = drawn.style.bumps
@@ -75,7 +68,6 @@ class Passes:
             self._parts,
             scene.bone_transforms(),
             pipeline.renderer.view(camera),
-            values=values,
             maps=maps,
         )
         # Entry -1, the last one, is that of pixels where nothing is drawn.
@@ -83,7 +75,6 @@ class Passes:
         found: dict[str, npt.NDArray[Any]] = {
             "depth": geometry.depth,
             "normal": geometry.normal,
-            "tension": geometry.values,
         }
         if "triangle" in wanted:
             table = np.concatenate([drawn.mesh.source, np.full(parts + 1, -1, np.int32)])

@@ -26,7 +26,6 @@ POSE = {"AU12": 0.75, "AU6": 0.4, "AU1": 0.5, "jaw_open": 0.3, "head_yaw": -0.15
 TURN = (-24.0, 4.0)  # [degrees] of the camera
 SETTLED = 1.0  # [s]
 MARGIN = 0.04  # of the picture, free on each side
-FULL = 0.3  # stretch or compression that has the full colour
 # Samples of a seed as `risorius dataset` makes them; of some their labels are shown, too.
 SEED, CELL, COLUMNS, ROWS = 21, 192, 6, 4
 LABELLED = (2, 3, 10, 11, 14, 22)  # numbers of samples
@@ -62,26 +61,9 @@ def passes(size: tuple[int, int] = SIZE) -> Image:
         "normal: right red, up green, to the eye blue": _directions(images["normal"], on),
         "triangle of the simulated mesh": _looked_up(images["triangle"], _scattered(scene.faces)),
         "splits of its edges": _looked_up(images["splits"], _palette(), on),
-        "tension: stretch red, compression blue": _tinted(images["tension"], on),
     }
     named = [(name, np.asarray(image).astype(np.uint8)) for name, image in cells.items()]
     return figures.sheet(named, 4)
-
-
-def tension(size: tuple[int, int] = (330, 400)) -> Image:
-    """The face in some expressions, coloured by how the skin is stretched and compressed."""
-    scene, cells = FaceScene(), []
-    with Capture(scene, CaptureOptions(size, camera="-18,2,1.45")) as studio:
-        for pose in ("joy", "surprise", "disgust"):
-            scene.reset()
-            scene.pose({pose: 1.0})
-            scene.step(figures.SETTLED)
-            studio.draw_image()
-            passes = Passes(studio.pipeline, studio.viewports[-1].drawn)
-            images = labelled(passes, studio.camera, ("depth", "tension")).images
-            tinted = _tinted(images["tension"], images["depth"] > 0.0).astype(np.uint8)
-            cells.append((f"{pose}: stretch red, compression blue", tinted))
-    return figures.sheet(cells, len(cells))
 
 
 def _looked_up(numbers: npt.NDArray[Any], colours: Any, on: Any = None) -> npt.NDArray[Any]:
@@ -113,12 +95,6 @@ def _directions(normal: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDAr
     return shown
 
 
-def _tinted(tension: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray[Any]:
-    share = np.clip(tension / FULL, 0.0, 1.0)
-    towards = np.array([[200.0, 20.0, 20.0], [20.0, 60.0, 210.0]]) - 225.0
-    return np.clip(225.0 + share @ towards, 0.0, 255.0) * on[..., None]
-
-
 def dotted(picture: Image, labels: dict[str, Any], radius: float) -> Image:
     """A picture with its landmarks, hidden ones red."""
     page = PIL.Image.fromarray(picture)
@@ -148,4 +124,4 @@ def _labelled(shot: Shot) -> Image:
 
 
 if __name__ == "__main__":
-    figures.run(__doc__, {"passes": passes, "refine_tension": tension, "dataset": dataset})
+    figures.run(__doc__, {"passes": passes, "dataset": dataset})

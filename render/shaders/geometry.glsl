@@ -1,14 +1,13 @@
 // What each pixel shows, as numbers: no light, no blending, one sample.
 // BUMPS, FINE: of the skin, as in surface.glsl.
 
-#define SURFACE vec3 normal; float depth; vec2 uv; vec2 values; vec3 position; vec2 bump_amounts;
+#define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts;
 
 #if defined(VERTEX_STAGE)
 
 in vec3 in_position;
 in vec3 in_normal;
 in vec2 in_uv;      // of the skin; parts have none
-in vec2 in_values;
 #if defined(BUMPS)
 in vec2 in_bumps;
 #endif
@@ -21,7 +20,6 @@ void main() {
     surface.normal = mat3(model_view) * in_normal;
     surface.depth = -position.z;
     surface.uv = in_uv;
-    surface.values = in_values;
     surface.position = position.xyz;
 #if defined(BUMPS)
     surface.bump_amounts = in_bumps;
@@ -39,7 +37,6 @@ in Surface { SURFACE } surface;
 uniform float first;  // number of the first triangle of this drawing call, counted from 1
 layout(location = 0) out vec4 normal_and_depth;
 layout(location = 1) out vec4 number_side_uv;
-layout(location = 2) out vec2 values;
 
 void main() {
     float side = gl_FrontFacing ? 1.0 : -1.0;
@@ -52,7 +49,6 @@ void main() {
     normal.yz = -normal.yz;
     normal_and_depth = vec4(normal, surface.depth);
     number_side_uv = vec4(first + float(gl_PrimitiveID), side, surface.uv);
-    values = surface.values;
 }
 
 #endif

@@ -1,4 +1,4 @@
-"""Passes of a face: triangles, splits, tension and classes, and landmarks against the depth map."""
+"""Passes of a face: triangles, splits and classes, and landmarks against the depth map."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius import refine, render
+from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.passes.labels import CameraLabels, landmarks_in
 from risorius.app.passes.passes import IMAGES, Passes
@@ -113,14 +113,14 @@ def test_nothing_parts_and_skin_are_told_apart(studio: Capture) -> None:
     assert tuple(found) == IMAGES
     nothing = found["depth"] == 0.0
     assert 0.3 < nothing.mean() < 0.9
-    for name in ("normal", "splits", "tension", "segmentation"):
+    for name in ("normal", "splits", "segmentation"):
         assert not found[name][nothing].any()
     assert (found["segmentation"][~nothing] > 0).all()
     assert (found["triangle"][nothing] == -1).all()
     is_part = ~nothing & (found["triangle"] < 0)
     parts = (Segment.RIGHT_EYE, Segment.LEFT_EYE, Segment.MOUTH_INTERIOR, Segment.CLOTHING)
     assert np.isin(found["segmentation"][is_part], parts).all() and is_part.sum() > 1000
-    assert not found["splits"][is_part].any() and not found["tension"][is_part].any()
+    assert not found["splits"][is_part].any()
     assert found["triangle"].max() < len(studio.scene.faces)
 
 
@@ -134,25 +134,6 @@ def test_splits_are_those_of_the_triangle_that_is_seen(studio: Capture) -> None:
     edges = refiner.triangle_edges[found["triangle"][is_skin]]
     assert np.array_equal(found["splits"][is_skin], refiner.splits[edges].sum(axis=1))
     assert found["splits"].max() > 0
-
-
-def test_tension_is_that_of_the_vertices_around(studio: Capture) -> None:
-    """Between the least and the greatest of the triangle's corners, and none at rest."""
-    scene, passes = studio.scene, Passes(studio.pipeline, studio.viewports[-1].drawn)
-    posed(studio, EXPRESSIONS["smile"])
-    seen_from(studio)
-    found = passes.draw(studio.camera, ["tension", "triangle"])
-    measured = refine.Tension(scene.faces, scene.rest_positions).measure(scene.positions)
-    rows, columns = np.nonzero(found["triangle"] >= 0)
-    corners = scene.faces[found["triangle"][rows, columns]]
-    for k, amounts in enumerate(measured[:2]):
-        there = found["tension"][rows, columns, k]
-        assert (there > amounts[corners].min(axis=1) - 1e-4).all()
-        assert (there < amounts[corners].max(axis=1) + 1e-4).all()
-    assert found["tension"].max() > 0.1
-    posed(studio, {})
-    seen_from(studio)
-    assert np.abs(passes.draw(studio.camera, ["tension"])["tension"]).max() < 1e-3
 
 
 def test_classes_are_the_subjects_own_sides_and_mirror(studio: Capture) -> None:

@@ -14,7 +14,7 @@ from .command_line import risorius
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
-ALL = "depth,normal,triangle,splits,tension,segmentation,landmarks"
+ALL = "depth,normal,triangle,splits,segmentation,landmarks"
 CAPTURE = ("capture", "--size", "160x120", "--quiet", "--fps", "10")
 SMILE = """
 title = "Smile"
@@ -50,7 +50,6 @@ def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
     channels = channels_of(Path(f"{stem}.exr"))
     assert {name: each.dtype.name for name, each in channels.items()} == {
         **dict.fromkeys(["depth.Z", "normal.X", "normal.Y", "normal.Z"], "float32"),
-        **dict.fromkeys(["tension.stretch", "tension.compression"], "float32"),
         **dict.fromkeys(["triangle.ID", "splits"], "uint32"),
     }
     depth, triangle = channels["depth.Z"], channels["triangle.ID"].astype(np.int32)

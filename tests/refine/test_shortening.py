@@ -52,17 +52,15 @@ def test_rigid_motions_and_bends_shorten_nothing() -> None:
     assert np.abs(shortening.measure(rolled)).max() < 1e-3
 
 
-def test_agrees_with_the_tension_map() -> None:
-    """Along the direction of the largest compression of a flat deformation they are the same."""
+def test_finds_the_largest_compression() -> None:
+    """Along its direction a flat deformation is as much shorter as its smallest stretch says."""
     faces, rest = grid()
     gradient = np.array([[0.9, 0.15, 0.0], [-0.05, 0.75, 0.0], [0.0, 0.0, 1.0]])
     stretches, ways = np.linalg.svd(gradient[:2, :2])[1:]
     directions = np.tile([[*ways[1], 0.0]], (len(rest), 1, 1))
     now = rest @ gradient.T
     measured = refine.Shortening(faces, rest, directions).measure(now)[:, 0]
-    tension = refine.Tension(faces, rest).measure(now)
     np.testing.assert_allclose(measured, 1.0 - stretches[1], atol=1e-5)
-    np.testing.assert_allclose(measured, tension.compression, atol=1e-4)
 
 
 def test_what_does_not_fit_is_refused() -> None:

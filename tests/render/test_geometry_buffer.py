@@ -2,7 +2,6 @@
 
 import numpy as np
 import numpy.typing as npt
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,12 +27,11 @@ def drawn(
     camera: render.OrbitCamera,
     *,
     parts: tuple[Ball, ...] = (),
-    values: npt.NDArray[np.float32] | None = None,
 ) -> render.Geometry:
     """The numbers of one shape and parts."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, shape)
-    return renderer.draw_geometry(stream, parts, STILL, renderer.view(camera), values=values)
+    return renderer.draw_geometry(stream, parts, STILL, renderer.view(camera))
 
 
 @settings(max_examples=15, deadline=None)
@@ -108,21 +106,6 @@ def test_triangles_are_numbered_through_all_parts(surface: render.Surface) -> No
     assert front[seen].all() and len(seen) > 0.4 * front.sum()
     twice = drawn(surface, shape, facing(70.0), parts=(Ball(), Ball()))
     assert twice.triangle.max() < 2 + 2 * len(ball.faces)
-
-
-def test_values_are_interpolated(surface: render.Surface) -> None:
-    """Two numbers that grow along x and y do so in the picture, and stop at nothing else."""
-    shape = square(40.0)
-    values = (shape.positions[:, :2] / 40.0).astype(np.float32)
-    found = drawn(surface, shape, facing(), values=values)
-    scale = facing().focal(1.0, 96) / facing().distance
-    rows, columns = np.nonzero(found.depth)
-    expected = np.stack([columns + 0.5 - 48, 48 - 0.5 - rows], axis=1) / scale / 40.0
-    assert np.abs(found.values[rows, columns] - expected).max() < 1e-3
-    assert not found.values[found.depth == 0.0].any()
-    assert not drawn(surface, shape, facing()).values.any()
-    with pytest.raises(ValueError, match=r"values has shape \(3, 2\); it must be \(4, 2\)"):
-        drawn(surface, shape, facing(), values=values[:3])
 
 
 def test_the_back_of_the_mesh_is_told_from_its_front(surface: render.Surface) -> None:
