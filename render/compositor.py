@@ -1,8 +1,8 @@
 """What lies under the scene, a background, and what a window shows of it, with panels over it.
 
-Software OpenGL pays for every pixel, so a scene that moves may be drawn with fewer (`Detail`) and
-is enlarged here. The scene's own pixels stay as they are: when only a panel changes, the scene is
-laid under it again without being drawn again.
+Software OpenGL pays for every sample, so a scene that moves may be drawn with fewer (`Detail`) and
+is enlarged here, or smoothed. The scene's own pixels stay as they are: when only a panel changes,
+the scene is laid under it again without being drawn again.
 """
 
 from dataclasses import dataclass
@@ -40,9 +40,9 @@ class Compositor:
         self._gl = gl
         self._colour = gl.renderbuffer(size, 4)
         self.frame = gl.framebuffer([self._colour])
-        self._program = compile_program(gl, "stretch.glsl")
-        self._program["scene"] = _UNIT
-        self._triangle = gl.vertex_array(self._program, [])
+        programs = [compile_program(gl, "stretch.glsl", *words) for words in ([], ["SMOOTH"])]
+        self._plain, self._smooth = (gl.vertex_array(program, []) for program in programs)
+        self._plain.program["scene"] = self._smooth.program["scene"] = _UNIT
 
     def compose(
         self,
@@ -50,20 +50,18 @@ class Compositor:
         area: Rectangle | None,
         target: moderngl.Framebuffer | None = None,
     ) -> None:
-        """Lay the scene into all of this frame, or of another `target` of its size, or an area.
-
-        The target stays bound.
-        """
+        """Lay the scene into an area (None: all) of this frame or a `target`, which stays bound."""
         gl, target = self._gl, target or self.frame
         scene.flush()
         target.use()
         gl.viewport, gl.scissor = (0, 0, *self.size), area  # of what is bound
-        if scene.size == self.size:
+        if scene.samples and scene.size == self.size:
             gl.copy_framebuffer(target, scene.frame)
         else:
             gl.disable(moderngl.DEPTH_TEST)
             scene.colour.use(_UNIT)
-            self._triangle.render(moderngl.TRIANGLES, vertices=3)
+            stretch = self._smooth if scene.size == self.size else self._plain
+            stretch.render(moderngl.TRIANGLES, vertices=3)
             gl.enable(moderngl.DEPTH_TEST)
         gl.scissor = None
 
@@ -74,7 +72,7 @@ class Compositor:
         gl.viewport = x, y, width, height
         gl.enable_only(moderngl.BLEND)
         gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        self._plain.render(moderngl.TRIANGLES, vertices=3)
         gl.enable_only(moderngl.DEPTH_TEST)
         gl.viewport = 0, 0, *self.size
 
