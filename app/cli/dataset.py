@@ -27,7 +27,7 @@ MOST = 1_000_000  # samples; their names have six digits
     default="segmentation",
     metavar="NAME,...",
     show_default=True,
-    help="Beside each picture: depth, normal, triangle, splits, tension, segmentation; "
+    help="Beside each picture: depth, normal, triangle, splits, segmentation; "
     "landmarks are always there.",
 )
 @click.option("--size", type=Size(), default=(512, 512), help="512x512 unless told.")

@@ -1,14 +1,12 @@
 """The folder of a data set: samples whole or not at all, and how it was begun.
 
 The files of a sample are written in `.unfinished` and renamed, its .json last, so that each is
-whole under its final name, whenever the process is killed. What happened to them since is found by
-digests: a sample counts as made when all of its files are as they were written.
+whole under its final name, whenever the process is killed. What has its .json is made.
 """
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 import os
 import re
@@ -25,7 +23,6 @@ from ..files import cannot_be_written, real_path, save_text
 
 BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"
-DIGEST = "digest"  # of all other labels; the last of them
 _SAMPLE = re.compile(r"(\d{6})\.json")
 
 
@@ -108,21 +105,9 @@ class SetFolder:
             found = (_SAMPLE.fullmatch(item.name) for item in items)
             return {int(match[1]) for match in found if match}
 
-    def has(self, index: int) -> bool:
-        """Whether a sample is whole: all of its files are there as they were written."""
-        try:
-            labels = self.sample(index)
-            told, files = labels.pop(DIGEST), labels["files"]
-            return bool(
-                labels["index"] == index
-                and told == _digest_of(_text_of(labels).encode())
-                and all(_digest_of(self._read(name)) == each for name, each in files.items())
-            )
-        except (OSError, ValueError, LookupError, TypeError, AttributeError):
-            return False  # whatever stands in its place
-
-    def _read(self, name: str) -> bytes:
-        return (self.path / name).read_bytes()
+    def labels(self, index: int) -> Path:
+        """The .json of a sample."""
+        return self.path / f"{name_of(index)}.json"
 
     def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
         """Put the files of a sample in place, .json last; how many bytes they have.
@@ -134,7 +119,6 @@ class SetFolder:
             part = Path(tempfile.mkdtemp(prefix=name, dir=self.path / UNFINISHED))
             try:
                 write(part / f"{name}.png")
-                _seal(part / f"{name}.json")
                 made = sorted(part.iterdir(), key=lambda path: (path.suffix == ".json", path))
                 size = sum(path.stat().st_size for path in made)
                 for path in made:
@@ -145,25 +129,8 @@ class SetFolder:
 
     def sample(self, index: int) -> dict[str, Any]:
         """What is in the .json of a sample."""
-        labels: dict[str, Any] = json.loads(self._read(f"{name_of(index)}.json"))
+        labels: dict[str, Any] = json.loads(self.labels(index).read_bytes())
         return labels
-
-
-def _seal(file: Path) -> None:
-    """Add the digests of what lies beside the .json of a sample, and of its own content."""
-    labels = json.loads(file.read_bytes())
-    beside = sorted(path for path in file.parent.iterdir() if path != file)
-    labels["files"] = {path.name: _digest_of(path.read_bytes()) for path in beside}
-    labels[DIGEST] = _digest_of(_text_of(labels).encode())
-    file.write_text(_text_of(labels), encoding="utf-8")
-
-
-def _text_of(labels: Mapping[str, Any]) -> str:
-    return json.dumps(labels, separators=(",", ":"), allow_nan=False)
-
-
-def _digest_of(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
 
 
 def _short(value: object) -> str:

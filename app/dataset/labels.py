@@ -24,15 +24,13 @@ def labels_of_face(
     scene: FaceScene, camera: render.OrbitCamera, size: tuple[int, int], depth: Any
 ) -> dict[str, Any]:
     """All that is known of a face as it is now; `depth`: the depth map of its picture, (H, W)."""
-    units = action_units(scene)
     arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.sums))
     labels = labels_of(scene, camera, size, depth)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
     positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # as if not turned
     low, high = (np.clip(each, 0.0, size) for each in (pixels.min(axis=0), pixels.max(axis=0)))
     return {
-        "action_units": units,
-        "action_units_0_to_5": {name: round(5.0 * value, DIGITS) for name, value in units.items()},
+        "action_units": action_units(scene),
         "arkit": {name: round(float(value[0]), DIGITS) for name, value in arkit.items()},
         "apertures": apertures(positions, scene.simulation.faces, positions[scene.landmarks]),
         "face_box": np.concatenate([low, high - low]).round(3).tolist(),

@@ -50,7 +50,7 @@ def make_set(
     """
     folder = SetFolder(request.output)
     with folder.held(request.options(), resume=resume):
-        there = {index for index in folder.there() if index >= count or folder.has(index)}
+        there = folder.there()
         if there and max(there) >= count:
             raise UserError(
                 f"{request.output}: has sample {max(there)} already; give --count {max(there) + 1} "
@@ -76,7 +76,7 @@ def make_samples(share: Share, send: Send) -> None:
     """Make the samples of a share that are not there, and tell how many bytes each has."""
     studio, folder = Studio(share.request), SetFolder(share.request.output)
     for index in share.indices:
-        if not folder.has(index):  # a process before may have died behind it
+        if not folder.labels(index).exists():  # a process before may have died behind it
             send(folder.write_sample(index, studio.shoot(index).save))
 
 

@@ -78,31 +78,18 @@ def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path)
             json.loads((folder / f"{index:06d}.json").read_text("utf-8"))
             for folder in (tmp_path, made)
         )
-        assert labels == alone | {"files": labels["files"], "digest": labels["digest"]}
+        assert labels == alone
 
 
-def test_a_sample_that_is_not_whole_is_made_anew(made: Path, tmp_path: Path) -> None:
-    """Whatever stands in the place of one of its files; the set is then as it was."""
-    whole = content(made)
-    damaged = {
-        "000000.json": b"", "000001.json": b'{"mine": 1}', "000002.json": whole["000001.json"],
-        "000003.json": whole["000003.json"].replace(b'"AU12":0', b'"AU12":1', 1)[:-1] + b" }",
-        "000004_seg.png": b"",
-    }  # fmt: skip
+def test_a_sample_without_labels_is_made_anew(made: Path, tmp_path: Path) -> None:
+    """They come last, so that it is not whole without; the set is then as it was."""
     folder = tmp_path / "damaged"
     shutil.copytree(made, folder)
-    held = SetFolder(folder)
-    assert all(held.has(index) for index in range(COUNT))
-    for name, instead in damaged.items():
-        (folder / name).write_bytes(instead)
-    assert not any(held.has(index) for index in range(5))
-    for end in (".png", "_ldmks.txt", ".json"):
-        shutil.copytree(made, folder, dirs_exist_ok=True)
-        (folder / f"000001{end}").unlink()
-        assert [held.has(index) for index in range(COUNT)] == [k != 1 for k in range(COUNT)]
+    (folder / "000003.json").unlink()
+    (folder / "000003_seg.png").write_bytes(b"")
     (folder / UNFINISHED / "0000034711").mkdir(parents=True)
     assert "1 of them new" in run(folder, "--resume").output
-    assert content(folder) == whole
+    assert content(folder) == content(made)
 
 
 @pytest.mark.slow
@@ -157,9 +144,6 @@ def test_labels_agree_with_each_other(made: Path, samples: list[dict[str, Any]])
         for name, value in sample["controls"].items():
             if name in units:
                 assert units[name] == pytest.approx(value, abs=1e-4)
-        assert {name: 5 * value for name, value in units.items()} == pytest.approx(
-            sample["action_units_0_to_5"], abs=1e-4
-        )
         assert len(sample["arkit"]) == 52
         x, y, width, height = sample["face_box"]
         assert 0 <= x < x + width <= SIZE[0] and 0 <= y < y + height <= SIZE[1]
