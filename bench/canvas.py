@@ -136,8 +136,3 @@ def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Imag
             middle = (left + width / 2, top + title + height + caption_height / 2)
             draw.text(middle, caption, font=font(0.85 * size), fill=INK, anchor="mm")
     return np.asarray(page)
-
-
-def without_noise(image: Image) -> Image:
-    """A picture without the last bit of its colours: noise, for a quarter of the bytes."""
-    return image // 2 * 2

@@ -1,8 +1,8 @@
 """What `risorius bench capture` prints: frames a second of a film.
 
-The film is the face's script, as the mesh is and refined, side by side; of a head of one's own
-refined alone. Where the face is still, it shows its last picture again. Where the time of a frame
-goes, `bench window` tells, which draws by the same pipeline.
+The film is the face's script, as the mesh is and refined, side by side. Where the face is still, it
+shows its last picture again. Where the time of a frame goes, `bench window` tells, which draws by
+the same pipeline.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from risorius.app.capture import CaptureOptions, capture, processes
 from risorius.app.performances import script_for
 from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.script import Script
-from risorius.assets.fitting import FittedHead
 
 from .canvas import Canvas
 from .report import driver, processor
@@ -27,12 +26,12 @@ from .report import driver, processor
 ROUNDS = 3
 
 
-def report(size: tuple[int, int], seconds: float, head: FittedHead | None = None) -> str:
-    """Make films of so many seconds of the script, of a head; the text to print."""
+def report(size: tuple[int, int], seconds: float) -> str:
+    """Make films of so many seconds of the script; the text to print."""
     whole = script_for(None, "face")
     script = replace(whole, duration=min(seconds, whole.duration), poses=whole.poses)
-    beside = (Refinement(refiner=STATIC),) if head is None else ()
-    options = CaptureOptions(size=size, beside=beside, camera=script.camera, head=head)
+    beside = (Refinement(refiner=STATIC),)
+    options = CaptureOptions(size=size, beside=beside, camera=script.camera)
     frame_count = round(script.duration * options.frames_per_second) + 1
     with Canvas((16, 16)) as canvas:
         drawn_by = driver(canvas.surface.gl.info)
@@ -42,7 +41,7 @@ def report(size: tuple[int, int], seconds: float, head: FittedHead | None = None
     width, height = size
     return "\n".join(
         [
-            f"A film of {frame_count} frames of {1 + len(beside)}, {width}x{height}, 4 samples, on",
+            f"A film of {frame_count} frames of two, {width}x{height}, 4 samples, on",
             f"{drawn_by}, {os.cpu_count()} cores of {processor()};",
             f"median of {ROUNDS}; processor time with that of the encoder.",
             "",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
 from pathlib import Path
 
 import click
@@ -21,15 +19,6 @@ needed_reference = click.option(
     "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
 )
 size_option = click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
-
-
-@contextlib.contextmanager
-def told(before: str = "") -> Iterator[None]:
-    """Tell the user of a ValueError, with some text before its own."""
-    try:
-        yield
-    except ValueError as error:
-        raise UserError(f"{before}{error}") from None
 
 
 @click.group()
@@ -81,8 +70,7 @@ def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
 
     from . import quality, subjects
 
-    with told("--reference: "):
-        scans = subjects.Scans.read(reference) if reference else None
+    scans = subjects.Scans.read(reference) if reference else None
     known = assets.load("head").expressions if scans is None else scans.fields
     for name in expressions:
         if name not in known:
@@ -98,8 +86,7 @@ def bench_motion(reference: Path) -> None:
     """Compare simulated with scanned skin motion, shape by shape."""
     from . import motion
 
-    with told("--reference: "):
-        found = motion.measure(reference)
+    found = motion.measure(reference)
     conclude(motion.report(*found), motion.targets(*found))
 
 
@@ -112,22 +99,18 @@ def bench_human(reference: Path, head_file: Path | None) -> None:
     """Measure how human the head's form is: what no person of a reference explains of it."""
     from . import human
 
-    with told():
-        found = human.measure(reference, head_file)
+    found = human.measure(reference, head_file)
     conclude(human.report(found), human.targets(found))
 
 
 @bench.command("reference")
 @click.argument("checkout", type=FOLDER)
 @click.option("-o", "--output", "folder", type=PATH, required=True, help="A folder.")
-@click.option(
-    "--landmarks", type=PATH, help="The 68 landmarks, where CHECKOUT's README does not name them."
-)
-def bench_reference(checkout: Path, folder: Path, landmarks: Path | None) -> None:
+def bench_reference(checkout: Path, folder: Path) -> None:
     """Make the folder that --reference takes from CHECKOUT, a checkout of ICT-FaceKit."""
     from . import reference
 
-    for line in reference.make(checkout, folder, landmarks):
+    for line in reference.make(checkout, folder):
         click.echo(in_one_line(line))
 
 
@@ -173,11 +156,8 @@ def bench_window(size: tuple[int, int], seconds: float) -> None:
 @click.option(
     "--seconds", type=FiniteRange(1.0, 60.0), default=8.0, show_default=True, help="Of the script."
 )
-@click.option("--head", type=FILE, nargs=2, help="A head of your own, and its 68 landmarks.")
-def bench_capture(size: tuple[int, int], seconds: float, head: tuple[Path, Path] | None) -> None:
+def bench_capture(size: tuple[int, int], seconds: float) -> None:
     """Time a film without a screen."""
-    from risorius.app.scenes import own_head
-
     from . import capture
 
-    click.echo(capture.report(size, seconds, own_head(*head) if head else None))
+    click.echo(capture.report(size, seconds))

@@ -1,6 +1,6 @@
 """How human a head's form is: what no weights of people's modes explain of it, region by region.
 
-The mean person of a reference (identity_space.py) is turned, moved and bent along the modes until
+The mean person of a reference is turned, moved and bent along the modes until
 it lies on the head as well as such a person can. What is left is told as the distance along the
 head's normals (RMS) and the angle between normals (median): distances between landmarks do not see
 form, normals do. Weights that are large tell of a head that only somebody odd could have. People
@@ -18,26 +18,104 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import scipy
 
 from risorius import assets
+from risorius.app.errors import UserError
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.loading import load_head
+from risorius.geometry.closest import closest_points
 from risorius.geometry.normals import vertex_normals
 
-from .identity_space import REGIONS, IdentitySpace, Labels, Points
 from .report import Target, at_most, table
-from .subjects import Faces
+from .subjects import DENSE, MILLIMETRES, MODES, Faces, Points, read_arrays
 
 Rotation = scipy.spatial.transform.Rotation
+Labels = npt.NDArray[np.str_]
 
 MOST = {"all": 0.50, "nose": 0.60, "mouth": 0.60}  # [mm] RMS that may be left of the finer mesh
 MOST_ANGLE, MOST_COARSE = 5.0, 0.80  # [deg] of the finer mesh; [mm] of the coarse one
 ROUNDS, WITH_LANDMARKS = 18, 6  # of nearest points; the first of them are led by landmarks, too
 LANDMARKS = slice(17, 68)  # without the outline of the face, which slides
 LANDMARK_WEIGHT = 0.3  # of 1/mm^2
+REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
+OPPOSITE = 12.0  # [mm] on a line of sight within which skin hides a vertex
 FARTHEST = 12.0  # [mm] that points may be apart
 INDEPENDENT = 600  # points, as many as tell something of their own: neighbours err alike
+
+
+@dataclass(frozen=True)
+class IdentitySpace:
+    """People as mean + weights @ modes, all [mm].
+
+    Of a folder of `bench reference`: `identity_modes.npz` has on the vertices of `face.npz` the
+    components of ICT-FaceKit's identity, `modes` (k, V, 3) [cm], at one standard deviation each.
+    """
+
+    mean: Points
+    """Shape (V, 3)."""
+    triangles: Faces
+    landmarks: Faces
+    """The 68, as vertex numbers."""
+    modes: Points
+    """Shape (k, V, 3); a weight of 1 is one standard deviation."""
+
+    @classmethod
+    def read(cls, folder: Path) -> IdentitySpace:
+        """Read a folder. Raises UserError, naming the file, where something in it is missing."""
+        face = read_arrays(folder / DENSE, ("vertices", "triangles", "landmarks68"))
+        if not (folder / MODES).is_file():
+            raise UserError(f"{folder / MODES}: is not there; it holds the modes of identity")
+        modes = read_arrays(folder / MODES, ("modes",))["modes"]
+        if modes.shape != (len(modes), *face["vertices"].shape):
+            raise UserError(f"{folder / MODES}: 'modes' must move each vertex of {DENSE}")
+        return cls(
+            MILLIMETRES * face["vertices"].astype(np.float64),
+            face["triangles"].astype(np.int32),
+            face["landmarks68"].astype(np.int32),
+            MILLIMETRES * modes.astype(np.float64),
+        )
+
+    def person(self, weights: Points) -> Points:
+        """The vertices of one person [mm], shape (V, 3)."""
+        return np.asarray(self.mean + np.tensordot(weights, self.modes, 1), dtype=np.float64)
+
+    def regions(self) -> Labels:
+        """The name of the region that each vertex is in, "" for what is hidden or no face, (V,)."""
+        x, y, z = self.mean.T
+        marks, aside = self.mean[self.landmarks], np.abs(x)
+        eyes, below_nose, below_mouth = marks[36:48, 1].mean(), marks[33, 1] - 6.0, marks[57, 1] - 4
+        is_high = y > marks[17:27, 1].mean() + 8.0
+        rules = {
+            "forehead": is_high & (y < eyes + 75.0),
+            "": is_high,
+            "nose": (aside < 22.0) & (y > below_nose) & (y < marks[27, 1]),
+            "eyes": (np.abs(y - eyes) < 18.0) & (aside < abs(marks[36, 0]) + 10.0),
+            "mouth": (aside < 32.0) & (y > below_mouth) & (y <= below_nose),
+            "chin": (aside < 30.0) & (y <= below_mouth),
+            "jaw": y <= marks[60:68, 1].mean() + 5.0,
+        }
+        found = np.select(list(rules.values()), list(rules), "cheek")
+        is_face = (z > marks[36, 2] - 45.0) & (y >= marks[8, 1] - 8.0)
+        found[~is_face] = ""
+        found[self._hidden()] = ""
+        return found
+
+    def _hidden(self) -> npt.NDArray[np.bool_]:
+        """Which vertices look at skin: straight ahead, or in three of seven directions, (V,)."""
+        facing = vertex_normals(self.mean, self.triangles)
+        aside = np.cross(facing, np.roll(facing, 1, axis=1))
+        aside /= np.linalg.norm(aside, axis=1, keepdims=True)
+        angles = np.radians(np.arange(0.0, 360.0, 60.0))[:, None, None]
+        slanted = facing + np.cos(angles) * aside + np.sin(angles) * np.cross(facing, aside)
+        ways = np.concatenate([facing[None], np.sqrt(0.5) * slanted])
+        points = self.mean + np.arange(1.0, OPPOSITE)[:, None, None, None] * ways
+        at = closest_points(points.reshape(-1, 3), self.mean, self.triangles)
+        away = points.reshape(-1, 3) - at.interpolate(self.mean)
+        is_within = (away * at.interpolate(facing)).sum(axis=1) < 0.0
+        is_met = is_within.reshape(points.shape[:3]).any(axis=0)
+        return np.asarray(is_met[0] | (is_met.sum(axis=0) > 2))
 
 
 @dataclass(frozen=True)
@@ -65,7 +143,7 @@ class Rest:
 def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
     """Measure both the coarse and the finest mesh of a head, of the built-in one unless told.
 
-    Raises ValueError for a broken folder, AssetError for a broken head.
+    Raises UserError for a broken folder, AssetError for a broken head.
     """
     space = IdentitySpace.read(folder)
     head = assets.load("head") if head_file is None else load_head(head_file)

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from risorius import sim
+from risorius.app.errors import UserError
 from risorius.app.recordings.names import shape_of
 
 from .report import Target, at_least, table
@@ -41,7 +42,7 @@ def measure(directory: Path) -> tuple[list[Row], list[str]]:
     """Score every shape of the reference in `directory` that the head's ARKit table knows.
 
     Also the names of fields without a score: unknown ones, and those in which no skin moves.
-    Raises ValueError, naming the file, if it is broken or no shape is left.
+    Raises UserError, naming the file, if it is broken or no shape is left.
     """
     scans = Scans.read(directory)
     simulation = sim.create(scans.head)
@@ -54,7 +55,7 @@ def measure(directory: Path) -> tuple[list[Row], list[str]]:
         moved = _moved(simulation, shapes)
         rows.append(_row(name, moved, scans.field(name), simulation.areas[:, None]))
     if not rows:
-        raise ValueError(f"{directory}: face.npz holds none of ARKit's shapes")
+        raise UserError(f"{directory}: face.npz holds none of ARKit's shapes")
     return rows, left_out
 
 

@@ -41,8 +41,7 @@ Mesh = Any
 BUDGET = 2.0
 SIZE, FINER = 480, 2  # width and height of a picture [pixels]
 VIEWS = ("front", "three-quarter", "profile")
-BLACK = render.Background((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-ON_BLACK = replace(CLAY, bumps=0.0, background=BLACK)
+ON_BLACK = replace(CLAY, bumps=0.0, background=render.BLACK)
 LEVEL_BEHIND = 215.0  # grey level where there is no mesh, about that of the window's
 SEARCH_STEPS, SCALES = 18, (1e-5, 1e3)  # of thresholds: too many, too few triangles
 LEAST_GAIN = 20.0  # [%] of the error of static

@@ -24,11 +24,9 @@ import numpy.typing as npt
 from risorius import assets
 from risorius.app.errors import UserError
 from risorius.app.files import check_file, written_atomically
-from risorius.assets.fitting.landmark_file import read_landmarks
 from risorius.assets.wavefront import read_obj
 
-from .identity_space import MODES
-from .subjects import DENSE
+from .subjects import DENSE, MODES
 
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
@@ -52,11 +50,10 @@ LANDMARKS = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
 """The 68 vertex numbers, as the checkout's README has them."""
 
 
-def make(checkout: Path, folder: Path, landmarks: Path | None = None) -> list[str]:
+def make(checkout: Path, folder: Path) -> list[str]:
     """Write the files into `folder`; returns a line for each of them, and for what is missing.
 
-    landmarks: a file with the 68 landmarks, where the checkout has no README that names them.
-    Raises UserError or AssetError for a checkout that is none, and OSError.
+    Raises UserError for a checkout that is none, and OSError.
     """
     for name in (DENSE, MODES, LICENCE):
         check_file(folder / name)
@@ -65,7 +62,10 @@ def make(checkout: Path, folder: Path, landmarks: Path | None = None) -> list[st
     triangles = corners[(corners < len(neutral)).all(axis=1)].astype(np.int32)
 
     def moved(name: str) -> npt.NDArray[np.float32]:
-        return (_positions(checkout, name, len(head)) - head)[: len(neutral)].astype(np.float32)
+        positions, _ = _read(checkout, name)
+        if len(positions) != len(head):
+            raise UserError(f"{checkout}: {name} has other vertices than the neutral head")
+        return (positions - head)[: len(neutral)].astype(np.float32)
 
     fields = {name: moved(name) for name in SHAPES if _file(checkout, name) is not None}
     if not fields:
@@ -74,7 +74,7 @@ def make(checkout: Path, folder: Path, landmarks: Path | None = None) -> list[st
         DENSE: {
             "vertices": neutral.astype(np.float32),
             "triangles": triangles,
-            "landmarks68": _landmarks(checkout, landmarks, assets.Mesh(neutral, triangles)),
+            "landmarks68": _landmarks(checkout / "README.md"),
             **fields,
         }
     }
@@ -115,27 +115,9 @@ def _read(checkout: Path, name: str) -> tuple[Points, Faces]:
         raise UserError(f"{file}: {error}") from None
 
 
-def _positions(checkout: Path, name: str, count: int) -> Points:
-    """Vertices of an OBJ file, `count` of them."""
-    positions, _ = _read(checkout, name)
-    if len(positions) != count:
-        raise UserError(
-            f"{_file(checkout, name)}: has {len(positions)} vertices, the neutral head {count}"
-        )
-    return positions
-
-
-def _landmarks(checkout: Path, file: Path | None, mesh: assets.Mesh) -> npt.NDArray[np.int32]:
-    """The 68 landmarks as vertex numbers, from a file or the README of the checkout."""
-    if file is not None:
-        return read_landmarks(file, mesh)[0]
-    readme = checkout / "README.md"
+def _landmarks(readme: Path) -> npt.NDArray[np.int32]:
+    """The 68 landmarks as vertex numbers, as the checkout's README has them."""
     found = LANDMARKS.search(readme.read_text("utf-8", "replace")) if readme.is_file() else None
     if found is None:
-        raise UserError(
-            f"{readme}: names no 68 landmarks; give a file with them, --landmarks LANDMARKS.json"
-        )
-    numbers = np.array(found[0].split(","), dtype=np.int32)
-    if numbers.max() >= len(mesh.vertices):
-        raise UserError(f"{readme}: landmark {numbers.max()} is no vertex of the face")
-    return numbers
+        raise UserError(f"{readme}: names no 68 landmarks; that of ICT-FaceKit does")
+    return np.array(found[0].split(","), dtype=np.int32)

@@ -3,10 +3,9 @@
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
 refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
 table, output and the call from Python. Meshes: the built-in face in six full expressions with the
-default thresholds, and large ones with thresholds that split 10, 50 or 100 % of the edges: grids
-with three holes under waves that travel, of jittered squares cut along a random diagonal, so that
-valences run from 4 to 8. Flat at rest, so that every edge bends. Their lengths are in cells: a wave
-is as many triangles long in a small mesh as in a large one, and edges bend alike.
+default thresholds, and large ones with thresholds that split 10, 50 or 100 % of the edges: grids of
+jittered squares under waves that travel. Flat at rest, so that every edge bends. Their lengths are
+in cells: a wave is as many triangles long in a small mesh as in a large one, and edges bend alike.
 
 The methods of a mesh are run interleaved, forwards and backwards in turn, with garbage collection
 off, and medians are reported: on a shared machine times drift by a third within a run, and so only
@@ -31,6 +30,7 @@ import numpy.typing as npt
 
 from risorius import assets, refine, sim
 from risorius.app.errors import UserError
+from risorius.assets.sheets import make_grid
 from risorius.refine_gl import KahlerGl
 from risorius.refine_gl.context import own_context
 from risorius.refine_gl.refined import GpuBuffers
@@ -48,7 +48,6 @@ SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
 TRIANGLE_COUNTS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
 SIZES = ("face", "20k", "200k", "1M")
 """What is measured unless told; 2k is for a quick look."""
-LARGE = 500_000  # triangles from which on two frames must do
 FEWEST_ROUNDS, MOST_ROUNDS = 5, 200
 METHODS: Mapping[str, Mapping[str, Any]] = {
     "kahler": {},
@@ -64,8 +63,6 @@ WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement
 SEED = 2003
 WAVES = ((13.0, 0.4), (29.0, 1.1), (9.0, 2.5))  # length [cells], direction [radians]
 HEIGHT = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
-HOLE = 0.06  # radius of the holes over the length of the mesh
-HOLES = ((0.3, 0.7), (0.7, 0.7), (0.5, 0.25))  # their centres: two eyes and a mouth
 
 
 @dataclass(frozen=True)
@@ -124,8 +121,7 @@ def measure(
 def load_of(size: str) -> Load:
     """The mesh of a size and the frames that it goes through."""
     if size != "face":
-        count = TRIANGLE_COUNTS[size]
-        return waving_mesh(size, count, frame_count=4 if count < LARGE else 2)
+        return waving_mesh(size, TRIANGLE_COUNTS[size])
     head = assets.load("head")
     simulation = sim.create(head)
     frames = [
@@ -134,40 +130,17 @@ def load_of(size: str) -> Load:
     return Load("face", head.faces, head.vertices, frames)
 
 
-def waving_mesh(name: str, triangle_count: int, *, frame_count: int = 4) -> Load:
-    """Make a grid of about `triangle_count` triangles, in scan order.
+def waving_mesh(name: str, triangle_count: int) -> Load:
+    """Make a sheet of about `triangle_count` triangles, in scan order.
 
     So neighbours in the mesh are neighbours in memory.
     """
-    generator = np.random.default_rng(SEED)
-    side = max(4, round((0.5 * triangle_count / (1.0 - len(HOLES) * np.pi * HOLE**2)) ** 0.5))
-    rest = _jittered(side, generator)
-    faces = _cut_cells(side, generator)
-    centres = rest[faces].mean(axis=1)[:, :2] / side
-    is_solid = np.ones(len(faces), dtype=bool)
-    for hole in HOLES:
-        is_solid &= np.linalg.norm(centres - hole, axis=1) > HOLE
-    faces = faces[is_solid]
-    used, faces = np.unique(faces, return_inverse=True)
-    rest, faces = rest[used], faces.reshape(-1, 3)
-    frames = [_waved(rest, phase) for phase in np.arange(frame_count) / frame_count]
-    return Load(name, faces.astype(np.int32), rest, frames)
-
-
-def _jittered(side: int, generator: np.random.Generator) -> Points:
-    x, y = np.meshgrid(np.arange(side + 1.0), np.arange(side + 1.0))
-    points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
-    points[:, :2] += generator.uniform(-0.3, 0.3, (len(points), 2))
-    return points
-
-
-def _cut_cells(side: int, generator: np.random.Generator) -> npt.NDArray[np.int64]:
-    a = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
-    b, c, d = a + 1, a + side + 2, a + side + 1
-    rising = np.stack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)], axis=1)
-    falling = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
-    is_rising = generator.random(len(a)) < 0.5
-    return np.where(is_rising[:, None, None], rising, falling).reshape(-1, 3)
+    side = round((0.5 * triangle_count) ** 0.5)
+    flat, faces = make_grid(side, side, 1.0)
+    aside = np.random.default_rng(SEED).uniform(-0.3, 0.3, (len(flat), 2))
+    rest = flat + np.pad(aside, ((0, 0), (0, 1)))
+    frames = [_waved(rest, phase) for phase in (0.0, 0.5)]
+    return Load(name, faces, rest, frames)
 
 
 def _waved(rest: Points, phase: float) -> Points:

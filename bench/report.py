@@ -12,13 +12,10 @@ from typing import NamedTuple
 import click
 
 
-def table(
-    columns: str, rows: Iterable[Sequence[object]], *, indent: str = "", empty: str = ""
-) -> list[str]:
-    """Lines of a table, the titles in the first one.
+def table(columns: str, rows: Iterable[Sequence[object]], *, indent: str = "") -> list[str]:
+    """Lines of a table, the titles in the first one; nothing stands for None.
 
     columns: "title:format" with the width in front, as in "name:<9|ms:8.3f"; "<" sets text left.
-    empty: what stands for None.
     """
     titles, formats = zip(*(column.rsplit(":", 1) for column in columns.split("|")), strict=True)
     sides = [re.findall(r"^[<>]?\d+", each)[0] for each in formats]
@@ -26,7 +23,7 @@ def table(
     lines = [" ".join(f"{title:{side}}" for title, side in zip(titles, sides, strict=True))]
     for row in rows:
         cells = [
-            f"{empty:{side}}" if value is None else f"{value:{style}}"
+            f"{'':{side}}" if value is None else f"{value:{style}}"
             for value, style, side in zip(row, formats, sides, strict=True)
         ]
         lines.append(" ".join(cells))

@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import assets, sim
+from risorius.app.errors import UserError
 from risorius.assets.fitting import FittedHead, fit
 from risorius.assets.meshes import Mesh
 from risorius.assets.model import FineMesh
@@ -30,6 +31,7 @@ Faces = npt.NDArray[np.int32]
 
 MILLIMETRES = 10.0  # per unit of a folder of scans (cm)
 DENSE = "face.npz"
+MODES = "identity_modes.npz"
 SIDES = {"_L": "Left", "_R": "Right"}
 NOT_MOTION = ("vertices", "triangles", "landmarks68")
 SETTLE = 90  # frames of 1/60 s until a pose is still
@@ -49,26 +51,16 @@ class Scans:
 
     @classmethod
     def read(cls, directory: Path) -> Scans:
-        """Read a folder. Raises ValueError, naming the file, if it is broken."""
+        """Read a folder. Raises UserError, naming the file, if it is broken."""
         arrays = read_arrays(directory / DENSE, NOT_MOTION)
         vertices, triangles, landmarks = (arrays.pop(name) for name in NOT_MOTION)
-        if not (
-            vertices.ndim == triangles.ndim == 2
-            and vertices.shape[1] == triangles.shape[1] == 3
-            and landmarks.shape == (68,)
-            and np.isfinite(vertices).all()
-            and all(((a >= 0) & (a < len(vertices))).all() for a in (triangles, landmarks))
-        ):
-            raise ValueError(
-                f"{directory}: in {DENSE}, vertices must be finite, (V, 3), triangles (F, 3) and "
-                "landmarks68 (68,) numbers of them"
-            )
+        is_mesh = vertices.shape[1:] == triangles.shape[1:] == (3,) and landmarks.shape == (68,)
+        if not is_mesh or max(triangles.max(), landmarks.max()) >= len(vertices):
+            raise UserError(f"{directory / DENSE}: holds no mesh with 68 of its vertices")
         fields: dict[str, Points] = {}
         for name, array in arrays.items():
-            if array.shape != vertices.shape or not np.isfinite(array).all():
-                raise ValueError(
-                    f"{directory}: {name} in {DENSE} must be finite displacements of all vertices"
-                )
+            if array.shape != vertices.shape:
+                raise UserError(f"{directory / DENSE}: {name} must move all vertices")
             stem, end = name[:-2], name[-2:]
             if end in SIDES:
                 is_whole = all(f"{stem}{each}" in arrays for each in SIDES)
@@ -161,18 +153,15 @@ def settled_positions(
 
 
 def read_arrays(path: Path, needed: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:
-    """All arrays of a file; ValueError where it is broken or one of `needed` is missing."""
+    """All arrays of a file; UserError where it is broken or one of `needed` is missing."""
     if not path.is_file():
-        raise ValueError(f"{path}: is not there; `risorius bench reference` makes such a folder")
+        raise UserError(f"{path}: is not there; `risorius bench reference` makes such a folder")
     try:
         with np.load(path) as file:
             arrays = {name: file[name] for name in file.files}
     except (ValueError, AttributeError, EOFError, zipfile.BadZipFile):
-        raise ValueError(f"{path}: is broken, or no file of arrays (numpy's .npz)") from None
+        raise UserError(f"{path}: is broken, or no file of arrays (numpy's .npz)") from None
     missing = [name for name in needed if name not in arrays]
     if missing:
-        raise ValueError(f"{path}: has no array {missing[0]!r}; it has {sorted(arrays)}")
-    strange = [name for name, array in arrays.items() if array.dtype.kind not in "iuf"]
-    if strange:
-        raise ValueError(f"{path}: array {strange[0]!r} holds no numbers")
+        raise UserError(f"{path}: has no array {missing[0]!r}; it has {sorted(arrays)}")
     return arrays

@@ -7,38 +7,16 @@ once, so it imports nothing that is slow.
 
 from __future__ import annotations
 
-import enum
 import importlib
 import math
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from risorius.app.files import Image
-
-
-class Verdict(enum.StrEnum):
-    """What becomes of a claim."""
-
-    MET = "met"
-    MISSED = "MISSED"
-    DIFFERS = "differs"
-    """It is not as the paper says, for a reason that the statement tells."""
-    NOISE = "noise"
-    """The measurement says what cannot be: the machine was busy with something else."""
-
-
-class Measured(NamedTuple):
-    """A number, and how far it can be trusted."""
-
-    value: float
-    quartiles: tuple[float, float] | None = None
-    """Half of what was seen lies between these; None for what is counted."""
-    least: float = -math.inf
-    """Nothing below this is possible."""
 
 
 @dataclass(frozen=True)
@@ -53,38 +31,31 @@ class Claim:
     style: str = "g"
     differs: bool = False
 
-    def judge(self, measured: Measured) -> Verdict:
+    def verdict(self, number: float) -> str:
         """Whether it is so; what is no number misses, too."""
-        if measured.value < measured.least:
-            return Verdict.NOISE
-        if not self.low <= measured.value <= self.high:
-            return Verdict.MISSED
-        return Verdict.DIFFERS if self.differs else Verdict.MET
+        if not self.low <= number <= self.high:
+            return "MISSED"
+        return "differs" if self.differs else "met"
 
-    def allowed(self, measured: Measured) -> str:
-        """What is allowed, and below what it cannot be."""
-        low, high, least = (f"{x:{self.style}}" for x in (self.low, self.high, measured.least))
+    @property
+    def allowed(self) -> str:
+        """The numbers that agree with it."""
+        low, high = self.ours(self.low), self.ours(self.high)
         if low == high:
             return f"exactly {low}"
         bounds = [f"at least {low}"] if self.low > -math.inf else []
-        bounds += [f"at most {high}"] if self.high < math.inf else []
-        return ", ".join(bounds) + (
-            f"; possible from {least}" if measured.least > -math.inf else ""
-        )
+        return ", ".join(bounds + ([f"at most {high}"] if self.high < math.inf else []))
 
-    def ours(self, measured: Measured) -> str:
-        """Our number, with its quartiles."""
-        value, *quartiles = (
-            f"{x:{self.style}}" for x in (measured.value, *(measured.quartiles or ()))
-        )
-        return f"{value} ({' to '.join(quartiles)})" if quartiles else value
+    def ours(self, number: float) -> str:
+        """A number as it is written."""
+        return f"{number:{self.style}}"
 
 
 @dataclass(frozen=True)
 class Outcome:
     """What an experiment made."""
 
-    values: Mapping[str, Measured | float]
+    values: Mapping[str, float]
     """What was measured, by name."""
     picture: Image | None = None
     text: str = ""
@@ -99,26 +70,18 @@ class Experiment:
     """Of the command, and of its picture."""
     title: str
     place: str
-    about: str
     function: str
     claims: list[Claim] = field(default_factory=list)
     picture: bool = False
     rounds: int | None = None
 
-    @property
-    def callable(self) -> Callable[..., Outcome]:
-        """The function, imported now."""
-        module, _, name = self.function.partition(".")
-        function: Callable[..., Outcome]
-        function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
-        return function
-
     def run(self, *, rounds: int | None = None) -> Result:
         """Do it. KeyError for a claim that was not measured."""
         timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
-        outcome = self.callable(**timing)
-        found = [(claim, outcome.values[claim.value]) for claim in self.claims]
-        findings = [(c, x if isinstance(x, Measured) else Measured(float(x))) for c, x in found]
+        module, _, name = self.function.partition(".")
+        function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
+        outcome: Outcome = function(**timing)
+        findings = [(claim, float(outcome.values[claim.value])) for claim in self.claims]
         return Result(self, outcome, findings)
 
 
@@ -127,13 +90,12 @@ class Result(NamedTuple):
 
     experiment: Experiment
     outcome: Outcome
-    findings: list[tuple[Claim, Measured]]
+    findings: list[tuple[Claim, float]]
 
     @property
-    def missed(self) -> list[tuple[Claim, Measured]]:
+    def missed(self) -> list[tuple[Claim, float]]:
         """Those that are not met."""
-        expected = Verdict.MET, Verdict.DIFFERS
-        return [(claim, x) for claim, x in self.findings if claim.judge(x) not in expected]
+        return [(claim, x) for claim, x in self.findings if claim.verdict(x) == "MISSED"]
 
 
 def _claim(entry: dict[str, Any]) -> Claim:
@@ -150,5 +112,3 @@ EXPERIMENTS = tuple(
     for claims in [entry.pop("claim")]
 )
 """All experiments."""
-INFERRED: list[dict[str, str]] = _TABLE["inferred"]
-"""What the paper does not give: place, what, value and source of each."""

@@ -24,7 +24,7 @@ from risorius.app.capture.drawing import camera_for
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene
 
-from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table, without_noise
+from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
 from .experiments import Outcome
 
@@ -112,10 +112,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
         left.append(refined.rms(truth) / static.rms(truth))
         outline.append(refined.wrong(truth).sum() / static.wrong(truth).sum())
         smooth = [
-            (
-                f"{cell.title}, {cell.triangles}, {cell.rms(truth):.1f}",
-                without_noise(cell.smooth),
-            )
+            (f"{cell.title}, {cell.triangles}, {cell.rms(truth):.1f}", cell.smooth)
             for cell in cells
         ]
         openings = [

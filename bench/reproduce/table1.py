@@ -6,20 +6,18 @@ triangle grows. What the paper timed as "the rendering code" is here refining (o
 uploading and drawing, until OpenGL has finished.
 
 Where OpenGL is software, most of that is pixels, which do not care how many triangles they belong
-to. So the same is given for a picture of a few pixels, without drawing, and without uploading: the
-less there is beside refinement, the more c_rt says about it. On a mesh as small as the plane even
-the last is mostly the fixed cost of a call from Python.
+to. So the same is given for a picture of a few pixels, and for refinement alone, which on a mesh as
+small as the plane is mostly the fixed cost of a call from Python.
 
-Static and refined are timed in pairs. A refined mesh has more triangles, so a time
-below that of the static one cannot be: then c_rt < static / refined triangles, and that is noise.
+Static and refined are timed in pairs. A refined mesh has more triangles, so a time below that of
+the static one, c_rt < static / refined triangles, is noise.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -33,7 +31,7 @@ from risorius.app.scenes import FaceScene, PlaneScene, Scene
 from ..canvas import GOURAUD, Canvas, Drawing
 from ..refine import interleaved
 from ..report import driver, table
-from .experiments import Measured, Outcome
+from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
 
@@ -42,8 +40,8 @@ SIZE = (1280, 720)  # [pixels] of what is drawn
 SMALL = (64, 36)  # where pixels cost next to nothing
 QUICK = 10  # rounds of a way that draws nothing, for one of the others
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL))
-UPLOADED, ALONE = "without drawing", "refinement alone"
-WAYS = (DRAWN, DRAWN_SMALL, UPLOADED, ALONE)
+ALONE = "refinement alone"
+WAYS = (DRAWN, DRAWN_SMALL, ALONE)
 """What is timed, from most to least."""
 
 
@@ -56,47 +54,37 @@ class Row:
     dynamic: int
     static_time: float
     dynamic_time: float
-    ratio: Measured
+    ratio: float
     """The paper's c_rt: time per triangle, refined over static."""
+    quartiles: Sequence[float | None] = (None, None)
+    """Half of the rounds lie between these."""
 
     @classmethod
     def of(cls, title: str, static: int, dynamic: int, seconds: npt.NDArray[np.float64]) -> Row:
         """A row of ours. seconds: of static and refined in each round, shape (rounds, 2)."""
-        fewer = static / dynamic
-        ratios = fewer * seconds[:, 1] / seconds[:, 0]
-        low, middle, high = np.percentile(ratios, (25, 50, 75)).tolist()
-        ratio = Measured(middle, (low, high), least=fewer)
-        static_time, dynamic_time = (1e3 * np.median(seconds, axis=0)).tolist()
-        return cls(title, static, dynamic, static_time, dynamic_time, ratio)
+        ratios = static / dynamic * seconds[:, 1] / seconds[:, 0]
+        low, ratio, high = np.percentile(ratios, (25, 50, 75)).tolist()
+        still, refined = (1e3 * np.median(seconds, axis=0)).tolist()
+        return cls(title, static, dynamic, still, refined, ratio, (low, high))
 
 
 PAPER = {
-    "face": Row("face, the paper", 2030, 3120, 1.3, 3.5, Measured(1.75)),
-    "plane": Row("plane, the paper", 154, 1328, 0.09, 2.0, Measured(2.58)),
+    "face": Row("face, the paper", 2030, 3120, 1.3, 3.5, 1.75),
+    "plane": Row("plane, the paper", 154, 1328, 0.09, 2.0, 2.58),
 }
-
-
-def papers_refiner(scene: Scene, **options: Any) -> refine.Refiner:
-    """The paper's refiner, bound to the scene's mesh, with thresholds that suit it."""
-    told = PRESETS[PAPERS_PRESET][scene.name].told("kahler")
-    return refine.create("kahler", scene.faces, scene.rest_positions, **told, **options)
 
 
 def _measured(scene: Scene, rounds: int) -> list[Row]:
     """Time the scene's fullest frame in every way."""
     static = refine.create("none", scene.faces, scene.rest_positions)
-    dynamic = papers_refiner(scene)
+    told = PRESETS[PAPERS_PRESET][scene.name].told("kahler")
+    dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **told)
     positions, count = _fullest_frame(scene, dynamic)
     drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD)
 
     def draw(canvas: Canvas, refiner: refine.Refiner) -> None:
         canvas.draw(refiner, positions, drawing)
         canvas.surface.gl.finish()
-
-    def upload(canvas: Canvas, refiner: refine.Refiner) -> None:
-        stream = canvas.stream_for(refiner)
-        mesh = refiner.refine(positions, out=stream)
-        stream.upload(len(mesh.positions), len(mesh.triangles))
 
     def timed(work: Callable[[refine.Refiner], object], rounds: int) -> npt.NDArray[np.float64]:
         return interleaved([partial(work, static), partial(work, dynamic)], rounds)
@@ -105,29 +93,20 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
     for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL)):
         with Canvas(size) as canvas:
             seconds[way] = timed(partial(draw, canvas), rounds)
-            if size == SIZE:
-                seconds[UPLOADED] = timed(partial(upload, canvas), QUICK * rounds)
     seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), QUICK * rounds)
     return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
 
 
-def played(scene: Scene, frames_per_second: float) -> Iterator[Points]:
-    """Positions of the scene in each frame of its own script; the next overwrites them."""
-    script = script_for(None, scene.name)
-    scene.reset()
-    for number in range(round(script.duration * frames_per_second) + 1):
-        scene.pose(script.at(number / frames_per_second))
-        scene.step(1.0 / frames_per_second)
-        yield scene.positions
-
-
 def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
     """The frame of the scene's own script with the most triangles, and how many these are."""
-    best, fullest = -1, scene.positions
-    for positions in played(scene, FRAMES_PER_SECOND):
-        count = len(refiner.refine(positions).triangles)
+    best, fullest, script = -1, scene.positions, script_for(None, scene.name)
+    scene.reset()
+    for number in range(round(script.duration * FRAMES_PER_SECOND) + 1):
+        scene.pose(script.at(number / FRAMES_PER_SECOND))
+        scene.step(1.0 / FRAMES_PER_SECOND)
+        count = len(refiner.refine(scene.positions).triangles)
         if count > best:
-            best, fullest = count, positions.copy()
+            best, fullest = count, scene.positions.copy()
     return fullest, best
 
 
@@ -137,7 +116,7 @@ def outcome(*, rounds: int) -> Outcome:
         renderer = driver(canvas.surface.gl.info)
     scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
     measured = {scene.name: _measured(scene, rounds) for scene in scenes}
-    values: dict[str, Measured | float] = {}
+    values: dict[str, float] = {}
     for name, ours in measured.items():
         values[f"{name}, static triangles"] = ours[0].static
         values[f"{name}, most triangles"] = ours[0].dynamic
@@ -145,7 +124,7 @@ def outcome(*, rounds: int) -> Outcome:
     rows = [
         (
             *(row.title, row.static, row.dynamic, row.static_time, row.dynamic_time),
-            *(row.ratio.value, *(row.ratio.quartiles or (None, None))),
+            *(row.ratio, *row.quartiles),
         )
         for name, ours in measured.items()
         for row in (PAPER[name], *ours)

@@ -21,7 +21,6 @@ from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display
 from risorius.assets.fitting.guess import FIRST
-from risorius.bench.canvas import without_noise
 
 SIZE = (1160, 700)
 MOST_FRAMES = 400
@@ -109,7 +108,7 @@ def draw_image(stop: Callable[[Viewer], None]) -> Image:
         stop(viewer)
         if not viewer.messages.text:
             wait_until_settled(viewer)
-        return without_noise(viewer.surface.read())
+        return viewer.surface.read() // 2 * 2  # without noise, see figures.py
 
 
 if __name__ == "__main__":

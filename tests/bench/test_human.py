@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 from risorius import assets
-from risorius.bench.human import MOST, Rest, Surface, report, targets, unexplained
-from risorius.bench.identity_space import IdentitySpace, Points, hidden
+from risorius.app.errors import UserError
+from risorius.bench.human import (
+    MOST,
+    IdentitySpace,
+    Rest,
+    Surface,
+    report,
+    targets,
+    unexplained,
+)
+from risorius.bench.subjects import Points
 from risorius.geometry.normals import vertex_normals
 
 WEIGHTS = np.array([1.5, -0.8])
@@ -70,20 +79,11 @@ def test_what_is_left_is_held_to_targets() -> None:
     assert len(targets({"coarse": good, "finer": good})) == len(MOST) + 2
 
 
-def test_what_looks_at_skin_is_hidden() -> None:
-    """Two sheets that face each other hide one another, and nothing beyond their edge."""
-    grid = np.stack(np.meshgrid(np.arange(6.0), np.arange(6.0)), axis=-1).reshape(-1, 2)
-    lower = np.column_stack([4.0 * grid, np.zeros(36)])
-    upper = np.column_stack([4.0 * grid + [10.0, 0.0], np.full(36, 5.0)])
-    first = (np.arange(5)[:, None] * 6 + np.arange(5)).ravel()
-    faces = np.vstack([[first, first + 1, first + 7], [first, first + 7, first + 6]])
-    up = faces.reshape(2, 3, 25).transpose(0, 2, 1).reshape(-1, 3)
-    sheets = np.vstack([up, 36 + up[:, ::-1]]).astype(np.int32)
-    found = hidden(np.vstack([lower, upper]), sheets, np.arange(72, dtype=np.int32))
-    below, above = found[:36], found[36:]
-    assert not below[lower[:, 0] < 4.0].any()
-    assert below[(lower[:, 0] > 10.0) & (lower[:, 1] > 0.0) & (lower[:, 1] < 20.0)].all()
-    assert not above[upper[:, 0] > 26.0].any()
+def test_what_looks_at_skin_is_no_region(space: IdentitySpace) -> None:
+    """The insides of lips are left out, the skin of cheeks and forehead is not."""
+    regions, marks = space.regions(), space.landmarks
+    assert (regions[marks[[62, 66]]] == "").all()
+    assert (regions[marks[[31, 8, 19, 24]]] != "").all()
 
 
 def test_a_folder_without_modes_is_told(tmp_path: Path) -> None:
@@ -95,8 +95,8 @@ def test_a_folder_without_modes_is_told(tmp_path: Path) -> None:
         triangles=head.faces,
         landmarks68=head.landmarks,
     )
-    with pytest.raises(ValueError, match=r"identity_modes\.npz: is not there"):
+    with pytest.raises(UserError, match=r"identity_modes\.npz: is not there"):
         IdentitySpace.read(tmp_path)
     np.savez(tmp_path / "identity_modes.npz", modes=np.zeros((2, 5, 3)))
-    with pytest.raises(ValueError, match=r"'modes' must move each vertex of face\.npz"):
+    with pytest.raises(UserError, match=r"'modes' must move each vertex of face\.npz"):
         IdentitySpace.read(tmp_path)

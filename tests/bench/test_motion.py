@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from risorius import assets, sim
+from risorius.app.errors import UserError
 from risorius.bench.motion import Row, measure
 from tests.heads import METRES, SHIFT, TURN, Stranger, shape, stranger
 from tests.sim.poses import settled_displacement
@@ -88,16 +89,9 @@ def arrays() -> dict[str, Any]:
     ("name", "value", "message"),
     [
         ("vertices", None, "has no array 'vertices'"),
-        ("vertices", np.array(["a"]), "array 'vertices' holds no numbers"),
-        ("vertices", np.full((9, 3), np.nan), "vertices must be finite"),
-        ("triangles", np.full((9, 3), 10**6), "numbers of them"),
-        ("landmarks68", np.arange(3), "landmarks68"),
-        pytest.param(
-            "jawOpen",
-            np.zeros((3, 3)),
-            "jawOpen in face.npz must be finite displacements",
-            marks=pytest.mark.slow,
-        ),
+        ("triangles", np.full((9, 3), 10**6), "holds no mesh with 68 of its vertices"),
+        ("landmarks68", np.arange(3), "holds no mesh with 68 of its vertices"),
+        ("jawOpen", np.zeros((3, 3)), "jawOpen must move all vertices"),
         pytest.param("jawOpen", None, "holds none of ARKit's shapes"),
     ],
 )
@@ -109,7 +103,7 @@ def test_broken_references_are_named(
     np.savez(
         tmp_path / "face.npz", **{key: kept for key, kept in changed.items() if kept is not None}
     )
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(UserError, match=message):
         measure(tmp_path)
 
 
@@ -117,5 +111,5 @@ def test_broken_references_are_named(
 def test_files_that_hold_no_arrays_are_named(tmp_path: Path, content: bytes) -> None:
     """Neither text nor half an archive is a traceback."""
     (tmp_path / "face.npz").write_bytes(content)
-    with pytest.raises(ValueError, match=r"face.npz: is broken, or no file of arrays"):
+    with pytest.raises(UserError, match=r"face.npz: is broken, or no file of arrays"):
         measure(tmp_path)

@@ -99,7 +99,7 @@ def test_bench_quality_runs_on_it(checkout: Path) -> None:
         (lambda folder: (folder / "README.md").unlink(), "names no 68 landmarks"),
         (
             lambda folder: (folder / "FaceXModel/jawOpen.obj").write_text("v 0 0 0\nf 1 1 1\n"),
-            "1 vert",
+            "jawOpen has other vertices than the neutral head",
         ),
         (lambda folder: (folder / "FaceXModel/jawOpen.obj").write_text("v 0 x 0\n"), "line 1"),
         (

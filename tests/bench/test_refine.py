@@ -2,11 +2,9 @@
 
 import gc
 
-import numpy as np
 import pytest
 
 from risorius.bench import refine
-from risorius.refine import connect
 
 
 @pytest.mark.slow
@@ -31,16 +29,6 @@ def test_rows_of_the_card() -> None:
     ]
     assert all(0.0 < row.best_milliseconds <= row.milliseconds for row in rows)
     assert "\nkahler-gl: on " in refine.report(rows)
-
-
-def test_waving_meshes() -> None:
-    """A grid is one piece with four borders, no triangle twice."""
-    load = refine.waving_mesh("grid", 3_000)
-    mesh = connect(load.faces, len(load.rest))
-    assert len(load.rest) - len(mesh.edges) + len(load.faces) == 1 - 3
-    assert np.array_equal(np.unique(load.faces), np.arange(len(load.rest)))
-    corners = load.rest[load.faces]
-    assert (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0).all()
 
 
 def test_calls_are_timed_in_turn() -> None:
