@@ -153,13 +153,16 @@ def draw_sides(
     view: CameraView,
     style: Style,
     occluder: Occluder | None,
+    *,
+    blends: bool = False,
 ) -> None:
     """Draw shares of a mesh with software: what turns to the eye goes first.
 
     What turns away is mostly hidden: drawn last, it is not shaded at all, if nothing is
     multisampled. Else it is left out where that is certain, which needs an occluder.
     """
-    gl.enable(moderngl.CULL_FACE)
+    flags = moderngl.CULL_FACE | (moderngl.BLEND if blends else moderngl.NOTHING)
+    gl.enable(flags)
     gl.cull_face = "back"
     for program, share in shares:
         stream.draw(program, share)
@@ -170,7 +173,7 @@ def draw_sides(
         positions = stream.frame.vertices[:, :3]
         stream.choose(occluder.may_be_seen(positions, stream.frame.triangles, away=True))
         occluder.target.use_layer(view.viewport, covered)
-        gl.enable(moderngl.CULL_FACE)
+        gl.enable(flags)
         # What turns away shows no bumps, so the last program does for it.
         shares = [(shares[-1][0], Share.CHOSEN)]
     gl.cull_face = "front"

@@ -138,13 +138,16 @@ class Renderer:
         if style.opacity < 1.0:
             for program, _ in drawn:
                 set_translucency(program, style, view, cut)
-        if style.opacity < 1.0 or fade is not None:
             draw_nearest(self._gl, stream, drawn)
-        elif self.surface.is_software:
-            draw_sides(self._gl, stream, drawn, view, style, self._target_occluder())
-        else:
-            for program, share in drawn:
-                stream.draw(program, share)
+            return
+        with nullcontext() if fade is None else blending(self._gl, hides=True):
+            if self.surface.is_software:
+                occluder = self._target_occluder()
+                blends = fade is not None
+                draw_sides(self._gl, stream, drawn, view, style, occluder, blends=blends)
+            else:
+                for program, share in drawn:
+                    stream.draw(program, share)
 
     def _target_occluder(self) -> Occluder | None:
         """What leaves hidden triangles out where pixels have several samples; else the last one."""

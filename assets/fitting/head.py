@@ -61,6 +61,7 @@ LARGEST = 10_000.0  # [mm] from the middle of the face: farther off, a vertex is
 APART = 30.0  # [mm]
 ONE_PLACE = 1.0  # [mm]
 MOST_SIMULATED = 50_000  # triangles: a step of these takes a good half of a frame of 1/60 s
+SIMPLIFIED = 25_000  # triangles are left: these play at 20 frames a second on two cores
 ATTEMPTS = 8  # to simplify a mesh and keep it a surface
 MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
 NECK = "neck"  # what hangs there, a shirt, is the built-in head's: another may have its shoulders
@@ -158,7 +159,7 @@ def fit(
     target = similarity.points(points)
     notes, whole = mesh.notes, skin
     if len(skin.faces) > MOST_SIMULATED:
-        notes += (f"its {len(skin.faces)} triangles are too many to move in time; simplified",)
+        notes += (f"its {len(skin.faces)} triangles are too many; simplified to {SIMPLIFIED}",)
         skin = _simplified(skin, target)
     normals = vertex_normals(skin.vertices, skin.faces)
     warp = ThinPlateSpline(known.vertices[known.landmarks], target)
@@ -243,7 +244,7 @@ def _painted(
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
     """The same form with as many triangles as can be moved in time."""
     for attempt in range(ATTEMPTS):
-        vertices, faces = decimated(skin.vertices, skin.faces, MOST_SIMULATED, attempt)
+        vertices, faces = decimated(skin.vertices, skin.faces, SIMPLIFIED, attempt)
         with contextlib.suppress(AssetError):
             check_manifold(faces)
             break

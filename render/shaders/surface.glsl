@@ -292,7 +292,7 @@ void main() {
     float solid = 1.0;
 #if defined(FADED)
     solid = smoothstep(0.0, 1.0, dot(fade, vec4(surface.position, 1.0)));
-    if (!gl_FrontFacing && solid < 1.0) discard;
+    if (!gl_FrontFacing && solid < 1.0) solid = 0.0;  // to discard it costs early depth tests
 #endif
 #if defined(GOURAUD)
     Lit lit = Lit(surface.key, surface.rest, surface.specular);
