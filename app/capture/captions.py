@@ -90,7 +90,7 @@ def labels(
         room = width - image.shape[1] - 2 * pad
         aside = room if (index, len(texts)) == (1, 2) else 0
         made += [(left + pad + aside, bottom + pad, image)] if room >= 0 else []
-    if has_bar:
+    if has_bar and viewports[-1][3] >= 64:  # in less nobody reads its numbers
         left, bottom, width, height = viewports[-1]
         image = colour_bar(min(0.78 * size, height / 26.0))
         x, y = width - image.shape[1] - pad, height - image.shape[0] - pad
