@@ -5,8 +5,11 @@ A row is a control, or one of each side: its name, and a bar for each that it ha
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 
 from imgui_bundle import imgui
 
@@ -141,11 +144,8 @@ class ControlRows:
                 session.note()
         if pointed:
             meant = (*pointed, *(row.sides if row.is_linked else ()))
-            self._view.pointed = {
-                muscle: share
-                for each in meant
-                for muscle, share in session.scene.moved_by(each).items()
-            }
+            shares = (Counter(session.scene.moved_by(each)) for each in meant)
+            self._view.pointed = reduce(or_, shares)  # the largest share of each muscle
 
     def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
         """Code and name; whether the mouse is on it."""
