@@ -7,7 +7,6 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -122,58 +121,3 @@ def test_processes_that_start_together(package: Package) -> None:
     with ThreadPoolExecutor(4) as threads:
         assert {lines[-1] for lines in threads.map(lambda _: package.run(), range(4))} == {RESULT}
     assert package.run() == [RESULT]
-
-
-REFINE = """
-import sys, threading
-import numpy as np
-from risorius import refine
-from tests import meshes
-mesh = meshes.irregular(3)
-deformed = meshes.wrinkled(mesh, 5)
-finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
-detail = {"scheme": "detail", "detail": (finer.positions.copy(), finer.triangles.copy())}
-choices = [{}, {"scheme": "cubic"}, {"blend": True}, {"coherent": True}, detail,
-           {**detail, "blend": False}, {"criterion": "curvature+rest"},
-           {"criterion": "silhouette+border"},
-           {"scheme": "cubic", "criterion": "displacement"}]
-found = {}
-def work(k):
-    refiner = refine.create("kahler", mesh.faces, mesh.vertices, **choices[k % len(choices)])
-    frame = refiner.refine(deformed, view=refine.View((3.0, 2.0, 9.0)))
-    found[f"{k} rows"] = np.hstack([frame.positions, frame.normals])
-    found[f"{k} triangles"] = frame.triangles.copy()
-threads = [threading.Thread(target=work, args=[k]) for k in range(2 * len(choices))]
-[thread.start() for thread in threads]
-[thread.join() for thread in threads]
-np.savez(sys.argv[1], **found)
-"""
-
-
-def frames_of_threads(file: Path, **environment: str) -> dict[str, np.ndarray]:
-    """Frames of refiners that threads make all at once, in a new process."""
-    result = subprocess.run(
-        [sys.executable, "-c", REFINE, file],
-        cwd=ROOT,
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        timeout=500,
-    )
-    assert result.returncode == 0, result.stderr
-    return dict(np.load(file))
-
-
-@pytest.mark.slow
-def test_threads_and_python_agree(tmp_path: Path) -> None:
-    """Each thread a refiner of its own, all at once; and all of it as the Python it is written in.
-
-    The second half of the threads makes the same refiners as the first.
-    """
-    compiled = frames_of_threads(tmp_path / "compiled.npz")
-    plain = frames_of_threads(tmp_path / "plain.npz", NUMBA_DISABLE_JIT="1")
-    assert len(compiled) == len(plain) == 36
-    for name, array in compiled.items():
-        np.testing.assert_allclose(plain[name], array, rtol=0, atol=1e-5, err_msg=name)
-        k, what = name.split()
-        assert np.array_equal(compiled[f"{(int(k) + 9) % 18} {what}"], array)
