@@ -20,12 +20,13 @@ import numpy.typing as npt
 from risorius import refine, render
 
 from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Layers
-from .refining.presets import Refinement
+from .refining.presets import ON_CARD, Refinement
 from .refining.refiners import refiner_for
 from .refining.wrinkling import Amounts, Compression, on_rows
 from .scenes import Scene
 
 TEXTURED_COLUMNS = 8  # position, normal, u v
+LARGE = 20_000  # triangles from which on a graphics card refines, where it may choose
 Timer = Callable[[str], AbstractContextManager[Any]]
 
 
@@ -107,8 +108,15 @@ class Pipeline:
         self.anatomy = Anatomy(scene)
 
     def bind(self, refinement: Refinement) -> DrawnMesh:
-        """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it."""
-        refiner = refiner_for(self.scene, refinement)
+        """Bind the refiner that is asked for to the scene's mesh; borrow render buffers for it.
+
+        Where a look is asked for as it is, a graphics card makes the same of a large mesh.
+        """
+        has_card = self.renderer.lends_gpu_streams and not self.renderer.surface.is_software
+        is_open = refinement.refiner is None and not refinement.options
+        suits_card = has_card and is_open and len(self.scene.faces) >= LARGE
+        asked = replace(refinement, refiner=ON_CARD) if suits_card else refinement
+        refiner = refiner_for(self.scene, asked)
         room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         stream: render.Stream | render.GpuStream
         is_on_gpu = isinstance(refiner, refine.BaseRefiner) and refiner.runs_on_gpu

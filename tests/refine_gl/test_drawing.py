@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from risorius import render
+from risorius.app import pipeline as app_pipeline
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
 from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
@@ -63,6 +64,24 @@ def both(pipeline: Pipeline, look: str = "paper") -> tuple[DrawnMesh, DrawnMesh]
     assert isinstance(drawn[1].refiner, KahlerGl)
     assert isinstance(drawn[1].stream, render.GpuStream)
     return drawn[0], drawn[1]
+
+
+def test_a_card_takes_large_meshes_by_itself(
+    pipeline: Pipeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where a look is asked for, the driver is hardware and the mesh large; to the same picture."""
+    smooth, count = Refinement("smooth"), len(pipeline.scene.faces)
+    monkeypatch.setattr(app_pipeline, "LARGE", count)
+    before = pipeline.bind(smooth)
+    monkeypatch.setattr(render.Surface, "is_software", property(lambda _: False))
+    now = pipeline.bind(smooth)
+    assert isinstance(now.refiner, KahlerGl) and not isinstance(before.refiner, KahlerGl)
+    pictures = [image(pipeline, each, render.Style()).astype(int) for each in (before, now)]
+    assert np.abs(pictures[0] - pictures[1]).max() <= 2 and now.caption == before.caption
+    for other in (Refinement("smooth", "kahler"), replace(smooth, options={"blend": False})):
+        assert not isinstance(pipeline.bind(other).refiner, KahlerGl)
+    monkeypatch.setattr(app_pipeline, "LARGE", count + 1)
+    assert not isinstance(pipeline.bind(smooth).refiner, KahlerGl)
 
 
 @pytest.mark.parametrize("is_hardware", [False, True], ids=["software", "hardware"])

@@ -29,6 +29,8 @@ HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is ([Refine])",
     "Look": "smooth: what looks best; paper: the paper's own rule ([Paper's look]). A look sets "
     "the refiner and all that it is told",
+    "Refiner": "kahler: the paper's; a look as it is goes to a graphics card (kahler-gl) by "
+    "itself where the mesh is large",
     "Compare": "the simulated mesh at the left, refined at the right, under one camera: wipe "
     "([Compare: wipe]) or side by side ([Compare: side by side])",
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
