@@ -17,18 +17,18 @@ import numpy.typing as npt
 import scipy
 
 from ..loading import load
-from ..model import FloatArray, IndexArray, SingleArray
+from ..model import FloatArray, SingleArray
 from ..smooth import smooth_step
 
 FINER = 4  # times finer than the texture, hairs are drawn
 AROUND = 24.0  # [mm] about a brow, vertices that say where it lies on the texture
-DENSITY = 1.6  # hairs for each square millimetre
-HAIR = 0.22  # [mm] thickness of the thickest
+DENSITY = 2.0  # hairs for each square millimetre
+PARTS, LONGEST = 5, 6.5  # of each hair, and [mm]
 LID_LINE = 3.0  # [texels] that the lashes' roots are wide along the upper lid
-SOFT = 5.0  # of hairs' thickness, by which what is between them is blurred
+SOFT = 3.0  # [texels] by which what is between hairs is blurred
 # Along a brow, its thickness as a share of the greatest.
-PROFILE = (0.0, 0.65), (0.1, 0.95), (0.3, 1.0), (0.62, 0.9), (0.85, 0.62), (1.0, 0.2)
-UNDER = 2.2  # of a brow's darkness, that is left between its hairs
+PROFILE = (0.0, 0.6), (0.1, 0.85), (0.3, 1.0), (0.6, 0.8), (0.85, 0.45), (1.0, 0.12)
+UNDER = 0.9  # of a brow's darkness, that is left between its hairs
 
 # Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
 DRAWN = (
@@ -76,58 +76,53 @@ def painted(brows: Brows, size: int) -> SingleArray:
     cover = np.zeros((size, size), np.float32)
     for side in (-1.0, 1.0):
         hairs = _hairs(brows, random)
-        _paint(cover, hairs, side, random.uniform(90.0, 200.0, len(hairs)).astype(int))
+        _paint(cover, hairs, side, random.uniform(110.0, 230.0, len(hairs)))
     return cover
 
 
 def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
-    """Root, middle and tip of each hair, seen from the front [mm], shape (n, 3, 2)."""
+    """Places along each hair root to tip, seen from the front [mm], shape (n, PARTS + 1, 2)."""
     first, base, last = brows.inner, *_ends()
     middle = 0.45 * first + 0.55 * brows.peak
     rises = np.array([0.0, 0.72 * brows.rise, brows.rise, brows.rise - brows.fall])
     line = scipy.interpolate.PchipInterpolator([first, middle, brows.peak, last], base + rises)
-    length = last - first
-    count = round(DENSITY * brows.density * length * brows.thickness)
-    along, across = random.uniform(0.0, 1.0, count), random.uniform(-0.5, 0.5, count)
-    x, wide = first + length * along, brows.thickness * np.interp(along, *np.array(PROFILE).T)
-    # Hairs stand up at the inner end, and lie along the brow from its middle on; those above the
-    # middle lean down to it.
-    slope = np.arctan(line(x, 1))
-    rising = np.radians(72.0) * (1.0 - smooth_step(0.0, 0.42, along)) + np.radians(16.0)
-    lean = rising - np.radians(44.0) * smooth_step(0.1, 0.6, along) * (across > 0.0)
-    lean += (0.12 + 0.45 * brows.unruly * (1.0 - 0.6 * along)) * random.normal(size=count)
-    long = (4.6 + 2.0 * brows.unruly) * random.uniform(0.7, 1.2, count) * (1.0 - 0.6 * along)
-    long *= 0.5 * np.clip(brows.thickness / 7.0, 0.65, 1.15)
-    root = np.stack([x, line(x) + across * wide], axis=-1)
-    ways = [
-        np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-        for turn in (slope + lean, slope + 0.45 * lean)
-    ]
-    middles = root + long[:, None] * ways[0]
-    return np.stack(
-        [root - 0.2 * long[:, None] * ways[0], middles, middles + long[:, None] * ways[1]], axis=1
-    )
+    count = round(DENSITY * brows.density * (last - first) * brows.thickness)
+    along, across = random.uniform(0.0, 1.0, count), 0.24 * random.normal(size=count)
+    # They stand sparsely at the inner end.
+    kept = random.uniform(0.0, 1.0, count) < 0.3 + 0.7 * smooth_step(0.0, 0.22, along)
+    along, across = along[kept], np.clip(across[kept], -0.55, 0.55)
+    x = first + (last - first) * along
+    root = line(x) + across * brows.thickness * np.interp(along, *np.array(PROFILE).T)
+    # Hairs stand up at the inner end and turn outward, until they lie along the brow; those above
+    # its middle lean down to it.
+    turn = np.radians(78.0) * np.exp(-along / 0.2) + np.radians(14.0)
+    turn -= np.radians(38.0) * smooth_step(0.08, 0.45, along) * smooth_step(-0.15, 0.3, across)
+    turn += (0.1 + 0.4 * brows.unruly * (1.0 - 0.6 * along)) * random.normal(size=len(along))
+    bend = np.linspace(1.0, 0.35, PARTS) * turn[:, None] + np.arctan(line(x, 1))[:, None]
+    long = LONGEST * random.uniform(0.55, 1.0, len(along)) * (1.0 - 0.35 * along)
+    long *= np.clip(brows.thickness / 7.0, 0.7, 1.15) * (1.0 + 0.3 * brows.unruly)
+    steps = np.stack([np.cos(bend), np.sin(bend)], axis=-1) * (long / PARTS)[:, None, None]
+    start = np.stack([x, root], axis=-1)[:, None] - 0.3 * steps.sum(axis=1, keepdims=True)
+    return np.concatenate([start, start + np.cumsum(steps, axis=1)], axis=1)
 
 
-def _paint(cover: SingleArray, hairs: FloatArray, side: float, tones: IndexArray) -> None:
-    """Paint hairs into the texture, on one side, 1 the subject's left."""
+def _paint(cover: SingleArray, hairs: FloatArray, side: float, tones: FloatArray) -> None:
+    """Paint hairs, which get thin and faint to their tips, on one side, 1 the subject's left."""
     from PIL import Image, ImageDraw
 
-    fine_size = FINER * len(cover)
-    places = fine_size * _on_texture(hairs.reshape(-1, 2), side).reshape(hairs.shape)
+    places = FINER * len(cover) * _on_texture(hairs.reshape(-1, 2), side).reshape(hairs.shape)
     low = np.floor(places.min(axis=(0, 1)) / FINER).astype(int) - 8
     wide, high = np.ceil(places.max(axis=(0, 1)) / FINER).astype(int) + 8 - low
     image = Image.new("L", (FINER * int(wide), FINER * int(high)))
     pen = ImageDraw.Draw(image)
-    lengths = [np.linalg.norm(each[:, 1] - each[:, 0], axis=1).mean() for each in (places, hairs)]
-    thick = HAIR * lengths[0] / lengths[1]
-    for (root, middle, tip), tone in zip(places - FINER * low, tones, strict=True):
-        pen.line([*root, *middle], fill=int(tone), width=max(round(thick), 1))
-        pen.line([*middle, *tip], fill=int(0.85 * tone), width=max(round(0.6 * thick), 1))
+    for part in range(PARTS)[::-1]:  # the tips first, so that roots cover them
+        drawn = (tones * (1.0 - 0.75 * part / PARTS)).astype(int)
+        for ends, tone in zip(places[:, part : part + 2] - FINER * low, drawn, strict=True):
+            pen.line(ends.ravel().tolist(), fill=int(tone), width=2 if part < PARTS / 2 else 1)
     fine = np.asarray(image, np.float32).reshape(high, FINER, wide, FINER).mean(axis=(1, 3)) / 255.0
-    soft = scipy.ndimage.gaussian_filter(fine, SOFT * thick / FINER)
-    part = cover[low[1] : low[1] + high, low[0] : low[0] + wide]
-    np.maximum(part, np.clip(fine + UNDER * soft, 0.0, 0.92), out=part)
+    soft = scipy.ndimage.gaussian_filter(fine, SOFT)
+    covered = cover[low[1] : low[1] + high, low[0] : low[0] + wide]
+    np.maximum(covered, np.clip(fine + UNDER * soft, 0.0, 0.92), out=covered)
 
 
 @lru_cache(maxsize=1)

@@ -57,26 +57,23 @@ class Cut:
 class Fall:
     """How hair falls that is long enough to, beside the face; chosen by eye, all in [mm].
 
-    parting: from the middle of the face, to the subject's left, to where it parts; None: it falls
-        from the crown to all sides, over the forehead as a fringe.
+    parting: from the middle of the face, to the subject's left, to where it parts.
     below: how far below the ears it ends.
     volume: how far it stands off the head.
-    wave: how far it swings to and fro.
     """
 
-    parting: float | None
+    parting: float
     below: float
     volume: float
-    wave: float = 0.0
 
 
 CUTS: Mapping[str, Cut | Fall | None] = MappingProxyType(
     {
         "cropped": None,  # as it is painted on the scalp
-        "bob": Fall(None, 74.0, 11.0),
-        "parted": Fall(26.0, 80.0, 11.5),
-        "centred": Fall(0.0, 86.0, 12.0, 1.0),
-        "waved": Fall(-22.0, 76.0, 14.0, 3.0),
+        "parted": Fall(26.0, 96.0, 10.0),
+        "centred": Fall(0.0, 106.0, 10.0),
+        "aside": Fall(-22.0, 100.0, 11.0),
+        "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
         "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5),
         "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=12.0),
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),

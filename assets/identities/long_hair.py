@@ -11,11 +11,12 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
 from risorius.geometry.normals import vertex_normals
 
 from ..model import FloatArray, Part
-from ..smooth import smooth_step, unit
+from ..smooth import unit
 from ..topology import halved, quads_between
 from .hair import HAIR, MEAN, Fall, Scalp
 
@@ -24,15 +25,16 @@ ABOVE_EARS, BEHIND_EARS = 22.0, 8.0  # [mm] that the middle of the head lies so
 WIDEST = np.radians(-6.0)  # how far below it strands leave the head
 ROUNDED = np.radians(12.0)  # beside that edge, as far as hair is thinner
 EDGE = np.radians(60.0)  # from the face's middle, from where on hair hangs beside it
-FRINGE = np.radians(38.0)  # up to where it ends above the brows
 SHARP, HIGHEST = 120.0, 12.0  # of the mean over directions that tells how far the skin is
 CLEAR = 1.5  # [mm] of the inner side, off the skin
 SLIDE = 1.3  # of layers along strands, beside their distance
 FINE = 0.22  # of the way along strands, in which they change less than short ones
-HEM, RAGGED = 6.0, 1.5  # [mm] over which tips thin out, and by which they are uneven
+HEM, RAGGED = 26.0, 4.0  # [mm] over which tips thin out, and by which they are uneven
+PARTED, FRONT = 5.0, 6.0  # [mm] over which hair gets dense from the parting, from the face
 FULL = 3.0  # density where no layer is thin
-SWING = 46.0  # [mm] of a wave
-CURVED_IN = 0.10  # of the radius, at the tips
+LOW, RISES = 0.2, 0.4  # of the volume at the roots, and of the way over the head until it is whole
+LIMP = 3.5  # steps along strands, over which they bend from the head
+THIN_ENDS, CURVED_IN = 0.6, 0.14  # of the volume and of the radius, that tips have less
 SLEEK = 0.45  # how much it shines
 AT_A_POINT = 0.01  # share of the way out in normals: where strands meet there is no triangle
 DARK = 0.5  # of the light, within
@@ -65,10 +67,9 @@ def falling_hair(cut: Fall, scalp: Scalp, head: Any, colour: FloatArray, length:
         mean = (weights * far**HIGHEST).sum(axis=-1) / weights.sum(axis=-1)
         return np.asarray(mean ** (1.0 / HIGHEST))
 
-    ends = ear[1] - cut.below * length, vertices[head.landmarks[24]][1] + 13.0
     sides = []
     for side in (-1.0, 1.0):
-        strands = _strands(cut, side, head, middle, skin, ends)
+        strands = _strands(cut, side, head, middle, skin, ear[1] - cut.below * length)
         sides.append(_surface(strands, side, colour, is_inside=False))
         sides.append(_surface(strands, side, DARK * colour, is_inside=True))
     return _joined(sides)
@@ -90,57 +91,44 @@ def _strands(
     head: Any,
     middle: FloatArray,
     skin: Callable[[FloatArray], FloatArray],
-    ends: tuple[float, float],
+    end: float,
 ) -> _Strands:
-    """Strands of a side, 1 the subject's left; ends: heights of tips, and of those of a fringe."""
-    vertices, at = head.vertices, head.anatomy
+    """Strands of a side, 1 the subject's left, that end at a height."""
     share = np.linspace(0.0, 1.0, STRANDS)
-    apart = 8.0 if cut.parting is None else cut.parting
-    crown = vertices[at["vertex"]] + [0.4 * apart, 0.0, -30.0] - middle
-    front = vertices[at["trichion"]] + [apart, 0.0, -4.0] - middle
-    edge = 0.0 if cut.parting is None else EDGE
-    angle = edge + (np.pi - edge) * share**1.3
-    back = np.ones(STRANDS) if cut.parting is None else share**0.8
-    roots = unit(front + back[:, None] * (crown - front))
+    crown = head.vertices[head.anatomy["vertex"]] + [0.4 * cut.parting, 0.0, -30.0] - middle
+    front = head.vertices[head.anatomy["trichion"]] + [cut.parting, 0.0, -4.0] - middle
+    angle = EDGE + (np.pi - EDGE) * share**1.3
+    roots = unit(front + (share**0.8)[:, None] * (crown - front))
     flat = np.stack([side * np.sin(angle), np.zeros(STRANDS), np.cos(angle)], axis=-1)
     leave = np.cos(WIDEST) * flat + [0.0, np.sin(WIDEST), 0.0]
-    ways = _slerp(roots, leave, np.linspace(0.0, 1.0, SAMPLES))
-    thick = cut.volume * (0.65 + 0.35 * np.sin(np.linspace(0.0, np.pi / 2.0, SAMPLES)))
+    over, drop = np.linspace(0.0, 1.0, SAMPLES), np.linspace(0.0, 1.0, SAMPLES)[1:]
+    ways = _slerp(roots, leave, over)
     # Beside the face the outer side comes round to the inner one.
-    beside = np.clip((angle - edge) / ROUNDED, 0.02, 1.0)[:, None]
-    thick = thick * (1.0 if cut.parting is None else np.sqrt(1.0 - (1.0 - beside) ** 2))
-    radius = skin(ways)
-    inner, outer = (
-        middle + (radius + CLEAR * beside + off)[..., None] * ways for off in (0.0, thick)
-    )
-    drop = np.linspace(0.0, 1.0, SAMPLES)[1:, None]
-    below = ends[0] - RAGGED - inner[:, -1, 1]
-    hanging = []
-    for grid in (inner, outer):
+    beside = np.clip((angle - EDGE) / ROUNDED, 0.02, 1.0)[:, None]
+    risen = LOW + (1.0 - LOW) * np.sin(0.5 * np.pi * np.clip(over / RISES, 0.0, 1.0))
+    thick = cut.volume * risen * np.sqrt(1.0 - (1.0 - beside) ** 2)
+    grids = []
+    for off in (np.zeros_like(thick), thick):
+        grid = middle + (skin(ways) + CLEAR * beside + off)[..., None] * ways
+        narrower = 1.0 - CURVED_IN * drop**2
         start = grid[:, -1]
-        beside = np.linalg.norm((start - middle)[:, [0, 2]], axis=1)
-        narrower = 1.0 - CURVED_IN * drop[None] ** 2
-        fall = middle + (beside[:, None, None] * narrower) * flat[:, None]
-        fall[..., 1] = start[:, None, 1] + drop[None, :, 0] * below[:, None]
-        hanging.append(np.concatenate([grid, fall], axis=1))
-    inner, outer = hanging
-    lowest = np.full(STRANDS, ends[0])
-    if cut.parting is None:
-        lowest = ends[1] + (ends[0] - ends[1]) * smooth_step(FRINGE, EDGE, angle)
-        lowest -= 9.0 * smooth_step(0.1, FRINGE, angle)
-    return _cut_off(cut, inner, outer, lowest, side * 88.0 * angle)
+        wide = np.linalg.norm((start - middle)[:, [0, 2]], axis=1)
+        wide = wide[:, None] * narrower - THIN_ENDS * drop**2 * off[:, -1:]
+        fall = middle + wide[..., None] * flat[:, None]
+        fall[..., 1] = start[:, 1:2] + drop * (end - RAGGED - start[:, 1:2])
+        bent = np.concatenate([grid, fall], axis=1)
+        grids.append(scipy.ndimage.gaussian_filter1d(bent, LIMP, axis=1, mode="nearest"))
+    return _cut_off(grids[0], grids[1], end, side * 88.0 * angle)
 
 
-def _cut_off(
-    cut: Fall, inner: FloatArray, outer: FloatArray, lowest: FloatArray, across: FloatArray
-) -> _Strands:
-    """Strands that end at heights, (n,), in equal steps."""
+def _cut_off(inner: FloatArray, outer: FloatArray, end: float, across: FloatArray) -> _Strands:
+    """Strands that end about a height, in equal steps."""
     uneven = RAGGED * (0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0))
     rows: list[list[FloatArray]] = [[], [], [], []]
-    for low, high, end in zip(inner, outer, lowest + uneven, strict=True):
+    for low, high, lowest in zip(inner, outer, end + uneven, strict=True):
         steps = np.linalg.norm(np.diff(high, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
-        below = np.flatnonzero(high[:, 1] < end)
+        below = np.flatnonzero(high[:, 1] < lowest)
         last = along[below[0]] if len(below) else along[-1]
         at = np.linspace(0.0, last, SAMPLES)
         for row, grid in zip(rows, (low, high), strict=False):
@@ -148,13 +136,7 @@ def _cut_off(
         rows[2].append(at)
         rows[3].append(last - at)
     low, high, along, left = (np.array(row) for row in rows)
-    ahead = unit(np.gradient(high, axis=1).reshape(-1, 3)).reshape(high.shape)
-    aside = np.cross(ahead, high - low) / np.linalg.norm(high - low, axis=-1, keepdims=True)
-    phase = 2.0 * np.pi * along / SWING + 0.02 * across[:, None]
-    grown = smooth_step(50.0, 130.0, along) * cut.wave
-    swing = (grown * np.sin(phase))[..., None] * aside
-    swell = (0.06 * grown * np.cos(phase))[..., None] * (high - low)
-    return _Strands(low + swing, high + swing + swell, across, along, left)
+    return _Strands(low, high, across, along, left)
 
 
 def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: bool) -> Part:
@@ -163,7 +145,9 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     ahead = unit(np.gradient(high, axis=1).reshape(-1, 3)).reshape(high.shape)
     thickness = np.linalg.norm(high - low, axis=-1, keepdims=True)
     way = high - low + SLIDE * thickness * ahead
-    places, dense = low + MEAN * (high - low), np.minimum(left / HEM, FULL)
+    places, beside = low + MEAN * (high - low), np.abs(across - across[0])[:, None]
+    dense = np.minimum(left / HEM, np.minimum(0.3 + along / PARTED, 0.45 + beside / FRONT))
+    dense = np.minimum(dense, FULL)
     if is_inside:
         way, places = -0.1 * (high - low) + 0.2 * thickness * ahead, low
     points = places.reshape(-1, 3)

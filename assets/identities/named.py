@@ -39,7 +39,7 @@ NAMED: Mapping[str, _Known] = MappingProxyType(
             {"al-al": 2.2, "ls-sto": 1.8, "sto-li": 1.8, "zy-zy": 0.9, "n-prn": -0.6, "ch-ch": 0.8},
         ),
         "maria": _Known(
-            13, Sex.WOMAN, 66.0, 56.0, "blue", "waved",
+            13, Sex.WOMAN, 66.0, 56.0, "blue", "aside",
             {"go-go": -0.3, "zy-zy": 0.2, "ls-sto": 0.0, "sto-li": 0.2, "sn-prn": 0.0},
         ),
     }

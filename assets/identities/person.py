@@ -33,11 +33,12 @@ NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the weights, tried in turn
 MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own side
 EAR_ROUNDS, EAR_STEP = 8, 0.5  # of standing out, by so much each [mm]
 GIVE = 0.2  # of the warp of what lies in the head
-MOST_RESTING = {Sex.WOMAN: 0.5, Sex.MAN: 0.65}
+MOST_RESTING = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
 NARROWER_NECK, NECK_AXIS = 0.07, np.array([0.0, 0.0, 5.0])  # share, of women's; [mm]
 LOWER = -0.96  # of the iris' radius, that the lower lid lies at
 ROWS_OF_LIDS = (1.0, 1.0, 1.0, 0.7, 0.25)  # how far rows around the eye go with the lid's edge
 CORNER, BROW = 9.0, 11.0  # [mm] about corners of the mouth and brows, that go with them
+MOST_TURNED = 1.8  # [mm] that the corners of the mouth are moved
 LID_SHARES = (1.0, 1.0, 1.0, 0.6, 0.25)  # how far rows around the eye are laid on it
 
 
@@ -155,8 +156,12 @@ def _resting_face(
                 x[ring, 1] += share * moved * open_ * (is_above == (lid == "superius"))
     # Brows slide over the forehead; lips, which touch, go one way.
     normals, up = vertex_normals(vertices, known.faces), np.array([0.0, 1.0, 0.0])
+    line = vertices[known.landmarks[[48, 54, 62, 66]], 1]
+    turned = np.clip(
+        identity.corners - line[:2].mean() + line[2:].mean(), -MOST_TURNED, MOST_TURNED
+    )
     for points, way, wide in (
-        (known.landmarks[48:55:6], identity.corners * up, CORNER),
+        (known.landmarks[48:55:6], turned * up, CORNER),
         (known.landmarks[17:27], identity.brows * (up - normals[:, 1:2] * normals), BROW),
     ):
         away = scipy.spatial.cKDTree(vertices[points]).query(vertices)[0]

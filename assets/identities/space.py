@@ -50,8 +50,8 @@ AGED_MEASURES = MappingProxyType(
 # Points of the left half, an anatomical name or the number of a landmark, a way that they go, and
 # how far ten years take them, and how far a man's lie from a person's of no sex [mm].
 POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] = (
-    (24, (0, -1, 0), 0.35, 1.2), (26, (0, -1, 0), 0.35, 0.8), (24, (0, 0, 1), 0.0, 2.4),
-    ("glabella", (0, 0, 1), 0.0, 2.6), ("metopion", (0, 0, -1), 0.0, 1.2),
+    (24, (0, -1, 0), 0.35, 0.3), (26, (0, -1, 0), 0.35, 0.3), (24, (0, 0, 1), 0.0, 1.6),
+    ("glabella", (0, 0, 1), 0.0, 1.8), ("metopion", (0, 0, -1), 0.0, 1.2),
     ("palpebrale_superius_left", (0, -1, 0), 0.2, 0.4), ("cheek_left", (-1, 0, -1), 0.35, 1.2),
     ("cheilion_left", (0, -1, 0), 0.3, 0.0), ("labiale_superius", (0, 0, -1), 0.2, 1.0),
     ("labiale_inferius", (0, 0, -1), 0.2, 1.0), (9, (1, 0, 0), 0.0, 2.6), (10, (1, 0, 0), 0.0, 3.0),
@@ -59,7 +59,7 @@ POINTS: tuple[tuple[str | int, tuple[float, float, float], float, float], ...] =
 )  # fmt: skip
 POINT = 0.7  # [mm]: how exactly points are pushed
 
-HAIR = 0.75, 1.3  # how long it is, beside its cut
+HAIR = 0.8, 1.2  # how long it is, beside its cut
 AGES = 20.0, 75.0  # [years]
 UNEVENNESS = 0.1  # deviations, by which a face is another person's on the left than on the right
 
@@ -73,7 +73,7 @@ class Sex(Enum):
 
 CUT_SHARES: Mapping[Sex, Mapping[str, float]] = MappingProxyType(
     {
-        Sex.WOMAN: {"bob": 0.15, "parted": 0.3, "centred": 0.25, "waved": 0.3},
+        Sex.WOMAN: {"parted": 0.32, "centred": 0.28, "aside": 0.3, "tied": 0.1},
         Sex.MAN: {
             "short": 0.35, "cropped": 0.25, "brushed": 0.12, "swept": 0.1, "fringed": 0.1,
             "curly": 0.08,
@@ -92,7 +92,7 @@ class Identity:
     weights: of the modes, in deviations from the mean of people (space.py).
     unevenness: by how much they are more on the left and less on the right.
     covered: how much of the iris the upper lid covers [mm].
-    corners: how far up those of the mouth are turned at rest [mm].
+    corners: how far above the middle of the lips' line those of the mouth lie at rest [mm].
     brows: how far up the brows lie [mm].
     """
 
@@ -110,8 +110,7 @@ class Identity:
         """An identity with a share of all that is its own: 0 is the mean of people."""
         kinds = (self.weights, self.unevenness)
         weights, unevenness = (tuple(share * weight for weight in kind) for kind in kinds)
-        corners, brows = share * self.corners, share * self.brows
-        return replace(self, weights=weights, unevenness=unevenness, corners=corners, brows=brows)
+        return replace(self, weights=weights, unevenness=unevenness, brows=share * self.brows)
 
 
 def norms_of(sex: Sex) -> dict[str, Sample]:
@@ -236,6 +235,6 @@ def sample_identity(
         tuple(weights.tolist()),
         tuple(uneven.tolist()),
         covered=float(1.7 - 0.3 * is_woman + 0.35 * covered + 0.15 * late),
-        corners=float(0.9 + 0.3 * is_woman + 0.6 * corners - 0.15 * late),
-        brows=float((1.5 if is_woman else -1.5) + 1.2 * brows - 0.3 * late),
+        corners=float(0.7 + 0.3 * is_woman + 0.5 * corners - 0.08 * late),
+        brows=float((1.0 if is_woman else 0.0) + brows - 0.2 * late),
     )
