@@ -35,7 +35,7 @@ Read border/plugin.py first, then kahler/. docs/refinement.md tells it all with 
 from .beyond.blending import Blended
 from .beyond.border_turn import BorderTurn
 from .beyond.cubic import CubicScheme
-from .beyond.curvature import Curvature, RestCurvature
+from .beyond.curvature import RestCurvature
 from .beyond.detail import DetailScheme
 from .beyond.displacement import Displacement
 from .beyond.measuring import Maximum, Silhouette
@@ -46,7 +46,7 @@ from .border.corner_values import Values
 from .border.plugin import GpuStream, Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, create, parameters, refiners
 from .border.stream import StreamArrays
-from .hosts import TrimeshRefiner, WeldedRefiner
+from .hosts import WeldedRefiner
 from .kahler.coherence import Coherent
 from .kahler.criterion import (
     THRESHOLD_ONCE,
@@ -73,7 +73,6 @@ __all__ = [
     "Coherent",
     "Connectivity",
     "Criterion",
-    "Curvature",
     "Displacement",
     "FrameBuffers",
     "GpuStream",
@@ -92,7 +91,6 @@ __all__ = [
     "Silhouette",
     "Stream",
     "StreamArrays",
-    "TrimeshRefiner",
     "Values",
     "View",
     "WeldedRefiner",
@@ -111,7 +109,6 @@ refiners.register("kahler", create_kahler)
 refiners.register("loop", Loop)
 refiners.register("none", PassThrough)
 criteria.register("normal", NormalDrop)
-criteria.register("curvature", Curvature)
 criteria.register("rest", RestCurvature)
 criteria.register("border", BorderTurn)
 criteria.register("displacement", Displacement)

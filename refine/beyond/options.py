@@ -37,7 +37,7 @@ def create_kahler(
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".
-    - `criterion`: "normal", "curvature", "rest", "silhouette", "border", "displacement", another
+    - `criterion`: "normal", "rest", "silhouette", "border", "displacement", another
       name of `refine.criteria`, an object, or a list of them, of which the one counts that asks for
       most; "normal+rest" is such a list.
     - `scheme`: "loop", the paper's, "cubic", "detail", another name of `refine.schemes`, or an

@@ -27,7 +27,7 @@ MESHES = st.one_of(
         lambda m: (m.vertices, m.faces)
     ),
 )
-CRITERIA = ("normal", "curvature", "rest", "silhouette", "displacement", "normal+rest")
+CRITERIA = ("normal", "rest", "silhouette", "displacement", "normal+rest")
 INDEX_TYPES = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4")
 
 

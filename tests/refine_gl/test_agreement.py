@@ -117,7 +117,7 @@ def test_sums_over_many_groups(side: int, rules: str) -> None:
     [
         {"criterion": "normal+rest"},
         {"criterion": "normal+displacement", "scheme": "cubic"},
-        {"criterion": ["displacement", refine.Curvature(), refine.RestCurvature()], "blend": True},
+        {"criterion": ["displacement", refine.Silhouette(), refine.RestCurvature()], "blend": True},
         {"criterion": refine.Displacement(0.02, 0.1, turning=0.0), "blend": False},
         {"criterion": "normal", "threshold_twice": np.inf, "scheme": "cubic"},
         {"criterion": "silhouette"},

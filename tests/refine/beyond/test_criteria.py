@@ -74,7 +74,7 @@ def test_maximum() -> None:
     mesh = meshes.irregular(1)
     deformed = meshes.wrinkled(mesh, 2)
     view = refine.View([0.0, 0.0, 50.0])
-    names = ["normal", "curvature", "silhouette"]
+    names = ["normal", "rest", "silhouette"]
     single = [splits_of(mesh, deformed, name, view=view)[0] for name in names]
     together, _ = splits_of(mesh, deformed, names, view=view)
     assert (together == np.max(single, axis=0)).all()
@@ -84,14 +84,13 @@ def test_maximum() -> None:
     assert (joined == together).all()
 
 
-@pytest.mark.parametrize("criterion", ["normal", "curvature"])
-def test_blended_splits_are_the_same(criterion: str) -> None:
+def test_blended_splits_are_the_same() -> None:
     """Blending does not change how often an edge is split."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
     splits = []
     for blend in (False, True):
-        refiner = kahler(mesh, criterion=criterion, blend=blend)
+        refiner = kahler(mesh, blend=blend)
         refiner.refine(deformed)
         splits.append(refiner.splits.copy())
     assert (splits[0] == splits[1]).mean() > 0.998
@@ -115,17 +114,14 @@ def plain_measure(
     positions: np.ndarray,
     normals: np.ndarray,
     edges: np.ndarray,
-    unit: float,
     most: float,
 ) -> np.ndarray:
     """What a criterion measures at every edge, written once more, plainly."""
     values = []
     for a, b in edges:
-        d, cosine = positions[b] - positions[a], float(normals[a] @ normals[b])
+        cosine = float(normals[a] @ normals[b])
         if kind is refine.NormalDrop:
             values.append(-cosine)
-        elif kind is refine.Curvature:
-            values.append(abs(d @ normals[b] - d @ normals[a]) / 8 / unit)
         else:
             to_eye = [(EYE - positions[v]) / np.linalg.norm(EYE - positions[v]) for v in (a, b)]
             facing = [float(normals[v] @ s) for v, s in zip((a, b), to_eye, strict=True)]
@@ -139,7 +135,6 @@ def plain_measure(
     ("kind", "once", "twice"),
     [
         (refine.NormalDrop, 0.02, 0.08),
-        (refine.Curvature, 0.025, 0.06),
         (refine.Silhouette, 0.005, 0.03),
     ],
 )
@@ -152,12 +147,11 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
     edges = connectivity.edges
     at_rest = none.refine(mesh.vertices).normals.copy()
     now = none.refine(deformed).normals.copy()
-    unit = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1).mean()
     width = twice - once if level == "both" else once
     most = once + 1.25 * width  # points have grown twice
-    expected = plain_measure(kind, deformed, now.astype(float), edges, unit, most)
-    if kind in (refine.NormalDrop, refine.Curvature):
-        expected -= plain_measure(kind, mesh.vertices, at_rest.astype(float), edges, unit, most)
+    expected = plain_measure(kind, deformed, now.astype(float), edges, most)
+    if kind is refine.NormalDrop:
+        expected -= plain_measure(kind, mesh.vertices, at_rest.astype(float), edges, most)
 
     criterion = kind(once, twice if level == "both" else np.inf)
     criterion.bind(connectivity, mesh.vertices, at_rest)
