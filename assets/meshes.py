@@ -4,23 +4,13 @@ trimesh reads all but OBJ. It likes to merge and reorder
 vertices on loading, and to open the pictures and materials that a file names; here every vertex and
 triangle stays where the file has it, because landmarks and animation caches count on their numbers.
 What paints an OBJ file is in files beside it; see pictures.py.
-
-trimesh works in a process of its own. A header of a few bytes may claim a billion vertices, and a
-picture of a few bytes may unfold to gigabytes. So nothing of somebody else's file is read beside
-our data: memory is limited there, where the system can do that (not on Windows), and nobody waits
-for it longer than a minute.
 """
 
-import contextlib
 import io
 import logging
-import os
 import re
-import subprocess
-import sys
 import warnings
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,23 +18,20 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import AssetError
-from .pictures import Texture, libraries_missing, shrunk, texture_of
+from .pictures import Texture, shrunk, texture_of
 from .topology import unique_points
 from .user_files import MOST_VERTICES, named, plain_text, read_file
 from .wavefront import read_obj
 
 FORMATS = ("obj", "ply", "stl", "off", "glb")  # ends of names
-MOST_BYTES = 100_000_000
+MOST_MEGABYTES = 100
 FARTHEST = (
     1e9  # of a coordinate, in any unit: far beyond all meshes, and its cube is still a number
 )
 PACKED = re.compile(  # in which ways trimesh reads no positions
     rb'"extensionsRequired"[^]]*"(KHR_draco_mesh_compression|EXT_meshopt_compression)"'
 )
-MOST_MEMORY = 4 << 30  # [bytes] of addresses; the largest mesh that is allowed takes a quarter
-MOST_SECONDS = 60.0  # such a mesh takes 3
 _BLANK_LINES = re.compile(rb"\n\s*\n")
-Arrays = dict[str, npt.NDArray[Any]]
 
 
 @dataclass(frozen=True)
@@ -80,47 +67,27 @@ def read_mesh(path: str | Path) -> Mesh:
         if suffix not in FORMATS:
             known = ", ".join(f".{name}" for name in FORMATS)
             raise AssetError(f"its name must end in {known}: save the mesh in one of these formats")
-        content = read_file(
-            path,
-            kind="mesh",
-            most_bytes=MOST_BYTES,
-            cure="reduce it in a modelling program, or save it without pictures",
-        )
-        texture = colours = None
-        notes: tuple[str, ...] = ()
+        content = read_file(path, kind="mesh", most=MOST_MEGABYTES)
+        same, colours, notes = None, None, tuple[str, ...]()
         if suffix == "obj":
             surface = read_obj(content, most=MOST_VERTICES)
             vertices, faces = surface.vertices, surface.faces
-            texture = texture_of(surface, Path(path).parent)
-            notes = libraries_missing(surface, Path(path).parent)
+            texture, notes = texture_of(surface, Path(path).parent)
         else:
-            arrays = read_arrays_apart(content, suffix)
-            vertices, faces, colours = arrays["vertices"], arrays["faces"], arrays.get("colours")
-            texture = _texture(arrays) if "uv" in arrays else None
+            vertices, faces, texture, colours = _read(content, suffix)
         if suffix == "stl":
             vertices = vertices + 0.0  # no zero with a sign
             first, number = unique_points(vertices)
             vertices, faces = vertices[first], number[faces]
         _check(vertices, faces)
-        same = None
         if suffix == "glb" and texture is not None:  # its vertices are doubled along seams
             first, number = unique_points(vertices + 0.0)
             same = first[number]
             faces = same[faces]
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
-    return Mesh(vertices.astype(np.float64), faces.astype(np.int32), texture, colours, same, notes)
-
-
-def _texture(arrays: Arrays) -> Texture:
-    """How a GLB file, the only one of these that holds pictures itself, paints its mesh."""
-    count = sum(name.startswith("picture_") for name in arrays)
-    return Texture(
-        arrays["uv"].astype(np.float32),
-        arrays["faces"].astype(np.int32),
-        arrays["picture"],
-        tuple(partial(arrays.__getitem__, f"picture_{number}") for number in range(count)),
-    )
+    numbers = faces.astype(np.int32)
+    return Mesh(vertices.astype(np.float64), numbers, texture, colours, same, notes)
 
 
 def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
@@ -148,68 +115,49 @@ def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
         )
 
 
-def read_arrays_apart(content: bytes, suffix: str) -> Arrays:
-    """What `arrays_in` finds, found by another process; AssetError where that fails.
+def _read(content: bytes, suffix: str) -> tuple[Any, Any, Texture | None, Any]:
+    """Vertices, triangles and what paints them of a file for trimesh; AssetError where it fails.
 
-    content: of the file. suffix: the end of its name, "ply", "stl", "off" or "glb".
+    suffix: the end of its name, "ply", "stl", "off" or "glb".
     """
+    import trimesh  # which to load a head takes no time for
+
     if packed := PACKED.search(content) if suffix == "glb" else None:
         raise AssetError(f"is compressed ({packed[1].decode()}); export it without compression")
-    path = os.pathsep.join(filter(None, sys.path))
+    logging.getLogger("trimesh").disabled = True
     try:
-        done = subprocess.run(
-            [sys.executable, "-P", "-c", f"from {__name__} import answer; answer()", suffix],
-            input=_plain(content, suffix),
-            capture_output=True,
-            timeout=MOST_SECONDS,
-            env={**os.environ, "PYTHONPATH": path, "OPENBLAS_NUM_THREADS": "1"},
-            check=False,
-        )
-        reason = " ".join(done.stderr.decode("utf-8", "replace").split())[-200:]
-    except subprocess.TimeoutExpired:
-        done, reason = None, f"it takes more than {MOST_SECONDS:g} s to read"
-    if done is None or done.returncode:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            # numpy's way to say that a number is none, after which it would read no further
+            warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
+            scene: Any = trimesh.load_scene(
+                io.BytesIO(_plain(content, suffix)),
+                file_type=suffix,
+                process=False,
+                maintain_order=True,
+                skip_materials=suffix != "glb",
+                fix_texture=False,
+            )
+            pieces: list[Any] = [each for each in scene.dump() if hasattr(each, "faces")]
+            starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
+            faces = [each.faces.reshape(-1, 3) + n for each, n in zip(pieces, starts, strict=False)]
+            joined = np.vstack([np.zeros((0, 3), np.int64), *faces])
+            texture, colours = _texture_of(pieces, joined) if suffix == "glb" else None, None
+            if pieces and all(each.visual.kind == "vertex" for each in pieces):
+                every = [np.asarray(each.visual.vertex_colors)[:, :3] for each in pieces]
+                colours = np.vstack(every).astype(np.uint8)
+    except Exception as error:  # every reader of trimesh has its own kinds
+        reason = " ".join(f"{type(error).__name__}: {error}".split())[-200:]
         raise AssetError(
-            f"broken, or not what its name says ({reason or 'its reader was stopped'}); open it in "
-            "a modelling program, triangulate it and save it anew"
-        )
-    with np.load(io.BytesIO(done.stdout), allow_pickle=False) as file:
-        return {name: file[name] for name in file.files}
+            f"broken, or not what its name says ({reason}); open it in a modelling program, "
+            "triangulate it and save it anew"
+        ) from None
+    vertices = np.vstack([np.zeros((0, 3)), *(each.vertices for each in pieces)])
+    return vertices, joined, texture, colours
 
 
-def arrays_in(content: bytes, suffix: str) -> Arrays:
-    """The arrays of a mesh file, as far as it has them.
-
-    vertices (V, 3), faces (F, 3); colours of vertices (V, 3); of GLB files uv (V, 2), and which
-    picture each triangle has, -1 for none, (F,); the pictures themselves are picture_0, ...
-    """
-    import trimesh
-
-    # numpy's way to say that a number is none, after which it would read no further
-    warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
-    scene: Any = trimesh.load_scene(
-        io.BytesIO(content),
-        file_type=suffix,
-        process=False,
-        maintain_order=True,
-        skip_materials=suffix != "glb",
-        fix_texture=False,
-    )
-    pieces: list[Any] = [each for each in scene.dump() if hasattr(each, "faces")]
-    starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
-    faces = [each.faces.reshape(-1, 3) + start for each, start in zip(pieces, starts, strict=False)]
-    arrays = {
-        "vertices": np.vstack([np.zeros((0, 3)), *(each.vertices for each in pieces)]),
-        "faces": np.vstack([np.zeros((0, 3), np.int64), *faces]),
-    }
-    if pieces and all(each.visual.kind == "vertex" for each in pieces):
-        colours = [np.asarray(each.visual.vertex_colors)[:, :3] for each in pieces]
-        arrays["colours"] = np.vstack(colours).astype(np.uint8)
-    return arrays | (_painted(pieces) if suffix == "glb" else {})
-
-
-def _painted(pieces: list[Any]) -> Arrays:
-    """Where the pieces of a GLB file lie in which pictures; {} where they are not painted."""
+def _texture_of(pieces: list[Any], faces: npt.NDArray[np.int64]) -> Texture | None:
+    """How the pieces of a GLB file are painted, `faces` those of all; None where they are not."""
     uv, pictures, number = list[Any](), dict[int, npt.NDArray[np.uint8]](), list[Any]()
     for each in pieces:
         found = getattr(each.visual, "uv", None)
@@ -223,26 +171,13 @@ def _painted(pieces: list[Any]) -> Arrays:
         uv.append(places)
         number.append(np.full(len(each.faces), at))
     if not pictures:
-        return {}
-    images = {f"picture_{n}": image for n, image in enumerate(pictures.values())}
-    return {"uv": np.vstack(uv), "picture": np.concatenate(number), **images}
-
-
-def answer() -> None:
-    """Write the arrays of the file that comes in, or say why there are none."""
-    logging.disable()
-    with contextlib.suppress(ImportError):  # Windows
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
-    output, sys.stdout = sys.stdout.buffer, sys.stderr
-    warnings.simplefilter("ignore")
-    try:
-        with np.errstate(all="ignore"):
-            arrays = arrays_in(sys.stdin.buffer.read(), sys.argv[1])
-        np.savez(output, **arrays)  # type: ignore[arg-type]
-    except Exception as error:  # every reader of trimesh has its own kinds
-        sys.exit(f"{type(error).__name__}: {error}")
+        return None
+    return Texture(
+        np.vstack(uv).astype(np.float32),
+        faces.astype(np.int32),
+        np.concatenate(number),
+        tuple(pictures.values()),
+    )
 
 
 def _plain(content: bytes, suffix: str) -> bytes:

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import io
 from array import array
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -20,9 +19,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import AssetError
-from .user_files import LONGEST_LINE, plain_text
+from .user_files import plain_text
 
-READ = ([b"v"], [b"vt"], [b"f"], [b"usemtl"], [b"mtllib"])  # how lines begin that are read
 EXCERPT = 30  # bytes of what is wrong in a line, at most
 
 
@@ -51,38 +49,66 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
     most: vertices and triangles that are allowed. Raises AssetError, which names the line.
     """
     coordinates, places, corners, corner_places = array("d"), array("d"), array("q"), array("q")
-    material, numbers, libraries = array("q"), dict[bytes, int](), []
+    material, materials, libraries = array("q"), dict[str, int](), list[str]()
     current = -1
-    for number, fields in _statements(plain_text(content)):
+    text = plain_text(content).replace(b"\\\n", b" ")  # a backslash joins lines
+    for number, line in enumerate(io.BytesIO(text), start=1):
+        word, *fields = line.split(b"#", 1)[0].split() or [b""]
         try:
-            if fields[0] == b"v":
-                coordinates.extend(_point(fields))
-            elif fields[0] == b"vt":
-                places.extend(_place(fields))
-            elif fields[0] == b"f":
-                count = len(corners)
-                _add_fan(corners, _corners(fields, 0, "vertex", len(coordinates) // 3))
-                _add_fan(corner_places, _corners(fields, 1, "vt", len(places) // 2))
-                material.extend([current] * ((len(corners) - count) // 3))
-            elif fields[0] == b"usemtl":
-                current = numbers.setdefault(_name(fields), len(numbers))
-            else:
-                libraries.append(_name(fields))
-            if max(len(coordinates), len(corners), len(places)) > 3 * most:
-                raise AssetError(
-                    f"more than {most} vertices or triangles; reduce it in a modelling program"
-                )
-        except AssetError as error:
-            raise AssetError(f"line {number}: {error}") from None
+            if word == b"v":
+                x, y, z = fields[:3]
+                coordinates.extend((float(x), float(y), float(z)))
+            elif word == b"vt":
+                places.extend((float(fields[0]), float(fields[1]) if fields[1:] else 0.0))
+            elif word == b"f":
+                polygon = _polygon(fields, len(coordinates) // 3, len(places) // 2)
+                for second, third in pairwise(polygon[1:]):
+                    for vertex, place in (polygon[0], second, third):
+                        corners.append(vertex)
+                        corner_places.append(place)
+                    material.append(current)
+            elif word == b"usemtl":
+                current = materials.setdefault(b" ".join(fields).decode(), len(materials))
+            elif word == b"mtllib":
+                libraries.append(b" ".join(fields).decode())
+        except (ValueError, IndexError, OverflowError):
+            shown = line[:EXCERPT].decode().strip()
+            raise AssetError(
+                f"line {number}: '{shown}' cannot be used; right are 'v x y z', 'vt u v', and 'f' "
+                "with three or more vertex numbers, from 1 on, or from -1 back"
+            ) from None
+        if max(len(coordinates), len(corners), len(places)) > 3 * most:
+            raise AssetError(
+                f"line {number}: more than {most} vertices or triangles; reduce it in a modelling "
+                "program"
+            )
     return ObjSurface(
         np.frombuffer(coordinates, np.float64).reshape(-1, 3),
         np.frombuffer(corners, np.int64).reshape(-1, 3),
         np.frombuffer(places, np.float64).reshape(-1, 2),
         np.frombuffer(corner_places, np.int64).reshape(-1, 3),
         np.frombuffer(material, np.int64),
-        tuple(name.decode() for name in numbers),
-        tuple(name.decode() for name in libraries),
+        tuple(materials),
+        tuple(libraries),
     )
+
+
+def _polygon(fields: list[bytes], vertices: int, places: int) -> list[tuple[int, int]]:
+    """Each corner's numbers of its vertex and, -1 for none, of its texture coordinates.
+
+    In the file they count from 1, or back from the last of so many. Raises ValueError for others.
+    """
+    if len(fields) < 3:
+        raise ValueError
+    polygon = []
+    for field in fields:
+        vertex, place = (int(part or 0) for part in (*field.split(b"/"), b"")[:2])
+        if not vertex or vertex < -vertices:
+            raise ValueError
+        vertex = vertex - 1 if vertex > 0 else vertices + vertex
+        place = place - 1 if place >= 0 else max(places + place, -1)
+        polygon.append((vertex, place))
+    return polygon
 
 
 def pictures_of(content: bytes) -> dict[str, str]:
@@ -95,92 +121,3 @@ def pictures_of(content: bytes) -> dict[str, str]:
         elif word == "map_Kd":  # options begin with -; then nothing tells where they end
             pictures[material] = rest.split()[-1] if rest.startswith("-") else rest.strip()
     return pictures
-
-
-def _statements(text: bytes) -> Iterator[tuple[int, list[bytes]]]:
-    """Number and fields of each line that is read; a backslash joins lines."""
-    parts: list[bytes] = []
-    start = length = 0
-    for number, line in enumerate(io.BytesIO(text), start=1):
-        if not parts:
-            if line.split(maxsplit=1)[:1] not in READ:
-                continue
-            start, length = number, 0
-        line = line.split(b"#", 1)[0].rstrip()
-        length += len(line)
-        if length > LONGEST_LINE:
-            raise AssetError(
-                f"line {start} has more than {LONGEST_LINE} bytes with what continues it; cut its "
-                "polygon into triangles"
-            )
-        parts.append(line.removesuffix(b"\\"))
-        if not line.endswith(b"\\"):
-            yield start, b" ".join(parts).split()
-            parts = []
-    if parts:
-        yield start, b" ".join(parts).split()
-
-
-def _point(fields: list[bytes]) -> tuple[float, float, float]:
-    if len(fields) < 4:
-        raise AssetError(f"a vertex has {len(fields) - 1} coordinates; it must have 3")
-    try:
-        return float(fields[1]), float(fields[2]), float(fields[3])
-    except ValueError:
-        raise AssetError(f"'{_excerpt(fields)}' is no vertex; it must be 'v x y z'") from None
-
-
-def _place(fields: list[bytes]) -> tuple[float, float]:
-    try:
-        return float(fields[1]), float(fields[2]) if len(fields) > 2 else 0.0
-    except (IndexError, ValueError):
-        raise AssetError(f"'{_excerpt(fields)}' is no place; it must be 'vt u v'") from None
-
-
-def _name(fields: list[bytes]) -> bytes:
-    return b" ".join(fields[1:])
-
-
-def _corners(fields: list[bytes], part: int, what: str, count: int) -> list[int]:
-    """Numbers of a polygon's corners: its vertices (0), or their texture coordinates (1).
-
-    In the file they count from 1, or back from the last one; -1 here where there is none.
-    """
-    if len(fields) < 4:
-        raise AssetError(f"a face has {len(fields) - 1} corners; it must have at least 3")
-    try:
-        words = [word.split(b"/")[part : part + 1] for word in fields[1:]]
-        found = [int(word[0]) if word and word[0] else None for word in words]
-        if part == 0 and None in found:
-            raise ValueError
-        return [-1 if number is None else _counted(number, what, count) for number in found]
-    except (AssetError, ValueError) as error:
-        if part > 0:
-            return [-1] * (len(fields) - 1)  # who needs the form alone loses nothing
-        if isinstance(error, AssetError):
-            raise
-        raise AssetError(
-            f"'{_excerpt(fields)}' is no face; it must be 'f' and whole vertex numbers"
-        ) from None
-
-
-def _counted(number: int, what: str, count: int) -> int:
-    if number == 0 or number < -count or number >= 2**31:
-        back = f"-1 to -{count}" if count else "no number below 0"
-        raise AssetError(
-            f"no {what} has the number {str(number)[:EXCERPT]}; allowed are 1 to the number of "
-            f"{'vertices' if what == 'vertex' else what}, and {back} at this line"
-        )
-    return number - 1 if number > 0 else count + number
-
-
-def _add_fan(corners: array[int], polygon: list[int]) -> None:
-    """Append the triangles of a polygon."""
-    first = polygon[0]
-    for second, third in pairwise(polygon[1:]):
-        corners.extend((first, second, third))
-
-
-def _excerpt(fields: list[bytes]) -> str:
-    line = b" ".join(fields[:8])
-    return line.decode() if len(line) <= EXCERPT else line[:EXCERPT].decode() + " ..."

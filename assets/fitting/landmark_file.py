@@ -40,7 +40,6 @@ from .mesh_validation import SkinPiece, path_lengths
 from .warp import bending, nearest_on
 
 COUNT = 68
-MOST_BYTES = 1_000_000
 KEY = "landmarks"  # the list to take where there are several
 GUESSED = "guessed"
 FARTHEST_OFF = (
@@ -120,9 +119,7 @@ class UnfinishedError(AssetError):
 
 
 def _document(path: Path) -> Any:
-    content = read_file(
-        path, kind="landmark", most_bytes=MOST_BYTES, cure="keep the list of landmarks alone"
-    )
+    content = read_file(path, kind="landmark", most=1)
     try:
         return parsed_json(content)  # in UTF-8, 16 or 32, with a byte order mark or without
     except ValueError as error:
@@ -130,36 +127,27 @@ def _document(path: Path) -> Any:
 
 
 def _all_in(document: Any) -> list[Any]:
-    """The 68 entries of the list that can be meant."""
-    found = _list_in(document)
-    if len(found) != COUNT:
+    """The 68 entries: the document itself, its list called KEY, or its first list of so many."""
+    entries = [document]
+    if isinstance(document, dict):
+        entries = [document[KEY]] if KEY in document else list(document.values())
+    lists = [list[Any](each) for each in entries if isinstance(each, list)]
+    lists.sort(key=_is_whole, reverse=True)
+    if not lists or not _is_whole(lists[0]):
+        has = f"{len(lists[0])} landmarks" if lists else "holds no list"
         raise AssetError(
-            f"{len(found)} landmarks; it must be the {COUNT} iBug points in their order"
+            f'{has}; it must be {{"{KEY}": [...]}} with the {COUNT} iBug points in their order, '
+            "vertex numbers or points [x, y, z]"
         )
-    return found
+    return lists[0]
+
+
+def _is_whole(entries: list[Any]) -> bool:
+    return len(entries) == COUNT
 
 
 def _are_numbers(found: list[Any]) -> bool:
     return all(isinstance(entry, int) and not isinstance(entry, bool) for entry in found)
-
-
-def _list_in(document: Any) -> list[Any]:
-    """The list of landmarks: the document itself, or the list in it that can be meant."""
-    if isinstance(document, list):
-        return document
-    entries = document if isinstance(document, dict) else {}
-    lists = {key: entry for key, entry in entries.items() if isinstance(entry, list)}
-    if not lists:
-        raise AssetError(
-            f'holds no list; it must be {{"{KEY}": [...]}} with {COUNT} vertex numbers or points '
-            "[x, y, z]"
-        )
-    fitting = [entry for entry in lists.values() if len(entry) == COUNT]
-    if KEY in lists or not fitting:
-        return lists[KEY] if KEY in lists else max(lists.values(), key=len)
-    if len(fitting) > 1:
-        raise AssetError(f"holds {len(fitting)} lists of {COUNT}; call the right one '{KEY}'")
-    return fitting[0]
 
 
 def _numbers(found: list[Any], count: int) -> IndexArray:

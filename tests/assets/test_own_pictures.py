@@ -166,7 +166,7 @@ def test_vertex_colours_are_drawn(other: Stranger, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("skin.png", b"no picture", "its picture skin.png: is broken, or neither PNG nor JPEG"),
+        ("skin.png", b"no picture", "its picture skin.png: is broken, too large, or neither"),
         ("skin.png", None, "its picture skin.png: no such picture file"),
         ("../skin.png", None, "names the file '../skin.png'; it must lie in the mesh's folder"),
         ("/etc/passwd", None, "names the file '/etc/passwd'; it must lie in the mesh's folder"),
