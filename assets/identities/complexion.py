@@ -49,6 +49,7 @@ LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
 BEARD_SHADOW = 0.12  # density of shaved hair in the shipped picture
 BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the hairline back
 GROWN = 0.94  # of a scalp, that is covered by long hair
+ROOTS = 0.5  # of the light, between them
 BEARD_BLUR = 14.0  # [texels]
 BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin is called brow
 DETAIL = 9  # [texels] below which relief is told from colour
@@ -157,7 +158,7 @@ def recoloured(
         bare = tints.light[..., channel] * np.exp(-lost) + skin[channel] * (tints.hair - kept)
         own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
         haired = bare + own * kept
-        light[..., channel] = haired + covered * (own - haired)
+        light[..., channel] = haired + covered * (ROOTS * own - haired)
     steps = (np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)).astype(np.int16)
     return _screen_bytes()[steps]
 

@@ -26,18 +26,17 @@ WIDEST = np.radians(-6.0)  # how far below it strands leave the head
 ROUNDED = np.radians(12.0)  # beside that edge, as far as hair is thinner
 EDGE = np.radians(60.0)  # from the face's middle, from where on hair hangs beside it
 SHARP, HIGHEST = 120.0, 12.0  # of the mean over directions that tells how far the skin is
-CLEAR = 1.5  # [mm] of the inner side, off the skin
+CLEAR = 2.8  # [mm] of the inner side, off the skin
 SLIDE = 1.3  # of layers along strands, beside their distance
 FINE = 0.22  # of the way along strands, in which they change less than short ones
 HEM, RAGGED = 26.0, 4.0  # [mm] over which tips thin out, and by which they are uneven
-PARTED, FRONT = 5.0, 6.0  # [mm] over which hair gets dense from the parting, from the face
+PARTED, FRONT = 2.0, 6.0  # [mm] over which hair gets dense from the parting, from the face
 FULL = 3.0  # density where no layer is thin
-LOW, RISES = 0.2, 0.4  # of the volume at the roots, and of the way over the head until it is whole
+LOW, RISES = 0.4, 0.3  # of the volume at the roots, and of the way over the head until it is whole
 LIMP = 3.5  # steps along strands, over which they bend from the head
 THIN_ENDS, CURVED_IN = 0.6, 0.14  # of the volume and of the radius, that tips have less
 SLEEK = 0.45  # how much it shines
 AT_A_POINT = 0.01  # share of the way out in normals: where strands meet there is no triangle
-DARK = 0.5  # of the light, within
 
 
 class _Strands(NamedTuple):
@@ -71,18 +70,8 @@ def falling_hair(cut: Fall, scalp: Scalp, head: Any, colour: FloatArray, length:
     for side in (-1.0, 1.0):
         strands = _strands(cut, side, head, middle, skin, ear[1] - cut.below * length)
         sides.append(_surface(strands, side, colour, is_inside=False))
-        sides.append(_surface(strands, side, DARK * colour, is_inside=True))
+        sides.append(_surface(strands, side, colour, is_inside=True))
     return _joined(sides)
-
-
-def _slerp(first: FloatArray, second: FloatArray, share: FloatArray) -> FloatArray:
-    """Directions from the first to the second ones, (n, 3), at shares (m,); shape (n, m, 3)."""
-    angle = np.arccos(np.clip((first * second).sum(axis=1), -1.0, 1.0))[:, None, None]
-    share = share[None, :, None]
-    turned = (
-        np.sin((1.0 - share) * angle) * first[:, None] + np.sin(share * angle) * second[:, None]
-    )
-    return np.asarray(turned / np.sin(angle))
 
 
 def _strands(
@@ -102,14 +91,15 @@ def _strands(
     flat = np.stack([side * np.sin(angle), np.zeros(STRANDS), np.cos(angle)], axis=-1)
     leave = np.cos(WIDEST) * flat + [0.0, np.sin(WIDEST), 0.0]
     over, drop = np.linspace(0.0, 1.0, SAMPLES), np.linspace(0.0, 1.0, SAMPLES)[1:]
-    ways = _slerp(roots, leave, over)
+    pairs = zip(roots, leave, strict=True)
+    ways = np.array([scipy.spatial.geometric_slerp(*pair, over) for pair in pairs])
     # Beside the face the outer side comes round to the inner one.
     beside = np.clip((angle - EDGE) / ROUNDED, 0.02, 1.0)[:, None]
     risen = LOW + (1.0 - LOW) * np.sin(0.5 * np.pi * np.clip(over / RISES, 0.0, 1.0))
     thick = cut.volume * risen * np.sqrt(1.0 - (1.0 - beside) ** 2)
     grids = []
     for off in (np.zeros_like(thick), thick):
-        grid = middle + (skin(ways) + CLEAR * beside + off)[..., None] * ways
+        grid = middle + (skin(ways) + CLEAR + off)[..., None] * ways
         narrower = 1.0 - CURVED_IN * drop**2
         start = grid[:, -1]
         wide = np.linalg.norm((start - middle)[:, [0, 2]], axis=1)
@@ -117,7 +107,10 @@ def _strands(
         fall = middle + wide[..., None] * flat[:, None]
         fall[..., 1] = start[:, 1:2] + drop * (end - RAGGED - start[:, 1:2])
         bent = np.concatenate([grid, fall], axis=1)
-        grids.append(scipy.ndimage.gaussian_filter1d(bent, LIMP, axis=1, mode="nearest"))
+        # Roots stay where they are.
+        beyond = np.pad(bent, ((0, 0), (SAMPLES, 0), (0, 0)), "reflect", reflect_type="odd")
+        smooth = scipy.ndimage.gaussian_filter1d(beyond, LIMP, axis=1, mode="nearest")
+        grids.append(smooth[:, SAMPLES:])
     return _cut_off(grids[0], grids[1], end, side * 88.0 * angle)
 
 
@@ -155,7 +148,9 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     faces = halved(points, quads_between(rows, closed=False))
     if (side > 0.0) != is_inside:
         faces = faces[:, ::-1]
-    out = unit((high - low).reshape(-1, 3)) * (-1.0 if is_inside else 1.0)
+    normals = unit(vertex_normals(points, faces) + AT_A_POINT * unit((high - low).reshape(-1, 3)))
+    if is_inside:
+        normals = unit(normals - [0.0, 2.0, 0.0])  # turned from lamps, which do not get there
     striation = np.concatenate(
         [
             np.broadcast_to(across[:, None, None], (*along.shape, 1)),
@@ -168,7 +163,7 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     return Part(
         name=HAIR,
         vertices=points.astype(np.float32),
-        normals=unit(vertex_normals(points, faces) + AT_A_POINT * out).astype(np.float32),
+        normals=normals.astype(np.float32),
         faces=faces,
         colours=np.tile(colour, (len(points), 1)).astype(np.float32),
         bone="cranium",
