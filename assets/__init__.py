@@ -9,7 +9,7 @@ The built-in head ships as data; docs/head.md says what it was fitted to.
 """
 
 from .errors import AssetError
-from .loading import available, load
+from .loading import load
 from .meshes import Mesh, read_mesh
 from .model import Eye, FineShape, Head, Layer, Part, Plane, Segment, Wrinkles
 
@@ -24,7 +24,6 @@ __all__ = [
     "Plane",
     "Segment",
     "Wrinkles",
-    "available",
     "load",
     "read_mesh",
 ]

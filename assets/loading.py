@@ -18,12 +18,15 @@ from .data_files import read_arrays, read_toml
 from .errors import AssetError
 from .eyeballs import with_irises
 from .model import Eye, Head, Layer, Part, Plane
-from .sheets import make_plane
+from .sheets import CELL, COLUMNS, ROWS, make_grid
 
 FOLDER = Path(__file__).parent
 HEAD_FILE = FOLDER / "data" / "head.npz"
 RIG_FILE = FOLDER / "rigs" / "face.toml"
 WORDS_FILE = FOLDER / "words.toml"
+ARRAYS = (  # of the data file, that are fields of a head as they are
+    "vertices faces landmarks bone_depth mandible_weight jaw_axis mirror uv".split()
+)
 LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
     {
         "Action units": FOLDER / "action_units.toml",
@@ -32,11 +35,6 @@ LAYER_FILES = MappingProxyType(  # title -> file, from the lowest layer up
         "ARKit shapes": FOLDER / "arkit.toml",
     }
 )
-
-
-def available() -> tuple[str, ...]:
-    """Return the names that `load` knows."""
-    return ("head", "plane")
 
 
 @overload
@@ -48,84 +46,39 @@ def load(name: str) -> Head | Plane: ...
 def load(name: str) -> Head | Plane:
     """Load the asset called `name` ("head" or "plane"); its arrays are read-only.
 
-    Raises AssetError for an unknown name and for a missing or broken file.
+    Raises AssetError for an unknown name, and for a missing or broken file.
     """
     if name == "head":
         return load_head()
     if name == "plane":
-        return make_plane()
-    raise AssetError(f"no asset is called {name!r}; available: {', '.join(available())}")
+        return Plane(*make_grid(COLUMNS, ROWS, CELL))
+    raise AssetError(f"no asset is called {name!r}; available: head, plane")
 
 
 def load_head(head_file: Path = HEAD_FILE) -> Head:
     """Read a head from its data file, and its rig and layers of controls from text files.
 
-    The image of the skin lies beside the data file, as a PNG file of the same name; so do the files
-    of its tones (`_tints.npz`), of its wrinkles (`_wrinkles.npz`), of its classes
-    (`_segments.png`), of the light on it (`_ambient_occlusion.npz`), of its fine shape
-    (`_fine_shape.npz`), of the finer meshes (`_finer.npz`) and of how people differ (`_modes.npz`).
-    All eight are read only when they are asked for.
-
-    Raises AssetError when the data file is missing or incomplete, or a text file is not TOML.
+    Raises AssetError when one of these is missing or broken.
     """
     arrays = read_arrays(head_file)
-    try:
-        return _assemble(arrays, head_file, read_toml(RIG_FILE), _read_layers())
-    except KeyError as error:
-        raise AssetError(f"{head_file} has no array {error}; install risorius again") from error
-
-
-def _read_layers() -> tuple[Layer, ...]:
-    """Layers of controls from the lowest up; a missing file is no layer."""
-    found = ((title, path, read_toml(path)) for title, path in LAYER_FILES.items())
-    return tuple(Layer(title, path.name, rows) for title, path, rows in found if rows)
+    names, eyes = arrays["anatomy_names"].tolist(), _eyes(arrays)
+    rings = [name for name in arrays if name.startswith("ring_")]
+    return Head(
+        **{name: arrays[name] for name in ARRAYS},
+        anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
+        rings={name.removeprefix("ring_"): arrays[name] for name in rings},
+        eyes=eyes,
+        parts=with_irises(_parts(arrays), eyes),
+        face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
+        file=head_file,
+        rig=read_toml(RIG_FILE),
+        layers=tuple(Layer(title, p.name, read_toml(p)) for title, p in LAYER_FILES.items()),
+    )
 
 
 def read_words() -> Mapping[str, Any]:
-    """Plain words for controls: tables of `names` and `synonyms`, the `order` of groups.
-
-    Raises AssetError when the file is not TOML.
-    """
+    """Plain words for controls: tables of `names` and `synonyms`, the `order` of groups."""
     return read_toml(WORDS_FILE)
-
-
-def _assemble(
-    arrays: dict[str, npt.NDArray[Any]],
-    head_file: Path,
-    rig: dict[str, Any],
-    layers: tuple[Layer, ...],
-) -> Head:
-    rings = {
-        name.removeprefix("ring_"): array
-        for name, array in arrays.items()
-        if name.startswith("ring_")
-    }
-    names, eyes = arrays["anatomy_names"].tolist(), _eyes(arrays)
-    return Head(
-        vertices=arrays["vertices"],
-        faces=arrays["faces"],
-        landmarks=arrays["landmarks"],
-        bone_depth=arrays["bone_depth"],
-        mandible_weight=arrays["mandible_weight"],
-        jaw_axis=arrays["jaw_axis"],
-        mirror=arrays["mirror"],
-        anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
-        rings=rings,
-        eyes=eyes,
-        parts=with_irises(_parts(arrays), eyes),
-        uv=arrays["uv"],
-        face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
-        albedo_file=head_file.with_suffix(".png"),
-        tints_file=head_file.with_name(f"{head_file.stem}_tints.npz"),
-        wrinkles_file=head_file.with_name(f"{head_file.stem}_wrinkles.npz"),
-        segments_file=head_file.with_name(f"{head_file.stem}_segments.png"),
-        ambient_occlusion_file=head_file.with_name(f"{head_file.stem}_ambient_occlusion.npz"),
-        fine_shape_file=head_file.with_name(f"{head_file.stem}_fine_shape.npz"),
-        finer_file=head_file.with_name(f"{head_file.stem}_finer.npz"),
-        modes_file=head_file.with_name(f"{head_file.stem}_modes.npz"),
-        rig=rig,
-        layers=layers,
-    )
 
 
 def _eyes(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Eye, ...]:

@@ -10,7 +10,6 @@ Source: Kähler et al. 2003, section 5 (the face mesh with 2030 triangles, the p
 landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" (iBug 68 points).
 """
 
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
@@ -21,7 +20,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .data_files import Image, read_arrays_of, read_image
+from .data_files import Image, read_arrays, read_image
 from .topology import quarter
 
 FloatArray = npt.NDArray[np.float64]
@@ -202,16 +201,10 @@ class Head:
         piece without seams, so that U = V.
     face_uv: numbers of the texture coordinates of each face's corners, shape (F, 3), int32; the
         same numbers as `faces`.
-    albedo_file: the image of the skin.
-    tints_file: maps with which that image takes on another tone.
-    wrinkles_file: the map of its wrinkles.
-    segments_file: the map of what is nose, lip, neck, ...
-    ambient_occlusion_file: the map of the light that reaches it.
-    fine_shape_file: the map of its fine shape.
-    finer_file: what the finer meshes of the same form need; read by `finer`.
-    rig: the parsed rig file, {} where there is none.
-    layers: action units, expressions, visemes, ARKit shapes, from the lowest up; () where there
-        are no files.
+    file: what it was read from. The maps and meshes that simulating it needs not lie beside it
+        and are read when they are asked for; all of them raise AssetError where they cannot be.
+    rig: the parsed rig file.
+    layers: action units, expressions, visemes, ARKit shapes, from the lowest up.
     """
 
     vertices: FloatArray
@@ -227,14 +220,7 @@ class Head:
     parts: tuple[Part, ...]
     uv: SingleArray
     face_uv: IndexArray
-    albedo_file: Path
-    tints_file: Path
-    wrinkles_file: Path
-    segments_file: Path
-    ambient_occlusion_file: Path
-    fine_shape_file: Path
-    finer_file: Path
-    modes_file: Path
+    file: Path
     rig: dict[str, Any]
     layers: tuple[Layer, ...]
 
@@ -247,51 +233,38 @@ class Head:
             for name, row in rows.items()
         }
 
-    @property
-    def fingerprint(self) -> int:
-        """A number that tells this mesh from any other: what was made from it fits it alone."""
-        return zlib.crc32(self.faces.tobytes(), zlib.crc32(self.vertices.tobytes()))
+    def beside(self, ending: str) -> Path:
+        """One of the files beside its own."""
+        return self.file.with_name(self.file.stem + ending)
 
     @cached_property
     def albedo(self) -> Image:
-        """The colour of the skin, sRGB, shape (H, W, 3), uint8; row 0 is v = 1.
-
-        Raises AssetError when the file is missing or no picture.
-        """
-        return read_image(self.albedo_file)
+        """The colour of the skin, sRGB, shape (H, W, 3), uint8; row 0 is v = 1."""
+        return read_image(self.beside(".png"))
 
     @cached_property
     def wrinkles(self) -> Wrinkles:
-        """Where the skin wrinkles, and like what; arrays read-only.
-
-        Raises AssetError when the file is missing, broken or that of another head.
-        """
-        names = ("map", "steepest", "across")
-        arrays = read_arrays_of(self.fingerprint, self.wrinkles_file, names)
+        """Where the skin wrinkles, and like what; arrays read-only."""
+        arrays = read_arrays(self.beside("_wrinkles.npz"))
         return Wrinkles(arrays["map"], float(arrays["steepest"]), arrays["across"])
 
     @cached_property
     def segments(self) -> Image:
-        """What each texel belongs to, numbers of `Segment`, shape (H, W), uint8; row 0 is v = 1.
-
-        Raises AssetError when the file is missing or no picture.
-        """
-        return read_image(self.segments_file, mode="L")
+        """What each texel belongs to, numbers of `Segment`, shape (H, W), uint8; row 0 is v = 1."""
+        return read_image(self.beside("_segments.png"), mode="L")
 
     @cached_property
     def ambient_occlusion(self) -> Image:
         """How open the skin is to light from all around, 255 = wholly; shape (H, W), uint8.
 
-        Texel by texel that of `albedo`. Raises AssetError when the file is missing, broken or that
-        of another head.
+        Texel by texel that of `albedo`.
         """
-        name, file = "ambient_occlusion", self.ambient_occlusion_file
-        return read_arrays_of(self.fingerprint, file, (name,))[name]
+        return read_arrays(self.beside("_ambient_occlusion.npz"))["ambient_occlusion"]
 
     @cached_property
     def fine_shape(self) -> FineShape:
-        """The fine shape of the skin; AssetError for a file that is missing or of another head."""
-        arrays = read_arrays_of(self.fingerprint, self.fine_shape_file, ("steps", "steepest"))
+        """The fine shape of the skin."""
+        arrays = read_arrays(self.beside("_fine_shape.npz"))
         slopes = np.cumsum(arrays["steps"], axis=0, dtype=np.uint8)  # steps take less room
         slopes.flags.writeable = False
         return FineShape(slopes, float(arrays["steepest"]))
@@ -299,15 +272,13 @@ class Head:
     def finer(self, level: int) -> FineMesh:
         """The same form with 4 (level 1) or 16 (level 2) triangles for each one; arrays read-only.
 
-        Read from `finer_file` at every call. Raises ValueError for another level, AssetError when
-        the file is missing, broken or that of another head.
+        Read at every call. Raises ValueError for another level.
         """
         if level not in FINER_LEVELS:
             raise ValueError(
                 f"level was {level!r}; allowed are 1 (4 triangles for each one) and 2 (16)"
             )
-        names = ("added_vertices", "normals")
-        arrays = read_arrays_of(self.fingerprint, self.finer_file, names)
+        arrays = read_arrays(self.beside("_finer.npz"))
         faces, count = self.faces, len(self.vertices)
         edges = []
         for _ in range(level):

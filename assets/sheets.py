@@ -7,16 +7,11 @@ about as wide as the figure shows.
 
 import numpy as np
 
-from .model import FloatArray, IndexArray, Plane
+from .model import FloatArray, IndexArray
 
 COLUMNS = 11  # of cells along x; chosen: 2 * 7 * 11 = 154
 ROWS = 7  # along y
 CELL = 10.0  # [mm]; chosen, so that the plane is as large as a hand
-
-
-def make_plane() -> Plane:
-    """Build the rectangle in the plane z = 0, centred on the origin, facing +z."""
-    return Plane(*make_grid(COLUMNS, ROWS, CELL))
 
 
 def make_grid(columns: int, rows: int, cell: float) -> tuple[FloatArray, IndexArray]:

@@ -24,8 +24,7 @@ import scipy
 
 from risorius.geometry.colour import to_linear, to_screen
 
-from ..data_files import Image, read_arrays_of
-from ..errors import AssetError
+from ..data_files import Image, read_arrays
 from ..eyeballs import with_irises
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
@@ -319,12 +318,6 @@ def in_own_colours(
     return coloured(person, angle=angle, blood=blood, irises=irises or drawn, features=features)
 
 
-def own_angle() -> float:
-    """ITA [deg] of the picture that is shipped."""
-    tints = _tints()
-    return float(np.interp(-OWN.melanin, -tints.melanins, tints.angles))
-
-
 def _changes(melanin: float, blood: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Density of melanin and blood that comes to the picture's, and light of hair; (3,) each."""
     amounts = [complexion.melanin for complexion in COMPLEXIONS]
@@ -344,11 +337,8 @@ def _tints() -> _Tints:
 
     head = load("head")
     soft_ones = ("melanin", "blood", "lips", "beard", "brow", "scalp")
-    names = (*soft_ones, "hair", "skin")
-    arrays = read_arrays_of(head.fingerprint, head.tints_file, names)
+    arrays = read_arrays(head.beside("_tints.npz"))
     height, width = head.albedo.shape[:2]
-    if arrays["hair"].shape != (height, width):
-        raise AssetError(f"{head.tints_file} is of another size than {head.albedo_file}")
     soft = {}
     for name in soft_ones:
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)

@@ -27,7 +27,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..data_files import read_arrays_of
+from ..data_files import read_arrays
 from ..loading import load
 from ..model import FloatArray
 from ..norms import NORMS, Sample, measures_of
@@ -192,7 +192,7 @@ class PersonSpace:
 def person_space() -> PersonSpace:
     """The space whose middle is the mean of people, read from the data that ship."""
     head = load("head")
-    arrays = read_arrays_of(head.fingerprint, head.modes_file, ("modes", "weights"))
+    arrays = read_arrays(head.beside("_modes.npz"))
     modes, own = (arrays[name].astype(np.float64) for name in ("modes", "weights"))
     mean = head.vertices - np.tensordot(own, modes, 1)
     sides = [

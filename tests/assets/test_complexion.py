@@ -25,8 +25,9 @@ from risorius.assets.identities import (
     recoloured,
     sample_identity,
 )
-from risorius.assets.identities.complexion import own_angle, typology_angle
+from risorius.assets.identities.complexion import _tints, typology_angle
 from risorius.assets.model import Head, Segment
+from risorius.assets.pigments import OWN
 from risorius.geometry.colour import to_linear
 
 TONES = (70.0, 55.0, 41.0, 28.0, 10.0, -10.0, -30.0, -55.0)
@@ -52,7 +53,9 @@ def skin_of(head: Head, image: npt.NDArray[np.uint8]) -> Light:
 
 def test_own_tone_is_the_shipped_picture(head: Head) -> None:
     """Byte by byte."""
-    assert (recoloured(own_angle()) == head.albedo).all()
+    tints = _tints()
+    angle = np.interp(-OWN.melanin, -tints.melanins, tints.angles)
+    assert (recoloured(float(angle)) == head.albedo).all()
 
 
 def test_tones_are_in_order(head: Head) -> None:
