@@ -51,7 +51,7 @@ from .landmark_file import (
 )
 from .mesh_validation import SkinPiece, check_manifold, check_openings, skin_of, without_bag
 from .organs import FittedSkin, place_eyes, place_parts, with_eyelid_rims
-from .painting import Layout, drawn_over, maps_in, own_light, own_picture, plain_picture, spread_uv
+from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
 ORIENTING = slice(17, COUNT)  # without the jaw line, which everybody places elsewhere
@@ -140,14 +140,13 @@ def fit(
     landmarks: IndexArray,
     *,
     points: FloatArray | None = None,
-    template: Head | None = None,
 ) -> FittedHead:
-    """Fit a head (`template`, the built-in one unless told) to a mesh with 68 landmarks.
+    """Fit the built-in head to a mesh with 68 landmarks.
 
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
     (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
     """
-    known = load("head") if template is None else template
+    known = load("head")
     are_numbers = points is None
     points = mesh.vertices[landmarks] if points is None else points
     skin = skin_of(mesh.vertices, mesh.faces, landmarks)
@@ -228,7 +227,7 @@ def _painted(
         own = own_picture(mesh.texture, whole.file_faces, whole.is_turned)
     if own is not None and skin is whole:
         return Painted(own[1], own[0], *maps_in(known, built_in, own[1]))
-    picture, layout = plain_picture(known), built_in
+    (picture, light), layout = plain_skin(known), built_in
     if skin is not whole and (own is not None or mesh.colours is not None):
         normals = vertex_normals(whole.vertices, whole.faces)
         nearest = nearest_on(whole.vertices, normals, skin.vertices, skin.faces)
@@ -238,7 +237,7 @@ def _painted(
     elif mesh.colours is not None:
         colours = mesh.colours[whole.file_vertices].astype(np.float64)
         picture = drawn_over(picture, layout, colours[whole.faces])
-    return Painted(built_in, picture, known.wrinkles, known.segments, own_light(known))
+    return Painted(built_in, picture, known.wrinkles, known.segments, light)
 
 
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:

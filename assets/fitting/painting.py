@@ -19,21 +19,19 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 from scipy import sparse
-from scipy.sparse import csgraph
 from scipy.sparse.linalg import cg
 
 from risorius.geometry.closest import SurfacePoints
 from risorius.geometry.normals import cross_products
 from risorius.geometry.texels import Texels, rates
 
-from ..data_files import Image
+from ..data_files import Image, read_arrays
 from ..errors import AssetError
 from ..model import FloatArray, Head, IndexArray, Segment, SingleArray, Wrinkles
 from ..pictures import LARGEST, Texture
 
 BoolArray = npt.NDArray[np.bool_]
 
-EARS = (Segment.RIGHT_EAR, Segment.LEFT_EAR)
 TRUSTED_WITHIN = 6.0  # [mm] from a foot: the trust in it falls to half
 FACING = 0.3  # least cosine between the normals of a vertex and of its foot
 COMPETING, APART = 24, 2.0  # feet, and [mm]: so near to each other while vertices are farther
@@ -41,8 +39,6 @@ HOLD = 4.0, 12.0  # times trust, where it is little and where it is full; agains
 CLOSEST = 0.05  # [mm] between neighbours: closer ones hold each other no more
 PRECISE, MOST_ROUNDS = 1e-5, 1000  # of what holds; rounds in which it is solved
 LEAST = 1e-6  # trust, so that every vertex finds a colour
-BLOCK, BLURS, NEAR = 8, (12.0, 5.0, 2.0, 1.0), 0.1  # [texels], [blocks], share of what is seen
-MARGIN = 6  # [texels] that are drawn over around an ear
 SIZE = 1024  # [texels] each way of maps that are drawn anew
 STEEPEST = 99.9  # [percent] of slopes that a map of wrinkles holds as they are
 
@@ -65,7 +61,8 @@ def spread_uv(
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
     trust = 1.0 / (1.0 + (away / TRUSTED_WITHIN) ** 2)
     trust[(across * normals).sum(axis=1) < FACING] = 0.0
-    trust[nearest.interpolate(_foldedness(known)) > 0.3] = 0.0
+    is_folded = read_arrays(known.beside("_plain.npz"))["is_folded"]  # on ears and in nostrils
+    trust[nearest.interpolate(is_folded.astype(np.float64)) > 0.3] = 0.0
     # A neck or shoulders below those of the built-in head all find its rim.
     rim = np.concatenate([known.rings["rim_left"], known.rings["rim_right"]])
     on_rim = nearest.interpolate(np.isin(np.arange(len(known.vertices)), rim).astype(np.float64))
@@ -110,69 +107,17 @@ def is_behind_others(
     return is_behind
 
 
-def _foldedness(known: Head) -> FloatArray:
-    """1 at the built-in head's vertices on ears and in nostrils, 0 elsewhere, shape (V,)."""
-    size = len(known.segments)
-    columns, rows = (known.uv * [size, -size] + [0.0, size]).T.astype(np.int64)
-    there = known.segments[rows.clip(0, size - 1), columns.clip(0, size - 1)]
-    is_folded = np.isin(there, EARS)
-    rims = np.concatenate([known.rings["nostril_left"], known.rings["nostril_right"]])
-    is_rim = np.isin(np.arange(len(known.vertices)), rims)
-    links = np.concatenate([known.faces[:, [0, 1]], known.faces[:, [1, 2]]])
-    links = links[~is_rim[links].any(axis=1)]
-    graph = sparse.coo_array((np.ones(len(links)), links.T), shape=(len(is_rim),) * 2)
-    piece = csgraph.connected_components(graph, directed=False)[1]
-    is_folded |= piece != np.bincount(piece).argmax()  # rims, and the pits that they cut off
-    return is_folded.astype(np.float64)
+def plain_skin(known: Head) -> tuple[Image, Image]:
+    """The built-in picture with skin over its ears and nostrils, and light without their shade.
 
-
-def plain_picture(known: Head) -> Image:
-    """The built-in picture with the skin around ears and nostrils drawn over them.
-
-    Another head has them elsewhere, as form, which the light shows.
+    Another head has them elsewhere, as form, which the light shows. What is drawn ships as data,
+    as `plain_picture` and `own_light` of revision c11b6d62 drew it.
     """
-    import PIL.Image  # which to load a head takes no time for
-    import PIL.ImageDraw
-
-    height, width = known.segments.shape
-    is_folded = np.isin(known.segments, EARS)
-    drawn = PIL.Image.new("L", (width, height))
-    places = known.uv[known.faces[_foldedness(known)[known.faces].all(axis=1)]]
-    for corners in places * [width, -height] + [0.0, height]:
-        PIL.ImageDraw.Draw(drawn).polygon([tuple(corner) for corner in corners], fill=255)
-    is_folded = scipy.ndimage.binary_dilation(
-        is_folded | (np.asarray(drawn) > 0), iterations=MARGIN
-    )
-    # Coarse blocks will do: what fills a hole is smooth.
-    rows, columns = height // BLOCK, width // BLOCK
-    inside = slice(0, rows * BLOCK), slice(0, columns * BLOCK)
-    blocks = (rows, BLOCK, columns, BLOCK, -1)
-    is_skin = ~is_folded & (known.segments != Segment.HAIR)  # else ears would be grey with it
-    left = is_skin[inside].astype(np.float64)
-    share = left.reshape(blocks).mean(axis=(1, 3))
-    seen = (known.albedo[inside] * left[..., None]).reshape(blocks).mean(axis=(1, 3))
-    filled = np.zeros_like(seen)
-    for blur in BLURS:  # from far around to close by
-        size = (blur, blur, 0.0)
-        weight = scipy.ndimage.gaussian_filter(share, size)
-        is_near = weight[..., 0] > NEAR
-        filled[is_near] = (scipy.ndimage.gaussian_filter(seen, size) / np.maximum(weight, NEAR))[
-            is_near
-        ]
-    smooth = PIL.Image.fromarray(np.round(filled).astype(np.uint8)).resize((width, height))
-    over = scipy.ndimage.gaussian_filter(is_folded.astype(np.float32), 0.5 * MARGIN)[..., None]
-    picture: Image = np.round(over * np.asarray(smooth) + (1.0 - over) * known.albedo).astype(
-        np.uint8
-    )
-    return picture
-
-
-def own_light(known: Head) -> Image:
-    """The built-in head's ambient occlusion, but for the shade of its ears."""
-    is_ear = scipy.ndimage.binary_dilation(np.isin(known.segments, EARS), iterations=5 * MARGIN)
-    over = scipy.ndimage.gaussian_filter(is_ear.astype(np.float32), 2.0 * MARGIN)
-    light: Image = (255.0 * over + (1.0 - over) * known.ambient_occlusion).astype(np.uint8)
-    return light
+    drawn = read_arrays(known.beside("_plain.npz"))
+    picture, light = known.albedo.copy(), known.ambient_occlusion.copy()
+    picture[drawn["is_drawn"]] = drawn["colours"]
+    light[drawn["is_lit"]] = drawn["light"]
+    return picture, light
 
 
 @dataclass(frozen=True)
@@ -235,7 +180,7 @@ def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image, 
     segments = np.full((SIZE, SIZE), Segment.SKIN, np.uint8)
     segments[texels.rows, texels.columns] = sampled(known.segments, place)
     light = np.full((SIZE, SIZE), 255, np.uint8)
-    light[texels.rows, texels.columns] = sampled(own_light(known), place)
+    light[texels.rows, texels.columns] = sampled(plain_skin(known)[1], place)
     found = sampled(known.wrinkles.map, place)
     change = rates(own.corners, theirs.corners)
     slope = (found[:, :2] - 128.0) * (known.wrinkles.steepest / 127.0)
