@@ -191,7 +191,7 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
 
 def _grown_over(tints: _Tints, features: Features) -> SingleArray:
     """How much long hair covers each texel of the scalp."""
-    covered = GROWN * np.clip((_behind(tints, features) - 0.5) / 10.0, 0.0, 1.0)
+    covered = GROWN * np.clip((_behind(tints, features) - 3.0) / 10.0, 0.0, 1.0)
     return np.asarray(covered, dtype=np.float32)
 
 

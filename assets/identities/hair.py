@@ -29,9 +29,9 @@ BALD = 40.0  # [mm] behind which the hairline lies where the top is bald
 LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
-SUNK = 0.3  # [mm] under the skin, for each before the hairline
+CLEAR, SUNK = 0.5, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
 CLOSE = 0.3  # how much denser curls are
-HEM = 13.0  # [mm] behind the hairline, from where hair is dense
+PAINTED, HEM = 3.0, 26.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,8 @@ CUTS: Mapping[str, Cut | Fall | None] = MappingProxyType(
         "centred": Fall(0.0, 106.0, 10.0),
         "aside": Fall(-22.0, 100.0, 11.0),
         "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
-        "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5),
-        "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=12.0),
+        "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5, behind=40.0),
+        "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=40.0),
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
         "brushed": Cut((0.15, 0.4, 0.9), 9.0, 28.0, 0.35, behind=18.0),
         "curly": Cut((0.1, 0.75, -0.6), 9.0, 20.0, 0.8, behind=18.0, curl=1.0),
@@ -162,10 +162,10 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long = length * long * smooth_step(0.0, cut.behind, behind)
     way = long[:, None] * (cut.lift * normals + np.sqrt(1.0 - cut.lift**2) * comb)
-    # Outside the hairline it is under the skin.
-    points = points + (SUNK * np.minimum(behind, 0.0))[:, None] * normals
+    # Far outside the hairline it is under the skin.
+    points = points + (CLEAR + SUNK * np.minimum(behind + 4.0, 0.0))[:, None] * normals
     curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
-    dense = np.minimum(behind / HEM, 2.0 + CLOSE * cut.curl)
+    dense = np.minimum((behind - PAINTED) / HEM, 2.0 + CLOSE * cut.curl)
     striation = np.column_stack([curled[1] * radius * angle, curled[0] * radius * away, way, dense])
     return Part(
         name=HAIR,

@@ -52,7 +52,7 @@ const float LONG = 11.0;                 // [mm] after which a strand is another
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const float SIDEWAYS = 6.0;              // how soon layers are whole, from their side to their front
-const float RAGGED = 0.4;                // of density, by strands: so hems are no lines
+const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
 const float LEAST_FACING = 0.12;         // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float FULL = 0.42;                 // more, where they lie close
@@ -78,8 +78,8 @@ void main() {
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
     float close = clamp(surface.dense - 2.0, 0.0, 1.0);
     float tall = 0.65 + (1.0 - 0.6 * close) * (0.5 * tones.x + 0.4 * tones.y);
-    float far = tall * smoothstep(0.0, 1.0, surface.dense + RAGGED * (tones.x + tones.y)) + FULL * close;
-    float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(4.0 * far, 0.0, 1.0);
+    float far = tall * smoothstep(0.0, 1.0, surface.dense + dot(RAGGED, tones)) + FULL * close;
+    float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(2.0 * far, 0.0, 1.0);
     // Seen from the side, a look goes past many strands; and upper layers are lines with gaps.
     cover = 1.0 - pow(1.0 - min(cover, 0.999), 1.0 / clamp(surface.facing, LEAST_FACING, 1.0));
     cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), min(3.0 * surface.layer, 1.0) * (1.0 - close));
