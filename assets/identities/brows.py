@@ -27,13 +27,13 @@ PARTS, LONGEST = 5, 6.5  # of each hair, and [mm]
 LID_LINE = 3.0  # [texels] that the lashes' roots are wide along the upper lid
 SOFT = 3.0  # [texels] by which what is between hairs is blurred
 # Along a brow, its thickness as a share of the greatest.
-PROFILE = (0.0, 0.6), (0.1, 0.85), (0.3, 1.0), (0.6, 0.8), (0.85, 0.45), (1.0, 0.12)
+PROFILE = (0.0, 0.6), (0.1, 0.85), (0.3, 1.0), (0.6, 0.8), (0.85, 0.5), (1.0, 0.25)
 UNDER = 0.9  # of a brow's darkness, that is left between its hairs
 
 # Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
 DRAWN = (
-    np.array([(5.6, 12.5, 5.0, 8.0, 42.0, 0.95), (0.9, 1.2, 1.2, 1.4, 2.0, 0.15)]),
-    np.array([(8.0, 10.5, 2.6, 8.0, 39.0, 0.95), (1.4, 1.6, 1.2, 1.6, 2.5, 0.22)]),
+    np.array([(5.8, 12.0, 4.6, 6.4, 41.0, 0.95), (0.9, 1.2, 1.2, 1.4, 2.0, 0.15)]),
+    np.array([(8.2, 10.5, 2.8, 5.6, 39.0, 0.95), (1.4, 1.6, 1.2, 1.6, 2.5, 0.22)]),
 )
 
 
@@ -88,8 +88,9 @@ def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
     line = scipy.interpolate.PchipInterpolator([first, middle, brows.peak, last], base + rises)
     count = round(DENSITY * brows.density * (last - first) * brows.thickness)
     along, across = random.uniform(0.0, 1.0, count), 0.24 * random.normal(size=count)
-    # They stand sparsely at the inner end.
-    kept = random.uniform(0.0, 1.0, count) < 0.3 + 0.7 * smooth_step(0.0, 0.22, along)
+    # They stand sparsely at both ends.
+    share = (0.3 + 0.7 * smooth_step(0.0, 0.22, along)) * (1.0 - smooth_step(0.6, 1.05, along))
+    kept = random.uniform(0.0, 1.0, count) < share
     along, across = along[kept], np.clip(across[kept], -0.55, 0.55)
     x = first + (last - first) * along
     root = line(x) + across * brows.thickness * np.interp(along, *np.array(PROFILE).T)
@@ -130,7 +131,7 @@ def _ends() -> tuple[float, float]:
     """How high brows begin on the built-in head, and x of their tails [mm]."""
     head = load("head")
     inner, outer = (head.vertices[head.landmarks[k]] for k in (22, 26))
-    return float(inner[1]) - 2.0, float(outer[0]) - 1.5
+    return float(inner[1]) - 4.5, float(outer[0]) - 1.5
 
 
 def _on_texture(places: FloatArray, side: float) -> npt.NDArray[np.float64]:
