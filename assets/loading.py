@@ -16,7 +16,6 @@ import numpy.typing as npt
 
 from .data_files import read_arrays, read_toml
 from .errors import AssetError
-from .eyeballs import with_irises
 from .model import Eye, Head, Layer, Part, Plane
 from .sheets import CELL, COLUMNS, ROWS, make_grid
 
@@ -61,14 +60,14 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
     Raises AssetError when one of these is missing or broken.
     """
     arrays = read_arrays(head_file)
-    names, eyes = arrays["anatomy_names"].tolist(), _eyes(arrays)
+    names = arrays["anatomy_names"].tolist()
     rings = [name for name in arrays if name.startswith("ring_")]
     return Head(
         **{name: arrays[name] for name in ARRAYS},
         anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
         rings={name.removeprefix("ring_"): arrays[name] for name in rings},
-        eyes=eyes,
-        parts=with_irises(_parts(arrays), eyes),
+        eyes=_eyes(arrays),
+        parts=_parts(arrays),
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         file=head_file,
         rig=read_toml(RIG_FILE),

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from risorius import assets
-from risorius.assets.eyeballs import IRISES
 from risorius.assets.identities import DARKEST, LIGHTEST
+from risorius.assets.identities.complexion import IRIS_SHARES
 from risorius.render import LIGHTS
 from risorius.schema import REST, MadeFrom, OneOf, Record, Within, called, parsed_toml, read
 
@@ -165,7 +165,7 @@ class SampleTable(Record):
     head: Head
     camera: Camera
     persons: Persons
-    irises: Annotated[Shares, _drawn_from(IRISES)]
+    irises: Annotated[Shares, _drawn_from(IRIS_SHARES)]
     lights: Annotated[Shares, _drawn_from(LIGHTS)]
 
     def goes_with(self, unit: str, others: Container[str]) -> bool:

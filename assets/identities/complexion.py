@@ -25,7 +25,6 @@ import scipy
 from risorius.geometry.colour import to_linear, to_screen
 
 from ..data_files import Image, read_arrays
-from ..eyeballs import with_irises
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
@@ -207,7 +206,7 @@ def coloured(
 
     The hair stays in other tones (`in_tone`). irises: None leaves them as they are.
     """
-    parts = person.parts if irises is None else with_irises(person.parts, person.eyes, irises)
+    parts = person.parts if irises is None else _with_irises(person.parts, irises)
     in_tone = partial(recoloured, blood=blood, features=features, haired_as=angle)
     return replace(
         person,
@@ -215,6 +214,20 @@ def coloured(
         parts=_with_hair(person, parts, angle, features),
         segments=_haired_segments(person.segments, features),
         in_tone=in_tone,
+    )
+
+
+def _with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
+    """Parts with eyeballs in a colour of IRIS_SHARES, else ValueError.
+
+    They ship as `assets/eyeballs.py` of revision 58023cbf painted them.
+    """
+    if name not in IRIS_SHARES:
+        raise ValueError(f"no eyes are {name!r}; allowed are {', '.join(IRIS_SHARES)}")
+    colours = iter(read_arrays(load("head").beside("_eyes.npz"))[name] / np.float32(255.0))
+    return tuple(
+        replace(part, colours=next(colours)) if part.name.startswith("eyeball") else part
+        for part in parts
     )
 
 
