@@ -89,8 +89,7 @@ def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
     count = round(DENSITY * brows.density * (last - first) * brows.thickness)
     along, across = random.uniform(0.0, 1.0, count), 0.24 * random.normal(size=count)
     # They stand sparsely at both ends.
-    share = (0.3 + 0.7 * smooth_step(0.0, 0.22, along)) * (1.0 - smooth_step(0.6, 1.05, along))
-    kept = random.uniform(0.0, 1.0, count) < share
+    kept = random.random(count) < np.interp(along, (0.0, 0.22, 0.6, 1.05), (0.3, 1.0, 1.0, 0.0))
     along, across = along[kept], np.clip(across[kept], -0.55, 0.55)
     x = first + (last - first) * along
     root = line(x) + across * brows.thickness * np.interp(along, *np.array(PROFILE).T)
