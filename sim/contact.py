@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from .landmarks import Array, mouth_line, polyline_distance
 from .skull import Eyeball
-from .substep import SEAL_AXES, SLIDES_PAST
+from .substep import SLIDES_PAST
 from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
@@ -46,14 +46,6 @@ class LipPairs(NamedTuple):
     seal: Array  # (P,) stiffness
     averaging: Array  # (P,) 1 / number of pairs its vertices are in
     members: npt.NDArray[np.int32]  # (M,) all vertices in pairs
-
-    def energy(self, moved: Array, grip: Grip) -> float:
-        """Energy stored in the seal for displacements (V, 3)."""
-        apart = moved[self.lower] - self.share[:, None] * moved[self.upper[:, 0]]
-        apart -= (1.0 - self.share)[:, None] * moved[self.upper[:, 1]]
-        apart[:, 1] -= grip.overlap
-        stored = self.seal * (apart**2 @ np.array(SEAL_AXES))
-        return float(grip.stiffness * stored.sum() / 2.0)
 
     def deepest(self, x: Array, rest: Array, pressed: float) -> float:
         """How far the lips cross at most at positions (V, 3), more than `pressed` and at rest [mm].

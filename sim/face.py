@@ -37,7 +37,7 @@ from .lids import turn_lids
 from .skull import Bones
 from .state import State
 from .substep import LONGEST_FRAME, advance, substeps_in, ticks_in
-from .tissue import carry, tissue_energy
+from .tissue import carry
 
 FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
 
@@ -277,18 +277,6 @@ class Simulation(Controls):
             "lids": skin.eyes.deepest(x),
             "teeth": skin.teeth.deepest(x, self._bones.mandible),
         }
-
-    def energy(self) -> float:
-        """Kinetic energy plus what the springs hold, in skin mass units times (mm/s)^2.
-
-        Relaxed muscles count as springs to the bone. While a muscle is active its pull is outside
-        work and is not counted, so the value is a measure of rest, not a conserved quantity.
-        """
-        skin, state = self._anatomy.skin, self._state
-        kinetic = float((skin.mass[:, None] * state.v**2).sum() / 2.0)
-        held = tissue_energy(state, skin.tissue)
-        edges = skin.edges.energy(state.x, state.x - state.carried)
-        return kinetic + held + edges + skin.lips.energy(state.x - skin.rest, self._grip)
 
 
 def checked_drag(

@@ -33,7 +33,6 @@ import numpy.typing as npt
 from ..jit import njit
 from .landmarks import Array
 from .rig import Tissue
-from .state import State
 from .surface import Surface
 
 AREAL_MASS = 1.0  # g/cm2: skin and fat about 1 cm thick; only ratios to stiffness matter
@@ -98,16 +97,6 @@ class EdgeSprings(NamedTuple):
             np.add.at(bound, self.edges[:, end], most)
         return bound
 
-    def energy(self, x: Array, offset: Array) -> float:
-        """Energy stored in all edges; `offset` is x minus the bone-carried rest."""
-        i, j = self.edges.T
-        edge = x[j] - x[i]
-        extension = np.linalg.norm(edge, axis=1) - self.rest_length
-        beyond = np.maximum(extension - self.strain_limit * self.rest_length, 0.0)
-        stored = self.stiffness * (extension**2 + (self.stiffening - 1.0) * beyond**2)
-        stored += self.shear * ((offset[j] - offset[i]) ** 2).sum(axis=1)
-        return float(stored.sum() / 2.0)
-
 
 def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
     """Mass of each vertex, shape (V,): its skin's, raised where the fixed step would be unstable.
@@ -144,12 +133,3 @@ def carry(state, rest, normals, weight, mandible):  # type: ignore[no-untyped-de
         inverse = 1.0 / np.sqrt(length)
         for k in range(3):
             carried_normals[i, k] *= inverse
-
-
-def tissue_energy(state: State, springs: TissueSprings) -> float:
-    """Energy stored in anchors and muscle attachments, measured from their far ends."""
-    offset = state.x - state.carried
-    across = (offset * state.normals).sum(axis=1)
-    stored = (springs.tangential + state.hold) * (offset**2).sum(axis=1)
-    stored += (springs.normal - springs.tangential) * across**2
-    return float(stored.sum() / 2.0)

@@ -1,4 +1,4 @@
-"""The compiled kernels against plain numpy written from the formulas, and forces against energy."""
+"""The compiled kernels against plain numpy written from the formulas."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from risorius.sim.lids import turn_lids
 from risorius.sim.skull import REST
 from risorius.sim.substep import SEAL_AXES, edge_forces, hold_lips, substeps_in, tissue_forces
-from risorius.sim.tissue import carry, tissue_energy
+from risorius.sim.tissue import carry
 from tests.sim.poses import FRAME, settled_displacement
 
 Array = npt.NDArray[np.float64]
@@ -61,23 +61,6 @@ def test_tissue_forces(stirred: sim.Simulation) -> None:
     expected -= springs.tangential[:, None] * (away - across) + springs.normal[:, None] * across
     assert np.array_equal(state.offset, away)
     assert np.allclose(state.force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
-
-
-def test_forces_are_the_gradient_of_the_energy(stirred: sim.Simulation) -> None:
-    """Without muscle pull and contact, forces are minus the slope of the energy."""
-    skin = stirred._anatomy.skin
-    state = stirred._state._replace(x=stirred._state.x.copy())
-    state.pull[:] = 0.0
-    tissue_forces(state, skin.tissue)
-    edge_forces(state, skin.edges)
-
-    def energy(at: Array) -> float:
-        held = tissue_energy(state._replace(x=at), skin.tissue)
-        return held + skin.edges.energy(at, at - state.carried)
-
-    way = np.sin(np.arange(state.x.size)).reshape(state.x.shape)
-    slope = (energy(state.x + 1e-5 * way) - energy(state.x - 1e-5 * way)) / 2e-5
-    assert -slope == pytest.approx(float((state.force * way).sum()), rel=1e-4)
 
 
 def test_seal_is_an_implicit_spring(
