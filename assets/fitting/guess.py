@@ -6,9 +6,6 @@
 The built-in face is laid on the mesh as one lays a cloth: each of its points goes to the nearest
 place that faces the same way, and a warp that bends ever more follows what they did.
 
-Before anything is placed, `upright` lays that face on the mesh in each of the 24 ways in which axes
-can point, at several sizes, since nobody knows how much of neck and shoulders hangs on the mesh.
-
 Source: Amberg, Romdhani, Vetter 2007, "Optimal step nonrigid ICP" (stiffness that falls from step
 to step; here that of a smoothing thin-plate warp).
 """
@@ -39,8 +36,6 @@ MOST_POINTS = 300  # of that part (chosen; more take longer and find the same)
 AROUND = np.array([60.0, 90.0, 120.0])  # [mm] around the first points, in which a face ends
 STIFFNESSES = (1e4, 3e3, 1e3, 300.0, 100.0, 30.0)  # [mm] of the warp, from step to step
 REACH = 18.0  # [mm] beyond which a place on the mesh is not what a point of the face looks for
-SHARES = (1.0, 0.85, 0.7, 0.55, 0.4)  # of the mesh's height that the built-in head may be
-MOST_LOOKED_AT = 1500  # points of the mesh, to find which way it is up
 
 Known = Mapping[int, npt.ArrayLike]  # points (3,) [unit of the mesh] by the landmark's number
 
@@ -133,33 +128,14 @@ def _feet(
     return nearest_on(laid[chosen], normals, vertices, faces).interpolate(vertices)
 
 
-def upright(vertices: FloatArray, radius: float) -> Similarity:
-    """What brings a mesh (V, 3) into the middle, `radius` large, and most likely upright."""
+def centred(vertices: FloatArray, radius: float) -> Similarity:
+    """What brings a mesh (V, 3) into the middle, `radius` large, as its file has it."""
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
-    size = max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
-    scale = radius / size
-    some = vertices[:: max(len(vertices) // MOST_LOOKED_AT, 1)]
-    head = load("head")
-    face = head.vertices[head.vertices[:, 1] > head.vertices[head.landmarks[8], 1] - 10.0]
-    best = min(axes_turned(), key=lambda turn: _off(scale * (some - middle) @ turn.T, face))
-    return Similarity(scale, best, -scale * best @ middle)
+    scale = radius / max(float(np.linalg.norm(vertices - middle, axis=1).max()), 1e-12)
+    return Similarity(scale, np.eye(3), -scale * middle)
 
 
 def axes_turned() -> list[FloatArray]:
     """The 24 rotations that take axes to axes, the one that leaves them alone first."""
     turns = np.rint(scipy.spatial.transform.Rotation.create_group("O").as_matrix())
     return sorted(turns, key=lambda turn: -float(np.trace(turn)))
-
-
-def _off(points: FloatArray, face: FloatArray) -> float:
-    """How far a face is from points at the best of SHARES, as a share of its height."""
-    tree, height = scipy.spatial.cKDTree(points), float(np.ptp(face[:, 1]))
-    top, low = float(points[:, 1].max()), float(points[:, 1].min())
-    found = []
-    for share in SHARES:
-        scale = share * (top - low) / height
-        laid = scale * (face - (0.0, face[:, 1].max(), face[:, 2].mean()))
-        upper = points[points[:, 1] > top - share * (top - low)]
-        laid += (upper[:, 0].mean(), top, upper[:, 2].mean())
-        found.append(float(tree.query(laid)[0].mean() / (scale * height)))
-    return min(found)

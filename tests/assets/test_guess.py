@@ -6,11 +6,10 @@ import pytest
 
 from risorius import assets
 from risorius.assets import AssetError
-from risorius.assets.fitting.guess import FIRST, axes_turned, guess, upright
+from risorius.assets.fitting.guess import FIRST, centred, guess
 from risorius.assets.fitting.warp import nearest_on
 from risorius.assets.identities import make_person, sample_identity
 from risorius.assets.meshes import Mesh
-from risorius.assets.model import FloatArray
 from risorius.sim.landmarks import MIRRORED
 from tests.heads import METRES, Array, Stranger, stranger
 
@@ -92,21 +91,9 @@ def test_points_of_no_face_are_refused(order: npt.NDArray[np.int64], words: str)
     assert "\n" not in str(raised.value)
 
 
-def built_in(part: str) -> FloatArray:
-    """The built-in head, its face alone, or the head above a shirt."""
-    head = assets.load("head")
-    if part == "face":
-        return head.vertices[head.vertices[:, 2] > 0.0]
-    shirts = [each.vertices for each in head.parts if "shirt" in each.name]
-    return np.vstack([head.vertices, *shirts]) if part == "bust" else head.vertices
-
-
-@pytest.mark.parametrize("part", ["head", "face", "bust"])
-def test_a_head_is_put_upright_from_any_side(part: str) -> None:
-    """Whatever axis points up or ahead in its file, and in any unit."""
-    vertices = built_in(part)
-    for turn in axes_turned()[::5]:
-        found = upright(0.001 * vertices @ turn.T + 7.0, 140.0)
-        assert found.rotation @ turn == pytest.approx(np.eye(3))
-        seen = found.points(0.001 * vertices @ turn.T + 7.0)
-        assert np.linalg.norm(seen, axis=1).max() == pytest.approx(140.0)
+def test_a_mesh_is_brought_into_the_middle() -> None:
+    """In any unit, as large as is asked."""
+    vertices = assets.load("head").vertices
+    seen = centred(0.001 * vertices + 7.0, 140.0).points(0.001 * vertices + 7.0)
+    assert np.linalg.norm(seen, axis=1).max() == pytest.approx(140.0)
+    assert seen.max(axis=0) == pytest.approx(-seen.min(axis=0))

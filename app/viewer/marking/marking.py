@@ -17,7 +17,7 @@ import numpy.typing as npt
 import scipy
 
 from risorius.assets.errors import AssetError
-from risorius.assets.fitting.guess import FIRST, guess, placing, upright
+from risorius.assets.fitting.guess import FIRST, centred, guess, placing
 from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
 from risorius.assets.fitting.mesh_validation import check_manifold
 from risorius.assets.fitting.warp import Similarity
@@ -123,7 +123,7 @@ class Marking:
         self.current = FIRST[0]
         self.is_upright = False
         self.faces = mesh.faces
-        self._place(upright(mesh.vertices, SEEN_RADIUS))
+        self._place(centred(mesh.vertices, SEEN_RADIUS))
 
     # Where the mesh is seen
 
