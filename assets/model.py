@@ -11,7 +11,7 @@ landmark numbering after Sagonas et al. 2013, "300 Faces in-the-Wild Challenge" 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
@@ -131,13 +131,13 @@ class Wrinkles:
     steepest: slope of 255 in `map` [mm for one unit of the texture coordinates].
     across: for each vertex and slot the direction at rest in which skin shortens when it wrinkles;
         its length is how readily it does; zero where it does not; shape (V, 2, 3), float32.
-    resting: how far it is wrinkled at rest, 0 to 1, as with age.
+    resting: how far each vertex is wrinkled at rest, 0 to 1, as with age, shape (V,); (1,) for all.
     """
 
     map: Image
     steepest: float
     across: SingleArray
-    resting: float = 0.0
+    resting: SingleArray = field(default_factory=lambda: np.zeros(1, np.float32))
 
 
 class FineShape(NamedTuple):

@@ -30,7 +30,7 @@ class Compression:
         wrinkles = scene.wrinkles
         assert wrinkles is not None
         self._readiness = np.linalg.norm(wrinkles.across, axis=2)
-        self._resting = wrinkles.resting * np.minimum(self._readiness, 1.0)
+        self._resting = wrinkles.resting[:, None] * np.minimum(self._readiness, 1.0)
         self._shortening = refine.Shortening(scene.faces, scene.rest_positions, wrinkles.across)
 
     def amounts(self, positions: Points) -> Amounts:

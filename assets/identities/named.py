@@ -1,23 +1,18 @@
 """Persons by number or by name."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
-
-import numpy as np
+from typing import NamedTuple
 
 from .complexion import in_own_colours
 from .person import Person, make_person
-from .space import Sex, person_space, sample_identity
+from .space import Sex, sample_identity
 
 
-@dataclass(frozen=True)
-class _Known:
-    """Who bears a name: a number's person with some of its measures chosen.
-
-    scores: in deviations from the mean of its sex.
-    """
+class _Known(NamedTuple):
+    """Who bears a name: a number's face of some sex and age, in chosen colours."""
 
     seed: int
     sex: Sex
@@ -25,25 +20,15 @@ class _Known:
     angle: float
     irises: str
     cut: str
-    scores: Mapping[str, float]
 
 
 NAMED: Mapping[str, _Known] = MappingProxyType(
     {
-        "ada": _Known(
-            27, Sex.WOMAN, 27.0, 34.0, "hazel", "parted",
-            {"go-go": -0.8, "zy-zy": -0.2, "ls-sto": 1.0, "sto-li": 1.0, "al-al": -0.6},
-        ),
-        "kofi": _Known(
-            9, Sex.MAN, 38.0, -38.0, "brown", "cropped",
-            {"al-al": 2.2, "ls-sto": 1.8, "sto-li": 1.8, "zy-zy": 0.9, "n-prn": -0.6, "ch-ch": 0.8},
-        ),
-        "maria": _Known(
-            13, Sex.WOMAN, 66.0, 56.0, "blue", "aside",
-            {"go-go": -0.3, "zy-zy": 0.2, "ls-sto": 0.0, "sto-li": 0.2, "sn-prn": 0.0},
-        ),
+        "ada": _Known(112, Sex.WOMAN, 27.0, 34.0, "hazel", "parted"),
+        "kofi": _Known(102, Sex.MAN, 38.0, -38.0, "brown", "cropped"),
+        "maria": _Known(111, Sex.WOMAN, 66.0, 56.0, "blue", "aside"),
     }
-)  # fmt: skip
+)
 
 
 @cache
@@ -61,7 +46,6 @@ def person_called(who: int | str) -> Person:
         return replace(made, called=str(who))
     known = NAMED[who]
     drawn = sample_identity(known.seed, sex=known.sex, age=known.age)
-    weights = person_space().with_scores(np.array(drawn.weights), known.scores, known.sex)
-    made = make_person(replace(drawn, cut=known.cut, weights=tuple(weights.tolist())))
+    made = make_person(replace(drawn, cut=known.cut))
     made = in_own_colours(made, known.seed, angle=known.angle, irises=known.irises)
     return replace(made, called=who)

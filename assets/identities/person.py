@@ -24,7 +24,7 @@ from ..fitting.organs import EYE_LANDMARKS, FittedSkin, lids_on_eyes, place_part
 from ..fitting.warp import Similarity, ThinPlateSpline
 from ..intersections import self_intersections
 from ..loading import load
-from ..model import Eye, FloatArray, Head, IndexArray
+from ..model import Eye, FloatArray, Head, IndexArray, SingleArray
 from ..norms import measures_of
 from ..smooth import smooth_step
 from .space import Identity, Sex, person_space, scores_of
@@ -34,6 +34,7 @@ MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own s
 EAR_ROUNDS, EAR_STEP = 8, 0.5  # of standing out, by so much each [mm]
 GIVE = 0.2  # of the warp of what lies in the head
 MOST_RESTING = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
+FROWN = np.array([15.0, 18.0, 30.0])  # [mm] about the glabella, that furrows of age leave out
 NARROWER_NECK, NECK_AXIS = 0.07, np.array([0.0, 0.0, 5.0])  # share, of women's; [mm]
 LOWER = -0.96  # of the iris' radius, that the lower lid lies at
 ROWS_OF_LIDS = (1.0, 1.0, 1.0, 0.7, 0.25)  # how far rows around the eye go with the lid's edge
@@ -122,7 +123,7 @@ def _made(identity: Identity) -> Person:
         face_uv=known.face_uv,
         albedo=known.albedo,
         segments=known.segments,
-        wrinkles=replace(known.wrinkles, resting=_resting(identity)),
+        wrinkles=replace(known.wrinkles, resting=_resting(known, identity)),
         rig=known.rig,
         layers=known.layers,
         to_millimetres=Similarity(1.0, np.eye(3), np.zeros(3)),
@@ -183,10 +184,12 @@ def ears_off_head(known: Head, vertices: FloatArray) -> FloatArray:
     return x
 
 
-def _resting(identity: Identity) -> float:
-    """How far furrows show in a face at rest, 0 to 1."""
+def _resting(known: Head, identity: Identity) -> SingleArray:
+    """How far furrows show in a face at rest, 0 to 1, shape (V,): between the brows they frown."""
     past = float(np.clip((identity.age - 30.0) / 45.0, 0.0, 1.0))
-    return MOST_RESTING[identity.sex] * past * past
+    off = known.vertices - known.vertices[known.anatomy["glabella"]]
+    frowned = np.exp(-((off / FROWN) ** 2).sum(axis=1))
+    return np.asarray(MOST_RESTING[identity.sex] * past * past * (1.0 - frowned), np.float32)
 
 
 def _named(known: Head) -> IndexArray:

@@ -42,7 +42,6 @@ FIRMLY = MappingProxyType({"sn-prn": 5.0, "ft-ft": 1.5})  # more so: else noses 
 NARROW, WIDE, SIXTH = 0.7, 1.1, 6
 FARTHEST = 4.0  # [deviations] that any weight is drawn
 YOUNG = 30.0  # [years] from which on age is seen
-ASKED = 25.0  # how strongly measures that are asked for count beside the law of the modes
 # What ten years do to measures, in deviations.
 AGED_MEASURES = MappingProxyType(
     {"sn-ls": 0.25, "ls-sto": -0.3, "sto-li": -0.25, "n-prn": 0.1, "al-al": 0.15, "ch-ch": 0.1}
@@ -174,18 +173,6 @@ class PersonSpace:
             off.append(asked + PRESSED.get(code, 0.0) - found[code])
         deviations = np.array([sample.deviation for sample in norms.values()])
         return self.slopes / deviations[:, None], np.array(off) / deviations
-
-    def with_scores(self, weights: FloatArray, scores: Mapping[str, float], sex: Sex) -> FloatArray:
-        """Weights near given ones that have some measures, in deviations from the mean of a sex."""
-        asked = [list(NORMS).index(code) for code in scores]
-        wanted = np.array(list(scores.values()))
-        rows = self._measured(sex)[0][asked]
-        for _ in range(3):
-            now = scores_of(measures_of(self.mean + self.moved(weights), self.anatomy), sex)
-            left = wanted - np.array([now[code] for code in scores])
-            system = np.eye(len(weights)) + ASKED * rows.T @ rows
-            weights = weights + np.linalg.solve(system, ASKED * rows.T @ left)
-        return weights
 
 
 @lru_cache(maxsize=1)

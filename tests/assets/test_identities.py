@@ -1,7 +1,5 @@
 """Persons: heads that measure what was asked for, and are faces like the built-in one."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -100,7 +98,7 @@ def test_age_is_seen() -> None:
     young, old = (make_person(sample_identity(4, age=age)) for age in (25.0, 70.0))
     assert old.measures["ls-sto"] < young.measures["ls-sto"] - 0.5
     assert old.measures["sn-ls"] > young.measures["sn-ls"] + 0.5
-    assert young.wrinkles.resting == 0.0 < old.wrinkles.resting < 1.0
+    assert young.wrinkles.resting.max() == 0.0 < old.wrinkles.resting.max() < 1.0
 
 
 def test_upper_lids_cover_a_part_of_the_iris() -> None:
@@ -111,15 +109,6 @@ def test_upper_lids_cover_a_part_of_the_iris() -> None:
             lids = [person.anatomy[f"palpebrale_{lid}erius_{eye.name}"] for lid in ("sup", "inf")]
             off = np.abs(person.vertices[lids, 1] - eye.centre[1])
             assert 0.4 < eye.iris_radius - off[0] < 3.2 and abs(eye.iris_radius - off[1]) < 1.0
-
-
-def test_measures_can_be_asked_for() -> None:
-    """Somebody near a person, whose nose is as wide and lips as full as asked."""
-    identity = sample_identity(5, sex=Sex.MAN)
-    asked = {"al-al": 1.5, "ls-sto": 1.0}
-    weights = person_space().with_scores(np.array(identity.weights), asked, Sex.MAN)
-    found = make_person(replace(identity, weights=tuple(weights.tolist()))).scores
-    assert found == pytest.approx({**found, **asked}, abs=0.3)
 
 
 @pytest.mark.slow
