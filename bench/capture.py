@@ -21,7 +21,7 @@ from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.script import Script
 
 from .canvas import Canvas
-from .report import driver, processor
+from .report import processor
 
 ROUNDS = 3
 
@@ -34,7 +34,7 @@ def report(size: tuple[int, int], seconds: float) -> str:
     options = CaptureOptions(size=size, beside=beside, camera=script.camera)
     frame_count = round(script.duration * options.frames_per_second) + 1
     with Canvas((16, 16)) as canvas:
-        drawn_by = driver(canvas.surface.gl.info)
+        driver = canvas.surface.gl.info["GL_RENDERER"]
     with tempfile.TemporaryDirectory() as folder:
         film = Path(folder) / "film.mp4"
         wall, spent = np.median([_timed(script, options, film) for _ in range(ROUNDS)], axis=0)
@@ -42,7 +42,7 @@ def report(size: tuple[int, int], seconds: float) -> str:
     return "\n".join(
         [
             f"A film of {frame_count} frames of two, {width}x{height}, 4 samples, on",
-            f"{drawn_by}, {os.cpu_count()} cores of {processor()};",
+            f"{driver}, {os.cpu_count()} cores of {processor()};",
             f"median of {ROUNDS}; processor time with that of the encoder.",
             "",
             f"{frame_count / wall:.1f} frames/s by {processes.worthwhile(options, frame_count)} "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 import re
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -62,11 +62,6 @@ def say_progress(name: str) -> None:
     """Say on the error stream what is at work, where a person looks on."""
     if sys.stderr.isatty():
         click.echo(f"... {name}", err=True)
-
-
-def driver(information: Mapping[str, object]) -> str:
-    """What OpenGL calls itself and its version. information: moderngl's `Context.info`."""
-    return f"{information['GL_RENDERER']}, OpenGL {information['GL_VERSION']}"
 
 
 def processor() -> str:

@@ -30,7 +30,7 @@ from risorius.app.scenes import FaceScene, PlaneScene, Scene
 
 from ..canvas import GOURAUD, Canvas, Drawing
 from ..refine import interleaved
-from ..report import driver, table
+from ..report import table
 from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
@@ -113,7 +113,7 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
 def outcome(*, rounds: int) -> Outcome:
     """Measure our rows for face and plane, beside the paper's."""
     with Canvas(SMALL) as canvas:
-        renderer = driver(canvas.surface.gl.info)
+        renderer = canvas.surface.gl.info["GL_RENDERER"]
     scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
     measured = {scene.name: _measured(scene, rounds) for scene in scenes}
     values: dict[str, float] = {}

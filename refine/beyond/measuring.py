@@ -109,10 +109,7 @@ class Silhouette(Measuring):
                 f"{type(self).__name__} needs to know where the eye is; pass "
                 "view=refine.View(eye) to refine()"
             )
-        try:
-            eye = np.asarray(view.eye, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError):
-            eye = np.zeros(0)
+        eye = np.asarray(view.eye, dtype=np.float64)
         if eye.shape != (3,) or not np.isfinite(eye).all():
             raise ValueError(
                 f"view must have a finite eye of shape (3,), got {reprlib.repr(view.eye)}"

@@ -108,8 +108,6 @@ def criterion_of(
     if isinstance(chosen, str):
         chosen = normal_drop if chosen == "normal" else criteria.find(chosen)()
     if isinstance(chosen, Sequence):
-        if any(isinstance(one, Sequence) and not isinstance(one, str) for one in chosen):
-            raise ValueError("criterion: a list must hold names and objects, not other lists")
         return Maximum([criterion_of(one, normal_drop) for one in chosen])
     if not isinstance(chosen, Criterion):
         raise ValueError(f"criterion must be a name, a refine.Criterion, or a list, got {chosen!r}")
