@@ -8,6 +8,7 @@ about as wide as the figure shows.
 import numpy as np
 
 from .model import FloatArray, IndexArray
+from .topology import grid_faces
 
 COLUMNS = 11  # of cells along x; chosen: 2 * 7 * 11 = 154
 ROWS = 7  # along y
@@ -24,13 +25,8 @@ def make_grid(columns: int, rows: int, cell: float) -> tuple[FloatArray, IndexAr
     grid_x, grid_y = np.meshgrid(x, y)
     vertices = np.stack([grid_x, grid_y, np.zeros_like(grid_x)], axis=-1).reshape(-1, 3)
 
-    row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
-    lower_left = (row * (columns + 1) + column).ravel()
-    lower_right, upper_left = lower_left + 1, lower_left + columns + 1
-    upper_right = upper_left + 1
-    lower = np.stack([lower_left, lower_right, upper_right], axis=-1)
-    upper = np.stack([lower_left, upper_right, upper_left], axis=-1)
-    faces = np.stack([lower, upper], axis=1).reshape(-1, 3).astype(np.int32)
+    by_column = grid_faces(np.arange(len(vertices)).reshape(rows + 1, columns + 1).T)
+    faces = by_column.reshape(columns, rows, -1).swapaxes(0, 1).reshape(-1, 3)
 
     vertices.flags.writeable = False
     faces.flags.writeable = False

@@ -1,7 +1,7 @@
-"""Small questions about triangle lists: edges, boundary loops, angles; fewer of them, and more."""
+"""Small questions about triangle lists: boundary loops, grids; fewer of them, and more."""
 
 from dataclasses import dataclass
-from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -47,40 +47,17 @@ def unique_points(points: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArra
     return first[order], np.argsort(order)[number.reshape(-1)]
 
 
-def smallest_angles(vertices: FloatArray, faces: Faces) -> FloatArray:
-    """Smallest inner angle of each face [deg], shape (F,)."""
-    corner = vertices[faces]
-    angles = []
-    for k in range(3):
-        first = corner[:, (k + 1) % 3] - corner[:, k]
-        second = corner[:, (k + 2) % 3] - corner[:, k]
-        height = np.linalg.norm(np.cross(first, second), axis=1)
-        angles.append(np.degrees(np.arctan2(height, (first * second).sum(axis=1))))
-    smallest: FloatArray = np.min(angles, axis=0)
-    return smallest
+def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:
+    """Triangles between neighbouring rows of vertex numbers (r, n); closed: a row ends in itself.
 
-
-def quads_between(rows: list[list[int]], *, closed: bool) -> list[list[int]]:
-    """Quadrilaterals between neighbouring rows of equal length, each as four vertex numbers."""
-    quads = []
-    for first, second in pairwise(rows):
-        count = len(first)
-        for i in range(count if closed else count - 1):
-            j = (i + 1) % count
-            quads.append([first[i], second[i], second[j], first[j]])
-    return quads
-
-
-def halved(vertices: FloatArray, quads: list[list[int]]) -> Faces:
-    """Cut each quadrilateral along the diagonal with the better smallest angle."""
-    a, b, c, d = np.array(quads, dtype=np.int32).T
-    one = np.stack([np.stack([a, b, c], 1), np.stack([a, c, d], 1)], axis=1)
-    other = np.stack([np.stack([a, b, d], 1), np.stack([b, c, d], 1)], axis=1)
-    quality = [
-        smallest_angles(vertices, pair.reshape(-1, 3)).reshape(-1, 2).min(axis=1)
-        for pair in (one, other)
-    ]
-    return np.where((quality[0] >= quality[1])[:, None, None], one, other).reshape(-1, 3)
+    a--d   Vertices a and d are of a row, b and c of the next one: a b c, then a c d.
+    | \\|
+    b--c
+    """
+    if closed:
+        rows = np.hstack([rows, rows[:, :1]])
+    a, b, c, d = rows[:-1, :-1], rows[1:, :-1], rows[1:, 1:], rows[:-1, 1:]
+    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3).astype(np.int32)
 
 
 @dataclass(frozen=True)

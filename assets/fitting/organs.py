@@ -17,7 +17,7 @@ import scipy
 from risorius.geometry.normals import vertex_normals
 
 from ..model import Eye, FloatArray, Head, IndexArray, Part
-from ..topology import boundary_loops, quads_between
+from ..topology import boundary_loops, grid_faces
 from .warp import Deformation, Similarity
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
@@ -293,10 +293,7 @@ def _rim_of(eye: Eye, edge: FloatArray) -> tuple[FloatArray, IndexArray]:
     reach = (1.0 - share) * (length + TUCKED) + share * (eye.radius - RIM_SUNK)
     ahead = np.sin(angle)[..., None] * beside + np.cos(angle)[..., None] * [0.0, 0.0, 1.0]
     points = eye.centre + (reach[..., None] * ahead).reshape(-1, 3)
-    rows = np.arange(RIM_ROWS * len(edge)).reshape(RIM_ROWS, -1)
-    a, b, c, d = np.array(quads_between(rows.tolist(), closed=True), np.int32).T
-    faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
-    return points, faces
+    return points, grid_faces(np.arange(len(points)).reshape(RIM_ROWS, -1), closed=True)
 
 
 def _joined(part: Part, rims: Sequence[tuple[FloatArray, IndexArray]]) -> Part:

@@ -21,7 +21,7 @@ from risorius.geometry.normals import vertex_normals
 from ..data_files import read_arrays
 from ..loading import load
 from ..model import FloatArray, Part
-from ..topology import boundary_loops, halved, quads_between
+from ..topology import boundary_loops, grid_faces
 from .warp import ThinPlateSpline
 
 FILE = Path(__file__).parents[1] / "data" / "skull.npz"
@@ -92,8 +92,7 @@ def neck_sections(head: Any) -> list[Part]:
         if edge[:, 1].max() < chin:
             middle = edge.mean(axis=0)
             points = np.concatenate([middle + share * (edge - middle) for share, _ in RINGS])
-            rows = np.arange(len(points)).reshape(len(RINGS), -1).tolist()
-            faces = halved(points, quads_between(rows, closed=True))
+            faces = grid_faces(np.arange(len(points)).reshape(len(RINGS), -1), closed=True)
             colours = np.repeat([colour for _, colour in RINGS], len(loop), axis=0)
             parts.append(_part("neck_section", points, faces, colours, "neck"))
     return parts

@@ -17,7 +17,7 @@ from risorius.geometry.normals import vertex_normals
 
 from ..model import FloatArray, Part
 from ..smooth import unit
-from ..topology import halved, quads_between
+from ..topology import grid_faces
 from .hair import HAIR, MEAN, Fall, Scalp
 
 STRANDS, SAMPLES = 44, 34  # of one side, and along each
@@ -144,8 +144,7 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     if is_inside:
         way, places = -0.1 * (high - low) + 0.2 * thickness * ahead, low
     points = places.reshape(-1, 3)
-    rows = [row.tolist() for row in np.arange(len(points)).reshape(along.shape)]
-    faces = halved(points, quads_between(rows, closed=False))
+    faces = grid_faces(np.arange(len(points)).reshape(along.shape))
     if (side > 0.0) != is_inside:
         faces = faces[:, ::-1]
     normals = unit(vertex_normals(points, faces) + AT_A_POINT * unit((high - low).reshape(-1, 3)))
