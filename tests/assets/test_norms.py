@@ -12,11 +12,11 @@ LEBANON_2018 = "87 men, 135 women, doi 10.1016/j.forsciint.2018.10.021"
 TOMOGRAPHY_2015 = "18 women, doi 10.2319/040114-237.1"
 
 DEPTHS = {
-    "rhinion": (Sample(3.07, 0.72, 222), LEBANON_2018),
-    "subnasale": (Sample(15.61, 2.38, 222), LEBANON_2018),
-    "labiale_superius": (Sample(13.31, 2.01, 18), TOMOGRAPHY_2015),
-    "labiale_inferius": (Sample(15.08, 1.94, 18), TOMOGRAPHY_2015),
-    "pogonion": (Sample(14.69, 3.08, 18), TOMOGRAPHY_2015),
+    "rhinion": (Sample(3.07, 0.72), LEBANON_2018),
+    "subnasale": (Sample(15.61, 2.38), LEBANON_2018),
+    "labiale_superius": (Sample(13.31, 2.01), TOMOGRAPHY_2015),
+    "labiale_inferius": (Sample(15.08, 1.94), TOMOGRAPHY_2015),
+    "pogonion": (Sample(14.69, 3.08), TOMOGRAPHY_2015),
 }
 """Anatomical name: published depth of bone [mm] and its source; no other figure could be read.
 
@@ -73,12 +73,11 @@ def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head: Head, page: s
 
 
 def test_norms_are_plausible_figures() -> None:
-    """Against slips of the pen: deviations of 4 to 25 %, men larger, large samples."""
+    """Against slips of the pen: deviations of 4 to 25 %, men larger."""
     for code, norm in NORMS.items():
         assert norm.men.mean > norm.women.mean, code
         for sample in (norm.women, norm.men):
             assert 0.03 < sample.deviation / sample.mean < 0.25, code
-            assert sample.size > 800, code
 
 
 def test_the_page_shows_the_measures_and_the_norms(measures: dict[str, float], page: str) -> None:
