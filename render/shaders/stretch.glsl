@@ -22,7 +22,7 @@ out vec4 pixel_colour;
 #if defined(SMOOTH)
 const vec3 LIGHTNESS = vec3(0.299, 0.587, 0.114);  // of sRGB
 const float LEAST = 0.06, LEAST_SHARE = 0.16;  // of a change that is an edge: features of skin are less
-const float REACH = 8.0;  // pixels along an edge
+const float REACH = 2.5;  // pixels along an edge; farther, and pupils become squares
 
 float light_at(vec2 offset) {
     return dot(textureLod(scene, place + offset, 0.0).rgb, LIGHTNESS);

@@ -110,3 +110,11 @@ def test_single_samples_have_smooth_edges(window: render.WindowSurface) -> None:
         jagged = draw_image(offscreen, sphere())
     before, after = (np.abs(each - fine).max(axis=2) > 40 for each in (jagged, smoothed))
     assert before.sum() > 50 and after.sum() < 0.8 * before.sum()  # 0.7 on software
+
+
+def test_smoothed_edges_leave_small_discs_round(window: render.WindowSurface) -> None:
+    """A disc as wide as pupils in a window has no pixel far from what four samples show."""
+    pupil = sphere(4, radius=7.0)
+    fine = draw_image(window, pupil)
+    window.detail = render.Detail(samples=0)
+    assert np.abs(draw_image(window, pupil) - fine).max() < 75  # 51 on software; else squares
