@@ -43,7 +43,6 @@ from ..topology import boundary_loops, decimated
 from ..user_files import named
 from .landmark_file import (
     COUNT,
-    check_counting,
     check_lips,
     groups_in_disorder,
     nearest_vertices,
@@ -147,12 +146,9 @@ def fit(
     (68, 3), unless at those vertices. Raises AssetError for a mesh that cannot work.
     """
     known = load("head")
-    are_numbers = points is None
     points = mesh.vertices[landmarks] if points is None else points
     skin = skin_of(mesh.vertices, mesh.faces, landmarks)
     check_manifold(mesh.faces)
-    if are_numbers:
-        check_counting(mesh.vertices, landmarks, known.vertices[known.landmarks])
     similarity = _placed(points, known)
     skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
     target = similarity.points(points)

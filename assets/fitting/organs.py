@@ -18,7 +18,7 @@ from risorius.geometry.normals import vertex_normals
 
 from ..model import Eye, FloatArray, Head, IndexArray, Part
 from ..topology import boundary_loops, grid_faces
-from .warp import Deformation, Similarity
+from .warp import Similarity, ThinPlateSpline
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
 STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
@@ -151,7 +151,7 @@ def lids_on_eyes(
 
 
 def place_parts(
-    known: Head, fitted: FittedSkin, warp: Deformation, eyes: tuple[Eye, ...]
+    known: Head, fitted: FittedSkin, warp: ThinPlateSpline, eyes: tuple[Eye, ...]
 ) -> tuple[Part, ...]:
     """The rigid parts of the built-in head, in another one."""
     mouth = _mouth_of(known, fitted, warp)
@@ -172,7 +172,7 @@ def place_parts(
     return tuple(parts)
 
 
-def _mouth_of(known: Head, fitted: FittedSkin, warp: Deformation) -> Similarity:
+def _mouth_of(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> Similarity:
     """Where the stiff parts of the mouth come to lie: behind the skin, as one."""
     found = [
         part.vertices.astype(np.float64) for part in known.parts if part.name.startswith(STIFF)
@@ -199,7 +199,7 @@ def _moved(part: Part, similarity: Similarity) -> Part:
     )
 
 
-def _bent(part: Part, warp: Deformation) -> Part:
+def _bent(part: Part, warp: ThinPlateSpline) -> Part:
     """A part that takes the shape of its new place."""
     vertices = warp.points(part.vertices)
     ahead = warp.points(part.vertices + part.normals) - vertices
@@ -216,7 +216,7 @@ def _lengthened(walls: FloatArray, lips: FloatArray) -> FloatArray:
     return longer
 
 
-def _opening(known: Head, fitted: FittedSkin, warp: Deformation) -> FloatArray:
+def _opening(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> FloatArray:
     """Points of the skin that faces forward while the jaw opens [mm], shape (n, 3).
 
     As coarse as need be: each vertex turns about the condyles by its share of the jaw's angle.

@@ -12,7 +12,6 @@ to another head by scattered data interpolation, here the biharmonic kernel r); 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +21,6 @@ from risorius.geometry.closest import SurfacePoints, closest_points
 
 from ..model import FloatArray, IndexArray
 
-LITTLE = 1e-6  # that a spline gives whose weights are asked for
 WRONG_SIDE = 12.0  # [mm] that a point seems farther away where the surface faces the other way
 
 
@@ -67,14 +65,6 @@ class Similarity:
         return self.scale * (np.asarray(vectors, dtype=np.float64) @ self.rotation.T)
 
 
-class Deformation(Protocol):
-    """Anything that says where the points of space come to lie."""
-
-    def points(self, points: npt.ArrayLike) -> FloatArray:
-        """Where points (n, 3) come to lie."""
-        ...
-
-
 class ThinPlateSpline:
     """The smoothest deformation of space that takes some points to others, or near them."""
 
@@ -95,15 +85,6 @@ class ThinPlateSpline:
     def points(self, points: npt.ArrayLike) -> FloatArray:
         """Where points (n, 3) come to lie."""
         return np.asarray(self._spline(np.asarray(points, dtype=np.float64)), np.float64)
-
-
-def bending(source: FloatArray, target: FloatArray) -> float:
-    """How much a spline from points to others bends, in squares of their units; 0: not at all.
-
-    A spline misses its targets by its weights, times what it gives.
-    """
-    missed = target - ThinPlateSpline(source, target, LITTLE).points(source)
-    return float((missed * target).sum()) / LITTLE
 
 
 def nearest_on(
