@@ -41,13 +41,14 @@ Tracker = Callable[[Image], Scores]
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 SEEN = 0.1  # a score below says nothing
-# Sides that cannot be posed together, for they are one shape to either side; and, as no eye looks
-# to a side alone, what is posed besides.
-TO_ONE_SIDE: dict[str, tuple[str, ...]] = {
+# Sides that cannot be posed together, for they are one shape to either side; and what is posed
+# besides, as no eye looks to a side alone and lips that close do so over an open jaw.
+BESIDE: dict[str, tuple[str, ...]] = {
     "mouthLeft, Right": (),
     "jawLeft, Right": (),
     "eyeLookIn": ("eyeLookOutRight",),
     "eyeLookOut": ("eyeLookInRight",),
+    "mouthClose": ("jawOpen",),
 }
 
 
@@ -168,8 +169,8 @@ def measure(tracker: Tracker) -> dict[str, Shape]:
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
         neutral = pose_scores(tracker, studio, ())
         for base, names in bases():
-            own, beside = names, TO_ONE_SIDE.get(base, ())
-            if base in TO_ONE_SIDE:
+            own, beside = names, BESIDE.get(base, ())
+            if base in BESIDE:
                 own = names[:1]
             scores = pose_scores(tracker, studio, (*own, *beside))
             shapes[base] = compared(scores, neutral, own, beside)
