@@ -46,7 +46,7 @@ from .style import (
 from .surface import Image, OffscreenSurface, Surface, open_offscreen
 from .texture import BumpMap, Texture
 from .translucency import Plane
-from .window import WindowSurface, open_window, size_on_screen
+from .window import WindowSurface, open_window
 
 __all__ = [
     "BLACK",
@@ -86,5 +86,4 @@ __all__ = [
     "open_offscreen",
     "open_window",
     "probe",
-    "size_on_screen",
 ]

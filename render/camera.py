@@ -200,11 +200,6 @@ class CameraView:
         """World -> clip space, shape (4, 4)."""
         return self.world_to_view @ self.projection
 
-    @cached_property
-    def fingerprint(self) -> bytes:
-        """The same for views of the same, whoever made them."""
-        return self.world_to_clip.tobytes()
-
     def covered_pixels(self, corners: FloatArray, padding: float = 2.0) -> Rectangle:
         """The pixels of the clip that the hull of `corners`, shape (n, 3), can touch.
 

@@ -51,7 +51,15 @@ def compile_program(
             fragment_shader=stage("FRAGMENT"),
         )
     except Exception as error:
-        raise _compile_error(name, defines, str(error)) from None
+        # Of moderngl's page of text the stage, and the driver's first complaint.
+        at, complaint = (
+            found[0].strip() if (found := re.search(pattern, str(error))) else "?"
+            for pattern in (r"\w+(?=_shader)", r"(?i).*error[:( ].*")
+        )
+        raise GLError(
+            f"shader {' '.join([name, *defines])}, {at} stage: {complaint}. "
+            "Cure: update the OpenGL driver, or set LIBGL_ALWAYS_SOFTWARE=1"
+        ) from None
 
 
 def write_uniform(program: moderngl.Program, name: str, values: npt.NDArray[Any]) -> None:
@@ -59,15 +67,3 @@ def write_uniform(program: moderngl.Program, name: str, values: npt.NDArray[Any]
     uniform = program[name]
     assert isinstance(uniform, moderngl.Uniform)
     uniform.write(np.ascontiguousarray(values, np.float32).tobytes())
-
-
-def _compile_error(name: str, defines: tuple[str, ...], raw: str) -> GLError:
-    """One line from moderngl's page of text: file, defines, stage, the driver's first complaint."""
-    stage, complaint = (
-        found[0].strip() if (found := re.search(pattern, raw)) else "?"
-        for pattern in (r"\w+(?=_shader)", r"(?i).*error[:( ].*")
-    )
-    return GLError(
-        f"shader {' '.join([name, *defines])}, {stage} stage: {complaint}. "
-        "Cure: update the OpenGL driver, or set LIBGL_ALWAYS_SOFTWARE=1"
-    )

@@ -54,9 +54,7 @@ class Renderer:
         self._values: moderngl.Texture | None = None
         self._backdrop = Backdrop(self._gl)
         self._shadow: ShadowMap | None = None
-        self._shadow_of: MeshBuffers | None = (
-            None  # a mesh whose shadow is there before it is drawn
-        )
+        self._shadow_of: MeshBuffers | None = None  # whose shadow is there before it is drawn
         self._geometry_buffer: GeometryBuffer | None = None
         self._occluder: Occluder | None = None
 

@@ -45,7 +45,7 @@ class ShadowMap:
         self._depth.repeat_x = self._depth.repeat_y = False
         self._depth.filter = moderngl.LINEAR, moderngl.LINEAR
         self._target = gl.framebuffer(depth_attachment=self._depth)
-        self._drawn_for: tuple[int, bytes] = (0, b"")
+        self._drawn_for: tuple[int, CameraView | None] = (0, None)
 
     def draw(
         self,
@@ -69,11 +69,11 @@ class ShadowMap:
             transform = np.eye(4) if isinstance(thrower, MeshBuffers) else thrower[1]
             write_uniform(self._program, "light_matrix", transform.T @ to_light)
             (thrower if isinstance(thrower, MeshBuffers) else thrower[0]).draw(self._program)
-        self._drawn_for = frame_number, view.fingerprint
+        self._drawn_for = frame_number, view
 
     def is_of(self, view: CameraView, frame_number: int) -> bool:
         """Whether it was last drawn for this view, in the frame of that number."""
-        return self._drawn_for == (frame_number, view.fingerprint)
+        return self._drawn_for == (frame_number, view)
 
     def set_uniforms(self, program: moderngl.Program, view: CameraView, unit: int) -> None:
         """Let a program look up the shadow, through a texture unit."""

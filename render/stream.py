@@ -43,7 +43,7 @@ class Frame(Protocol):
 
     @property
     def vertices(self) -> npt.NDArray[np.float32]:
-        """x y z, nx ny nz[, u v], shape (vertex_count, columns); may be written."""
+        """x y z, nx ny nz[, u v], shape (vertex_count, columns)."""
 
     @property
     def triangles(self) -> npt.NDArray[np.uint32]:
@@ -279,8 +279,7 @@ class GpuStream(MeshBuffers):
         """Draw from now on what was made in these buffers.
 
         frame: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
-        bump_amounts: as `Stream.upload` takes them; then fetched rows, which may have been changed,
-            are handed over again.
+        bump_amounts: as `Stream.upload` takes them.
         """
         self.frame, self.places = frame, positions.astype(np.float32)
         self.has_bumps = bump_amounts is not None
@@ -288,7 +287,6 @@ class GpuStream(MeshBuffers):
         box = np.stack([positions.min(axis=0) - self._margin, positions.max(axis=0) + self._margin])
         self.corners = box_corners(box)
         if bump_amounts is not None:
-            self.vertex_buffer.write(frame.vertices)
             self._upload_bumps(bump_amounts)
 
     def _draw_all(self, array: moderngl.VertexArray) -> None:

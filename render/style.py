@@ -12,10 +12,8 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from math import cos, radians, sin
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 Colour = tuple[float, float, float]
 
@@ -89,23 +87,10 @@ class Light:
     ground: Vector = (0.125, 0.095, 0.083)
 
 
-def _light(row: dict[str, list[float]]) -> Light:
-    """A row of lights.toml; two numbers are the angles of a direction."""
-    fields: dict[str, Any] = {
-        name: toward(*numbers) if len(numbers) == 2 else tuple(numbers)
-        for name, numbers in row.items()
-    }
-    return Light(**fields)
-
-
-def toward(azimuth: float, elevation: float) -> Vector:
-    """The unit vector toward a light, by angles [deg] from the camera: to its right, and up."""
-    a, e = radians(azimuth), radians(elevation)
-    return sin(a) * cos(e), sin(e), cos(a) * cos(e)
-
-
 _ROWS = tomllib.loads((Path(__file__).parent / "lights.toml").read_text(encoding="utf-8"))
-LIGHTS: Mapping[str, Light] = MappingProxyType({name: _light(row) for name, row in _ROWS.items()})
+LIGHTS: Mapping[str, Light] = MappingProxyType(
+    {name: Light(**{key: tuple(xyz) for key, xyz in row.items()}) for name, row in _ROWS.items()}
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,8 +103,6 @@ class Style:
     albedo: Colour = SKIN  # of the front side
     opacity: float = 1.0  # of the skin, over what was drawn before it
     textured: bool = True  # a texture, where there is one, takes the place of the albedo
-    # How far light bleeds past the terminator, 0 .. 1 (skin); None: by how warm the albedo is
-    subsurface: float | None = None
     gloss: float = 0.5  # strength of the skin's highlight, 0..1
     shadows: bool = True  # of the key light
     skin_maps: bool = True  # fine shape, and less light in folds, where the texture says so
@@ -132,8 +115,8 @@ class Style:
 
     @property
     def scattering(self) -> float:
-        """`subsurface`, or what the albedo's warmth makes of it."""
-        return max(self._warmth, 0.25) if self.subsurface is None else self.subsurface
+        """How far light bleeds past the terminator, up to 1 for an albedo as warm as skin."""
+        return max(self._warmth, 0.25)
 
     @property
     def inside(self) -> Colour:

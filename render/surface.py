@@ -36,7 +36,7 @@ class Surface:
         self.gl = gl
         gl.gc_mode = "context_gc"
         self.pixel_scale = self.scale = 1.0
-        self.samples = clamp_samples(samples, most_samples(gl))
+        self.samples = possible_samples(gl, samples)
         self.target = RenderTarget(gl, size, self.samples)
         self._is_open = True
 
@@ -195,17 +195,13 @@ def check_size(size: tuple[int, int]) -> None:
         raise ValueError(f"size is {size}; it must be (width, height), each 1 pixel or more")
 
 
-def clamp_samples(samples: int, most: int) -> int:
+def possible_samples(gl: moderngl.Context, samples: int) -> int:
     """The largest power of two up to `samples` that the driver has; 0 = no multisampling."""
     if samples < 0:
         raise ValueError(f"samples is {samples}; it must be 0 (none) or a number such as 4")
-    allowed = min(samples, most)
+    # For both attachments of the layer.
+    allowed = min(samples, gl.max_samples, int(gl.info["GL_MAX_COLOR_TEXTURE_SAMPLES"]))
     return 0 if allowed < 2 else 1 << (allowed.bit_length() - 1)
-
-
-def most_samples(gl: moderngl.Context) -> int:
-    """What the driver can do for both attachments of the layer."""
-    return min(gl.max_samples, int(gl.info["GL_MAX_COLOR_TEXTURE_SAMPLES"]))
 
 
 def is_software(renderer: str) -> bool:

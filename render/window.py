@@ -5,7 +5,6 @@ imported before, and a server without a screen never needs it.
 """
 
 import contextlib
-import sys
 from collections.abc import Iterator, Sequence
 from types import ModuleType
 from typing import Any
@@ -17,18 +16,7 @@ from .compositor import Compositor, Detail
 from .errors import GLError, diagnose
 from .render_target import Rectangle, RenderTarget
 from .style import Colour
-from .surface import (
-    NEWEST,
-    OLDEST,
-    Image,
-    Surface,
-    check_size,
-    clamp_samples,
-    image_of,
-    most_samples,
-)
-
-TITLE_BAR = 40  # [units at scale 1] that a desktop puts above a window (chosen: a little ample)
+from .surface import NEWEST, OLDEST, Image, Surface, check_size, image_of, possible_samples
 
 
 class WindowSurface(Surface):
@@ -81,7 +69,7 @@ class WindowSurface(Surface):
         if size != self.size:
             self._compositor = Compositor(self.gl, size)
             self.pixel_scale = max(self._glfw.get_window_content_scale(self.handle))
-        self.samples = clamp_samples(self.detail.samples, most_samples(self.gl))
+        self.samples = possible_samples(self.gl, self.detail.samples)
         self.scale = self.detail.scale
         scaled = self.detail.scaled(size)
         if (scaled, self.samples) != (self.target.size, self.target.samples):
@@ -172,10 +160,17 @@ class _Loader:
 
 
 def open_window(
-    size: tuple[int, int], title: str, *, samples: int = 4, visible: bool = True
+    size: tuple[int, int],
+    title: str,
+    *,
+    samples: int = 4,
+    visible: bool = True,
+    is_scaled: bool = False,
 ) -> WindowSurface:
-    """Open a window of `size` screen units; its frame may have more pixels than that.
+    """Open a window of `size` screen units, or less if it is shown and the screen has no room.
 
+    Its frame may have more pixels than that. is_scaled: `size` is that on a screen of ordinary
+    density, and a dense one gets more where a unit is a pixel.
     Raises ValueError for a size that no window has, GLError where there is no screen or no OpenGL
     3.3 core. Wants glfw from the GUI library: import imgui_bundle first where it is used.
     """
@@ -189,11 +184,14 @@ def open_window(
             raise diagnose("opening a window", "; ".join(complaints))
         for version in (NEWEST, OLDEST):
             complaints.clear()
-            _hint(glfw, visible, version)
+            _hint(glfw, is_scaled, version)
             if handle := glfw.create_window(*size, title, None, None):
                 break
         else:
             raise diagnose("opening a window", "; ".join(complaints))
+        if visible:
+            _fit(glfw, handle)
+            glfw.show_window(handle)
     glfw.make_context_current(handle)
     glfw.swap_interval(1 if visible else 0)
     try:
@@ -209,40 +207,26 @@ def open_window(
     return surface
 
 
-def size_on_screen(wanted: tuple[int, int], *, is_scaled: bool) -> tuple[int, int]:
-    """A size for `open_window` [screen units] that the main screen has room for.
-
-    is_scaled: `wanted` counts units of a screen of ordinary density, and a dense one gets more
-    where a unit is a pixel. Where there is no screen it is as wanted: opening a window tells.
-    """
-    glfw = _import_glfw()
-    with _complaints(glfw):
-        monitor = glfw.get_primary_monitor() if glfw.init() else None
-        if not monitor:
-            return wanted
-        scale = max(*glfw.get_monitor_content_scale(monitor), 1.0)
-        density = scale if _units_are_pixels(glfw) else 1.0
-        _, _, *room = glfw.get_monitor_workarea(monitor)
-    room[1] -= round(TITLE_BAR * density)
-    factor = density if is_scaled else 1.0
-    width, height = (min(round(factor * w), r) for w, r in zip(wanted, room, strict=True))
-    return max(width, 1), max(height, 1)
+def _fit(glfw: ModuleType, handle: Any) -> None:
+    """Make a window no larger than what its desktop has room for, its frame included."""
+    if not (monitor := glfw.get_primary_monitor()):
+        return
+    left, top, right, bottom = glfw.get_window_frame_size(handle)
+    _, _, wide, high = glfw.get_monitor_workarea(monitor)
+    width, height = glfw.get_window_size(handle)
+    room = max(wide - left - right, 1), max(high - top - bottom, 1)
+    if width > room[0] or height > room[1]:
+        glfw.set_window_size(handle, min(width, room[0]), min(height, room[1]))
 
 
-def _units_are_pixels(glfw: ModuleType) -> bool:
-    """Whether windows on a dense screen have to be made larger by the program."""
-    if not hasattr(glfw, "get_platform"):  # before GLFW 3.4
-        return sys.platform != "darwin"
-    return glfw.get_platform() in (glfw.PLATFORM_X11, glfw.PLATFORM_WIN32)
-
-
-def _hint(glfw: ModuleType, visible: bool, version: int) -> None:
+def _hint(glfw: ModuleType, is_scaled: bool, version: int) -> None:
     glfw.default_window_hints()
     glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version // 100)
     glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version // 10 % 10)
     glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
     glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)  # macOS refuses 3.3 core without it
-    glfw.window_hint(glfw.VISIBLE, visible)
+    glfw.window_hint(glfw.VISIBLE, False)
+    glfw.window_hint(glfw.SCALE_TO_MONITOR, is_scaled)
     # What is shown is multisampled already; the window needs neither samples nor depth.
     glfw.window_hint(glfw.SAMPLES, 0)
     glfw.window_hint(glfw.DEPTH_BITS, 0)

@@ -35,7 +35,7 @@ SMOOTH = replace(GOURAUD, albedo=render.SKIN)
 SKIN, MOUTH, BACKGROUND = range(3)  # channels of a picture of kinds
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 GREEN = np.array([0.0, 1.0, 0.0], np.float32)
-KINDS = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, subsurface=0.0, background=BLUE)
+KINDS = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
 OPENING = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)  # by kind
 WRONG = (225, 30, 30)
 

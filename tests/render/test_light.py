@@ -58,8 +58,9 @@ def test_other_light_leaves_nothing_behind(surface: render.Surface) -> None:
     def picture(style: render.Style) -> render.Image:
         """The mesh and a part in front of it."""
         with fresh_frame(renderer, style):
-            renderer.draw_mesh(stream, renderer.view(camera), style)
-            renderer.draw_parts([Ball()], STILL, renderer.view(camera), style)
+            view = renderer.view(camera)
+            renderer.draw_mesh(stream, view, style)
+            renderer.draw_parts([Ball()], STILL, view, style)
         return surface.read()
 
     studio = picture(SHADED)

@@ -37,10 +37,11 @@ def scene(surface: render.Surface, style: render.Style) -> render.Image:
     ball[:3, 3] = (55.0, -30.0, 10.0)
     values = (np.arange(len(shape.triangles)) % 7).astype(np.uint8)
     with fresh_frame(renderer, style):
-        renderer.draw_mesh(stream, renderer.view(camera), style, values=values)
-        renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, renderer.view(camera), style)
+        view = renderer.view(camera)
+        renderer.draw_mesh(stream, view, style, values=values)
+        renderer.draw_parts([Ball(shine=0.9)], {"cranium": ball}, view, style)
         line = np.array([(-60.0, 40, 20), (60, -40, -20)])
-        renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), renderer.view(camera))
+        renderer.draw_lines(render.Lines([line], (0.75, 0.1, 0.1)), view)
     return surface.read()
 
 

@@ -55,7 +55,7 @@ def wall_in_shadow(style: render.Style) -> tuple[SignedImage, SignedImage]:
 
 def test_shadows_have_soft_edges() -> None:
     """From shadow to light the wall brightens steadily; on a head that takes 2 to 6 mm."""
-    within, without = wall_in_shadow(replace(PLAIN, albedo=render.CLAY, subsurface=0.0))
+    within, without = wall_in_shadow(replace(PLAIN, albedo=render.CLAY))
     lightness = within.sum(axis=1) / without.sum(axis=1)
     darkest = int(lightness.argmin())
     edge = lightness[darkest:]
@@ -94,18 +94,11 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(
     frames = []
     for is_cast in (True, False):
         with fresh_frame(renderer, style):
+            view, hair, bones = renderer.view(facing()), [HairyBall()], {"cranium": before_wall}
             if is_cast and shadows:
-                renderer.cast_shadows(
-                    [HairyBall()],
-                    {"cranium": before_wall},
-                    renderer.view(facing()),
-                    style,
-                    stream=wall,
-                )
-            renderer.draw_mesh(wall, renderer.view(facing()), style)
-            renderer.draw_parts(
-                [HairyBall()], {"cranium": before_wall}, renderer.view(facing()), style
-            )
+                renderer.cast_shadows(hair, bones, view, style, stream=wall)
+            renderer.draw_mesh(wall, view, style)
+            renderer.draw_parts(hair, bones, view, style)
         frames.append(surface.read().astype(np.int32))
     within, without = frames
     is_darker = at(within, 30.0, -33.0).sum() < 0.8 * at(without, 30.0, -33.0).sum()

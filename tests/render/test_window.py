@@ -37,6 +37,15 @@ def test_window_that_is_resized(window: render.WindowSurface) -> None:
     assert window.gl.error == "GL_NO_ERROR"
 
 
+def test_a_window_fits_the_screen(window: render.WindowSurface) -> None:
+    """A window that is shown is no larger than there is room."""
+    import glfw
+
+    room = glfw.get_monitor_workarea(glfw.get_primary_monitor())[2:]
+    with render.open_window((room[0] + 100, 80), "wide") as wide:
+        assert wide.size == (room[0], 80)
+
+
 def test_closing(window: render.WindowSurface) -> None:
     """The wish to close can be read and set; a closed window says so."""
     assert not window.should_close

@@ -38,10 +38,9 @@ class SplashScreen(logging.Handler):
         if path is not None:
             self.settings, self.complaint = load_settings(path)
         known = size or self.settings.size
-        if size is None:
-            size = render.size_on_screen(known or FIRST_SIZE, is_scaled=known is None)
         self._text, self._drawn = LOADING, ((0, 0), "")
-        self.surface = render.open_window(size, "Risorius")
+        size = known or FIRST_SIZE
+        self.surface = render.open_window(size, "Risorius", is_scaled=known is None)
         LOG.addHandler(self)
         self._show()
 
