@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from risorius.assets.mouth_light import INCISORS, in_mouth_light
 from risorius.geometry.normals import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
@@ -31,7 +30,8 @@ class Gloom(NamedTuple):
 # Chosen by eye. What light reaches a molar has met red flesh before. It is little that gets lost:
 # dark ones look like broken teeth, and rows that end before the corner of the mouth.
 REDDENED = (0.9, 1.2, 1.25)
-FLESH, GUMS = Gloom(2.0, 34.0, 0.15), Gloom(2.0, 34.0, 0.2)
+GUMS = Gloom(2.0, 34.0, 0.2)
+TONGUE = Gloom(-5.0, 53.0, 0.63, (0.92, 1.25, 1.3))
 UPPER_TEETH, LOWER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED), Gloom(2.0, 36.0, 0.25, REDDENED)
 
 
@@ -56,11 +56,11 @@ class Tongue:
 
     @classmethod
     def of(cls, part: Any, front: float) -> Tongue:
-        """The tongue of a head, which is painted as dark as it is at rest."""
-        unlit = part.colours / _painted_light(part.vertices, front)
+        """The tongue of a head."""
         return cls(
             part.name, part.vertices, part.normals, part.faces,
-            _shaded(part.vertices, part.colours, front), part.bone, part.shine, unlit, front,
+            _shaded(part.vertices, part.colours, front, TONGUE), part.bone, part.shine,
+            part.colours, front,
         )  # fmt: skip
 
     def bend(self, vertices: npt.NDArray[np.float64]) -> None:
@@ -70,8 +70,7 @@ class Tongue:
         self.shape = vertices
         self.vertices = vertices.astype(np.float32)
         self.normals = vertex_normals(vertices, self.faces).astype(np.float32)
-        painted = np.minimum(self.unlit * _painted_light(vertices, self.front), 1.0)
-        self.colours = _shaded(vertices, painted, self.front)
+        self.colours = _shaded(vertices, self.unlit, self.front, TONGUE)
 
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
@@ -91,7 +90,7 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
 
 
 def _shaded(
-    points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, gloom: Gloom = FLESH
+    points: npt.NDArray[Any], colours: npt.NDArray[Any], front: float, gloom: Gloom
 ) -> Floats:
     """Colours (n, 3) as they are seen behind the front teeth."""
     behind = (front - points[:, 2] - gloom.begins) / (gloom.ends - gloom.begins)
@@ -99,9 +98,3 @@ def _shaded(
     light = 1.0 - gloom.lost * share * share * (3.0 - 2.0 * share)
     seen: Floats = (colours * light[:, None] ** np.array(gloom.powers)).astype(np.float32)
     return seen
-
-
-def _painted_light(points: npt.NDArray[Any], front: float) -> npt.NDArray[Any]:
-    """What the light of the mouth leaves of colours, shape (n, 3); see assets/mouth_light.py."""
-    there = points - np.array([0.0, 0.0, front - INCISORS])
-    return in_mouth_light(there, np.ones((len(points), 3)))

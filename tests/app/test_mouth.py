@@ -18,4 +18,7 @@ def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
     given = {part.name: part for part in head}["teeth_lower"]
     red, _, blue = (lower / given.colours)[given.vertices[:, 2].argmin()]
     assert blue < 0.75 and blue < 0.95 * red  # grey ones look like one broken tooth
+    tongue = next(part for part in shown if part.name == "tongue")
+    light, depth = tongue.colours.mean(axis=1), tongue.vertices[:, 2]
+    assert light[depth.argmin()] < 0.6 * light[depth.argmax()]
     assert shaded_mouth(()) == ()

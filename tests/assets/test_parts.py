@@ -116,8 +116,8 @@ def test_upper_incisors_overlap_the_lower(head: Head) -> None:
 
 
 def test_mouth_is_darker_toward_the_throat(head: Head) -> None:
-    """Teeth, tongue and cheeks lose light with depth, yet the throat is no black hole."""
-    for name in ("teeth_lower", "teeth_upper", "tongue", "oral_cavity_upper"):
+    """Teeth and cheeks lose light with depth, yet the throat is no black hole."""
+    for name in ("teeth_lower", "teeth_upper", "oral_cavity_upper"):
         found = part(head, name)
         depth, brightness = found.vertices[:, 2], found.colours.mean(axis=1)
         front = brightness[depth > np.percentile(depth, 80)].mean()
