@@ -104,6 +104,14 @@ def as_lists(
     return points, [(int(a), int(b), int(c)) for a, b, c in faces]
 
 
+def places_in_source(
+    origins: refine.Origins, triangles: npt.NDArray[Any], faces: npt.NDArray[Any]
+) -> npt.NDArray[np.float32]:
+    """Barycentric places of corners in the input triangles (M, 3) they come from, (M, 3, 3)."""
+    is_corner = origins.vertices[triangles][..., None] == faces[:, None, None, :]
+    return np.asarray((origins.weights[triangles][..., None] * is_corner).sum(axis=2))
+
+
 def surface_at(
     refiner: refine.Refiner,
     refined: refine.RefinedMesh,
@@ -117,9 +125,8 @@ def surface_at(
     is_proper = np.array([len(set(face)) == 3 for face in faces.tolist()])
     is_shown = is_proper[refined.source]
     corners, source = refined.triangles[is_shown], refined.source[is_shown]
-    at_corner = origins.vertices[corners][..., None] == faces[source][:, None, None, :]
-    local = (origins.weights[corners][..., None] * at_corner).sum(axis=2).astype(np.float64)
-    shares = places @ np.linalg.inv(local)
+    local = places_in_source(origins, corners, faces[source])
+    shares = places @ np.linalg.inv(local.astype(np.float64))
     triangle, place = np.nonzero((shares > -1e-9).all(axis=2))
     values = np.einsum("nk,nki->ni", shares[triangle, place], rows[corners[triangle]])
     result[source[triangle], place] = values

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import soups
+from tests.refine.cases import places_in_source, soups
 
 MESHES = st.one_of(
     soups(),
@@ -161,8 +161,7 @@ def assert_linear(
     origins = refiner.origins()
     proper = np.array([len(set(face)) == 3 for face in faces.tolist()])[mesh.source]
     triangles, source = mesh.triangles[proper], mesh.source[proper]
-    is_corner = origins.vertices[triangles][..., None] == faces[source][:, None, None, :]
-    places = (origins.weights[triangles][..., None] * is_corner).sum(axis=2)
+    places = places_in_source(origins, triangles, faces[source])
     expected = np.einsum("tci,tiu->tcu", places, corner_values[source])
     assert mesh.uv is not None
     np.testing.assert_allclose(mesh.uv[triangles], expected, rtol=0, atol=1e-5)

@@ -5,7 +5,6 @@ import pytest
 
 from risorius import sim
 from risorius.sim.controls import Control, Controls
-from tests.sim.poses import settled_displacement
 
 
 def test_every_control_has_limits_a_value_and_one_group(simulation: sim.Simulation) -> None:
@@ -62,15 +61,6 @@ def test_activation_follows_without_overshoot() -> None:
         assert coarse._now("one") == pytest.approx(fine._now("one"), abs=1e-12)
     assert np.all(np.diff([0.0, *path]) > 0.0)
     assert 0.9 < path[-1] <= 1.0
-
-
-def test_a_half_and_both_halves_are_no_more_than_all(simulation: sim.Simulation) -> None:
-    """A muscle whose halves are pulled alone and together contracts once, not twice."""
-    both = settled_displacement(simulation, {"orbicularis_oris_marginal_upper": 1.0})
-    sides = {f"orbicularis_oris_marginal_upper_{side}": 1.0 for side in ("left", "right")}
-    again = settled_displacement(simulation, {"orbicularis_oris_marginal_upper": 1.0, **sides})
-    assert np.abs(both).max() > 1.0
-    assert np.abs(again - both).max() < 1e-3
 
 
 def test_positions_are_read_only(simulation: sim.Simulation) -> None:

@@ -160,17 +160,12 @@ def test_sums_are_cut_off_once_and_in_any_order() -> None:
         ({"X": {"middle": "1"}}, r"X.toml, 'X', 'middle': was '1', must be a number from -2"),
         ({"X": {"middle": True}}, r"'X', 'middle': was True, must be a number"),
         ({"X": {"middle": 2.5}}, r"'X', 'middle': was 2.5, .* from -2 to 2"),
-        ({"X": {"middle": float("nan")}}, r"'X', 'middle': was nan, must be a number"),
         ({"X": 3}, r"'X': was 3, must be a table"),
-        ({"X": {"action": 3}}, r"'X', 'action': was 3, must be a text"),
         ({"X": {"pair": 1}}, r"'X', 'pair': was 1, must be true, false or \"Left Right\""),
-        ({"X": {"pair": "Left"}}, r"'X', 'pair': was 'Left', must be true, false or \"Left R"),
-        ({"X": {"pair": ["Left"]}}, r"'X', 'pair': was \['Left'\], must be true, false or"),
         ({"XLeft": {"pair": "Left Right"}}, r"'XLeft': a pair adds the .*; leave 'Left' away"),
         ({"X": {"mirror": 1}}, r"'X', 'mirror': was 1, must be a text"),
         ({"X": {"mirror": "Y", "pair": True}}, r"'X', 'mirror': was 'Y', must be another name"),
         ({"X": {"mirror": "middle"}}, r"'X': there is a control called 'middle' already"),
-        ({"X": {"at_least": 0.2}}, r"'X', 'at_least': was 0.2, must be a table"),
         ({"X": {"at_least": {"slide": -1}}}, r"'X', 'at_least', 'slide': was -1, .* 0 to 2"),
         ({"X": {"at_least": {"slid": 1.0}}}, r"'X': no layer below .* 'slid'; did you mean"),
         ({"X": {"share_of": 1.0}}, r"'X', 'share_of': was 1.0, must be a text"),
@@ -219,10 +214,18 @@ def test_each_row_of_the_shipped_tables_does_something(simulation: sim.Simulatio
             assert any(simulation.sums.values()) == (name != "viseme_sil"), name
 
 
+def mirrored(sums: dict[str, float]) -> dict[str, float]:
+    """The same on the other side."""
+    other, found = {"left": "right", "right": "left"}, {}
+    for name, value in sums.items():
+        stem, mark, side = name.rpartition("_")
+        is_turned = name.startswith("gaze_horizontal") or name == "jaw_sideways"
+        found[stem + mark + other.get(side, side)] = -value if is_turned else value
+    return found
+
+
 def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> None:
     """Whatever a shape of the left asks of the left, its twin asks of the right."""
-    turned = ("gaze_horizontal_left", "gaze_horizontal_right", "jaw_sideways")
-    other = {"_left": "_right", "_right": "_left"}
 
     def sums(name: str) -> dict[str, float]:
         simulation.pose({name: 1.0})
@@ -232,12 +235,7 @@ def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> N
     twins = [name.removesuffix("Left") for name in shapes if name.endswith("Left")]
     assert len(twins) == 20
     for base in twins:
-        mirrored = {}
-        for name, value in sums(f"{base}Left").items():
-            stem, mark, side = name.rpartition("_")
-            twin = stem + other.get(mark + side, mark + side)
-            mirrored[twin] = -value if name in turned else value
-        assert sums(f"{base}Right") == pytest.approx(mirrored), base
+        assert sums(f"{base}Right") == pytest.approx(mirrored(sums(f"{base}Left"))), base
 
 
 def test_expressions_have_sides(simulation: sim.Simulation) -> None:
@@ -252,12 +250,7 @@ def test_expressions_have_sides(simulation: sim.Simulation) -> None:
         pulls = {key for key, value in sums(f"{name}_left").items() if value > 0.26}
         assert pulls and not any(key.endswith("_right") for key in pulls), name
     for name in ("wink", "contempt"):
-        other = {"_left": "_right", "_right": "_left"}
-        mirrored = {}
-        for key, value in sums(name).items():
-            stem, mark, side = key.rpartition("_")
-            mirrored[stem + other.get(mark + side, mark + side)] = value
-        assert sums(f"{name}_right") == pytest.approx(mirrored), name
+        assert sums(f"{name}_right") == pytest.approx(mirrored(sums(name))), name
 
 
 def test_the_jaw_of_a_funnel_counts_once(simulation: sim.Simulation) -> None:

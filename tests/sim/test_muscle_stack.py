@@ -1,7 +1,6 @@
 """Muscles that lie on others follow them: carried along, lifted by their bulge, and only then."""
 
 import copy
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,7 +10,7 @@ import pytest
 from risorius import sim
 from risorius.assets.model import Head
 from risorius.sim.fibres import FIBRE_POINTS, SAMPLES, move_lines
-from tests.sim.poses import both_sides, settled_displacement, without
+from tests.sim.poses import settled_displacement, without
 
 Array = npt.NDArray[np.float64]
 ABOVE, BENEATH = "zygomaticus_major", "buccinator"
@@ -56,29 +55,6 @@ def test_nothing_is_carried_by_what_does_not_lie_beneath(head: Head) -> None:
     stack = sim.create(stacked(head, {ABOVE: [BENEATH]}))
     settled_displacement(stack, {f"{BENEATH}_left": 1.0})
     assert not displaced(stack, f"{ABOVE}_right").any()
-
-
-def test_at_rest_what_lies_beneath_changes_nothing(simulation: sim.Simulation, head: Head) -> None:
-    """Muscles on top of all others move the skin bit by bit as if they lay on nothing."""
-    carriers = {name for row in head.rig["muscle"].values() for name in row.get("lies_on", ())}
-    assert len(carriers) > 6
-    anatomy = simulation._anatomy
-    nothing = anatomy.muscles.stack._replace(rows=np.zeros_like(anatomy.muscles.stack.rows))
-    plain = sim.Simulation(
-        replace(anatomy, muscles=replace(anatomy.muscles, stack=nothing)),
-    )
-    on_top = [name for name in head.rig["muscle"] if name not in carriers]
-    values = both_sides(plain, dict.fromkeys(on_top, 0.8))
-    assert len(values) > 20
-    moved = [
-        settled_displacement(face, values, frames=20).tobytes() for face in (plain, simulation)
-    ]
-    assert moved[0] == moved[1]
-    values[f"{BENEATH}_left"] = 0.1
-    moved = [
-        settled_displacement(face, values, frames=20).tobytes() for face in (plain, simulation)
-    ]
-    assert moved[0] != moved[1]
 
 
 def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
-from risorius.sim.landmarks import MIRRORED, LandmarkPoint, Side
+from risorius.sim.landmarks import LandmarkPoint, Side
 from risorius.sim.rig import LinearMuscle, RingMuscle, Tissue, read_rig
 from tests.sim.poses import both_sides, moved_landmarks, settled_displacement, without
 
@@ -82,29 +82,23 @@ PULLER = ("muscle", "puller")
     [
         (_set("format", value=2), r"'format': was 2, must be one of 1"),
         (_set("muscles", value={}), r"unknown key 'muscles'; did you mean 'muscle'\?"),
-        (_set("muscle", value=[]), r"rig, 'muscle': was \[\], must be a table"),
         (_set("tissue", "shear", value="soft"), r"'shear': was 'soft', must be a number"),
         (_set("tissue", "sheer", value=1.0), r"unknown key 'sheer'; did you mean 'shear'\?"),
-        (_set("tissue", "damping", value=-1), r"'damping': was -1, must be .* from 0 to 1000"),
         (_set("jaw", "opening_deg", value=True), r"'opening_deg': was True, must be a number"),
         (_set("jaw", "opening_glide", value=[1, 2]), r"'opening_glide' 3: is missing"),
         (_set("jaw", "seeds", value={"99": 1.0}), r"'99', must be a landmark, 0 to 67"),
         (_set("eyes", value={"gaze_deg": float("nan")}), r"'eyes', 'gaze_deg': was nan"),
         (_set(*PULLER, value=3), r"'muscle', 'puller': was 3, must be a table whose 'kind' is one"),
         (_set(*PULLER, "kind", value="sheet"), r"'kind' is one of linear, ring"),
-        (_delete(*PULLER, "kind"), r"'muscle', 'puller': was .*, must be a table whose 'kind'"),
         (_delete(*PULLER, "action"), r"'muscle', 'puller', 'action': is missing"),
-        (_set(*PULLER, "group", value=7), r"'group': was 7, must be a text"),
         (_set(*PULLER, "pair", value="no"), r"'pair': was 'no', must be true or false"),
         (_set(*PULLER, "with", value=12), r"unknown key 'with'; did you mean 'width'\?"),
         (_set(*PULLER, "width", value=0.0), r"'puller', 'width': was 0.0, must be .* 1 to 60"),
         (_set(*PULLER, "bone", value="maxilla"), r"'bone': was 'maxilla', must be one of cranium"),
-        (_set(*PULLER, "gate", value="upper"), r"'gate': was 'upper', must be one of none, "),
         (_set(*PULLER, "radii", value=[1, 1, 1]), r"'puller': unknown key 'radii'\. Allowed: "),
         (_delete(*PULLER, "fibre"), r"'puller': a linear muscle needs a"),
         (_set(*PULLER, "fibre", value={}), r"'fibre': was \{\}, must be a list"),
         (_delete(*PULLER, "fibre", 0, "origin"), r"'fibre' 1, 'origin': is missing"),
-        (_set(*PULLER, "fibre", 0, "origin", value=54), r"'origin': was 54, must be a table"),
         (
             _set(*PULLER, "fibre", 0, "insertion", "landmarks", value={"54": 1.0}),
             r"'insertion': give exactly one of 'landmark' and 'landmarks'",
@@ -133,7 +127,6 @@ PULLER = ("muscle", "puller")
             r"'lifter', 'lies_on': a lid lies on the eyeball",
         ),
         (_set("muscle", "closer", "radii", value=[0, 1, 1]), r"'closer', 'radii' 1: was 0"),
-        (_set("muscle", "lifter", "lid", value="up"), r"'lid': was 'up', must be one of "),
         (_set("muscle", "Big Muscle", value=RING), r"'Big Muscle': a name is lower case"),
         (_set("muscle", "puller_left", value=RING), r"'puller_left': the side is added by itself"),
     ],
@@ -152,12 +145,6 @@ def test_built_in_rig_is_complete(head: Head) -> None:
     assert sum(muscle.tone for muscle in rig.muscles) >= 27
     for muscle in rig.muscles:
         assert "AU" in muscle.action or not muscle.tone, muscle.name
-
-
-def test_mirror_table_is_its_own_inverse() -> None:
-    """Mirroring a landmark twice gives the landmark; points of the midline stay."""
-    assert np.array_equal(MIRRORED[MIRRORED], np.arange(68))
-    assert all(MIRRORED[n] == n for n in (8, 27, 28, 29, 30, 33, 51, 57, 62, 66))
 
 
 def test_points_are_mirrored() -> None:

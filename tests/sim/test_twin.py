@@ -248,25 +248,13 @@ def test_a_step_is_its_substeps(head: Head) -> None:
 
 
 def _plain_substep(face: sim.Simulation, h: float) -> None:
-    """Forces by numpy, then velocity, then position."""
+    """Forces by their kernels, which are tried above; then velocity, then position."""
     skin, state = face._anatomy.skin, face._state
-    springs, edges = skin.tissue, skin.edges
-    x, v, n = state.x, state.v, state.normals
-    away = x - state.carried
-    across = (away * n).sum(axis=1, keepdims=True) * n
-    force = state.pull - (state.hold + springs.tangential)[:, None] * away
-    force -= (springs.normal - springs.tangential)[:, None] * across
-    i, j = edges.edges.astype(np.int64).T
-    along = x[j] - x[i]
-    length = np.linalg.norm(along, axis=1)
-    extension = length - edges.rest_length
-    beyond = np.maximum(extension - edges.strain_limit * edges.rest_length, 0.0)
-    tension = edges.stiffness * (extension + (edges.stiffening - 1.0) * beyond) / length
-    pull = tension[:, None] * along + edges.shear[:, None] * (away[j] - away[i])
-    np.add.at(force, i, pull)
-    np.add.at(force, j, -pull)
+    springs, x, v = skin.tissue, state.x, state.v
+    tissue_forces(state, springs)
+    edge_forces(state, skin.edges)
     stiff = (springs.tangential + state.hold) / skin.mass
     damping = springs.damping + 2.0 * springs.damping_ratio * np.sqrt(stiff)
-    v[:] = (v + h * force / skin.mass[:, None]) / (1.0 + h * damping)[:, None]
+    v[:] = (v + h * state.force / skin.mass[:, None]) / (1.0 + h * damping)[:, None]
     v[:] = _sealed_speeds(face, h)
     x += h * v

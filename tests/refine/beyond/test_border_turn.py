@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from risorius import assets, refine, sim
+from risorius import refine
 from tests import meshes
 from tests.refine.cases import kahler, soups
 from tests.refine.plain_schemes import is_corner
@@ -200,28 +200,3 @@ def test_round_outline_of_a_slit(scheme: str) -> None:
     refined = outline(mesh.positions, mesh.triangles, middle, 3.1)
     assert np.median(refined) < 0.5 * np.median(coarse)
     assert scheme == "loop" or refined[-1] < 0.5 * coarse[-1]
-
-
-@pytest.mark.parametrize("scheme", ["loop", "cubic"])
-@pytest.mark.parametrize("name", ["surprise", "yawn"])
-def test_round_mouth_of_the_head(scheme: str, name: str) -> None:
-    """The border of the mouth turns less than half as much; by loop not beside its corners.
-
-    A corner that turns by 16 degrees is smooth to the eye, and need not become smoother.
-    """
-    head = assets.load("head")
-    simulation = sim.create(head)
-    simulation.set_all(head.expressions[name])
-    for _ in range(60):
-        simulation.step(1.0 / 60.0)
-    refiner = refine.create(
-        "kahler", head.faces, head.vertices, criterion="border", scheme=scheme, blend=False
-    )
-    now = simulation.positions
-    mesh = refiner.refine(now)
-    assert len(mesh.triangles) < 1.7 * len(head.faces)
-    middle = now[head.landmarks[60:68]].mean(axis=0) - [0.0, 0.0, 5.0]
-    coarse = outline(now, head.faces, middle, 40.0)
-    refined = outline(mesh.positions, mesh.triangles, middle, 40.0)
-    assert np.median(refined) < 0.5 * np.median(coarse)
-    assert scheme == "loop" or refined[-1] < max(0.65 * coarse[-1], 16.0)

@@ -7,7 +7,7 @@ import pytest
 
 from risorius import refine
 from tests import meshes
-from tests.refine.cases import GivenMetric, kahler
+from tests.refine.cases import GivenMetric, kahler, places_in_source
 
 REFINERS = [
     ("none", {}),
@@ -41,12 +41,7 @@ def test_attributes_are_linear(name: str, options: dict[str, object]) -> None:
     refine.check(refiner, refined, deformed)
     assert refiner.vertex_columns == 6 + 2 + 4 + 1
     assert refined.uv is not None
-    origins = refiner.origins()
-    at_corner = (
-        origins.vertices[refined.triangles][..., None]
-        == tube.faces[refined.source][:, None, None, :]
-    )
-    places = (origins.weights[refined.triangles][..., None] * at_corner).sum(axis=2)
+    places = places_in_source(refiner.origins(), refined.triangles, tube.faces[refined.source])
     for values, found in (
         (tube.uv[tube.face_uv], refined.uv),
         (colours[tube.faces], refined.attributes["colour"]),
