@@ -1,8 +1,7 @@
-"""Paint the built-in head's brows as those of persons are, on skin without traces of older ones.
+"""Take traces of older brows from the skin around brows: light streaks, and relief.
 
-`python .ci/brows_mending.py` writes head.png, head_tints.npz, head_fine_shape.npz and
-head_segments.png anew. Around brows the skin's light and relief are smoothed, and get the pores of
-the forehead above them.
+`python .ci/brows_mending.py` writes head.png and head_fine_shape.npz anew: there the skin's light
+and relief are smoothed, and get the pores of the forehead above. Hairs stay as they are.
 """
 
 from pathlib import Path
@@ -12,15 +11,12 @@ import numpy.typing as npt
 import PIL.Image
 import scipy
 
-from risorius.assets.identities.brows import Brows, painted
-from risorius.assets.identities.complexion import BROW_BLUR, BROW_COVER
 from risorius.assets.loading import load
-from risorius.assets.model import FloatArray, Segment
+from risorius.assets.model import FloatArray
 from risorius.assets.pigments import OWN
 from risorius.geometry.colour import to_linear, to_screen
 
 DATA = Path("assets/data")
-BROWS = Brows(7.4, 10.5, 3.4, 6.0, 40.0, 0.8, 0.25, 5)
 NEAR, SOFT = 22, 5.0  # [texels] around hairs that are mended, and over which it fades
 SMOOTH, ABOVE = 12.0, 120  # [texels] of light and relief that stay, and from where pores come
 
@@ -38,8 +34,8 @@ def mended(values: FloatArray, mask: FloatArray, known: npt.NDArray[np.bool_]) -
 
 
 def main() -> None:
-    """Write the four files anew."""
-    head, tints = load("head"), dict(np.load(DATA / "head_tints.npz"))
+    """Write both files anew."""
+    head, tints = load("head"), np.load(DATA / "head_tints.npz")
     hair = tints["hair"] / 100.0
     size = len(hair)
     own = to_linear(np.array(OWN.hair))
@@ -55,14 +51,10 @@ def main() -> None:
         tails[row - 12 : row + 18, column - 24 : column + 24] = True
     mask, known = scipy.ndimage.gaussian_filter(tails.astype(float), SOFT), ~tails
     bare = mended(bare, mask, known)
-    new = painted(BROWS, size)
-    hair = np.rint(100.0 * np.where(at_brow | tails, new, hair)) / 100.0
     bald = np.maximum(bare - hair[..., None] * skin, 0.0)
     picture = to_screen(np.clip(bald + hair[..., None] * own, 0.0, 1.0))
     levels = np.rint(255.0 * picture).astype(np.uint8)
     PIL.Image.fromarray(levels).save(DATA / "head.png", optimize=True)
-    tints["hair"] = np.rint(100.0 * hair).astype(np.uint8)
-    np.savez_compressed(DATA / "head_tints.npz", **tints)
     fine = dict(np.load(DATA / "head_fine_shape.npz"))
     slopes = np.cumsum(fine["steps"], axis=0, dtype=np.uint8).astype(float)
     small = scipy.ndimage.zoom(mask, len(slopes) / size, order=1)
@@ -70,15 +62,6 @@ def main() -> None:
     slopes = np.rint(np.clip(mended(slopes, small, known), 0, 255)).astype(np.uint8)
     fine["steps"] = np.diff(slopes, axis=0, prepend=np.zeros_like(slopes[:1]))
     np.savez_compressed(DATA / "head_fine_shape.npz", **fine)
-    segments = head.segments.copy()
-    brows = (Segment.RIGHT_BROW, Segment.LEFT_BROW)
-    segments[np.isin(segments, brows)] = Segment.SKIN
-    covered = scipy.ndimage.gaussian_filter(new, BROW_BLUR) > BROW_COVER
-    covered |= covered[:, ::-1]
-    left = np.arange(size) > size / 2
-    sides = np.where(left, np.uint8(brows[1]), np.uint8(brows[0]))
-    segments = np.where(covered & (segments == Segment.SKIN), sides, segments)
-    PIL.Image.fromarray(segments.astype(np.uint8)).save(DATA / "head_segments.png", optimize=True)
 
 
 if __name__ == "__main__":

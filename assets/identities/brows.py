@@ -28,7 +28,7 @@ LID_LINE = 3.0  # [texels] that the lashes' roots are wide along the upper lid
 SOFT = 3.0  # [texels] by which what is between hairs is blurred
 # Along a brow, its thickness as a share of the greatest.
 PROFILE = (0.0, 0.6), (0.1, 0.85), (0.3, 1.0), (0.6, 0.8), (0.85, 0.5), (1.0, 0.25)
-UNDER = 0.65  # of a brow's darkness, that is left between its hairs
+UNDER = 0.9  # of a brow's darkness, that is left between its hairs
 
 # Thickness, inner end, rise, fall, peak, density of women and men: means, and deviations.
 DRAWN = (
