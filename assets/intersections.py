@@ -28,24 +28,13 @@ def self_intersections(vertices: Points, faces: Faces) -> Faces:
 
 
 def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
-    """Pairs of triangles whose surrounding balls meet, each pair once, shape (k, 2).
-
-    By classes of size, so that a few large triangles do not make all small ones look far around.
-    """
+    """Pairs of triangles whose surrounding balls meet, each pair once, shape (k, 2)."""
     centre = corner.mean(axis=1)
     radius = np.linalg.norm(corner - centre[:, None], axis=2).max(axis=1)
-    size = np.floor(np.log2(np.maximum(radius, 1e-6)))
-    classes = [np.flatnonzero(size == value) for value in np.unique(size)]
-    trees = [scipy.spatial.cKDTree(centre[members]) for members in classes]
-    found = []
-    for i, members in enumerate(classes):
-        for j in range(i + 1):
-            reach = float(radius[members].max() + radius[classes[j]].max())
-            near = trees[i].sparse_distance_matrix(trees[j], reach, output_type="coo_matrix")
-            found.append(np.stack([members[near.row], classes[j][near.col]], axis=1))
-            if i == j:
-                found[-1] = found[-1][found[-1][:, 0] < found[-1][:, 1]]
-    pairs = np.concatenate(found)
+    near = scipy.spatial.cKDTree(centre).query_ball_point(centre, 2.0 * radius)  # of the larger one
+    second = np.concatenate(near).astype(np.int64)
+    first = np.repeat(np.arange(len(near)), [len(each) for each in near])
+    pairs = np.unique(np.sort(np.column_stack([first, second])[first != second], axis=1), axis=0)
     distance = np.linalg.norm(centre[pairs[:, 0]] - centre[pairs[:, 1]], axis=1)
     meeting: npt.NDArray[np.int64] = pairs[distance < radius[pairs].sum(axis=1)]
     return meeting

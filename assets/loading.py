@@ -66,7 +66,9 @@ def load_head(head_file: Path = HEAD_FILE) -> Head:
         **{name: arrays[name] for name in ARRAYS},
         anatomy=dict(zip(names, arrays["anatomy_vertices"].tolist(), strict=True)),
         rings={name.removeprefix("ring_"): arrays[name] for name in rings},
-        eyes=_eyes(arrays),
+        eyes=tuple(
+            map(Eye, ("right", "left"), arrays["eye_centres"], *arrays["eye_radii"].T.tolist())
+        ),
         parts=_parts(arrays),
         face_uv=arrays["faces"],  # one piece without seams: a corner is a vertex
         file=head_file,
@@ -80,34 +82,29 @@ def read_words() -> Mapping[str, Any]:
     return read_toml(WORDS_FILE)
 
 
-def _eyes(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Eye, ...]:
-    centres, radii = arrays["eye_centres"], arrays["eye_radii"]
-    return tuple(
-        Eye(name, centres[i], float(radii[i, 0]), float(radii[i, 1]))
-        for i, name in enumerate(("right", "left"))
-    )
-
-
 def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
     """Parts lie one after the other in shared arrays: an npz entry costs more than its numbers."""
-    vertex_ends = np.cumsum(arrays["part_vertex_counts"])
-    face_ends = np.cumsum(arrays["part_face_counts"])
-    parts = []
-    for i, name in enumerate(arrays["part_names"].tolist()):
-        vertices = slice(vertex_ends[i] - arrays["part_vertex_counts"][i], vertex_ends[i])
-        faces = slice(face_ends[i] - arrays["part_face_counts"][i], face_ends[i])
-        roots = arrays["part_roots"][vertices]
-        parts.append(
-            Part(
-                name=name,
-                vertices=arrays["part_vertices"][vertices],
-                normals=arrays["part_normals"][vertices],
-                faces=arrays["part_faces"][faces],
-                colours=arrays["part_colours"][vertices],
-                bone=str(arrays["part_bones"][i]),
-                shine=float(arrays["part_shine"][i]),
-                roots=roots if roots.min() >= 0 else None,
-                strand_radius=float(arrays["part_hair"][i]),
-            )
+    vertices, normals, colours, roots, faces = (
+        np.split(arrays[f"part_{name}"], np.cumsum(arrays[f"part_{of}_counts"])[:-1])
+        for name, of in (
+            ("vertices", "vertex"),
+            ("normals", "vertex"),
+            ("colours", "vertex"),
+            ("roots", "vertex"),
+            ("faces", "face"),
         )
-    return tuple(parts)
+    )
+    return tuple(
+        Part(
+            name=name,
+            vertices=vertices[i],
+            normals=normals[i],
+            faces=faces[i],
+            colours=colours[i],
+            bone=str(arrays["part_bones"][i]),
+            shine=float(arrays["part_shine"][i]),
+            roots=roots[i] if roots[i].min() >= 0 else None,
+            strand_radius=float(arrays["part_hair"][i]),
+        )
+        for i, name in enumerate(arrays["part_names"].tolist())
+    )

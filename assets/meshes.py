@@ -25,9 +25,7 @@ from .wavefront import read_obj
 
 FORMATS = ("obj", "ply", "stl", "off", "glb")  # ends of names
 MOST_MEGABYTES = 100
-FARTHEST = (
-    1e9  # of a coordinate, in any unit: far beyond all meshes, and its cube is still a number
-)
+FARTHEST = 1e9  # of a coordinate, in any unit: far beyond all, and its cube is still a number
 PACKED = re.compile(  # in which ways trimesh reads no positions
     rb'"extensionsRequired"[^]]*"(KHR_draco_mesh_compression|EXT_meshopt_compression)"'
 )

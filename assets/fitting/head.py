@@ -168,7 +168,8 @@ def fit(
     parts = tuple(part for part in parts if part.bone != NECK and part.roots is None)
     uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
     across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
-    painted = _painted(mesh, whole, skin, Layout(uv, skin.faces), known)
+    layout, albedo, maps = _painted(mesh, whole, skin, Layout(uv, skin.faces), known)
+    wrinkles, segments, light = maps
     return FittedHead(
         vertices=skin.vertices,
         faces=skin.faces,
@@ -176,12 +177,12 @@ def fit(
         bone_depth=nearest.interpolate(known.bone_depth),
         eyes=eyes,
         parts=with_eyelid_rims(parts, skin.vertices, skin.faces, eyes),
-        uv=painted.layout.uv,
-        face_uv=painted.layout.face_uv,
-        albedo=painted.albedo,
-        wrinkles=replace(painted.wrinkles, across=across),
-        segments=painted.segments,
-        ambient_occlusion=painted.ambient_occlusion,
+        uv=layout.uv,
+        face_uv=layout.face_uv,
+        albedo=albedo,
+        wrinkles=replace(wrinkles, across=across),
+        segments=segments,
+        ambient_occlusion=light,
         rig=known.rig,
         layers=known.layers,
         to_millimetres=similarity,
@@ -199,30 +200,20 @@ def _sound(skin: SkinPiece) -> SkinPiece:
     return without_bag(skin)
 
 
-@dataclass(frozen=True)
-class Painted:
-    """A picture of the skin, maps over it, and where its triangles lie in them all."""
-
-    layout: Layout
-    albedo: Image
-    wrinkles: Wrinkles
-    segments: Image
-    ambient_occlusion: Image
-
-
 def _painted(
     mesh: Mesh, whole: SkinPiece, skin: SkinPiece, built_in: Layout, known: Head
-) -> Painted:
-    """What the file paints the skin with, or the built-in picture.
+) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
+    """Where the skin lies in what picture, and maps over that (see `maps_in`).
 
-    built_in: where the skin's triangles lie in the built-in layout. A skin that was simplified has
-    no other, and what the whole one is painted with is drawn there.
+    The picture is what the file paints it with, or the built-in one; built_in: where the skin's
+    triangles lie in that. A skin that was simplified has no other layout, and what the whole one is
+    painted with is drawn there.
     """
     own = None
     if mesh.texture is not None:
         own = own_picture(mesh.texture, whole.file_faces, whole.is_turned)
     if own is not None and skin is whole:
-        return Painted(own[1], own[0], *maps_in(known, built_in, own[1]))
+        return own[1], own[0], maps_in(known, built_in, own[1])
     (picture, light), layout = plain_skin(known), built_in
     if skin is not whole and (own is not None or mesh.colours is not None):
         normals = vertex_normals(whole.vertices, whole.faces)
@@ -233,7 +224,7 @@ def _painted(
     elif mesh.colours is not None:
         colours = mesh.colours[whole.file_vertices].astype(np.float64)
         picture = drawn_over(picture, layout, colours[whole.faces])
-    return Painted(built_in, picture, known.wrinkles, known.segments, light)
+    return built_in, picture, (known.wrinkles, known.segments, light)
 
 
 def _simplified(skin: SkinPiece, landmarks: FloatArray) -> SkinPiece:
@@ -269,6 +260,7 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
     disordered = groups_in_disorder(similarity.points(points), template)
     is_far = off[ORIENTING].mean() > FARTHEST_FROM_A_FACE
     if disordered and not (is_far and len(disordered) > MOST_DISORDERED):
+        _check_different(similarity.points(points), template)
         raise AssetError(disordered[0].complaint)
     if is_far:
         raise AssetError(

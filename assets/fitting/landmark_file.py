@@ -41,9 +41,7 @@ from .warp import nearest_on
 COUNT = 68
 KEY = "landmarks"  # the list to take where there are several
 GUESSED = "guessed"
-FARTHEST_OFF = (
-    0.05  # of the distance between the outer eye corners: a point off the mesh is a mistake
-)
+FARTHEST_OFF = 0.05  # of the way between the outer eye corners: off the mesh, it is a mistake
 OUTER_EYE_CORNERS = [36, 45]
 Point = Annotated[tuple[float, float, float], Within(-FARTHEST, FARTHEST)]
 DISORDERED = -0.3  # well below 0: who has points in order must not be refused
@@ -128,18 +126,14 @@ def _all_in(document: Any) -> list[Any]:
     if isinstance(document, dict):
         entries = [document[KEY]] if KEY in document else list(document.values())
     lists = [list[Any](each) for each in entries if isinstance(each, list)]
-    lists.sort(key=_is_whole, reverse=True)
-    if not lists or not _is_whole(lists[0]):
+    lists.sort(key=lambda each: len(each) != COUNT)
+    if not lists or len(lists[0]) != COUNT:
         has = f"{len(lists[0])} landmarks" if lists else "holds no list"
         raise AssetError(
             f'{has}; it must be {{"{KEY}": [...]}} with the {COUNT} iBug points in their order, '
             "vertex numbers or points [x, y, z]"
         )
     return lists[0]
-
-
-def _is_whole(entries: list[Any]) -> bool:
-    return len(entries) == COUNT
 
 
 def _are_numbers(found: list[Any]) -> bool:

@@ -134,7 +134,8 @@ def check_openings(skin: SkinPiece) -> None:
 def without_bag(skin: SkinPiece) -> SkinPiece:
     """Cut away a bag behind the lips, where the built-in mouth comes; in the face space [mm]."""
     edge = skin.landmarks[INNER_LIPS]
-    paths = _shortest(skin.vertices, skin.faces, edge, return_predecessors=True)[1]
+    edges = _edges(skin.vertices, skin.faces)
+    paths = csgraph.dijkstra(edges, directed=False, indices=edge, return_predecessors=True)[1]
     ring = set(edge.tolist())
     for number, (start, end) in enumerate(pairwise([*edge, edge[0]])):
         while (end := paths[number, end]) >= 0 and end != start:
@@ -169,15 +170,13 @@ def path_lengths(
     vertices: FloatArray, faces: IndexArray, starts: npt.NDArray[np.integer[Any]]
 ) -> FloatArray:
     """Lengths of the shortest paths along edges from each start to all vertices, shape (n, V)."""
-    return np.asarray(_shortest(vertices, faces, starts))
+    edges = _edges(vertices, faces)
+    return np.asarray(csgraph.dijkstra(edges, directed=False, indices=starts))
 
 
-def _shortest(
-    vertices: FloatArray, faces: IndexArray, starts: npt.NDArray[np.integer[Any]], **asked: bool
-) -> Any:
-    count = len(vertices)
+def _edges(vertices: FloatArray, faces: IndexArray) -> Any:
+    """The lengths of edges, as a graph of vertices."""
     links = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     links = np.unique(np.sort(links, axis=1), axis=0)
     lengths = np.linalg.norm(np.diff(vertices[links], axis=1)[:, 0], axis=1)
-    graph = sparse.csr_array((np.maximum(lengths, 1e-9), links.T), shape=(count, count))
-    return csgraph.dijkstra(graph, directed=False, indices=starts, **asked)
+    return sparse.csr_array((np.maximum(lengths, 1e-9), links.T), shape=(len(vertices),) * 2)

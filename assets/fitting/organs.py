@@ -25,18 +25,14 @@ STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
 WALLS = "oral_cavity"  # and those of the mouth's walls
 LID_CLEARANCE = 0.3  # [mm] between eyeball and the skin of the lids
 SECTORS = 12  # around an eye; in each the skin nearest to the eyeball should lie on it
-TOUCHING = (
-    0.5  # [mm] off the lids from which a sector counts less: corners stand away from the ball
-)
+TOUCHING = 0.5  # [mm] off the lids from which a sector counts less: corners are off the ball
 STRAIGHT = 2.0  # [1] that a mm aside costs: an eye looks out of the middle of its opening
 ROUND = 20.0  # [mm] that a sphere twice as large costs in the fit
 SUNK = 3.0  # x that skin in the eyeball costs more than a gap before it
 LID_DEPTH = 5.0  # [mm] from the landmarks on a lid's edge, as far as its inner skin may reach
 MOUTH = slice(48, 68)
 NARROWER = 0.25  # at their lower end: between the sides of the mandible, then of the throat
-LONGER = (
-    1.5  # walls hang so much farther below the lips: a jaw may open wider than the built-in one
-)
+LONGER = 1.5  # that walls hang farther below the lips: a jaw may open wider than the built-in one
 WALL_DEPTH = 6.0  # [mm] of a wall of the mouth behind the skin
 BESIDE, AROUND = 9.0, 8  # [mm] and number of skin vertices that are in front of a wall
 FACING = 0.2  # forward share of a normal from which skin is in front of teeth
