@@ -1,13 +1,23 @@
 """Rigid parts: where bones put them, how they shine, what hides them."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from risorius import render
 
 from .scenes import PLAIN, STILL, Ball, Shape, at, drawn, facing, fresh_frame, lent, sphere, square
+
+
+def reshaped(ball: Ball, **changes: npt.NDArray[Any]) -> Any:
+    """A ball of which arrays are others."""
+    names = ("vertices", "normals", "faces", "colours", "striation")
+    part = SimpleNamespace(**vars(ball), **{name: getattr(ball, name) for name in names})
+    vars(part).update({name: array.astype(np.float32) for name, array in changes.items()})
+    return part
 
 
 def test_parts_move_with_their_bones(surface: render.Surface) -> None:
@@ -31,10 +41,7 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) ->
     """Other arrays of the same part are uploaded, whatever was drawn before."""
     renderer, pixels = render.Renderer(surface), []
     ball = Ball()
-    part = SimpleNamespace(
-        **vars(ball), faces=ball.faces, colours=ball.colours, striation=None,
-        vertices=ball.vertices, normals=ball.normals,
-    )  # fmt: skip
+    part = reshaped(ball)
     for scale in (1.0, 0.5):
         part.vertices = (scale * ball.vertices).astype(np.float32)
         with fresh_frame(renderer):
@@ -49,12 +56,8 @@ def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
     frames = []
     for shine in (0.0, 1.0):
         with fresh_frame(renderer, render.Style(background=render.DARK)):
-            renderer.draw_parts(
-                [Ball(shine=shine, colour=(0.1, 0.1, 0.1))],
-                STILL,
-                renderer.view(facing(25.0)),
-                PLAIN,
-            )
+            ball = Ball(shine=shine, colour=(0.1, 0.1, 0.1))
+            renderer.draw_parts([ball], STILL, renderer.view(facing(25.0)), PLAIN)
         frames.append(surface.read().astype(int).sum(axis=2))
     dull, wet = frames
     assert dull.max() < 400 and wet.max() > 600
@@ -138,10 +141,7 @@ def test_hair_thins_out_toward_its_tips(surface: render.Surface) -> None:
         out = ball.normals
         striation = np.column_stack([3.0 * ball.vertices[:, :2], 10.0 * out, 0.0 * out[:, 0]])
         striation[:, 5] = dense
-        hair = SimpleNamespace(
-            **vars(ball), faces=ball.faces, colours=ball.colours, normals=out,
-            vertices=ball.vertices + 6.0 * out, striation=striation.astype(np.float32),
-        )  # fmt: skip
+        hair = reshaped(ball, vertices=ball.vertices + 6.0 * out, striation=striation)
         with fresh_frame(renderer):
             renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)
         row = 255 - surface.read().astype(np.int32)[48].mean(axis=1)
@@ -159,10 +159,7 @@ def test_hair_hides_what_is_drawn_after_it_behind(surface: render.Surface) -> No
     ball = Ball(colour=(0.1, 0.1, 0.1))
     striation = np.column_stack([ball.vertices[:, :2], 6.0 * ball.normals, ball.normals[:, 0]])
     striation[:, 5] = 1.0
-    hair = SimpleNamespace(
-        **vars(ball), faces=ball.faces, colours=ball.colours, normals=ball.normals,
-        vertices=ball.vertices, striation=striation.astype(np.float32),
-    )  # fmt: skip
+    hair = reshaped(ball, striation=striation)
     surface.begin()
     renderer.draw_background(PLAIN)
     renderer.draw_parts([hair], STILL, renderer.view(facing()), PLAIN)

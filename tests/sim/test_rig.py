@@ -53,22 +53,17 @@ def test_empty_rig_is_plain_tissue() -> None:
     assert read_rig({}).muscles == ()
 
 
-def _set(*path: Any, value: Any) -> Callable[[dict[str, Any]], None]:
+def _set(*path: Any, value: Any = None) -> Callable[[dict[str, Any]], None]:
+    """Sets a value at a place of the document; None takes it out."""
+
     def change(document: dict[str, Any]) -> None:
         place: Any = document
         for key in path[:-1]:
             place = place[key]
-        place[path[-1]] = value
-
-    return change
-
-
-def _delete(*path: Any) -> Callable[[dict[str, Any]], None]:
-    def change(document: dict[str, Any]) -> None:
-        place: Any = document
-        for key in path[:-1]:
-            place = place[key]
-        del place[path[-1]]
+        if value is None:
+            del place[path[-1]]
+        else:
+            place[path[-1]] = value
 
     return change
 
@@ -90,15 +85,15 @@ PULLER = ("muscle", "puller")
         (_set("eyes", value={"gaze_deg": float("nan")}), r"'eyes', 'gaze_deg': was nan"),
         (_set(*PULLER, value=3), r"'muscle', 'puller': was 3, must be a table whose 'kind' is one"),
         (_set(*PULLER, "kind", value="sheet"), r"'kind' is one of linear, ring"),
-        (_delete(*PULLER, "action"), r"'muscle', 'puller', 'action': is missing"),
+        (_set(*PULLER, "action"), r"'muscle', 'puller', 'action': is missing"),
         (_set(*PULLER, "pair", value="no"), r"'pair': was 'no', must be true or false"),
         (_set(*PULLER, "with", value=12), r"unknown key 'with'; did you mean 'width'\?"),
         (_set(*PULLER, "width", value=0.0), r"'puller', 'width': was 0.0, must be .* 1 to 60"),
         (_set(*PULLER, "bone", value="maxilla"), r"'bone': was 'maxilla', must be one of cranium"),
         (_set(*PULLER, "radii", value=[1, 1, 1]), r"'puller': unknown key 'radii'\. Allowed: "),
-        (_delete(*PULLER, "fibre"), r"'puller': a linear muscle needs a"),
+        (_set(*PULLER, "fibre"), r"'puller': a linear muscle needs a"),
         (_set(*PULLER, "fibre", value={}), r"'fibre': was \{\}, must be a list"),
-        (_delete(*PULLER, "fibre", 0, "origin"), r"'fibre' 1, 'origin': is missing"),
+        (_set(*PULLER, "fibre", 0, "origin"), r"'fibre' 1, 'origin': is missing"),
         (
             _set(*PULLER, "fibre", 0, "insertion", "landmarks", value={"54": 1.0}),
             r"'insertion': give exactly one of 'landmark' and 'landmarks'",
