@@ -1,7 +1,6 @@
 """Small questions about triangle lists: boundary loops, grids; fewer of them, and more."""
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -60,16 +59,11 @@ def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> F
     return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3).astype(np.int32)
 
 
-@dataclass(frozen=True)
-class Quartered:
-    """A triangle list after one cut.
+class Quartered(NamedTuple):
+    """A triangle list after one cut, and the ends of the edge that each new vertex lies on."""
 
-    faces: shape (4 F, 3), int32.
-    edges: the ends of the edge that each new vertex lies on, lower number first, shape (E, 2).
-    """
-
-    faces: Faces
-    edges: Faces
+    faces: Faces  # (4 F, 3)
+    edges: Faces  # (E, 2), lower number first
 
 
 def quarter(faces: Faces, vertex_count: int) -> Quartered:

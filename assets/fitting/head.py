@@ -248,12 +248,10 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
     """The similarity to millimetres and the face space; AssetError if this is no face."""
     template = known.vertices[known.landmarks]
     extent = np.ptp(points[ORIENTING], axis=0).max()
-    if extent == 0.0:
-        raise AssetError("all landmarks are one point; give 68 different ones")
     if extent < SMALLEST:
         raise AssetError(
-            f"the landmarks lie within {extent:.3g} units; allowed are {SMALLEST:g} and more: "
-            "save the mesh in metres or millimetres"
+            f"the landmarks lie within {extent:.3g} units; allowed are {SMALLEST:g} and more: give "
+            "68 different ones, in metres or millimetres"
         )
     similarity = Similarity.between(points[ORIENTING], template[ORIENTING])
     off = np.linalg.norm(similarity.points(points) - template, axis=1)

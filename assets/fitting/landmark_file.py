@@ -66,7 +66,9 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | Non
                 f"{COUNT}; go on with it in the window, with the mesh alone: risorius view --head"
             )
         if _are_numbers(found):
-            return _as_faces_name(_numbers(found, len(mesh.vertices)), mesh), None
+            numbers = _numbers(found, len(mesh.vertices))
+            # Of vertices that lie in one place triangles name always the same one.
+            return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32), None
         points = _points(found)
         return _nearest(points, mesh), points
     except AssetError as error:
@@ -85,21 +87,14 @@ def read_marks(path: Path, mesh: Mesh) -> tuple[dict[int, FloatArray], frozenset
         if not marked:
             return {}, frozenset()
         found = [found[marked[0]] if entry is None else entry for entry in found]
-        if _are_numbers(found):
-            points = mesh.vertices[_numbers(found, len(mesh.vertices))]
-        else:
-            points = _points(found)
+        are_numbers, count = _are_numbers(found), len(mesh.vertices)
+        points = mesh.vertices[_numbers(found, count)] if are_numbers else _points(found)
         guessed = document.get(GUESSED) if isinstance(document, dict) else None
         guesses = guessed if isinstance(guessed, list) else []
         is_guessed = frozenset(number for number in marked if number in guesses)
         return {number: points[number] for number in marked}, is_guessed
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
-
-
-def _as_faces_name(numbers: IndexArray, mesh: Mesh) -> IndexArray:
-    """Vertices as triangles name them: of those that lie in one place always the same one."""
-    return numbers if mesh.same is None else mesh.same[numbers].astype(np.int32)
 
 
 def landmarks_text(places: Mapping[int, Sequence[float]], guessed: Iterable[int] = ()) -> str:

@@ -1,4 +1,4 @@
-"""Brows, roots of lashes and stubble of persons, painted on the texture of the built-in head.
+"""Brows and stubble of persons, painted on the texture of the built-in head.
 
 A brow runs from its inner end over its peak to its tail. The peak of women's lies 0.93 of the
 eye's width from the inner corner of the eye (Roth, Metzinger 2003, "Quantifying the arch position
@@ -24,7 +24,6 @@ FINER = 4  # times finer than the texture, hairs are drawn
 AROUND = 24.0  # [mm] about a brow, vertices that say where it lies on the texture
 DENSITY = 2.0  # hairs for each square millimetre
 PARTS, LONGEST = 5, 6.5  # of each hair, and [mm]
-LID_LINE = 3.0  # [texels] that the lashes' roots are wide along the upper lid
 SOFT = 3.0  # [texels] by which what is between hairs is blurred
 # Along a brow, its thickness as a share of the greatest.
 PROFILE = (0.0, 0.6), (0.1, 0.85), (0.3, 1.0), (0.6, 0.8), (0.85, 0.5), (1.0, 0.25)
@@ -148,26 +147,6 @@ def _map() -> scipy.interpolate.RBFInterpolator:
     hidden = np.concatenate([head.rings[f"eye_{row}_left"] for row in range(3)])
     near = near[~np.isin(near, hidden) & (head.vertices[near, 2] > 30.0)]
     return scipy.interpolate.RBFInterpolator(head.vertices[near, :2], head.uv[near].astype(float))
-
-
-@lru_cache(maxsize=1)
-def lid_lines(size: int) -> SingleArray:
-    """Where roots of lashes darken the edges of lids, 0 to 1, shape (size, size)."""
-    from PIL import Image, ImageDraw
-
-    head = load("head")
-    image = Image.new("L", (FINER * size, FINER * size))
-    pen = ImageDraw.Draw(image)
-    for side in ("left", "right"):
-        ring = head.rings[f"eye_1_{side}"]
-        closed = np.append(ring, ring[:1])
-        upper = head.vertices[closed, 1] > head.vertices[ring[[0, len(ring) // 2]], 1].min()
-        places = FINER * size * np.stack([head.uv[closed, 0], 1.0 - head.uv[closed, 1]], axis=-1)
-        for start, end, above in zip(places[:-1], places[1:], upper[:-1] & upper[1:], strict=True):
-            width = FINER * (LID_LINE if above else 0.4 * LID_LINE)
-            pen.line([*start, *end], fill=255, width=round(width))
-    fine = np.asarray(image, np.float32).reshape(size, FINER, size, FINER) / 255.0
-    return np.asarray(scipy.ndimage.gaussian_filter(fine.mean(axis=(1, 3)), 0.8))
 
 
 @lru_cache(maxsize=1)

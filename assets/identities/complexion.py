@@ -24,11 +24,11 @@ import scipy
 
 from risorius.geometry.colour import to_linear, to_screen
 
-from ..data_files import Image, read_arrays
+from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FloatArray, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
-from .brows import Brows, drawn_brows, lid_lines, painted, stubble
+from .brows import Brows, drawn_brows, painted, stubble
 from .hair import CUTS, HAIR, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair
 from .person import Person
@@ -96,6 +96,7 @@ class _Tints:
     beard: SingleArray  # (H, W)
     brow: SingleArray  # (H, W)
     scalp: SingleArray  # (H, W)
+    lids: SingleArray  # their edges, where lashes root, as revision 2dcc8525 drew them (H, W)
     detail: SingleArray  # what of the picture's lightness is relief, in powers of e (H, W)
     ambient_occlusion: Image  # of the bare skin to light from all around (H, W)
     skin: FloatArray  # (5,)
@@ -180,7 +181,7 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
         np.maximum(kept, painted(features.brows, len(kept)), out=kept)
     if features.lid_line > 0.0:
-        kept = np.maximum(kept, np.float32(features.lid_line) * lid_lines(len(kept)))
+        kept = np.maximum(kept, np.float32(features.lid_line) * tints.lids)
     if features.stubble > 0.0:
         kept = np.maximum(kept, np.float32(features.stubble) * stubble(len(kept)) * tints.beard)
     receded = features.hairline.shift(len(kept))
@@ -374,6 +375,7 @@ def _tints() -> _Tints:
         bare,
         **soft,
         hair=hair,
+        lids=np.asarray(read_image(head.beside("_lids.png"), mode="L") / 255.0, np.float32),
         detail=detail,
         ambient_occlusion=head.ambient_occlusion,
         skin=arrays["skin"],
