@@ -70,7 +70,6 @@ BINARY = (PLY.split("end_header\n")[0].replace("ascii", "binary_little_endian"))
 BODY = b"end_header\n" + VERTICES.tobytes() + b"".join(b"\3" + face.tobytes() for face in FACES)
 STL = bytes(80) + struct.pack("<I", 2)
 STL += b"".join(bytes(12) + VERTICES[face].astype("<f4").tobytes() + bytes(2) for face in FACES)
-OFF = "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 2 3\n"
 MESHES: dict[str, tuple[bytes | str, Kind | str]] = {
     "latin-1.obj": (TRIANGLE.encode().replace(b"f 1", b"o t\xeate\ng a\xa0g\nf 1"), Kind.MESH),
     "utf-16.obj": (TRIANGLE.encode("utf-16"), Kind.MESH),
@@ -154,11 +153,7 @@ def _truncated(path: Path, length: int) -> None:
 WAYS: dict[str, tuple[Callable[[Path], object], str]] = {
     "missing": (lambda _: None, "no such {kind} file"),
     "folder": (Path.mkdir, "is a folder; it must be a {kind} file"),
-    "pipe": (os.mkfifo, "a pipe or a device; it must be a {kind}"),
-    "device": (
-        lambda path: path.symlink_to("/dev/zero"),
-        "is a pipe or a device; it must be a {kind} file",
-    ),
+    "pipe": (os.mkfifo, "is a pipe or a device; it must be a {kind} file"),
     "loop of links": (lambda path: path.symlink_to(path.name), "cannot be read: .*; choose"),
     "terabyte": (lambda path: _truncated(path, 10**12), "has 1e.06 MB; a {kind} file may have"),
 }

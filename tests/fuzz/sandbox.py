@@ -66,10 +66,9 @@ def furnish(folder: Path) -> None:
     (folder / "full" / "mine.txt").write_text("mine")
     for name in ("pipe", "pipe.png", "pipe.toml"):
         os.mkfifo(folder / name)
-    for name in ("loop", "loop.png", "loop.toml", "loop.mp4"):
+    for name in ("loop", "loop.png", "loop.toml"):
         (folder / name).symlink_to(name)
     (folder / "dangling.png").symlink_to("nowhere/at/all.png")
-    (folder / "same.png").symlink_to("good.toml")
     (folder / "zeros.toml").symlink_to("/dev/zero")
 
 
