@@ -30,7 +30,6 @@ LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
 CLEAR, SUNK = 0.5, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
-CLOSE = 0.3  # how much denser curls are
 PAINTED, HEM = 3.0, 26.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
 
 
@@ -70,9 +69,9 @@ class Fall:
 CUTS: Mapping[str, Cut | Fall | None] = MappingProxyType(
     {
         "cropped": None,  # as it is painted on the scalp
-        "parted": Fall(26.0, 96.0, 10.0),
-        "centred": Fall(0.0, 106.0, 10.0),
-        "aside": Fall(-22.0, 100.0, 11.0),
+        "parted": Fall(26.0, 96.0, 14.0),
+        "centred": Fall(0.0, 106.0, 14.0),
+        "aside": Fall(-22.0, 100.0, 15.0),
         "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
         "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5, behind=40.0),
         "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=40.0),
@@ -165,7 +164,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     # Far outside the hairline it is under the skin.
     points = points + (CLEAR + SUNK * np.minimum(behind + 4.0, 0.0))[:, None] * normals
     curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
-    dense = np.minimum((behind - PAINTED) / HEM, 2.0 + CLOSE * cut.curl)
+    dense = np.minimum((behind - PAINTED) / HEM, 2.0)
     striation = np.column_stack([curled[1] * radius * angle, curled[0] * radius * away, way, dense])
     return Part(
         name=HAIR,

@@ -15,7 +15,7 @@ in vec3 in_normal;
 in vec3 in_colour;
 in vec2 in_strand;  // across and along strands [mm]
 in vec3 in_way;     // from their roots to the tips of the longest
-in float in_dense;  // how dense they are, from 0 up to 1; beyond, linear
+in float in_dense;  // how dense they are, 0 to 1; beyond, uneven strands are whole, too
 uniform mat4 model_view;
 uniform mat4 projection;
 uniform float gloss;
@@ -51,11 +51,10 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const float SIDEWAYS = 6.0;              // how soon layers are whole, from their side to their front
+const float SIDEWAYS = 5.0;              // how soon layers are whole, from their side to their front
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
 const float LEAST_FACING = 0.12;         // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
-const float FULL = 0.42;                 // more, where they lie close
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 
 // A number for each place of a grid, 0 to 1, by a hash without sine; two grids at once.
@@ -76,13 +75,12 @@ void main() {
     vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
     vec2 share = clamp(1.5 - fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
-    float close = clamp(surface.dense - 2.0, 0.0, 1.0);
-    float tall = 0.65 + (1.0 - 0.6 * close) * (0.5 * tones.x + 0.4 * tones.y);
-    float far = tall * smoothstep(0.0, 1.0, surface.dense + dot(RAGGED, tones)) + FULL * close;
+    float tall = 0.65 + 0.5 * tones.x + 0.4 * tones.y;
+    float far = tall * smoothstep(0.0, 1.0, surface.dense + dot(RAGGED, tones));
     float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(2.0 * far, 0.0, 1.0);
     // Seen from the side, a look goes past many strands; and upper layers are lines with gaps.
     cover = 1.0 - pow(1.0 - min(cover, 0.999), 1.0 / clamp(surface.facing, LEAST_FACING, 1.0));
-    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), min(3.0 * surface.layer, 1.0) * (1.0 - close));
+    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), min(3.0 * surface.layer, 1.0));
     if (cover < 0.02) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;
     // Tilted toward the root and toward the tip.
