@@ -66,7 +66,7 @@ class Features:
     lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
     of its shadow, and of blood in them, beside that of the built-in head. relief: of pores and
     patches, as a share beside its own. fair, grey: shares of such hair. hairline: where hair
-    begins. grown: whether hair stands so long that no scalp shines through.
+    begins.
     """
 
     brows: Brows | None = None
@@ -78,7 +78,6 @@ class Features:
     fair: float = 0.0
     grey: float = 0.0
     hairline: Hairline = field(default_factory=Hairline)
-    grown: bool = False
 
 
 PLAIN = Features()
@@ -132,7 +131,8 @@ def recoloured(
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
     angle: ITA [deg], DARKEST to LIGHTEST, else ValueError. blood: as a share of what such skin has;
-    0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which its hair goes, else `angle`.
+    0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which hair goes that stands on
+    it, so that no scalp shines through; None where hair is painted alone.
     """
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
@@ -142,7 +142,7 @@ def recoloured(
     grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
     kept = _kept_hair(tints, features)
-    covered = _grown_over(tints, features) if features.grown else 0.0
+    covered = 0.0 if haired_as is None else _grown_over(tints, features)
     light = np.empty_like(tints.light)
     relief = features.relief * tints.detail
     lips, beard = features.lips * BLOOD, features.beard * SHADOW
@@ -253,8 +253,6 @@ def _with_hair(
     """The parts of a person with the hair of its cut; angle: ITA [deg]."""
     others = tuple(part for part in parts if part.name != HAIR)
     cut = CUTS[person.identity.cut]
-    if cut is None:
-        return others
     uv, behind = person.uv.astype(np.float64), _behind(_tints(), features)
     scalp = scalp_of(person.vertices, person.faces, uv, behind)
     colour, length = _hair_colour(angle, features), person.identity.hair
@@ -288,7 +286,6 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
     is_man = identity.sex is Sex.MAN
     years = identity.age
     beard, lips, fair, grey, line, hairs = random.uniform(0.0, 1.0, 6)
-    is_grown = CUTS[identity.cut] is not None
     return Features(
         brows=drawn_brows(is_man, years, random),
         lid_line=0.2 * line if is_man else 0.5 + 0.4 * line,
@@ -300,7 +297,6 @@ def features_of(identity: Identity, angle: float, random: np.random.Generator) -
         relief=(0.15 if is_man else -0.6) + 0.02 * (years - 30.0),
         fair=fair if angle > FAIR_SKIN else 0.0,
         grey=_share_of_grey(years, angle, grey),
-        grown=is_grown,
         hairline=drawn_hairline(is_man, years, random),
     )
 

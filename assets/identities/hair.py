@@ -66,9 +66,9 @@ class Fall:
     volume: float
 
 
-CUTS: Mapping[str, Cut | Fall | None] = MappingProxyType(
+CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
-        "cropped": None,  # as it is painted on the scalp
+        "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
         "parted": Fall(26.0, 96.0, 14.0),
         "centred": Fall(0.0, 106.0, 14.0),
         "aside": Fall(-22.0, 100.0, 15.0),
@@ -145,7 +145,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     out = unit(points - middle)
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
-    faces = faces[(behind[faces] > 0.0).any(axis=1)]
+    faces = faces[(behind[faces] > PAINTED).any(axis=1)]
     # Where angles begin anew strands do not cross from one side to the other.
     crosses = np.ptp(angle[faces], axis=1) > np.pi
     again, number = np.unique(faces[crosses], return_inverse=True)
