@@ -94,7 +94,7 @@ def _strands(
     pairs = zip(roots, leave, strict=True)
     ways = np.array([scipy.spatial.geometric_slerp(*pair, over) for pair in pairs])
     # Beside the face the outer side comes round to the inner one.
-    beside = np.clip((angle - EDGE) / ROUNDED, 0.02, 1.0)[:, None]
+    beside = np.clip((angle - EDGE) / ROUNDED, 0.0005, 1.0)[:, None]
     risen = LOW + (1.0 - LOW) * np.sin(0.5 * np.pi * np.clip(over / RISES, 0.0, 1.0))
     thick = cut.volume * risen * np.sqrt(1.0 - (1.0 - beside) ** 2)
     grids = []
@@ -142,6 +142,7 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     dense = np.minimum(left / HEM, np.minimum(0.3 + along / PARTED, 0.45 + beside / FRONT))
     dense = np.minimum(dense, FULL)
     if is_inside:
+        dense = np.minimum(left / HEM, FULL)  # nothing shines through at its front
         way, places = -0.1 * (high - low) + 0.2 * thickness * ahead, low
     points = places.reshape(-1, 3)
     faces = grid_faces(np.arange(len(points)).reshape(along.shape))
