@@ -1,7 +1,7 @@
 """Dynamic refinement of animated triangle meshes: arrays in, crack-free triangles out, each frame.
 
 After Kähler, Haber and Seidel, "Dynamically refining animated triangle meshes for rendering", The
-Visual Computer 2003. The package stands alone: it needs numpy and numba and nothing else.
+Visual Computer 2003. It needs numpy and numba, and jit.py and geometry/ beside it.
 
     refiner = refine.create("kahler", faces, rest_positions)   # once per mesh
     mesh = refiner.refine(positions)                           # every frame

@@ -122,7 +122,7 @@ def _remove_old(above: Path) -> None:
                 shutil.rmtree(folder, ignore_errors=True)
 
 
-class _Teller(event.Listener):
+class _CompilationLog(event.Listener):
     """Tells the log which kernels of this package are compiled."""
 
     def on_start(self, event: event.Event) -> None:
@@ -135,4 +135,4 @@ class _Teller(event.Listener):
         """What is compiled is not told of again."""
 
 
-event.register("numba:compile", _Teller())
+event.register("numba:compile", _CompilationLog())

@@ -1,4 +1,4 @@
-"""A face that somebody sends: from packets to the controls of our face, and how far it leads.
+"""A face that somebody sends: from packets to the controls of our face, and how far it overrides.
 
     packets -> channels -> calibration -> mapping -> controls, with a presence of 0 to 1
 
@@ -47,7 +47,7 @@ class LiveFace(Receiver):
     calibration: what is done to the channels; may be replaced at any time.
     channels: those of the newest frame, and older ones that it did not name; as they came.
     subject: whose face it is, "" where nobody says so.
-    presence: how far it leads our face, 0 to 1.
+    presence: how far it overrides our face, 0 to 1.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class LiveFace(Receiver):
 
     @property
     def presence(self) -> float:
-        """How far it leads, 0 to 1: smoothly in both directions."""
+        """How far it overrides ours, 0 to 1: smoothly in both directions."""
         return self._share * self._share * (3.0 - 2.0 * self._share)
 
     @property

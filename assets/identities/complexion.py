@@ -97,7 +97,6 @@ class _Tints:
     scalp: SingleArray  # (H, W)
     lids: SingleArray  # their edges, where lashes root, as revision 2dcc8525 drew them (H, W)
     detail: SingleArray  # what of the picture's lightness is relief, in powers of e (H, W)
-    ambient_occlusion: Image  # of the bare skin to light from all around (H, W)
     skin: FloatArray  # (5,)
     melanins: FloatArray  # of the tones in `angles`
     angles: FloatArray  # ITA, rising
@@ -373,7 +372,6 @@ def _tints() -> _Tints:
         hair=hair,
         lids=np.asarray(read_image(head.beside("_lids.png"), mode="L") / 255.0, np.float32),
         detail=detail,
-        ambient_occlusion=head.ambient_occlusion,
         skin=arrays["skin"],
         melanins=melanins,
         angles=typology_angle(tones),

@@ -53,7 +53,7 @@ class RestCurvature(Measuring):
         measures = heights * np.cbrt(np.linalg.norm(along, axis=1) / USUAL)
         limits = self.thresholds
         splits = (measures > limits.once).astype(np.uint8) + (measures > limits.twice)
-        # Needs at which a blended point has grown: there is nothing that it could grow with.
+        # Metrics at which a blended point has grown: there is nothing that it could grow with.
         self._decided = np.array([-np.inf, RAMP, 1.0 + RAMP], np.float32)[splits]
 
     def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:

@@ -187,7 +187,7 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
         behind[name] = shot.image
         inner = is_behind[1:-1, 1:-1] & is_behind[2:, 1:-1] & is_behind[:-2, 1:-1]
         inner &= is_behind[1:-1, 2:] & is_behind[1:-1, :-2]
-        # Single locks may be thinner than the pixels that have a class.
+        # Single strands may be thinner than the pixels that have a class.
         is_hair = shot.known.images["segmentation"] == Segment.HAIR
         inner &= ~binary_dilation(is_hair, iterations=3)[1:-1, 1:-1]
         assert inner.mean() > 0.05

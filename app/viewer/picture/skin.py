@@ -125,7 +125,7 @@ class SkinDrag:
         near = np.minimum(distance[self._vertices] / FINGER, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
         self.offset = np.zeros(3)
-        poses = poses and not session.live_override.is_on  # which leads where it wants
+        poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
         self._candidates = (

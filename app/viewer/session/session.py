@@ -88,7 +88,7 @@ class Session:
 
     @property
     def current(self) -> dict[str, float]:
-        """Where each control is now: by hand or script, and over it what a live face leads."""
+        """Where each control is now: by hand or script, and over it what a live face overrides."""
         return self.live_override.over(self.values, self.controls.limits)
 
     @property

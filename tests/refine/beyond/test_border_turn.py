@@ -27,7 +27,7 @@ def splits_of(mesh: meshes.Mesh, deformed: np.ndarray, criterion: object = "bord
     return refiner.splits.copy()
 
 
-def needs_of(mesh: meshes.Mesh, *poses: np.ndarray) -> list[np.ndarray]:
+def metrics_of(mesh: meshes.Mesh, *poses: np.ndarray) -> list[np.ndarray]:
     """Need of every edge in each pose."""
     connectivity = refine.connect(mesh.faces, len(mesh.vertices))
     none = refine.create("none", mesh.faces, mesh.vertices)
@@ -109,7 +109,7 @@ def test_needs_are_continuous(seed: int, amplitude: float) -> None:
     edges = refine.connect(mesh.faces, len(start)).edges
     shortest = min(np.linalg.norm(np.diff(pose[edges], axis=1), axis=2).min() for pose in poses)
     step = np.linalg.norm(end - start, axis=1).max() / 199 / max(shortest, 1e-3)
-    for before, after in pairwise(needs_of(mesh, *poses)):
+    for before, after in pairwise(metrics_of(mesh, *poses)):
         assert np.abs(after - before).max() <= 200.0 * step + 1e-3
 
 
@@ -166,7 +166,7 @@ def test_equals_plain_twin(seed: int) -> None:
     none = refine.create("none", mesh.faces, mesh.vertices)
     rest_normals = none.refine(mesh.vertices).normals.copy()
     normals = none.refine(pose).normals.copy()
-    (metric,) = needs_of(mesh, pose)
+    (metric,) = metrics_of(mesh, pose)
     plain = plain_metric(mesh, normals.astype(float), pose, rest_normals.astype(float))
     edges = refine.connect(mesh.faces, len(mesh.vertices)).edges
     expected = np.array([plain[min(a, b), max(a, b)] for a, b in edges.tolist()])

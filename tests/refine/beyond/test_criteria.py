@@ -165,7 +165,7 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
 
 
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])
-def test_bulge(scheme: str) -> None:
+def test_displacement(scheme: str) -> None:
     """An edge is split where its full middle lies farther than the threshold from the straight."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
@@ -190,7 +190,7 @@ def test_bulge(scheme: str) -> None:
     assert set(refiner.splits.tolist()) == {0, 1, 2}
 
 
-def test_bulge_needs_measures() -> None:
+def test_displacement_needs_measures() -> None:
     """The paper's scheme does not tell how far it moves edges; its refined normals know."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme tells with normals="refined" only'):

@@ -48,7 +48,7 @@ def twin_of(mesh: meshes.Mesh, deformed: np.ndarray, scheme: str, normals: str, 
     return refine_plainly(points, faces, splits, geomorph=geomorph if blend else None, rules=rules)
 
 
-def random_needs(mesh: meshes.Mesh, seed: int) -> np.ndarray:
+def random_metrics(mesh: meshes.Mesh, seed: int) -> np.ndarray:
     """Needs of no, one and two splits, and all shades between, for every edge."""
     count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
     return np.random.default_rng(seed).uniform(-0.7, 2.0, count)
@@ -62,7 +62,7 @@ def test_equals_plain_twin(normals: str, scheme: str, blend: bool, name: str) ->
     """Points, normals and triangles are those of the plain twin, on meshes of every kind."""
     mesh = MESHES[name]()
     for seed in range(2):
-        needed = GivenMetric(random_needs(mesh, seed))
+        needed = GivenMetric(random_metrics(mesh, seed))
         deformed = meshes.wrinkled(mesh, seed, 0.2)
         refiner = bound(mesh, scheme, blend, needed.metric, normals=normals)
         refined = refiner.refine(deformed)
@@ -116,7 +116,7 @@ def test_vertices_stay(scheme: str, blend: bool) -> None:
     """Schemes that interpolate leave every original vertex where it is, to the last bit."""
     mesh = meshes.irregular(5)
     deformed = meshes.wrinkled(mesh, 6)
-    refiner = bound(mesh, scheme, blend, random_needs(mesh, 7))
+    refiner = bound(mesh, scheme, blend, random_metrics(mesh, 7))
     refined = refiner.refine(deformed)
     assert (refined.positions[: len(deformed)] == deformed.astype(np.float32)).all()
 
@@ -127,7 +127,7 @@ def test_flat_stays_flat(scheme: str) -> None:
     mesh = meshes.irregular(2)
     flat = mesh.vertices * [1.0, 1.0, 0.0]
     tilted = flat @ np.array([[1, 0, 0.5], [0, 1, -0.3], [0, 0, 1.0]])
-    refined = bound(meshes.Mesh(flat, mesh.faces), scheme, True, random_needs(mesh, 3)).refine(
+    refined = bound(meshes.Mesh(flat, mesh.faces), scheme, True, random_metrics(mesh, 3)).refine(
         tilted
     )
     heights = 0.5 * refined.positions[:, 0] - 0.3 * refined.positions[:, 1]
