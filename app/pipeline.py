@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 
-from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, Layers
+from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, DrawOrder
 from .refining.presets import ON_CARD, Refinement
 from .refining.refiners import refiner_for
 from .refining.wrinkling import Amounts, Compression, on_rows
@@ -168,17 +168,17 @@ class Pipeline:
             for viewport in viewports:
                 viewport.drawn.upload(style, amounts)
         with timer("draw"):
-            layers = self.anatomy.layers(anatomy)
+            order = self.anatomy.draw_order(anatomy)
             areas = dict.fromkeys(viewport.area for viewport in viewports)
             self.renderer.draw_background(style, *areas)
             for drawn, area, clip in viewports:
                 view = self.renderer.view(camera, area, clip)
-                self._draw(drawn, view, style, layers)
+                self._draw(drawn, view, style, order)
                 for lines in overlays:
                     self.renderer.draw_lines(lines, view)
 
     def _draw(
-        self, drawn: DrawnMesh, view: render.CameraView, style: render.Style, layers: Layers
+        self, drawn: DrawnMesh, view: render.CameraView, style: render.Style, order: DrawOrder
     ) -> None:
         """Draw the skin and all parts of the scene, below it and over it, into one viewport."""
         stream, renderer, bones = drawn.stream, self.renderer, self.scene.bone_transforms()
@@ -187,21 +187,21 @@ class Pipeline:
         if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
             values = splits_of_source(drawn.refiner, drawn.mesh)
         if style.shadows:
-            skin = None if layers.is_opened else stream
-            renderer.cast_shadows(layers.shadow_casters, bones, view, style, stream=skin)
-        for parts, cut in layers.under:
+            skin = None if order.is_opened else stream
+            renderer.cast_shadows(order.shadow_casters, bones, view, style, stream=skin)
+        for parts, cut in order.under:
             renderer.draw_parts(parts, bones, view, style, cut=cut)
         renderer.draw_mesh(
             stream,
             view,
-            replace(style, opacity=style.opacity * layers.opacity),
+            replace(style, opacity=style.opacity * order.opacity),
             values=values,
             texture=texture,
             bumps=self.wrinkle_map if drawn.has_uv else None,
-            cut=layers.cut,
+            cut=order.cut,
             fade=self.scene.fade,
         )
-        renderer.draw_parts(layers.over, bones, view, style)
+        renderer.draw_parts(order.over, bones, view, style)
 
 
 def splits_of_source(refiner: refine.Refiner, mesh: refine.RefinedMesh) -> npt.NDArray[np.uint8]:

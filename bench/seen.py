@@ -26,7 +26,7 @@ import numpy as np
 
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.drawing import camera_for
-from risorius.app.controls import parted, twin_of
+from risorius.app.control_names import parted, twin_of
 from risorius.app.errors import UserError, needed
 from risorius.app.files import Image
 from risorius.app.motion import SETTLING

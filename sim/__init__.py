@@ -10,8 +10,8 @@ Knows nothing of rendering or refinement. Start reading at face.py; rig.py defin
 
 from typing import Any
 
-from .anatomy import build_anatomy
 from .face import Simulation, SimulationUnstable
+from .face_model import build_face_model
 from .pulling import Pull
 from .rig import Rig, read_rig
 
@@ -23,6 +23,6 @@ def create(head: Any) -> Simulation:
     """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
 
     Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze,
-    see anatomy.py. Raises ValueError naming what is wrong with the head or its rig.
+    see face_model.py. Raises ValueError naming what is wrong with the head or its rig.
     """
-    return Simulation(build_anatomy(head))
+    return Simulation(build_face_model(head))

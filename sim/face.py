@@ -8,7 +8,7 @@
     tissue + edges + lip seal  ->  velocity  ->  position                tissue.py, substep.py
     lips and eyeballs keep skin out                                      contact.py, substep.py
 
-Built once from a mesh (anatomy.py), then `step` moves it. Everything inside runs in the standard
+Built once from a mesh (face_model.py), then `step` moves it. Everything inside runs in the standard
 face space, fixed to the cranium; only displacements are turned back into the head's own
 coordinates, so a face at rest has exactly the positions it came with. The pose of the head moves
 the result as a whole, but for the foot of the neck.
@@ -27,10 +27,10 @@ import numpy.typing as npt
 
 from ..schema import quoted
 from . import checked
-from .anatomy import Anatomy, Tick
 from .contact import SEALED
 from .controls import Controls, MuscleDrive
 from .coordinates import to_posed_head
+from .face_model import FaceModel, Tick
 from .landmarks import Array
 from .layers import Layers
 from .lids import turn_lids
@@ -71,21 +71,21 @@ class Finger:
 class Simulation(Controls):
     """A face that follows its controls; made by `sim.create`."""
 
-    def __init__(self, anatomy: Anatomy) -> None:
-        self._anatomy = anatomy
-        super().__init__(anatomy.controls, anatomy.layers)
-        surface = anatomy.surface
+    def __init__(self, model: FaceModel) -> None:
+        self._model = model
+        super().__init__(model.controls, model.layers)
+        surface = model.surface
         self._state = State.at_rest(surface)
         self._grip = SEALED
-        self._bones, self._finger = Bones(anatomy.skull, anatomy.space), Finger()
-        self._axes = anatomy.space.axes * anatomy.space.scale
-        self._drive = MuscleDrive(anatomy.rig, anatomy.muscles.names, self)
-        self._rest = anatomy.vertices.copy()
-        self._positions = anatomy.vertices.copy()
+        self._bones, self._finger = Bones(model.skull, model.space), Finger()
+        self._axes = model.space.axes * model.space.scale
+        self._drive = MuscleDrive(model.rig, model.muscles.names, self)
+        self._rest = model.vertices.copy()
+        self._positions = model.vertices.copy()
         self._rest.flags.writeable = False
         self._resting_tongue: Array | None = None
-        if anatomy.tongue is not None:
-            self._resting_tongue = anatomy.space.to_head(anatomy.tongue.rest)
+        if model.tongue is not None:
+            self._resting_tongue = model.space.to_head(model.tongue.rest)
             self._resting_tongue.flags.writeable = False
         self._view = self._positions.view()
         self._view.flags.writeable = False
@@ -94,7 +94,7 @@ class Simulation(Controls):
     @property
     def tables(self) -> Layers:
         """What each control of the layers adds to the C lowest `controls`, in their order."""
-        return self._anatomy.layers
+        return self._model.layers
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
@@ -109,27 +109,27 @@ class Simulation(Controls):
     @property
     def mandible_weight(self) -> npt.NDArray[np.float64]:
         """How far each vertex goes with the mandible, 0 to 1, shape (V,); given or guessed."""
-        return self._anatomy.skull.mandible_weight
+        return self._model.skull.mandible_weight
 
     @property
     def head_weight(self) -> npt.NDArray[np.float64]:
         """How far each vertex goes with the head's pose, 1, fading to 0 down the neck, (V,)."""
-        return self._anatomy.turns[:, 0]
+        return self._model.turns[:, 0]
 
     @property
     def areas(self) -> Array:
         """Skin that belongs to each vertex at rest [mm2 of the standard face], shape (V,)."""
-        return self._anatomy.surface.areas
+        return self._model.surface.areas
 
     @property
     def faces(self) -> npt.NDArray[np.int32]:
         """Triangles, shape (F, 3); they never change."""
-        return self._anatomy.surface.faces
+        return self._model.surface.faces
 
     def reset(self) -> None:
         """Relax everything and put the face back to rest at once."""
         super().reset()
-        self._state.x[:] = self._anatomy.surface.positions
+        self._state.x[:] = self._model.surface.positions
         self._state.v[:] = 0.0
         self._positions[:] = self._rest
         self._finger.let_go()
@@ -137,13 +137,13 @@ class Simulation(Controls):
 
     def clone(self) -> Simulation:
         """Another simulation of this face as it is now, of which no finger has hold."""
-        clone = Simulation(self._anatomy)
+        clone = Simulation(self._model)
         clone.copy_from(self)
         return clone
 
     def copy_from(self, other: Simulation) -> None:
         """Take on controls, positions and velocities of a clone; ValueError for any other."""
-        if not isinstance(other, Simulation) or other._anatomy is not self._anatomy:
+        if not isinstance(other, Simulation) or other._model is not self._model:
             raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
         self._copy(other)
         self._state.x[:], self._state.v[:] = other._state.x, other._state.v
@@ -161,7 +161,7 @@ class Simulation(Controls):
         Raises ValueError for another shape, and for what is not finite.
         """
         added = checked.numbers("velocities", velocities, self._state.v.shape)
-        turned = self._anatomy.space.vectors_to_standard(added) @ self._bones.head.rotation
+        turned = self._model.space.vectors_to_standard(added) @ self._bones.head.rotation
         self._state.v[:] += turned
 
     def drag(
@@ -174,9 +174,9 @@ class Simulation(Controls):
         shape (n,). Raises ValueError where they do not fit together.
         """
         numbers, points, share = checked_drag(vertices, targets, firmness, len(self._rest))
-        away = self._anatomy.space.vectors_to_standard(points - self._positions[numbers])
+        away = self._model.space.vectors_to_standard(points - self._positions[numbers])
         to = self._state.x[numbers] + away @ self._bones.head.rotation
-        self._finger.hold(numbers, to, share * self._anatomy.skin.mass[numbers] * FINGER_RATE**2)
+        self._finger.hold(numbers, to, share * self._model.skin.mass[numbers] * FINGER_RATE**2)
 
     def end_drag(self) -> None:
         """End every `drag`; the skin swings back."""
@@ -193,17 +193,17 @@ class Simulation(Controls):
                 f"dt: was {dt!r} s, must be above 0 and at most {LONGEST_FRAME:g} s; "
                 "take several steps for a longer time"
             )
-        anatomy, state, bones = self._anatomy, self._state, self._bones
+        model, state, bones = self._model, self._state, self._bones
         ticks = ticks_in(dt)
         tick = dt / ticks
         count = substeps_in(tick)
         for _ in range(ticks):
             self._advance(tick / 2.0)
             self._place_targets()
-            advance(state, anatomy.skin, Tick(count, tick / count, self._grip, bones.mandible))
+            advance(state, model.skin, Tick(count, tick / count, self._grip, bones.mandible))
             self._advance(tick / 2.0)
         broken = to_posed_head(
-            state.x, anatomy.surface.positions, self._axes, self._rest, bones.turn, anatomy.turns,
+            state.x, model.surface.positions, self._axes, self._rest, bones.turn, model.turns,
             self._positions,
         )  # fmt: skip
         if broken:
@@ -214,23 +214,23 @@ class Simulation(Controls):
 
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
-        anatomy, now, bones = self._anatomy, self._now, self._bones
-        state, surface, muscles = self._state, anatomy.surface, anatomy.muscles
+        model, now, bones = self._model, self._now, self._bones
+        state, surface, muscles = self._state, model.surface, model.muscles
         bones.follow(now)
-        weight, closed = anatomy.skull.mandible_weight, now("lips_closed")
+        weight, closed = model.skull.mandible_weight, now("lips_closed")
         if closed > 0.0:
-            weight = weight + closed * (anatomy.closed_weight - weight)
+            weight = weight + closed * (model.closed_weight - weight)
         carry(state, surface.positions, surface.normals, weight, bones.mandible)
-        state.hold[:] = anatomy.passive_hold
+        state.hold[:] = model.passive_hold
         state.pull[:] = 0.0
-        if anatomy.lids is not None:
-            drive = anatomy.lids.drive(self.activation)
-            angles = np.radians(anatomy.skull.eyes.gaze_deg) * bones.gaze(now)
-            turn_lids(state, surface.positions, anatomy.lids.vertices, drive, angles)
+        if model.lids is not None:
+            drive = model.lids.drive(self.activation)
+            angles = np.radians(model.skull.eyes.gaze_deg) * bones.gaze(now)
+            turn_lids(state, surface.positions, model.lids.vertices, drive, angles)
         activation = self._drive.activation()
         muscles.add(self._drive.pull(activation), bones.mandible, weight, state)
         self._finger.add(state)
-        self._grip = anatomy.grip(activation, bones.jaw, closed)
+        self._grip = model.grip(activation, bones.jaw, closed)
 
     def bone_transforms(self) -> dict[str, npt.NDArray[np.float64]]:
         """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
@@ -246,20 +246,20 @@ class Simulation(Controls):
         As the mandible's motion finds them: its bone's matrix has still to be applied. A tongue at
         rest is the same array each time.
         """
-        anatomy, now = self._anatomy, self._now
-        if anatomy.tongue is None:
+        model, now = self._model, self._now
+        if model.tongue is None:
             return None
         out, up = max(now("tongue_out"), 0.0), max(now("tongue_up"), 0.0)
         if out == up == 0.0:
             return self._resting_tongue
-        bent = anatomy.tongue.bent(out, up, self._state.x, self._bones.mandible)
-        return anatomy.space.to_head(bent)
+        bent = model.tongue.bent(out, up, self._state.x, self._bones.mandible)
+        return model.space.to_head(bent)
 
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         pull = self._drive.pull(self._drive.activation())
-        lines = self._anatomy.muscles.lines(pull, self._bones.mandible, self._state.x)
-        space, head = self._anatomy.space, self._bones.head
+        lines = self._model.muscles.lines(pull, self._bones.mandible, self._state.x)
+        space, head = self._model.space, self._bones.head
         return {
             name: [space.to_head(line + head.displacements(line)) for line in found]
             for name, found in lines.items()
@@ -271,7 +271,7 @@ class Simulation(Controls):
         Names: "lips" (in the other lip, more than sealed lips are pressed together), "lids" (in an
         eyeball), "teeth".
         """
-        skin, x = self._anatomy.skin, self._state.x
+        skin, x = self._model.skin, self._state.x
         return {
             "lips": skin.lips.deepest(x, skin.rest, self._grip.overlap),
             "lids": skin.eyes.deepest(x),

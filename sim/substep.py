@@ -1,7 +1,7 @@
 """One substep of the face, compiled: all forces on the skin, Euler's step, all contacts.
 
 The physics is explained where its data is made: tissue.py, contact.py, teeth.py. The arguments are
-the named tuples of state.py and anatomy.py. All kernels stand here, so that a substep can be read
+the named tuples of state.py and face_model.py. All kernels stand here, so that a substep is read
 from top to bottom.
 
 A frame is cut into ticks, a tick into substeps:

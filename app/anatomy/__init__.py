@@ -1,7 +1,7 @@
 """What lies under the skin, seen through it: what is asked for, and in which order it is drawn.
 
 `AnatomyView` says what is shown. `Anatomy` makes muscles, skull and throat of one face when they
-are first asked for, and sorts them, the face's own parts and the skin into `Layers`.
+are first asked for, and sorts them, the face's own parts and the skin into `DrawOrder`.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class AnatomyView:
 SKIN_ALONE = AnatomyView()
 
 
-class Layers(NamedTuple):
+class DrawOrder(NamedTuple):
     """Parts in the order in which they are drawn, and the skin between them."""
 
     shadow_casters: Sequence[Any]
@@ -70,19 +70,19 @@ class Anatomy:
         self._followed = np.empty(0)  # what they were shaped by
         self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
 
-    def layers(self, view: AnatomyView) -> Layers:
+    def draw_order(self, view: AnatomyView) -> DrawOrder:
         """What is asked for as it is now, and the scene's parts that do not hide it."""
         scene = self._scene
         if not isinstance(scene, FaceScene) or not view.structures or view.opacity >= 1.0:
             hair = [part for part in scene.parts if part.name.startswith(HAIR)]
-            return Layers(hair, over=scene.parts)
+            return DrawOrder(hair, over=scene.parts)
         structures = self._structures(scene, view)
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
         others = stay + self._soft(scene, view)
         strands = [part for part in others if part.strand_radius]
         others = [part for part in others if not part.strand_radius]
         cut = _cut(scene, view)
-        return Layers(
+        return DrawOrder(
             structures + others,
             under=((structures, cut), (others, None)),
             over=strands,

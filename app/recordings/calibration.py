@@ -19,7 +19,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..controls import TURNED, twin_of
+from ..control_names import TURNED, twin_of
 from ..errors import UserError
 from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES, angle_of, shape_of
 from .take import Array, Take

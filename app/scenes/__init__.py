@@ -20,7 +20,7 @@ from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import HAIR, Person, recoloured
 
-from ..controls import parted
+from ..control_names import parted
 from ..errors import UserError
 from .mouth import Tongue, shaded_mouth
 from .surface_attachment import SurfaceAttachment

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..controls import sentence
+from ..control_names import sentence
 from ..errors import UserError
 
 SECONDS = 6.0  # for which a message stays

@@ -50,7 +50,7 @@ def posed(scene: FaceScene, **pose: float) -> FaceScene:
 def structures_of(studio: Capture, **pose: float) -> list[Any]:
     """Muscles and skull of the face in a pose."""
     posed(studio.scene, **pose)  # type: ignore[arg-type]
-    parts = studio.pipeline.anatomy.layers(BOTH).parts
+    parts = studio.pipeline.anatomy.draw_order(BOTH).parts
     return [part for part in parts if part.name.startswith(("skull", "muscles"))]
 
 
@@ -121,14 +121,14 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
     scene = FaceScene(fit_head(*stranger().write(tmp_path)))
     anatomy = Anatomy(scene)
     low, high = scene.rest_positions.min(axis=0), scene.rest_positions.max(axis=0)
-    parts = {part.name: part for part in anatomy.layers(BOTH).parts}
+    parts = {part.name: part for part in anatomy.draw_order(BOTH).parts}
     for name in ("skull_cranium", "skull_mandible", "skull_nose", "muscles"):
         points = parts[name].vertices
         assert np.isfinite(points).all() and len(points) > 300
         assert (points.max(axis=0) < high + 2.0).all() and (points.min(axis=0) > low - 12.0).all()
     before = parts["muscles"].vertices
     posed(scene, jaw_open=1.0)
-    anatomy.layers(BOTH)
+    anatomy.draw_order(BOTH)
     assert (before[:, 1] - parts["muscles"].vertices[:, 1]).max() > 8.0
 
 

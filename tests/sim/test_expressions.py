@@ -146,7 +146,7 @@ def test_lips_do_not_cross(
 ) -> None:
     """Lips pressed by their own muscles touch; the lower one does not rise far into the upper."""
     settled_displacement(simulation, both_sides(simulation, values))
-    lips = simulation._anatomy.skin.lips
+    lips = simulation._model.skin.lips
     y = simulation._state.x[:, 1]
     above = lips.share * y[lips.upper[:, 0]] + (1.0 - lips.share) * y[lips.upper[:, 1]]
     assert (above - y[lips.lower] - lips.least_gap).min() > -PRESSED_OVERLAP - 0.1

@@ -81,7 +81,7 @@ def test_no_other_muscle_opens_the_mouth(
         if sides == "left":
             values = {name: value for name, value in values.items() if "_right" not in name}
         moved = settled_displacement(simulation, values, frames=40)
-        if np.abs(moved[simulation._anatomy.skin.lips.members]).max() < UNMOVED:
+        if np.abs(moved[simulation._model.skin.lips.members]).max() < UNMOVED:
             continue
         for mesh, slit in slits().items():
             assert slit < NEARLY_SHUT, (muscle, mesh)

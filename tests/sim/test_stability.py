@@ -112,7 +112,7 @@ def _moved(simulation: sim.Simulation) -> np.ndarray:
 
 def _energy(simulation: sim.Simulation) -> float:
     """What moves and what springs hold, muscles at rest, in skin mass units times (mm/s)^2."""
-    skin, state, grip = simulation._anatomy.skin, simulation._state, simulation._grip
+    skin, state, grip = simulation._model.skin, simulation._state, simulation._grip
     away, tissue, edges, lips = state.x - state.carried, skin.tissue, skin.edges, skin.lips
     across, beside = (away * state.normals).sum(axis=1), (away**2).sum(axis=1)
     stored = (tissue.tangential + state.hold) * beside

@@ -8,8 +8,8 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
-from risorius.sim.anatomy import Tick
 from risorius.sim.contact import Grip, watch_eyeballs
+from risorius.sim.face_model import Tick
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
 from risorius.sim.lids import turn_lids
 from risorius.sim.skull import REST
@@ -30,7 +30,7 @@ def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.S
 
 def test_edge_forces(stirred: sim.Simulation) -> None:
     """Biphasic tension along each edge plus shear on the difference of the ends' offsets."""
-    edges, state = stirred._anatomy.skin.edges, stirred._state
+    edges, state = stirred._model.skin.edges, stirred._state
     x = state.x
     state.offset[:] = x - state.carried
     state.force[:] = 0.0
@@ -53,7 +53,7 @@ def test_edge_forces(stirred: sim.Simulation) -> None:
 
 def test_tissue_forces(stirred: sim.Simulation) -> None:
     """Anchors are soft along the skin and stiff across it; muscles add hold and pull."""
-    springs, state = stirred._anatomy.skin.tissue, stirred._state
+    springs, state = stirred._model.skin.tissue, stirred._state
     tissue_forces(state, springs)
     away = state.x - state.carried
     across = (away * state.normals).sum(axis=1, keepdims=True) * state.normals
@@ -67,7 +67,7 @@ def test_seal_is_an_implicit_spring(
     stirred: sim.Simulation, generator: np.random.Generator
 ) -> None:
     """A pair on its own ends a substep at the speed that the spring's force at its end explains."""
-    skin, h, grip = stirred._anatomy.skin, 0.002, Grip(3.0, 0.4)
+    skin, h, grip = stirred._model.skin, 0.002, Grip(3.0, 0.4)
     rest, mass, lips = skin.rest, skin.mass, skin.lips
     for pair in (0, 7, 11):
         alone = lips._replace(
@@ -91,7 +91,7 @@ def test_seal_is_an_implicit_spring(
 
 def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     """Velocities after the seal has acted on all pairs at once, each share averaged."""
-    skin = face._anatomy.skin
+    skin = face._model.skin
     lips, mass, rest = skin.lips, skin.mass, skin.rest
     state, grip = face._state, face._grip
     w = lips.share[:, None]
@@ -116,7 +116,7 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
 
 def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
     """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw."""
-    muscles, mandible = stirred._anatomy.muscles, stirred._bones.mandible
+    muscles, mandible = stirred._model.muscles, stirred._bones.mandible
     bundle = muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
     table = np.zeros_like(muscles.motion.contracted)
@@ -137,7 +137,7 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
 
 def test_muscle_pull(stirred: sim.Simulation) -> None:
     """Attachment and pull of all muscles, summed muscle by muscle and line by line."""
-    anatomy, mandible = stirred._anatomy, stirred._bones.mandible
+    anatomy, mandible = stirred._model, stirred._bones.mandible
     muscles, weight = anatomy.muscles, anatomy.skull.mandible_weight
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
     hold, force = np.zeros(len(weight)), np.zeros((len(weight), 3))
@@ -171,7 +171,7 @@ def test_muscle_pull(stirred: sim.Simulation) -> None:
 
 def test_bones_carry_anchors(stirred: sim.Simulation) -> None:
     """Anchors blend between cranium and mandible by weight; their normals stay unit."""
-    anatomy, mandible, state = stirred._anatomy, stirred._bones.mandible, stirred._state
+    anatomy, mandible, state = stirred._model, stirred._bones.mandible, stirred._state
     surface, weight = anatomy.surface, anatomy.skull.mandible_weight
     carry(state, surface.positions, surface.normals, weight, mandible)
     moved = mandible.displacements(surface.positions)
@@ -182,7 +182,7 @@ def test_bones_carry_anchors(stirred: sim.Simulation) -> None:
 
 def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
     """Lids keep their distance to the eyeball's centre but for how far they sink; margins meet."""
-    anatomy, state = simulation._anatomy, simulation._state
+    anatomy, state = simulation._model, simulation._state
     assert anatomy.lids is not None
     lids, rest = anatomy.lids.vertices, anatomy.surface.positions
     closed = np.array([[1.0, 0.4, 0.0]] * len(lids.centres))
@@ -210,7 +210,7 @@ def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
 
 def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
     """Raised and looking up, the fold is held and goes up; at rest nothing holds it."""
-    anatomy, state = simulation._anatomy, simulation._state
+    anatomy, state = simulation._model, simulation._state
     assert anatomy.lids is not None
     lids, rest = anatomy.lids.vertices, anatomy.surface.positions
     still, up = np.zeros((len(lids.centres), 2)), np.array([[0.0, 0.3]] * len(lids.centres))
@@ -225,7 +225,7 @@ def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
 
 def test_a_step_is_its_substeps(head: Head) -> None:
     """A frame without contact, done again with plain Euler, lands on the same positions."""
-    anatomy = sim.create(head)._anatomy
+    anatomy = sim.create(head)._model
     lips = anatomy.skin.lips
     without_contact = anatomy.skin._replace(
         lips=lips._replace(least_gap=lips.least_gap - 100.0),
@@ -249,7 +249,7 @@ def test_a_step_is_its_substeps(head: Head) -> None:
 
 def _plain_substep(face: sim.Simulation, h: float) -> None:
     """Forces by their kernels, which are tried above; then velocity, then position."""
-    skin, state = face._anatomy.skin, face._state
+    skin, state = face._model.skin, face._state
     springs, x, v = skin.tissue, state.x, state.v
     tissue_forces(state, springs)
     edge_forces(state, skin.edges)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
-from ...controls import sentence
+from ...control_names import sentence
 from ..interface.gui import Gui, colour
 from ..interface.widgets import button, dialog, muted, shortened
 from ..messages import Message

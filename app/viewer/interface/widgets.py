@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from imgui_bundle import imgui
 
-from ...controls import readable, sentence
+from ...control_names import readable, sentence
 from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
 
 # Knob and number of imgui's own sliders; bars have others.

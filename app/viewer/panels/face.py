@@ -13,7 +13,7 @@ from operator import or_
 
 from imgui_bundle import imgui
 
-from ...controls import OPPOSITE, is_found, parted, readable, title_of, twin_of
+from ...control_names import OPPOSITE, is_found, parted, readable, title_of, twin_of
 from ..context import ApplicationContext
 from ..interface.gui import em, ink_of
 from ..interface.widgets import button, button_width, heading, hint, muted, slider, stay_in_line

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from imgui_bundle import imgui
 
-from ...controls import sentence
+from ...control_names import sentence
 from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
 from ...recordings.calibration import HIGHEST_GAIN
 from ..context import ApplicationContext

@@ -14,7 +14,7 @@ from risorius import refine, render
 from risorius.assets.identities import NAMED, person_in_words
 
 from ...anatomy import OPACITY, SIDES, STRUCTURES
-from ...controls import readable
+from ...control_names import readable
 from ...refining.presets import PRESETS, STATIC, THRESHOLDS, words_of_presets
 from ...refining.refiners import DETAIL, can_detail, open_choices, options_of
 from ...scenes import BUILT_IN, OWN, FaceScene

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from risorius import render, sim
 from risorius.sim.landmarks import polyline_distance
 
-from ...controls import OPPOSITE, TURNED, called, parted, twin_of
+from ...control_names import OPPOSITE, TURNED, called, parted, twin_of
 from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings

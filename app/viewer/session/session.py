@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...controls import copied, mirrored, readable, twin_of
+from ...control_names import copied, mirrored, readable, twin_of
 from ...errors import UserError, counted
 from ...motion import SETTLING
 from ...scenes import Scene

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from ...controls import readable
+from ...control_names import readable
 from ...errors import counted
 from ...script import Channel, Script, keyframes
 from ...script.keyframes import POSES, places_of

@@ -10,7 +10,7 @@ from pathlib import Path
 from risorius import refine
 from risorius.assets.fitting import FittedHead
 
-from ...controls import readable
+from ...control_names import readable
 from ...errors import UserError
 from ...refining.refiners import refiner_for
 from ...scenes import BUILT_IN, Scene, build_scene

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
-from ...controls import readable
+from ...control_names import readable
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
 from ...script import EASINGS
 from ..documents.export import Exporter

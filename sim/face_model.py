@@ -90,7 +90,7 @@ class Tick(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Anatomy:
+class FaceModel:
     """A face at rest: nothing here changes while it is simulated."""
 
     vertices: Array  # (V, 3) as given [head units]
@@ -128,7 +128,7 @@ class Anatomy:
         return Grip.of(strength, activity)
 
 
-def build_anatomy(head: Any) -> Anatomy:
+def build_face_model(head: Any) -> FaceModel:
     """Build a face from a mesh; ValueError names the attribute of the head that is wrong."""
     vertices, faces = mesh_of("head", head)
     numbers = _landmark_numbers(head, len(vertices))
@@ -166,7 +166,7 @@ def build_anatomy(head: Any) -> Anatomy:
         eyes=watch_eyeballs(surface, skull.eyeballs),
         teeth=watch_teeth(getattr(head, "parts", None), surface, space),
     )
-    return Anatomy(
+    return FaceModel(
         vertices=vertices, space=space, rig=rig, surface=surface, landmarks=known, lip_side=side,
         skull=skull, muscles=muscles, lids=lids, skin=skin,
         tongue=place_tongue(getattr(head, "parts", None), space, numbers),
