@@ -132,6 +132,13 @@ class TestInTheWindow:
         assert viewer.room is not None
         return viewer.room
 
+    def test_a_mistake_of_marking_ends_with_it(self, viewer: Viewer, mesh: Path) -> None:
+        """The face does not show it, nor ask for what nobody can do there."""
+        viewer.mark(mesh)
+        viewer.messages.say("left and right are swapped", error=True)
+        viewer.leave_marking()
+        assert not viewer.messages.text
+
     def place(self, viewer: Viewer, point: Array) -> tuple[int, int]:
         """Where a point of the mesh is, on the screen."""
         room = self.room(viewer)

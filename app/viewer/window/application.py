@@ -188,6 +188,7 @@ class Application(ApplicationContext):
         """Back to the face."""
         if self.room is not None:
             self.room = None
+            self.messages.text = ""  # a mistake of marking means nothing here
             self.mouse.forget()
             self.painter.forget()
 
