@@ -135,5 +135,5 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     assert is_hair.mean() > 0.04 and (classes[0] == Segment.BACKGROUND).all()
     assert image[is_hair].mean() < 0.7 * image[classes == Segment.SKIN].mean()
     assert (label_of(haired("cropped"))[1] == Segment.HAIR).sum() < is_hair.sum()
-    parts = Anatomy(scene).layers(AnatomyView(("muscles",))).parts
+    parts = Anatomy(scene).draw_order(AnatomyView(("muscles",))).parts
     assert parts and not [part for part in parts if part.name == HAIR]
