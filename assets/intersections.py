@@ -4,6 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from risorius.geometry.rays import PARALLEL, crossings
+
 from .smooth import Points
 from .topology import Faces
 
@@ -41,17 +43,9 @@ def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
 
 
 def _segment_cuts(start: Points, end: Points, triangle: Points) -> npt.NDArray[np.bool_]:
-    """Möller and Trumbore 1997, row by row."""
-    direction = end - start
-    edge_u, edge_v = triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0]
-    p = np.cross(direction, edge_v)
-    determinant = (edge_u * p).sum(axis=1)
-    is_parallel = np.abs(determinant) < 1e-12
-    inverse = 1.0 / np.where(is_parallel, 1.0, determinant)
-    offset = start - triangle[:, 0]
-    u = (offset * p).sum(axis=1) * inverse
-    q = np.cross(offset, edge_u)
-    v = (direction * q).sum(axis=1) * inverse
-    along = (edge_v * q).sum(axis=1) * inverse
+    """Whether segments cut triangles, row by row."""
+    volume, u, v, along = crossings(start, end - start, triangle)
     in_triangle = (u > INSIDE) & (v > INSIDE) & (u + v < 1 - INSIDE)
-    return np.asarray(in_triangle & (along > INSIDE) & (along < 1 - INSIDE) & ~is_parallel)
+    return np.asarray(
+        in_triangle & (along > INSIDE) & (along < 1 - INSIDE) & (np.abs(volume) > PARALLEL)
+    )

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import render, sim
+from risorius.geometry.rays import PARALLEL, crossings
 from risorius.sim.landmarks import polyline_distance
 
 from ...control_names import OPPOSITE, TURNED, called, parted, twin_of
@@ -59,23 +60,14 @@ def skin_under(
 ) -> FloatArray | None:
     """The nearest point of the mesh that the ray meets, or None; `from_outside` or either side.
 
-    Möller and Trumbore 1997, for all triangles at once whose corners lie around the ray.
+    Only triangles whose corners lie around the ray are asked.
     """
     axes = np.linalg.svd(ray.direction[None])[2][1:]  # across the ray
     for aside in ((positions - ray.origin) @ axis for axis in axes):
         corners = aside[faces]
         faces = faces[(corners.min(axis=1) < ROUNDING) & (corners.max(axis=1) > -ROUNDING)]
-    a, b, c = (positions[faces[:, corner]] for corner in range(3))
-    ab, ac = b - a, c - a
-    across = np.cross(ray.direction, ac)
-    volume = (ab * across).sum(axis=1)
-    met = (volume if from_outside else np.abs(volume)) > 1e-12
-    volume = np.where(met, volume, 1.0)
-    from_a = ray.origin - a
-    u = (from_a * across).sum(axis=1) / volume
-    turned = np.cross(from_a, ab)
-    v = (turned @ ray.direction) / volume
-    distance = (ac * turned).sum(axis=1) / volume
+    volume, u, v, distance = crossings(ray.origin, ray.direction, positions[faces])
+    met = (volume if from_outside else np.abs(volume)) > PARALLEL
     inside = (u >= -ROUNDING) & (v >= -ROUNDING) & (u + v <= 1.0 + ROUNDING)
     hit = met & inside & (distance > 0.0)
     if not hit.any():
