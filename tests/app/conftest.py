@@ -15,7 +15,7 @@ from risorius.app.script.places import NOWHERE
 from risorius.app.script.script_file import load_script
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
-from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.session.session import Session, Work
 from risorius.app.viewer.settings import Display, Settings
 
 from .driving import HELLO, SIZE, replace_state, settle, xdotool
@@ -59,6 +59,7 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     xdotool(viewer, "mousemove", 2, 2, "key", "Escape")
     script = replace(script_for(None, "face"), duration=0.5)
     replace_state(viewer.session, Session(viewer.session.scene, script))
+    viewer.session.work = Work(viewer.session)
     viewer.session.scene.reset()
     viewer.settings.display, viewer.settings.is_linked = Display(), True
     viewer.settings.panel_width = Settings().panel_width
@@ -76,7 +77,7 @@ def own(viewer: Viewer, tmp_path: Path, calm: None) -> Path:
     """A script of the user's own, of poses and a blink, opened in rows of keys."""
     path = tmp_path / "own.toml"
     path.write_text(HELLO.read_text(encoding="utf-8"))
-    viewer.session.open(load_script(path))
+    viewer.session.work.open(load_script(path))
     viewer.selection.places = NOWHERE
     viewer.settings.shows_curves = False
     viewer.time_axis.show_whole()

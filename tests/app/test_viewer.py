@@ -131,7 +131,7 @@ def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) > 4.0)
     xdotool(viewer, "mouseup", 1, "keyup", "ctrl")
     assert until(viewer, lambda: moved(viewer) < 0.3)
-    assert not viewer.session.unsaved
+    assert not viewer.session.work.unsaved
 
 
 def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:

@@ -40,7 +40,7 @@ def _at_first(viewer: Viewer, tmp_path: Path, calm: None) -> Iterator[None]:
 
 def open_script(viewer: Viewer, text: str) -> None:
     """Take a script of this text in place of the one before."""
-    viewer.session.open(parse_script(text, source="smile.toml"))
+    viewer.session.work.open(parse_script(text, source="smile.toml"))
 
 
 def finish(viewer: Viewer, *key: str) -> None:

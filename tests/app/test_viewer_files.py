@@ -106,7 +106,7 @@ def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) ->
     write(viewer, "/proc/none/pose")
     xdotool(viewer, "key", "Return")
     assert viewer.messages.is_error and "/proc/none/pose.toml" in viewer.messages.text
-    assert "the pose" in viewer.session.unsaved
+    assert "the pose" in viewer.session.work.unsaved
 
 
 def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) -> None:
@@ -116,7 +116,7 @@ def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) 
     assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
     viewer.surface.should_close = False
     xdotool(viewer, "key", "ctrl+q")
-    assert "the recording" in viewer.session.unsaved and not viewer.surface.should_close
+    assert "the recording" in viewer.session.work.unsaved and not viewer.surface.should_close
     click(viewer, "question: Save recording ...")
     xdotool(viewer, "key", "Return")
     assert "jaw_open" in (tmp_path / "script.toml").read_text()
@@ -166,7 +166,7 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting and taken.read_text() == "precious"
     xdotool(viewer, "key", "Escape")
-    viewer.session.open(load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE))
+    viewer.session.work.open(load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE))
     xdotool(viewer, "key", "ctrl+s")
     assert viewer.files.is_waiting
     xdotool(viewer, "key", "Escape")
@@ -193,7 +193,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
         put(viewer, landmarks, mesh)
         assert until(viewer, lambda: "opened" in viewer.messages.text)
         assert len(viewer.session.scene.faces) > len(before.faces)
-        assert viewer.session.values["jaw_open"] == 0.5 and viewer.session.has_unsaved_pose
+        assert viewer.session.values["jaw_open"] == 0.5 and viewer.session.work.has_unsaved_pose
         assert until(viewer, lambda: moved(viewer) > 5.0)
         assert viewer.stage.refined.triangle_count >= len(viewer.session.scene.faces)
         xdotool(viewer, "key", "ctrl+z")
@@ -246,11 +246,11 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(
     before = take.read_bytes()
     viewer.session.set("jaw_open", 0.4)
     put(viewer, take)
-    assert viewer.question.is_open and viewer.session.has_unsaved_pose
+    assert viewer.question.is_open and viewer.session.work.has_unsaved_pose
     click(viewer, "question: Open without saving")
     assert "take.csv: Table of named columns, 31 frames in 1.00 s" in viewer.messages.text
     assert viewer.session.script.duration == pytest.approx(1.0)
-    assert not viewer.session.unsaved, "the file has it all"
+    assert not viewer.session.work.unsaved, "the file has it all"
     viewer.session.seek(1.0)
     assert until(viewer, lambda: moved(viewer) > 5.0)
     xdotool(viewer, "key", "ctrl+s")
@@ -278,7 +278,7 @@ def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
     """Half a second of silence, then noise; not in the window yet."""
     samples = np.concatenate([np.zeros(8_000), noise(2.5)])
     (tmp_path / "s.toml").write_text(LONG_SCRIPT)
-    viewer.session.open(load_script(tmp_path / "s.toml"))
+    viewer.session.work.open(load_script(tmp_path / "s.toml"))
     yield write_wav(tmp_path / "noise.wav", samples)
     viewer.soundtrack.close()
 
@@ -288,7 +288,7 @@ def test_a_sound_is_dropped_and_played(viewer: Viewer, sound: Path, has_device: 
     before = viewer.timeline.height()
     put(viewer, sound)
     assert "noise.wav" in viewer.messages.text and not viewer.messages.is_error
-    assert viewer.session.script.sound == sound and viewer.session.script_is_unsaved
+    assert viewer.session.script.sound == sound and viewer.session.work.script_is_unsaved
     settle(viewer)
     assert viewer.timeline.height() > before and viewer.soundtrack.sound is not None
     xdotool(viewer, "key", "space")
@@ -331,7 +331,7 @@ def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_devi
     """Ctrl+S writes it, undo and the menu take it away, a lost file is told once and survived."""
     put(viewer, sound)
     xdotool(viewer, "key", "ctrl+s")
-    assert load_script(sound.parent / "s.toml").sound == sound and not viewer.session.unsaved
+    assert load_script(sound.parent / "s.toml").sound == sound and not viewer.session.work.unsaved
     assert 'sound = "noise.wav"' in (sound.parent / "s.toml").read_text()
     xdotool(viewer, "key", "ctrl+z")
     assert viewer.session.script.sound is None and viewer.soundtrack.sound is None
@@ -345,7 +345,7 @@ def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_devi
     put(viewer, bad)
     assert viewer.messages.is_error and "there is no sound in it" in viewer.messages.text
     sound.unlink()
-    viewer.session.open(load_script(sound.parent / "s.toml"))
+    viewer.session.work.open(load_script(sound.parent / "s.toml"))
     settle(viewer)
     assert "no such sound file; the script plays without" in viewer.messages.text
     viewer.messages.text = ""

@@ -304,7 +304,7 @@ def test_a_window_that_ended_is_recovered(
     script = script_for(None, "face")
     with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
         settle(viewer)
-        assert not viewer.session.unsaved and viewer.messages.is_error
+        assert not viewer.session.work.unsaved and viewer.messages.is_error
         assert "work is in File > Recent: unsaved-face-" in viewer.messages.text
         viewer.drop(viewer.settings.recent[0].split("\n"))
         moved = {name: value for name, value in viewer.session.values.items() if value}

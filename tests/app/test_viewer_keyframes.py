@@ -76,13 +76,13 @@ def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None
     """Undo past opening another script gives back the first one's file, too."""
     own, other = session.file.path, tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
-    session.open(load_script(other))
-    assert session.file.path == other and session.name == "other.toml"
+    session.work.open(load_script(other))
+    assert session.file.path == other and session.work.name == "other.toml"
     session.undo()
-    assert session.file.path == own and not session.script_is_unsaved
+    assert session.file.path == own and not session.work.script_is_unsaved
     session.redo()
-    session.begin_script()
-    assert session.file.path is None and session.name == "Untitled"
+    session.work.begin_script()
+    assert session.file.path is None and session.work.name == "Untitled"
     assert Session(session.scene, script_for(None, "face")).file.path is None
 
 
@@ -90,15 +90,15 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
     """Changes by another program, and comments that are not kept; not a # in a title."""
     path = session.file.path
     assert path is not None and session.file.objection == ""
-    session.save_script(path)
+    session.work.save_script(path)
     assert session.file.objection == ""
     text = path.read_text()
     path.write_text(text + "# mine\n")
     assert "another program" in session.file.objection
-    session.open(load_script(path))
+    session.work.open(load_script(path))
     assert "comments" in session.file.objection
     path.write_text(text.replace('"Hello"', '"No. #1 \\" # 2"'))
-    session.open(load_script(path))
+    session.work.open(load_script(path))
     assert session.script.title == 'No. #1 " # 2' and session.file.objection == ""
     path.unlink()
     assert session.file.objection == ""

@@ -28,7 +28,7 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) > 0.5)
     settle(viewer)
     assert not any(viewer.session.values.values())
-    assert not viewer.session.unsaved and not viewer.session.can_undo
+    assert not viewer.session.work.unsaved and not viewer.session.can_undo
     eye = viewer.view.camera.eye
     motion = viewer.session.scene.bone_transforms()["eye_left"][:3, :3]
     assert (motion @ [0.0, 0.0, 1.0]) @ (eye / np.linalg.norm(eye)) > 0.97

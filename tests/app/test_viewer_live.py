@@ -121,7 +121,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path)
     assert face.state is State.LOST
     assert until(viewer, lambda: moved(viewer) < 0.3)
     assert until(viewer, lambda: viewer.is_idle)
-    assert not viewer.session.unsaved
+    assert not viewer.session.work.unsaved
 
 
 def test_live_leads_what_it_names_and_sliders_keep_the_rest(viewer: Viewer) -> None:

@@ -41,7 +41,7 @@ def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -
     for time in (0.0, 1.0, 1.6, 2.1, 3.0, 4.0):
         assert after.at(time) == before.at(time) | {"jaw_open": before.at(time)["jaw_open"]}
     session.undo()
-    assert session.script == before and not session.script_is_unsaved
+    assert session.script == before and not session.work.script_is_unsaved
 
 
 LIMITS = dict.fromkeys(("a", "b", "c"), (0.0, 1.0))
@@ -147,7 +147,7 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
     assert line is not None and "1 control recorded" in line and "2 controls" in line
     assert "not keyed" in line
     assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
-    assert session.differing == {"AU4", "jaw_open"} and session.has_unsaved_pose
+    assert session.differing == {"AU4", "jaw_open"} and session.work.has_unsaved_pose
     assert session.script.at(1.8)["jaw_open"] == pytest.approx(0.5, abs=0.002)
     assert "AU4" not in session.script.tracks
     assert "[Undo]" in (session.seek(0.0) or "")
@@ -157,7 +157,7 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
 
 def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path: Path) -> None:
     """Record, save, load, replay: every vertex ends where it was, to a hundredth of a mm."""
-    session.begin_script()
+    session.work.begin_script()
     session.edit(replace(session.script, duration=1.0))
     session.toggle_recording()
     run(session, 30)
@@ -169,12 +169,12 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     wanted = session.scene.positions.copy()
     assert np.abs(wanted - session.scene.rest_positions).max() > 10.0
     session.toggle_recording()
-    assert "the script" in session.unsaved
-    session.save_script(tmp_path / "take.toml")
-    assert not session.unsaved
+    assert "the script" in session.work.unsaved
+    session.work.save_script(tmp_path / "take.toml")
+    assert not session.work.unsaved
     session.neutral()
     run(session, 90)
-    session.open(load_script(tmp_path / "take.toml"))
+    session.work.open(load_script(tmp_path / "take.toml"))
     session.toggle_playing()
     while session.is_playing:
         session.advance(STEP)
@@ -186,9 +186,9 @@ def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
 ) -> None:
     """They take what is seen, not what sliders say beneath it."""
     session.live_override.take({"jaw_open": 0.5}, 1.0)
-    session.save_pose(tmp_path / "pose.toml")
+    session.work.save_pose(tmp_path / "pose.toml")
     assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5
-    session.begin_script()
+    session.work.begin_script()
     session.set_key()
     assert session.script.at(0.0)["jaw_open"] == 0.5
     session.neutral()

@@ -47,14 +47,14 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> N
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
     assert viewer.selection.places == {KeyPlace(POSES, time)}
-    assert viewer.session.name == "own.toml" and viewer.session.script_is_unsaved
+    assert viewer.session.work.name == "own.toml" and viewer.session.work.script_is_unsaved
     xdotool(viewer, "key", "ctrl+s")
-    assert not viewer.session.unsaved and load_script(own) == viewer.session.script
+    assert not viewer.session.work.unsaved and load_script(own) == viewer.session.script
     assert load_script(own).poses[1].time == time
     xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script == before and viewer.session.script_is_unsaved
+    assert viewer.session.script == before and viewer.session.work.script_is_unsaved
     xdotool(viewer, "key", "ctrl+shift+z")
-    assert pose_times(viewer)[1] == time and not viewer.session.script_is_unsaved
+    assert pose_times(viewer)[1] == time and not viewer.session.work.script_is_unsaved
 
 
 def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
@@ -68,7 +68,7 @@ def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
     assert viewer.selection.places == {REST}
     x, y = key_at(viewer, KeyPlace(POSES, 1.0))
     press(viewer, (x + 50, y))
-    assert not viewer.selection.places and not viewer.session.unsaved
+    assert not viewer.selection.places and not viewer.session.work.unsaved
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
@@ -86,7 +86,7 @@ def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
     xdotool(viewer, "key", "shift+Right")
     assert viewer.session.script.poses[1].time == pytest.approx(1.0 + by + 1.0 / 30.0, abs=1e-5)
     xdotool(viewer, "key", "ctrl+z", "ctrl+z")
-    assert not viewer.session.script_is_unsaved
+    assert not viewer.session.work.script_is_unsaved
 
 
 def test_delete_and_paste(viewer: Viewer) -> None:
@@ -104,7 +104,7 @@ def test_delete_and_paste(viewer: Viewer) -> None:
     xdotool(viewer, "key", "ctrl+z")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     xdotool(viewer, "key", "ctrl+z")
-    assert not viewer.session.script_is_unsaved
+    assert not viewer.session.work.script_is_unsaved
 
 
 def test_the_face_becomes_a_key(viewer: Viewer) -> None:
@@ -116,7 +116,7 @@ def test_the_face_becomes_a_key(viewer: Viewer) -> None:
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(wanted["jaw_open"])
     assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
-    assert viewer.session.unsaved == "the script"
+    assert viewer.session.work.unsaved == "the script"
     xdotool(viewer, "key", "Home")
     press(viewer, key_at(viewer, KeyPlace(POSES, 2.0)))
     assert viewer.session.values == pytest.approx(wanted)
@@ -178,7 +178,7 @@ def dense(viewer: Viewer, tmp_path_factory: pytest.TempPathFactory) -> Script:
 @pytest.fixture
 def take(viewer: Viewer, own: Path, dense: Script) -> Script:
     """The dense script, opened, with a row for each of its tracks."""
-    viewer.session.open(dense)
+    viewer.session.work.open(dense)
     viewer.settings.folds["Tracks"] = True
     settle(viewer)  # until the rows are in their places
     return viewer.session.script

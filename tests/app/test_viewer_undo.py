@@ -34,7 +34,9 @@ def test_a_pose_that_is_let_go_is_told_and_comes_back(session: Session, how: str
     run(session, 10)
     assert not session.differing and session.values["jaw_open"] < 0.6
     session.undo()
-    assert session.values["jaw_open"] == 0.6 and session.time == 2.0 and session.has_unsaved_pose
+    assert (
+        session.values["jaw_open"] == 0.6 and session.time == 2.0 and session.work.has_unsaved_pose
+    )
     session.redo()
     assert session.values["jaw_open"] < 0.6
 
@@ -50,7 +52,7 @@ COMMANDS = {
     "key": lambda s, x: s.set_key(),
     "let go": lambda s, x: s.let_go(),
     "auto": lambda s, x: setattr(s, "is_keying", x > 0.5),
-    "new": lambda s, x: s.begin_script(),
+    "new": lambda s, x: s.work.begin_script(),
     "undo": lambda s, x: s.undo(),
     "redo": lambda s, x: s.redo(),
 }
@@ -104,7 +106,7 @@ def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -
     selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12))
     assert "2 keys copied" in str(selection.copy())
     selection.delete()
-    session.begin_script()
+    session.work.begin_script()
     session.seek(0.5)
     assert selection.copied and selection.paste() == "2 keys copied to 0.50 s"
     assert selection.places == {KeyPlace(POSES, 0.5), KeyPlace("blink", 1.62)}

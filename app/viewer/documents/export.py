@@ -224,7 +224,7 @@ class ExportDialog:
         elif is_begun or (was_focused and is_enter):
             exporter.is_asking, suffix = False, exporter.kind.suffix
             ask = partial(self._files.ask, TITLE, exporter.start, saving=True, suffixes=(suffix,))
-            ask(proposed=f"{Path(exporter.session.name).stem}{suffix}")
+            ask(proposed=f"{Path(exporter.session.work.name).stem}{suffix}")
 
     def _draw_progress(self) -> None:
         """How far it is."""

@@ -56,7 +56,7 @@ class Question:
     @property
     def unsaved(self) -> str:
         """What would be lost, in words; "" for nothing."""
-        return (self.other or self._session).unsaved
+        return (self.other or self._session.work).unsaved
 
     def before(self, verb: str, task: Task, other: Unsaved | None = None) -> Message:
         """Go on with `task` at once, or when what is unsaved was saved or given up."""
@@ -89,7 +89,7 @@ class ScriptCommands:
 
         def begin() -> Message:
             """Do so."""
-            self._session.begin_script()
+            self._session.work.begin_script()
             return "A new script; K keys the face as it is"
 
         return self._question.before("Begin", begin)
@@ -115,11 +115,11 @@ class ScriptCommands:
 
         def show() -> Message:
             """Do so."""
-            session.open(script)
+            session.work.open(script)
             self.note_recent(path)
             return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
 
-        if is_pose(script) and not self._session.has_unsaved_pose:
+        if is_pose(script) and not self._session.work.has_unsaved_pose:
             return show()  # whatever else is unsaved stays
         return self._question.before("Open", show)
 
@@ -155,9 +155,9 @@ class ScriptCommands:
         )
 
     def _write(self, path: Path, then: Task) -> Message:
-        self._session.save_script(path)
+        self._session.work.save_script(path)
         self.note_recent(path)
-        apart = self._session.has_unsaved_pose
+        apart = self._session.work.has_unsaved_pose
         rest = "; the pose is not part of it: K makes it a key" if apart else ""
         return then() or f"{path}: script written{rest}"
 
@@ -166,7 +166,7 @@ class ScriptCommands:
 
         def write(path: Path) -> Message:
             """Do so."""
-            self._session.save_pose(path)
+            self._session.work.save_pose(path)
             self.note_recent(path)
             return then() or f"{path}: pose written"
 
@@ -218,10 +218,10 @@ def draw_question(
         choices["Save landmarks"] = partial(other.save, again)
     elif session.is_recording:
         choices["Save recording ..."] = partial(scripts.save_recording, again)
-    elif session.script_is_unsaved:
+    elif session.work.script_is_unsaved:
         label = "Save script" if session.file.path else "Save script ..."
         choices[label] = partial(scripts.save, again)
-    if other is None and session.has_unsaved_pose:
+    if other is None and session.work.has_unsaved_pose:
         choices["Save pose ..."] = partial(scripts.save_pose, again)
     choices |= {f"{verb} without saving": task, "Back": lambda: None}
     answer: Task | None = None

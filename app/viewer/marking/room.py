@@ -291,7 +291,7 @@ class Room:
         self.mouse = MarkingMouse(self.view, surface, marking, messages)
         own, shared = self._commands(), [each for each in others if each.label in SHARED]
         self.commands = (*own, *shared)
-        menus = MenuBar(gui, messages, self.commands, lambda: app.session.unsaved)
+        menus = MenuBar(gui, messages, self.commands, lambda: app.session.work.unsaved)
         self.panel = MarkingPanel(gui, messages, marking, menus, own)
         self._was_upright = marking.is_upright
 

@@ -61,7 +61,7 @@ class Recovery:
         """To be called all the time; UserError, once, where nothing can be written."""
         if self._path is None:
             return
-        if not self._session.unsaved:
+        if not self._session.work.unsaved:
             if self._safe is not None:
                 self.discard()
             self._safe, self._due = None, math.inf
@@ -78,7 +78,7 @@ class Recovery:
     def save(self) -> None:
         """Write what is unsaved; UserError, once, where that cannot be."""
         state = _state(self._session)
-        if self._path is None or state == self._safe or not self._session.unsaved:
+        if self._path is None or state == self._safe or not self._session.work.unsaved:
             return
         begin = time.perf_counter()
         try:
@@ -129,13 +129,13 @@ def unsaved_script(session: Session) -> Script:
 def _has_pose(session: Session) -> bool:
     """Whether there is one; what is moved while a recording is paused, that has not."""
     missed = session.recorder.missed if session.recorder is not None else {}
-    return session.has_unsaved_pose or (bool(missed) and not session.is_playing)
+    return session.work.has_unsaved_pose or (bool(missed) and not session.is_playing)
 
 
 def _state(session: Session) -> object:
     """What tells whether there is other work to be kept; quickly made and compared."""
     return (
-        session.script if session.script_is_unsaved else None,
+        session.script if session.work.script_is_unsaved else None,
         dict(session.values) if _has_pose(session) else None,
         session.recorded_seconds,
     )

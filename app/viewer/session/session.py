@@ -38,6 +38,7 @@ class Session:
         self.recorder: Recorder | None = None  # of what is being recorded
         self.live_override = LiveOverride()  # leaves no trace in what can be undone
         self.history = History(self._document())
+        self.work = Work(self)
 
     def move_to(self, scene: Scene) -> None:
         """Go on with another scene, all else as it is; UserError if it has other controls."""
@@ -63,7 +64,7 @@ class Session:
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
         pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
-        self._set_pose(pose, is_unsaved=False)
+        self.set_pose(pose, is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
         """Whether this control alone is not 0, and at its most."""
@@ -71,13 +72,14 @@ class Session:
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""
-        self._set_pose(self.controls.pose({}), is_unsaved=False)
+        self.set_pose(self.controls.pose({}), is_unsaved=False)
 
     def mirror(self, source: str = "") -> None:
         """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
-        self._set_pose(copied(self.values, source) if source else mirrored(self.values))
+        self.set_pose(copied(self.values, source) if source else mirrored(self.values))
 
-    def _set_pose(self, pose: dict[str, float], *, is_unsaved: bool = True) -> None:
+    def set_pose(self, pose: dict[str, float], *, is_unsaved: bool = True) -> None:
+        """Take a value for each control; a recording takes in what differs."""
         if self.recorder is not None:
             self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
@@ -283,55 +285,63 @@ class Session:
         """How long the recording is so far."""
         return self.recorder.time - self.recorder.start if self.recorder is not None else 0.0
 
-    # Files
-
-    def open(self, script: Script) -> None:
-        """A pose to show, which a recording takes in, or a script to play, which ends it."""
-        if is_pose(script):
-            self._set_pose(self.controls.pose(script.at(0.0)), is_unsaved=False)
-        else:
-            self._replace_script(script, ScriptFile.of(script))
-
-    def begin_script(self) -> None:
-        """An empty script: the neutral face, to which keys can be added."""
-        scene, camera = self.script.scene, self.script.camera
-        script = Script("", NEW_SECONDS, "a new script", scene, camera, poses=(Pose(0.0),))
-        self._replace_script(script, ScriptFile(None, script))
-
-    def _replace_script(self, script: Script, file: ScriptFile) -> None:
-        """Another script in place of this one."""
+    def replace_script(self, script: Script, file: ScriptFile) -> None:
+        """Another script in place of this one; a recording ends."""
         self.recorder, self._is_touched = None, False
         self.script, self.file, self.is_playing = script, file, False
         self._go_to(0.0)
         self.note()
 
+
+class Work:
+    """What files have of a session: what is opened, saved, or would be lost."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def open(self, script: Script) -> None:
+        """A pose to show, which a recording takes in, or a script to play, which ends it."""
+        if is_pose(script):
+            self._session.set_pose(self._session.controls.pose(script.at(0.0)), is_unsaved=False)
+        else:
+            self._session.replace_script(script, ScriptFile.of(script))
+
+    def begin_script(self) -> None:
+        """An empty script: the neutral face, to which keys can be added."""
+        scene, camera = self._session.script.scene, self._session.script.camera
+        script = Script("", NEW_SECONDS, "a new script", scene, camera, poses=(Pose(0.0),))
+        self._session.replace_script(script, ScriptFile(None, script))
+
     def save_script(self, path: Path) -> None:
         """Write the script to a file; UserError where it cannot be written."""
-        self.file.save(self.script, path)
+        self._session.file.save(self._session.script, path)
 
     def save_pose(self, path: Path) -> None:
         """Write the controls as they are to a file; UserError where it cannot be written."""
-        save_script(path, pose_script(self.current, title=path.stem, scene=self.script.scene))
-        self.pose_is_unsaved = False
+        session = self._session
+        pose = pose_script(session.current, title=path.stem, scene=session.script.scene)
+        save_script(path, pose)
+        session.pose_is_unsaved = False
 
     @property
     def unsaved(self) -> str:
         """What would be lost by closing, in words; "" for nothing."""
         lost = {"the pose": self.has_unsaved_pose, "the script": self.script_is_unsaved}
-        lost["the recording"] = self.is_recording
+        lost["the recording"] = self._session.is_recording
         return " and ".join(what for what, is_lost in lost.items() if is_lost)
 
     @property
     def script_is_unsaved(self) -> bool:
         """Whether the script says what its file does not."""
-        return self.file.differs(self.script)
+        return self._session.file.differs(self._session.script)
 
     @property
     def name(self) -> str:
         """What the script is called: by its file, if there is one, else by its title."""
-        return self.file.path.name if self.file.path else self.script.title or "Untitled"
+        path = self._session.file.path
+        return path.name if path else self._session.script.title or "Untitled"
 
     @property
     def has_unsaved_pose(self) -> bool:
         """Whether there is a pose made by hand that no file has."""
-        return self.pose_is_unsaved and any(self.values.values())
+        return self._session.pose_is_unsaved and any(self._session.values.values())

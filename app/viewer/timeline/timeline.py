@@ -96,8 +96,8 @@ class Timeline:
     def _draw_status(self, differing: int) -> None:
         """The time, and what is being made now, else how many controls differ, or the script."""
         session, theme = self._session, self._gui.theme
-        status, ink = session.name, theme.muted
-        if session.script_is_unsaved:
+        status, ink = session.work.name, theme.muted
+        if session.work.script_is_unsaved:
             status += " *"
         if differing:
             status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
@@ -111,4 +111,4 @@ class Timeline:
         imgui.same_line(0.0, em(1.2))
         imgui.text_colored(colour(ink), shortened(status, imgui.get_content_region_avail().x))
         where = session.file.path or "not kept in a file yet"
-        hint(f"{session.script.title or session.name}: {where}")
+        hint(f"{session.script.title or session.work.name}: {where}")

@@ -121,7 +121,7 @@ class Application(ApplicationContext):
     def _join_panels(self) -> None:
         """What is around the picture, and the mouse in it."""
         session = self.session
-        bar = MenuBar(self.gui, self.messages, self.commands, lambda: session.unsaved)
+        bar = MenuBar(self.gui, self.messages, self.commands, lambda: session.work.unsaved)
         waveform = Waveform(self.gui, self.soundtrack, self.time_axis)
         dope_sheet = DopeSheet(self, self.selection, self.time_axis, bar, waveform)
         self.timeline = Timeline(self, self.commands, dope_sheet)

@@ -71,7 +71,7 @@ class Viewer(Application):
                         break
                     self.gui.restore()  # to be asked
                 is_over = playing and not self.session.is_playing
-                if once and is_over and not self.session.unsaved:
+                if once and is_over and not self.session.work.unsaved:
                     break
                 self.pause()
 
@@ -95,8 +95,8 @@ class Viewer(Application):
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         room = self.room
-        name = self.session.name if room is None else room.marking.path.name
-        is_unsaved = self.session.unsaved if room is None else room.marking.unsaved
+        name = self.session.work.name if room is None else room.marking.path.name
+        is_unsaved = self.session.work.unsaved if room is None else room.marking.unsaved
         self.gui.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
         is_moving = self._move_face(elapsed) if room is None else room.paint(elapsed)
         is_calm = self.physics.is_at_rest or self.physics.is_left_alone
