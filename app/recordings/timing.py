@@ -102,7 +102,7 @@ def clock_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> A
     highest = int(numbers[known].max())
     base = next((each for each in RATES if each > highest), highest + 1.0)
     if rate is None and np.ptp(seconds) > 0.0:
-        notes.append(f"{base:g} frames a second, as the timecode counts to {highest}.")
+        notes.append(f"Timecode of {base:g} frames a second, as it counts to {highest}.")
     elif rate is None and len(cells) > 1:
         base = max(base, 60.0)
         notes.append(f"Less than a second of timecode: {base:g} frames a second were assumed.")

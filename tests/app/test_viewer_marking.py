@@ -84,6 +84,8 @@ def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path
     third = Marking(marking.path, FileDialogs())
     third.open(target)
     assert third.marks == again.marks and third.is_upright  # what is guessed still is
+    third.undo()
+    assert not third.marks.places and not third.is_upright  # and may be turned again
 
 
 def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> None:

@@ -18,6 +18,5 @@ def test_weights_and_distance_name_one_point() -> None:
     assert not np.any([u[:50], v[:50], along[:50]])
     normals = cross_products(corners[50:].reshape(-1, 3), np.arange(450).reshape(-1, 3))
     assert_allclose(volume[50:], -(normals * directions[50:]).sum(axis=1), atol=1e-12)  # outside
-    weights = np.stack([1.0 - u - v, u, v], axis=-1)[50:]
-    on_triangle = np.einsum("nk,nkj->nj", weights, corners[50:])
+    on_triangle = np.einsum("kn,nkj->nj", [1.0 - u - v, u, v], corners)[50:]
     assert_allclose(on_triangle, (origins + along[:, None] * directions)[50:], atol=1e-6)

@@ -176,6 +176,7 @@ class Marking:
 
     def _show(self, marks: Marks) -> None:
         self.marks = marks
+        self.is_upright &= bool(marks.places)  # else it may be turned again
         self.current = self.current if marks.asked is None else marks.asked
 
     def guess(self) -> Message:

@@ -297,8 +297,8 @@ class Room:
 
     def paint(self, elapsed: float) -> bool:
         """Draw what has changed; turn to the face as soon as it is known where that is."""
-        if self.marking.is_upright and not self._was_upright:
-            self._was_upright = True
+        if self.marking.is_upright != self._was_upright:
+            self._was_upright = self.marking.is_upright
             self.view.fit_scene()
         return self.painter.paint(elapsed, has_moved=False, is_alive=False)
 
