@@ -85,6 +85,7 @@ class _CompilingNote(logging.Handler):
     _said: frozenset[int] = frozenset()
 
     def emit(self, record: logging.LogRecord) -> None:
+        """Write a line, unless one of its level was written."""
         if record.levelno not in self._said:
             self._said |= {record.levelno}
             line = "Compiling, this once; it takes half a minute."

@@ -210,6 +210,7 @@ class FaceScene(Scene):
         return self.simulation.bone_transforms()
 
     def moved_by(self, name: str) -> Mapping[str, float]:
+        """The lowest controls that a control at its most moves, and how far."""
         simulation = self.simulation
         if name not in self._moved_by:
             # Asked of the simulation, between two steps, so that nothing of layers is known here.

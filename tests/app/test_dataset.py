@@ -180,7 +180,7 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
     behind = {}
     for name, background in (("colour", "#0ac81e"), ("picture", str(pictures))):
         request = request_of(
-            tmp_path, seed=2, size=(96, 96), passes=("segmentation",), background=background
+            tmp_path, seed=3, size=(96, 96), passes=("segmentation",), background=background
         )
         shot = Studio(request).shoot(0)
         is_behind = shot.known.images["segmentation"] == 0
@@ -190,7 +190,7 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
         # Single strands may be thinner than the pixels that have a class.
         is_hair = shot.known.images["segmentation"] == Segment.HAIR
         inner &= ~binary_dilation(is_hair, iterations=3)[1:-1, 1:-1]
-        assert inner.mean() > 0.05
+        assert inner.mean() > 0.1
         off = np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max(axis=1)
         assert (off > 1).mean() < 0.05  # the rim of hair that hangs on the far side
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
