@@ -16,11 +16,11 @@ from risorius.app.capture import CaptureOptions
 from risorius.app.files import Image
 from risorius.app.scenes import FaceScene, Scene
 
-LAYERS = {
-    "action_units": "Action units",
-    "expressions": "Expressions",
-    "visemes": "Visemes",
-    "arkit": "ARKit shapes",
+LAYERS = {  # by file: the layer, and how many columns leave few cells of the last row empty
+    "action_units": ("Action units", 4),
+    "expressions": ("Expressions", 4),
+    "visemes": ("Visemes", 5),
+    "arkit": ("ARKit shapes", 4),
 }
 SHOWN_OVER = {"mouthClose": {"mouthClose": 0.5, "jawOpen": 0.5}}  # a share shows nothing alone
 CELL = (150, 168)  # [pixels] of one view
@@ -28,7 +28,6 @@ VIEWS = ("0,0,1.7", "-34,3,1.7")  # front and three-quarter
 RAISED = 11.0  # [mm] that these look higher than at the landmarks: foreheads wrinkle
 FAR_VIEWS = ("0,0,1.1", "-34,3,1.1")  # of a head that turns
 TURNING = ("AU51", "AU52", "AU53", "AU54", "AU55", "AU56")
-COLUMNS = (4, 5, 3)  # from the best to the worst, where all leave as few cells of a row empty
 
 
 def without_sides(names: Sequence[str]) -> list[str]:
@@ -40,11 +39,6 @@ def without_sides(names: Sequence[str]) -> list[str]:
         if not (name.endswith(("_left", "_right")) and name.rpartition("_")[0] in known)
         and not (name.endswith("Right") and f"{name.removesuffix('Right')}Left" in known)
     ]
-
-
-def columns_for(count: int) -> int:
-    """How many columns leave the fewest cells of the last row empty."""
-    return min(count, min(COLUMNS, key=lambda columns: -count % columns))
 
 
 def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
@@ -66,13 +60,13 @@ def title_of(scene: Scene, name: str) -> str:
     return f"{title}  {action}" if name[:2] == "AU" else title.replace("_", " ")
 
 
-def layer(title: str, size: tuple[int, int] = CELL) -> Image:
+def layer(title: str, columns: int, size: tuple[int, int] = CELL) -> Image:
     """A labelled portrait of each control of a layer."""
     scene = FaceScene()
     names = without_sides(scene.groups[title])
     cells = [(title_of(scene, name), portrait(scene, name, size)) for name in names]
-    return figures.sheet(cells, columns_for(len(cells)))
+    return figures.sheet(cells, columns)
 
 
 if __name__ == "__main__":
-    figures.run(__doc__, {file: partial(layer, title) for file, title in LAYERS.items()})
+    figures.run(__doc__, {file: partial(layer, *layer_of) for file, layer_of in LAYERS.items()})

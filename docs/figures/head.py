@@ -1,19 +1,22 @@
 """Draw the pictures of docs/head.md, and wrinkles: `python docs/figures/head.py [FOLDER]`.
 
 Contact sheets, always from the same views and under the same light, so that two states of the head
-can be laid side by side: `head_views` (the head at rest, as painted skin, as clay, as flat
-triangles), `wrinkles` (some poses from near, without and with the wrinkles that the simulation
-makes), and `persons` (at rest, then in other light).
+can be laid side by side: `system` (one smile, from muscles to skin), `head_views` (the head at
+rest, as painted skin, as clay, as flat triangles), `wrinkles` (some poses from near, without and
+with the wrinkles that the simulation makes), and `persons` (at rest, then in other light).
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import figures
 
 from risorius import render
+from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import CaptureOptions
 from risorius.app.files import Image
-from risorius.app.refining.presets import STATIC, Refinement
+from risorius.app.refining.presets import PAPERS_PRESET, STATIC, Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called
 
@@ -44,7 +47,24 @@ IN_LIGHT = (
 )
 
 
-def views(size: tuple[int, int] = CELL) -> Image:
+def system() -> Image:
+    """One smile: what pulls, what is moved, where it is split, and what is seen."""
+    mesh = render.Style(textured=False, albedo=render.CLAY, wireframe=True)
+    splits = replace(mesh, colour_by=render.ColourBy.SPLITS)
+    steps = {
+        "muscles pull": {"anatomy": AnatomyView(("muscles", "skull"), 0.1)},
+        "on 2030 triangles": {"refinement": Refinement(refiner=STATIC), "style": mesh},
+        "split where they bend": {"refinement": Refinement(PAPERS_PRESET), "style": splits},
+        "and drawn as skin": {},
+    }
+    scene, cells = FaceScene(), []
+    for title, how in steps.items():
+        options = CaptureOptions((320, 440), camera="-28,3,1.35", captions=False, **how)
+        cells.append((title, figures.shoot(scene, {"joy": 0.85}, options)))
+    return figures.sheet(cells, len(steps))
+
+
+def head_views(size: tuple[int, int] = CELL) -> Image:
     """The head at rest, a row for each style."""
     scene = FaceScene()
     cells = []
@@ -81,4 +101,5 @@ def persons() -> Image:
 
 
 if __name__ == "__main__":
-    figures.run(__doc__, {"head_views": views, "wrinkles": wrinkles, "persons": persons})
+    drawn = system, head_views, wrinkles, persons
+    figures.run(__doc__, {each.__name__: each for each in drawn})

@@ -9,6 +9,7 @@ Line drawings through Pillow, drawn three times too large and scaled down.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import figures
 import numpy as np
@@ -60,18 +61,9 @@ class Diagram:
         reach = radius * SCALE
         self._draw.ellipse((x - reach, y - reach, x + reach, y + reach), fill=colour)
 
-    def text(
-        self,
-        point: Place,
-        text: str,
-        colour: Colour = INK,
-        size: float = 12.0,
-        anchor: str = "mm",
-    ) -> None:
-        """Text at a point (Pillow's anchors)."""
-        self._draw.text(
-            self._place(point), text, font=font(size * SCALE), fill=colour, anchor=anchor
-        )
+    def text(self, point: Place, text: str, colour: Colour = INK, size: float = 12.0) -> None:
+        """Text around a point."""
+        self._draw.text(self._place(point), text, colour, font(size * SCALE), "mm")
 
     def _place(self, point: Place) -> tuple[float, float]:
         x, y = np.asarray(point, dtype=np.float64)
@@ -97,18 +89,11 @@ def new_points(splits: tuple[int, int, int]) -> list[int]:
     return middles + quarters
 
 
-def triangulation(
-    diagram: Diagram,
-    corners: Places,
-    triangles: Sequence[Sequence[int]],
-    splits: tuple[int, int, int],
-) -> None:
+def triangulation(diagram: Diagram, corners: Places, splits: tuple[int, int, int]) -> None:
     """Draw one triangle cut up, its new points marked by level."""
     points = points_in(corners)
     diagram.polygon(list(corners), FILL)
-    sides = {
-        (min(a, b), max(a, b)) for t in triangles for a, b in zip(t, (*t[1:], t[0]), strict=True)
-    }
+    sides = {(min(a, b), max(a, b)) for t in subdivide(splits) for a, b in pairwise((*t, t[0]))}
     for a, b in sorted(sides):
         diagram.line([points[a], points[b]])
     for number in new_points(splits):
@@ -124,9 +109,8 @@ def cases() -> Image:
         column, row = number % columns, number // columns
         centre = ((column + 0.5) * cell, diagram.size[1] - 8 - row * (cell + 14) - cell / 2)
         splits = splits_of(number)
-        triangles = subdivide(splits)
-        triangulation(diagram, equilateral(centre, 0.78 * cell), triangles, splits)
-        title = f"{number}: {''.join(map(str, splits))}, {len(triangles)}"
+        triangulation(diagram, equilateral(centre, 0.78 * cell), splits)
+        title = f"{number}: {''.join(map(str, splits))}, {len(subdivide(splits))}"
         diagram.text((centre[0], centre[1] - 0.48 * cell), title, size=10.5)
     return diagram.image()
 
@@ -150,16 +134,15 @@ def lookup() -> Image:
             points[3 + 3 * edge] + 22 * inward / np.linalg.norm(inward), f"edge {edge}", FAINT, 11
         )
     splits = (2, 0, 1)
-    triangles = subdivide(splits)
     lines = [
         "splits of edges 0, 1, 2:  2, 0, 1",
         "2 + 3 · 0 + 9 · 1  =  entry 11",
-        *(f"{a:3d} {b:3d} {c:3d}" for a, b, c in triangles),
+        *(f"{a:3d} {b:3d} {c:3d}" for a, b, c in subdivide(splits)),
     ]
     for row, text in enumerate(lines):
-        diagram.text((290, 215 - 26 * row - 14 * (row > 1)), text, size=13, anchor="lm")
+        diagram.text((390, 215 - 26 * row - 14 * (row > 1)), text, size=13)
     right = equilateral((640, 125), 180)
-    triangulation(diagram, right, triangles, splits)
+    triangulation(diagram, right, splits)
     points = points_in(right)
     centre = right.mean(axis=0)
     for number in [0, 1, 2, *new_points(splits)]:
