@@ -88,7 +88,7 @@ class _CompilingNote(logging.Handler):
         """Write a line, unless one of its level was written."""
         if record.levelno not in self._said:
             self._said |= {record.levelno}
-            line = "Compiling, this once; it takes half a minute."
+            line = "Compiling, once for each kind of work: up to half a minute."
             if record.levelno >= logging.WARNING:
                 line = f"risorius: {record.getMessage()}"
             click.echo(line, err=True)

@@ -224,6 +224,8 @@ def open_window(
     path = settings_path()
     with SplashScreen(size, path) as splash:
         script, head = splash.during(load)
+        if drawing.head is not None:
+            splash.settings.note_recent(*filter(None, (drawing.head, drawing.landmarks)))
         from ..viewer import Viewer
         from ..viewer.settings import display_of
 

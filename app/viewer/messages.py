@@ -17,20 +17,22 @@ Task = Callable[[], Message]  # what a user asks for; it may raise UserError or 
 
 @dataclass
 class Messages:
-    """One line at a time, over the picture; an error stays until it is clicked.
+    """One line at a time, over the picture; one that stays does so until the next command.
 
     Keys stand in it as in hints, see `Gui.with_keys`: by the labels of commands, in brackets.
     """
 
     text: str = ""
     is_error: bool = False
+    stays: bool = False
     seconds_left: float = 0.0
 
-    def say(self, text: str, *, error: bool = False) -> None:
-        """Show a line in place of the one before."""
-        self.text, self.is_error, self.seconds_left = sentence(text), error, SECONDS
+    def say(self, text: str, *, error: bool = False, stays: bool = False) -> None:
+        """Show a line in place of the one before; an error stays."""
+        self.text, self.is_error, self.stays = sentence(text), error, error or stays
+        self.seconds_left = SECONDS
 
-    def attempt(self, task: Task) -> None:
+    def attempt(self, task: Task, *, stays: bool = False) -> None:
         """Do something, and show what it has to say or what the user may have to mend."""
         try:
             line = task()
@@ -38,11 +40,16 @@ class Messages:
             self.say(str(error), error=True)
             return
         if line:
-            self.say(line)
+            self.say(line, stays=stays)
+
+    def carry_out(self, command: Task) -> None:
+        """The same for what the user does: whatever was said before is over."""
+        self.text = ""
+        self.attempt(command)
 
     def age(self, seconds: float) -> None:
-        """Time has passed since the last frame: a line that is no error goes away."""
-        if not self.is_error:
+        """Time has passed since the last frame: a line goes away unless it stays."""
+        if not self.stays:
             self.seconds_left -= min(seconds, LONGEST_FRAME)
         if self.seconds_left <= 0.0:
             self.text = ""
@@ -50,4 +57,4 @@ class Messages:
     @property
     def is_fading(self) -> bool:
         """Whether it goes away by itself."""
-        return bool(self.text) and not self.is_error
+        return bool(self.text) and not self.stays

@@ -24,7 +24,7 @@ from ..model import FloatArray, IndexArray
 WRONG_SIDE = 12.0  # [mm] that a point seems farther away where the surface faces the other way
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Similarity:
     """x -> scale * rotation x + shift."""
 

@@ -76,12 +76,15 @@ def test_a_film_is_what_capture_writes(viewer: Viewer, tmp_path: Path) -> None:
     before = scene.positions.copy()
     finish(viewer)
     assert not viewer.messages.is_error and np.array_equal(scene.positions, before)
+    assert str(tmp_path / "smile") in viewer.messages.text and viewer.messages.stays
     style = Style(light=LIGHTS["side"], background=LIGHT)
     options = CaptureOptions(SMALL, 12.0, Refinement("paper"), camera="three-quarter", style=style)
     film_of(viewer.session.script, options, output=tmp_path / "told", progress=False)
     ours, told = pictures(tmp_path / "smile"), pictures(tmp_path / "told")
     assert ours.shape == told.shape == (7, 120, 160, 3)
     assert np.abs(ours - told).max() <= 2
+    xdotool(viewer, "key", "n")
+    assert not viewer.messages.text  # which the next command takes away
 
 
 @pytest.mark.slow

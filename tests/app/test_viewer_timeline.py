@@ -102,7 +102,7 @@ def test_delete_and_paste(viewer: Viewer) -> None:
     xdotool(viewer, "key", "ctrl+a", "Delete")
     assert viewer.messages.is_error and "at least one key" in viewer.messages.text
     xdotool(viewer, "key", "ctrl+z")
-    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0] and not viewer.messages.text
     xdotool(viewer, "key", "ctrl+z")
     assert not viewer.session.work.script_is_unsaved
 

@@ -167,7 +167,7 @@ class ExportDialog:
         exporter = self._exporter
         self._draw_progress()
         if not exporter.is_asking or self._files.is_waiting:
-            return exporter.poll()
+            return None
         with dialog(TITLE, WIDTH) as is_open:
             if is_open:
                 try:

@@ -54,7 +54,7 @@ def run_pressed(commands: Iterable[Command], messages: Messages, gui: Gui) -> No
                 continue
             is_in_the_way = command.menu in _CHANGING and imgui.is_any_mouse_down()
             if command.can_run() and not is_in_the_way:
-                messages.attempt(command.run)
+                messages.carry_out(command.run)
 
 
 def chord(key: str) -> int:
@@ -106,7 +106,7 @@ class MenuBar:
             is_clicked, _ = imgui.menu_item(label, keys, is_on, command.can_run())
             self._gui.remember(f"menu {title}: {label}")
             if is_clicked:
-                self._messages.attempt(command.run)
+                self._messages.carry_out(command.run)
         if imgui.is_key_pressed(imgui.Key.escape):  # the mouse may be on what opens a submenu again
             imgui.close_current_popup()
 
@@ -138,5 +138,5 @@ def command_button(
         meaning=meaning or command.displayed_keys,
         highlight=ink,
     ):
-        messages.attempt(command.run)
+        messages.carry_out(command.run)
     imgui.end_disabled()

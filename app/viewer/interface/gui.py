@@ -217,9 +217,8 @@ class Gui:
         io.delta_time = max(self._looked - self._shown, 1e-6)
         self._shown = self._looked
         self.has_popup = self._context.open_popup_stack.size() > 0
-        walks = (
-            imgui.ConfigFlags_.nav_enable_keyboard
-        )  # by Tab and arrows, which else do other things
+        # By Tab and arrows, which else do other things.
+        walks = imgui.ConfigFlags_.nav_enable_keyboard
         io.config_flags = io.config_flags | walks if self.has_popup else io.config_flags & ~walks
         imgui.new_frame()
         self.places.clear()

@@ -119,11 +119,11 @@ class Marking:
             check_manifold(mesh.faces)
         self.file: Path | None = None  # in which the marks are kept
         self.marks = self._saved = Marks({})
-        self.history = History(self.marks)
         self.current = FIRST[0]
-        self.is_upright = False
         self.faces = mesh.faces
         self._place(centred(mesh.vertices, SEEN_RADIUS))
+        self._upright: Similarity | None = None
+        self.history = History((self.marks, self.placing))
 
     # Where the mesh is seen
 
@@ -141,13 +141,20 @@ class Marking:
         """Turn what is seen, (3, 3), as long as the marks do not tell how it stands."""
         now = self.placing
         self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
+        self._note()
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the marks have told how it stands."""
+        return self.placing is self._upright
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
         """The first time: upright, looking ahead, as large as a head; AssetError for no face's."""
         upright = placing(known)
         if not self.is_upright:
+            self._upright = upright
             self._place(upright)
-            self.current, self.is_upright = ORDER[0], True
+            self.current = ORDER[0]
 
     def seen(self, numbers: Iterable[int]) -> tuple[FloatArray, FloatArray]:
         """Where marks are seen, and the normals of the skin there, shape (n, 3) each."""
@@ -162,7 +169,7 @@ class Marking:
     # What is marked
 
     def put(self, number: int, point: FloatArray) -> None:
-        """Place a landmark at a point of what is seen; `note` says when that is done."""
+        """Place a landmark at a point of what is seen; `note` when that is done."""
         self.marks = self.marks.placed(number, self.placing.inverse.points(point))
 
     def note(self) -> Message:
@@ -171,13 +178,11 @@ class Marking:
         try:
             return self.guess() if can_guess else None
         finally:  # marks that are no face's are there to be mended
-            self._show(self.marks)
-            self.history.note(self.marks)
+            self._note()
 
-    def _show(self, marks: Marks) -> None:
-        self.marks = marks
-        self.is_upright &= bool(marks.places)  # else it may be turned again
-        self.current = self.current if marks.asked is None else marks.asked
+    def _note(self) -> None:
+        self.history.note((self.marks, self.placing))
+        self.undo(0)
 
     def guess(self) -> Message:
         """Place all that were not placed by hand; UserError where the marks are no face's."""
@@ -185,20 +190,20 @@ class Marking:
             found = guess(self.mesh, self.marks.by_hand)
         self._stand_up(self.marks.by_hand)
         self.marks = self.marks.with_guessed(found)
-        self.history.note(self.marks)
+        self._note()
         return "All points are guessed; drag those that are not where they belong"
 
     def go(self, step: int) -> None:
         """To the next landmark in the order of marking, or with -1 to the one before."""
         self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
-    def undo(self) -> None:
-        """Back to before the last change."""
-        self._show(self.history.go(self.history.place - 1))
-
-    def redo(self) -> None:
-        """Forward again."""
-        self._show(self.history.go(self.history.place + 1))
+    def undo(self, changes: int = 1) -> None:
+        """Back to before so many changes, of how the mesh stands, too; -1: forward again."""
+        self.marks, placing = self.history.go(self.history.place - changes)
+        if placing is not self.placing:
+            self._place(placing)
+        asked = self.marks.asked
+        self.current = self.current if asked is None else asked
 
     # Files
 

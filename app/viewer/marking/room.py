@@ -45,7 +45,7 @@ SIDES = {
 }
 BEGIN = (
     "Click the point on the skin that the guide shows. Where the head does not look at you, drag "
-    "it with the mouse and press Upright, or Turn 90 degrees. The wheel zooms."
+    "it with the mouse until it does, and press Turn until it stands upright. The wheel zooms."
 )
 GO_ON = (
     "Drag points that are not where they belong; a click on the skin moves this one. White inside: "
@@ -237,28 +237,29 @@ class MarkingMouse(CameraMouse):
         if not self._has_moved(io):
             return
         if self._doing == "mark":
-            point = self._skin(io)
-            if point is not None:
-                self._marking.put(self._marking.current, point)
+            self._put(io)
         super()._drag(io)
 
     def _release(self, io: Any) -> None:
-        if self._doing == "mark":
-            self._messages.attempt(self._marking.note)
-        elif self._doing == "orbit" and imgui.is_mouse_released(LEFT) and not self._has_moved(io):
-            point = self._skin(io)
-            if point is None:
-                self._messages.say("There is no skin here; click on the mesh")
-            else:
-                self._marking.put(self._marking.current, point)
-                self._messages.attempt(self._marking.note)
+        is_click = self._doing == "orbit" and imgui.is_mouse_released(LEFT)
+        is_click = is_click and not self._has_moved(io)
+        if is_click and not self._put(io):
+            self._messages.say("No skin looks at you here, as inside a mouth; click beside it")
+        elif is_click or self._doing == "mark":
+            self._messages.carry_out(self._marking.note)
         self.forget()
 
-    def _skin(self, io: Any) -> Any:
-        """The point of the mesh under the mouse, or None."""
+    def _put(self, io: Any) -> bool:
+        """Place the current mark under the mouse; whether there is skin on which it is seen."""
+        marking, before = self._marking, self._marking.marks
         ray = Ray.through(self._view.camera, self._view.viewport, self._place(io))
-        marking = self._marking
-        return skin_under(ray, marking.positions, marking.faces, from_outside=False)
+        point = skin_under(ray, marking.positions, marking.faces)
+        if point is None:
+            return False
+        marking.put(marking.current, point)
+        is_seen = marking.current in self._seen.places()
+        marking.marks = marking.marks if is_seen else before
+        return is_seen
 
     def _mark_under(self, io: Any) -> int | None:
         # Of marks in one place, as on lips that touch, the current one is meant.
@@ -293,12 +294,12 @@ class Room:
         self.commands = (*own, *shared)
         menus = MenuBar(gui, messages, self.commands, lambda: app.session.work.unsaved)
         self.panel = MarkingPanel(gui, messages, marking, menus, own)
-        self._was_upright = marking.is_upright
+        self._placing = marking.placing
 
     def paint(self, elapsed: float) -> bool:
-        """Draw what has changed; turn to the face as soon as it is known where that is."""
-        if self.marking.is_upright != self._was_upright:
-            self._was_upright = self.marking.is_upright
+        """Draw what has changed; from the front where the mesh stands otherwise now."""
+        if self.marking.placing is not self._placing:
+            self._placing = self.marking.placing
             self.view.fit_scene()
         return self.painter.paint(elapsed, has_moved=False, is_alive=False)
 
@@ -328,11 +329,11 @@ class Room:
             camera.yaw = float(np.copysign(aside, self.marking.seen([number])[0][0, 0]))
             camera.pitch = 0.0
 
-    def _straighten(self, roll: int = 0) -> None:
-        """Let what is seen now be the front, upright; or turned by so many right angles to it."""
-        seen = np.linalg.matrix_power(QUARTER, roll) @ np.array(self.view.camera.axes())
-        self.marking.turn(max(axes_turned(), key=lambda turn: float((turn * seen).sum())))
-        self.view.fit_scene()
+    def _turn(self) -> None:
+        """Let what is seen be the front; where it is so already, turn it by a right angle."""
+        seen = np.array(self.view.camera.axes())
+        turn = max(axes_turned(), key=lambda turn: float((turn * seen).sum()))
+        self.marking.turn(QUARTER if np.array_equal(turn, np.eye(3)) else turn)
 
     def _commands(self) -> tuple[Command, ...]:
         """All that a key or a menu does here alone."""
@@ -340,17 +341,16 @@ class Room:
         file, edit = partial(Command, "File"), partial(Command, "Edit")
         complete = partial(Command, can_run=lambda: marking.marks.is_complete)
         landmarks = partial(complete, "Landmarks")
-        turned = partial(Command, "View", can_run=lambda: not marking.is_upright)
         history = marking.history
+        redo = partial(edit, can_run=lambda: history.can_redo)
         return (
             complete("File", "Use this head", "Ctrl+Enter", self.use),
             file("Save landmarks", "Ctrl+S", marking.save),
             file("Open landmarks ...", "Ctrl+O", marking.ask_open),
             file("Leave", "Ctrl+W", self.leave),
             edit("Undo", "Ctrl+Z", marking.undo, can_run=lambda: history.can_undo),
-            edit("Redo", "Ctrl+Y, Ctrl+Shift+Z", marking.redo, None, lambda: history.can_redo),
-            turned("Upright", "U", self._straighten),
-            turned("Turn 90 degrees", "T", partial(self._straighten, 1)),
+            redo("Redo", "Ctrl+Y, Ctrl+Shift+Z", partial(marking.undo, -1)),
+            Command("View", "Turn", "T", self._turn, can_run=lambda: not marking.is_upright),
             landmarks("Point before", "Left", partial(self._step, -1)),
             landmarks("Next point", "Right", partial(self._step, 1)),
             landmarks("Guess again", "G", marking.guess),

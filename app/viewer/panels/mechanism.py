@@ -21,6 +21,7 @@ from ...scenes import BUILT_IN, OWN, FaceScene
 from ..context import ApplicationContext
 from ..documents.file_drop import FileDrop
 from ..interface.widgets import LabelledRows, button, heading, muted
+from ..messages import Message
 from ..session.physics import PHASES
 from ..settings import BACKGROUNDS, COMPARISONS, SKINS, TONES, Display, switch
 
@@ -174,11 +175,8 @@ class MechanismPanel:
             people = {person_in_words(who): who for who in (*NAMED, *range(UNNAMED))}
             who = int(scene.called) if scene.called.isdecimal() else scene.called
             present = scene.called if who in (BUILT_IN, OWN) else person_in_words(who)
-            show = lambda name: self._show(people.get(name))  # noqa: E731
+            show = lambda name: self._file_drop.show_person(people.get(name))  # noqa: E731
             self._choose("Person", present, (BUILT_IN, *people), show)
-
-    def _show(self, who: int | str | None) -> None:
-        self._messages.attempt(partial(self._file_drop.show_person, who))
 
     def _draw_anatomy(self) -> None:
         display = self._display
@@ -220,12 +218,12 @@ class MechanismPanel:
         self._choose(label, getattr(self._display, name), choices, put)
 
     def _choose(
-        self, label: str, present: str, choices: Sequence[str], put: Callable[[str], None]
+        self, label: str, present: str, choices: Sequence[str], put: Callable[[str], Message]
     ) -> None:
         """A row with a list to choose from."""
         chosen = self._rows.choose(label, present, choices)
         if chosen is not None:
-            put(chosen)
+            self._messages.carry_out(partial(put, chosen))
 
 
 def _choices(option: str) -> tuple[str, ...]:

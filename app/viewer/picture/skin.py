@@ -22,7 +22,7 @@ from ..messages import Message
 from ..session.session import Session
 from ..settings import Settings
 
-FloatArray = npt.NDArray[np.float64]
+Array = npt.NDArray[np.float64]
 MUSCLE_REACH = 14.0  # [mm] from a fibre within which a click on the skin means its muscle
 # A ray that meets an edge must not slip between its two triangles by the last bit.
 ROUNDING = 1e-9  # of a triangle; [mm] too
@@ -32,8 +32,8 @@ ROUNDING = 1e-9  # of a triangle; [mm] too
 class Ray:
     """What the camera sees in one pixel."""
 
-    origin: FloatArray
-    direction: FloatArray
+    origin: Array
+    direction: Array
 
     @classmethod
     def through(
@@ -48,17 +48,15 @@ class Ray:
         near, far = ends[:, :3] / ends[:, 3:]
         return cls(near, (far - near) / np.linalg.norm(far - near))
 
-    def at_depth_of(self, point: FloatArray, axis: FloatArray) -> FloatArray:
+    def at_depth_of(self, point: Array, axis: Array) -> Array:
         """Where the ray meets the plane through `point` across `axis` (the line of sight)."""
         along = float((point - self.origin) @ axis) / float(self.direction @ axis)
-        met: FloatArray = self.origin + along * self.direction
+        met: Array = self.origin + along * self.direction
         return met
 
 
-def skin_under(
-    ray: Ray, positions: FloatArray, faces: npt.NDArray[Any], *, from_outside: bool = True
-) -> FloatArray | None:
-    """The nearest point of the mesh that the ray meets, or None; `from_outside` or either side.
+def skin_under(ray: Ray, positions: Array, faces: npt.NDArray[Any]) -> Array | None:
+    """The nearest point of the mesh that the ray meets from outside, or None.
 
     Only triangles whose corners lie around the ray are asked.
     """
@@ -67,16 +65,15 @@ def skin_under(
         corners = aside[faces]
         faces = faces[(corners.min(axis=1) < ROUNDING) & (corners.max(axis=1) > -ROUNDING)]
     volume, u, v, distance = crossings(ray.origin, ray.direction, positions[faces])
-    met = (volume if from_outside else np.abs(volume)) > PARALLEL
     inside = (u >= -ROUNDING) & (v >= -ROUNDING) & (u + v <= 1.0 + ROUNDING)
-    hit = met & inside & (distance > 0.0)
+    hit = (volume > PARALLEL) & inside & (distance > 0.0)
     if not hit.any():
         return None
-    point: FloatArray = ray.origin + distance[hit].min() * ray.direction
+    point: Array = ray.origin + distance[hit].min() * ray.direction
     return point
 
 
-def muscle_at(point: FloatArray, fibres: Mapping[str, Sequence[FloatArray]]) -> str | None:
+def muscle_at(point: Array, fibres: Mapping[str, Sequence[Array]]) -> str | None:
     """The muscle whose fibres come nearest to a point of the skin, or None if all are far."""
     nearest = {  # its end once more: a fibre may be a single point
         name: min(
@@ -95,8 +92,6 @@ FINGER = 16.0  # [mm] the finger's radius
 FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
 DENSE = 10_000  # triangles of a head whose muscles are solved only when it is let go
 NOT_PULLED = ("gaze_", "head_", "tongue_", "lips_closed")  # controls that no finger on skin means
-
-Array = npt.NDArray[np.float64]
 
 
 class SkinDrag:

@@ -36,12 +36,12 @@ def draw_ruler(
     """
     lines, (top, bottom) = imgui.get_window_draw_list(), edges
     ink = ink_of(theme.muted)
-    for tick in axis.ticks(em(LABEL_ROOM)):
-        x = round(axis.x(tick.time)) + 0.5
-        height = em(0.45) if tick.has_label else em(0.22)
+    for at, has_label in axis.ticks(em(LABEL_ROOM)):
+        x = round(axis.x(at)) + 0.5
+        height = em(0.45) if has_label else em(0.22)
         lines.add_line((x, bottom - height), (x, bottom), ink)
-        if tick.has_label:
-            label = number_of(tick.time)
+        if has_label:
+            label = number_of(at)
             lines.add_text((x - 0.5 * imgui.calc_text_size(label).x, top), ink, label)
     end = axis.x(duration)
     if end <= axis.x(axis.end):

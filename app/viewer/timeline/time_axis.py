@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from ...script import Floats
 from ...script.keyframes import FRAME
@@ -13,13 +13,6 @@ CLOSEST_TICKS = 0.12  # of the room for a label
 STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
 
 Number = TypeVar("Number", float, Floats)
-
-
-class Tick(NamedTuple):
-    """A mark on the ruler."""
-
-    time: float
-    has_label: bool
 
 
 class TimeAxis:
@@ -80,8 +73,8 @@ class TimeAxis:
         if not self.start <= time <= self.end:
             self.start = time - 0.1 * self.span
 
-    def ticks(self, label_width: float) -> list[Tick]:
-        """The marks of the visible part, with labels no closer than their width."""
+    def ticks(self, label_width: float) -> list[tuple[float, bool]]:
+        """The times of marks that are visible [s], and whether each has room for a label."""
         labelled = next((s for s in STEPS[1:] if s >= self.seconds(label_width)), STEPS[-1])
         least = self.seconds(CLOSEST_TICKS * label_width)
         parts = ((s, labelled / s) for s in STEPS if least <= s < labelled)
@@ -90,7 +83,7 @@ class TimeAxis:
         count = round(labelled / marked)
         first, last = (int(t / marked) for t in (self.start, self.end))
         return [
-            Tick(number * marked, number % count == 0)
+            (number * marked, number % count == 0)
             for number in range(first, last + 1)
             if number * marked >= self.start
         ]

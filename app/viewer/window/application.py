@@ -83,6 +83,8 @@ class Application(ApplicationContext):
         self._join_commands()
         self._join_panels()
         self.is_leaving = False
+        if script.is_converted or self.session.file.path is not None:
+            settings.note_recent(Path(script.source))
         if (kept := self.recovery.found) is not None:
             settings.note_recent(kept)
             complaint = complaint or f"unsaved work is in File > Recent: {kept.name}"
@@ -188,7 +190,6 @@ class Application(ApplicationContext):
         """Back to the face."""
         if self.room is not None:
             self.room = None
-            self.messages.text = ""  # a mistake of marking means nothing here
             self.mouse.forget()
             self.painter.forget()
 

@@ -190,7 +190,7 @@ def live_menu(live: LiveCommands) -> Menu:
 
 
 HELP = tuple(  # what the mouse does, to be read
-    Command("Help", f"{how.capitalize()}: {what}", "", lambda: None, can_run=lambda: False)
+    Command("Help", f"{how.capitalize()}: {what}", "", lambda: None)
     for how, what in (
         ("left on the skin", "pose; Ctrl: pull; click: muscle"),
         ("left beside, or right", "orbit"),

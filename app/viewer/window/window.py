@@ -91,6 +91,7 @@ class Viewer(Application):
             self._draw_gui(is_visible=False)
         if self.exporter.has_news:
             self._awake = max(self._awake, 1)
+        self.messages.attempt(self.exporter.poll, stays=True)
         announced = self.file_drop.announced
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
@@ -243,8 +244,8 @@ class Viewer(Application):
         self._awake = FRAMES_AFTER_EVENT
         open_files = partial(self.file_drop.open, paths)
         if self.room is None:
-            self.messages.attempt(open_files)
+            self.messages.carry_out(open_files)
         elif [Path(path).suffix for path in paths] == [LANDMARKS]:
-            self.messages.attempt(partial(self.room.marking.open, Path(paths[0])))
+            self.messages.carry_out(partial(self.room.marking.open, Path(paths[0])))
         else:
-            self.messages.attempt(partial(self.room.leave, open_files))
+            self.messages.carry_out(partial(self.room.leave, open_files))
