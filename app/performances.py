@@ -9,12 +9,13 @@ from dataclasses import fields, replace
 from importlib.resources import files
 from pathlib import Path
 
+from .control_names.limits import Limits
 from .errors import UserError
 from .recordings import read_take
 from .recordings.conversion import Playback, script_of
 from .recordings.report import Report
 from .scenes import SCENES
-from .script import POSE_SECONDS, Limits, Pose, Script
+from .script import POSE_SECONDS, Pose, Script
 from .script.script_file import load_script
 
 

@@ -42,11 +42,7 @@ class _Shown(Scene):
     """What is before the camera just now; nothing moves it."""
 
     bones: Transforms = MappingProxyType({})
-    skin = np.zeros((0, 3))
-
-    @property
-    def positions(self) -> npt.NDArray[np.float64]:
-        return self.skin
+    positions = np.zeros((0, 3))
 
     def bone_transforms(self) -> Transforms:
         return self.bones
@@ -82,7 +78,7 @@ class Canvas:
         """Refine, upload and draw, without reading back."""
         self.stream_for(refiner)
         scene = self._scene
-        scene.skin, scene.parts, scene.bones = positions, drawing.parts, drawing.bones
+        scene.positions, scene.parts, scene.bones = positions, drawing.parts, drawing.bones
         viewports = [Viewport(self._meshes[refiner][0], (0, 0, *self.surface.size))]
         overlays = [drawing.lines] if drawing.lines else []
         self.surface.begin()

@@ -19,11 +19,12 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
+import numpy.typing as npt
 
 from ..jit import njit
 from ..schema import quoted
-from .checked import flag
 from .checked import number as finite
+from .checked import numbers
 from .landmarks import Array
 from .layers import BOTH_SIDES, NO_LAYERS, SIDES, Layers, share_of_whole
 from .rig import Rig
@@ -48,6 +49,9 @@ class Control:
 
 class Controls:
     """All inputs of a face: values asked for, and the activations that follow them.
+
+    Values beyond their limits are refused, and only sums are cut off: who does not know whether
+    a value is within limits has reasons of his own for what becomes of it.
 
     The first C of all N controls are the lowest; only they have a wanted sum and an activation.
     """
@@ -74,7 +78,7 @@ class Controls:
         self.layers = layers.groups
         self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
         self._places = {name: n for n, name in enumerate(self.names)}
-        self._bounds = [self.limits[name] for name in self.names]
+        self._bounds = np.array([self.limits[name] for name in self.names]).reshape(-1, 2)
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
         self._low = np.array([c.low for c in controls], dtype=np.float64)
         self._high = np.array([c.high for c in controls], dtype=np.float64)
@@ -119,17 +123,6 @@ class Controls:
         place = self._places.get(name, len(self.controls))
         return float(self.activation[place]) if place < len(self.controls) else 0.0
 
-    def _checked(self, name: str, value: float, *, cut_off: bool = False) -> tuple[int, float]:
-        """Place and value of a setting, if need be cut off; ValueError if it cannot be used."""
-        index = self._index(name)
-        low, high = self._bounds[index]
-        number = finite(f"control '{name}'", value)
-        if not cut_off and not low - SLACK <= number <= high + SLACK:
-            raise ValueError(
-                f"control '{name}': was {number:g}, allowed is {low:g} to {high:g}; clamp it first"
-            )
-        return index, min(max(number, low), high)
-
     def set(self, name: str, value: float) -> None:
         """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
         self._index(name)  # what is no name may not even be a key
@@ -137,21 +130,30 @@ class Controls:
 
     def set_all(self, values: Mapping[str, float]) -> None:
         """Set several controls; if one is refused (see `set`), none is set."""
-        self._set_all(values, others_to_zero=False, cut_off=False)
+        self._set_over(self._values, values)
 
-    def pose(self, values: Mapping[str, float], *, cut_off: bool = False) -> None:
-        """Set several controls, all others to zero; none if one is refused, or cut off instead."""
-        flag("cut_off", cut_off)
-        self._set_all(values, others_to_zero=True, cut_off=cut_off)
+    def pose(self, values: Mapping[str, float]) -> None:
+        """Set several controls, all others to zero; if one is refused (see `set`), none is set."""
+        self._set_over(np.zeros_like(self._values), values)
 
-    def _set_all(self, values: Mapping[str, float], *, others_to_zero: bool, cut_off: bool) -> None:
+    def _set_over(self, others: Array, values: Mapping[str, float]) -> None:
         if not isinstance(values, Mapping):
             raise ValueError(f"values: was {quoted(values)}, must be a mapping of name to number")
-        checked = [self._checked(*each, cut_off=cut_off) for each in values.items()]
-        if others_to_zero:
-            self._values[:] = 0.0
-        for index, value in checked:
-            self._values[index] = value
+        wanted = others.copy()
+        for name, value in values.items():
+            wanted[self._index(name)] = finite(f"control '{name}'", value)
+        self.take(wanted)
+
+    def take(self, values: npt.ArrayLike) -> None:
+        """Set all controls, in the order of `names`, shape (N,); if one is refused, none is set."""
+        wanted = numbers("values", values, self._values.shape)
+        low, high = self._bounds.T
+        for place in np.flatnonzero((wanted < low - SLACK) | (wanted > high + SLACK)):
+            raise ValueError(
+                f"control '{self.names[place]}': was {wanted[place]:g}, allowed is "
+                f"{low[place]:g} to {high[place]:g}; clamp it first"
+            )
+        self._values[:] = wanted
         count = len(self.controls)
         self.wanted[:] = self._values[:count]
         if len(self._shares):

@@ -138,7 +138,7 @@ def record(
         bones.append({name: np.array(each) for name, each in scene.bone_transforms().items()})
         for kept, part in zip(shapes, scene.parts, strict=True):
             kept.append(part.vertices)
-        controls.append(np.array([*scene.values.values()]))
+        controls.append(scene.values.numbers)
         activations.append(np.array([*simulation.sums.values()] if simulation else []))
     matrices = {name: np.stack([each[name] for each in bones]) for name in bones[0]}
     skin = Surface(

@@ -6,11 +6,10 @@ packet of its kind. It never raises, whatever it is given: packets come from a n
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..recordings.names import shape_of
+from ..recordings.names import NONSENSE, shape_of
 
 MOST_BYTES = 16384  # of a packet; the largest that anybody sends has about 3000
 LONGEST_NAME = 40  # letters of a shape
@@ -34,12 +33,9 @@ class LiveFrame:
 
 
 def put_shape(channels: dict[str, float], name: str, value: float) -> None:
-    """Set a shape, cut off at 0 and 1; what is no number is left out.
-
-    Trackers overshoot a little, and now and then send nonsense such as -980000.
-    """
-    if math.isfinite(value):
-        channels[name] = min(max(value, 0.0), 1.0)
+    """Set a shape; what is far from 0 and 1, as trackers now and then send it, is left out."""
+    if abs(value) <= NONSENSE:
+        channels[name] = value
 
 
 def put_angle(channels: dict[str, float], name: str, degrees: float) -> None:

@@ -55,13 +55,14 @@ def play(
     """
     step = scene.step if step is None else step
     idle = None if viewer is None else Idle(scene)
-    named = (*script.posed_names, *script.tracks)
-    moved = frozenset[str]().union(*map(scene.moved_by, named))
+    moved = frozenset[str]().union(*map(scene.moved_by, script.names))
 
     def pose(time: float) -> None:
         """Ask for what the script and the life beneath it have at this time."""
-        beneath = {} if idle is None or viewer is None else idle.beneath(moved, viewer, time)
-        scene.pose({**script.at(time), **beneath})
+        values = script.values(time, scene.limits)
+        if idle is not None and viewer is not None:
+            values = scene.limits.pose(idle.beneath(moved, viewer, time), over=values)
+        scene.take(values)
 
     scene.reset()
     pose(0.0)

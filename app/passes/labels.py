@@ -5,24 +5,9 @@ frame_00000_seg.png     segmentation: 8 bits, one class number a pixel
 frame_00000_ldmks.txt   landmarks: x and y of each in a row [pixels]
 frame_00000.json        camera, head, gaze, landmarks, controls: plain numbers
 
-The 68 iBug landmarks are vertices of the simulated mesh, through which the refined surface goes,
-too. The pupils, 68 the right one and 69 the left, are the points of the eyeballs that look straight
-ahead.
-
-A point is visible where it is seen: what the depth map has at its own pixel is as far away as the
-point, within a tolerance. That is 2 mm for landmarks, since the refined skin may pass them by and
-be steep within a pixel, and 0.6 mm for pupils, over which a lid of a millimetre may close; and the
-width of a pixel where that is more.
-
-Axes of the camera are those of OpenCV and of pictures: x right, y down, z away from it. A point p
-of the scene [mm] has the camera's coordinates c = R p + t and is seen at the pixel K c / c_z; pixel
-(0, 0) reaches from 0 to 1, so the middle of the picture is (width / 2, height / 2).
-
-A head's pose is told in its own axes, which the scene's are as long as it is at rest: x toward the
-subject's left, y up, z forward. Yaw, pitch and roll are 0, 0, 0 for a head that faces the camera,
-and the head is turned by roll first, then pitch, then yaw: yaw to the subject's left, pitch up,
-roll toward the left shoulder. Its controls turn it so, too, but about axes that landmarks give,
-some 2 degrees off these.
+`docs/passes.md` tells of the keys, what a visible landmark is, and of axes and angles: those of the
+camera are OpenCV's, those of the head its own. A head's controls turn it about axes that landmarks
+give, some 2 degrees off these.
 """
 
 from __future__ import annotations
@@ -51,7 +36,9 @@ FORWARD = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
 _FACING = np.diag([1.0, -1.0, -1.0])  # the axes of a head that faces the camera, in the camera's
 DIGITS = 8  # behind the point: whoever projects points anew is off by less than 1e-4 pixels
 COUNT = 70
-TOLERANCE, PUPIL_TOLERANCE = 2.0, 0.6  # [mm] along the camera's axis
+# [mm] along the camera's axis: the refined skin may pass a landmark by and be steep within a pixel,
+# and over a pupil a lid of a millimetre may close.
+TOLERANCE, PUPIL_TOLERANCE = 2.0, 0.6
 
 
 def labels_of(

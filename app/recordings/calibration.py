@@ -3,7 +3,7 @@
 No face is at 0 while it rests: a phone reads a quarter of a frown in most. Calibration takes the
 neutral face away and keeps the greatest value where it is:
 
-    v -> (v - n) / (1 - n),  then times the gain,  cut off at 0 and 1
+    v -> (v - n) / (1 - n),  then times the gain
 
 and of angles, which have no greatest value, only subtracts. A mirror comes last. The same object
 serves whole takes, whose values are arrays, and single frames, whose values are numbers.
@@ -68,13 +68,7 @@ class Calibration:
         if name in ANGLES:
             return (value - neutral) * self.gains.get(name, 1.0)
         scale = self.gains.get(name, self.default_gain) / max(1.0 - neutral, LEAST_RANGE)
-        return _between_0_and_1((value - neutral) * scale)
-
-
-def _between_0_and_1(value: Value) -> Value:
-    if isinstance(value, np.ndarray):
-        return np.clip(value, 0.0, 1.0)
-    return min(max(value, 0.0), 1.0)  # ten times as fast for one number, and live has sixty a frame
+        return (value - neutral) * scale
 
 
 def calibration_for(

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..control_names.limits import Limits
 from ..errors import in_one_line
-from ..script import POSE_SECONDS, Channel, Limits, Pose, Script, rounded
+from ..script import POSE_SECONDS, Channel, Pose, Script, rounded
 from ..script.thinning import TOLERANCE, thinned
 from .calibration import calibration_for
 from .mapping import controls_of
@@ -55,7 +56,9 @@ def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, R
     )
     controls = controls_of(calibration.apply(take.channels))
     curves = {
-        name: np.clip(values, *limits[name]) for name, values in controls.items() if name in limits
+        name: limits.cut_off(values, limits.places((name,)))
+        for name, values in controls.items()
+        if name in limits
     }
     return _script(take, curves, playback.lead), report_of(take, calibration)
 

@@ -47,7 +47,7 @@ _LOOKS_OF_ANGLE = {
 def controls_of(channels: Mapping[str, Value]) -> dict[str, Value]:
     """The values of the controls that the channels move: arrays or numbers, as given.
 
-    Nothing is cut off; the scene does that.
+    Nothing is cut off: limits are of controls, not of what was measured.
     """
     controls: dict[str, Value] = {}
     for channel in chosen(channels):

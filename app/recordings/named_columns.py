@@ -13,12 +13,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .gaps import whole_take
-from .names import ACTION_UNIT, ARKIT, angle_of, shape_of, viseme_of
+from .names import ACTION_UNIT, ARKIT, NONSENSE, angle_of, shape_of, viseme_of
 from .table import FACE_COLUMNS, Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
 
-NONSENSE = 3.0  # shares beyond are no measurements
 HIGHEST = 6.0  # an intensity beyond is none
 LARGEST_DEGREES = 360.0  # what is larger is no angle in any unit
 LARGEST_RADIANS = 1.6  # no head that is seen turns further, nor an eye
@@ -92,7 +91,7 @@ def read(table: Table, request: Request) -> Take:
     numbers = table.numbers_of(wanted)
     shapes = shares({name: numbers[name] for name in columns.shapes}, notes)
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
-    channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in columns.visemes}
+    channels |= {name: numbers[name] for name in columns.visemes}
     is_known = is_live_link(table.names)
     outward = OUTWARD if is_known else {}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, outward, notes)
@@ -111,14 +110,13 @@ def read(table: Table, request: Request) -> Take:
 
 
 def shares(shapes: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """ARKit's shapes as shares 0 to 1; NaN where the value is none."""
+    """ARKit's shapes; NaN where the value is none. Trackers overshoot a little, as notes tell."""
     found, far, beyond = {}, 0, 0
     for name, values in shapes.items():
         is_far = np.abs(values) > NONSENSE
         far += int(is_far.sum())
-        values = np.where(is_far, np.nan, values)
+        found[name] = values = np.where(is_far, np.nan, values)
         beyond += int(np.sum((values < -0.001) | (values > 1.001)))
-        found[name] = np.clip(values, 0.0, 1.0)
     if far:
         notes.append(f"{far} values of shapes are far from 0 to 1 and were left out.")
     if beyond:
@@ -133,7 +131,7 @@ def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
     if highest > 1.0:
         notes.append("Action units go from 0 to 5 and were divided by 5.")
         units = {name: values / 5.0 for name, values in units.items()}
-    return {name: np.clip(values, 0.0, 1.0) for name, values in units.items()}
+    return units
 
 
 def in_degrees(

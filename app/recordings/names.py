@@ -1,6 +1,6 @@
 """The channels of a take: the names that every reader of recordings answers in, and their units.
 
-    mouthSmileLeft ...      the 52 shapes of Apple's ARKit, 0 to 1
+    mouthSmileLeft ...      the 52 shapes of Apple's ARKit, 0 to 1, and a little beyond by noise
     AU12, AU12_left ...     action units, 0 to 1 (intensity E is 1)
     viseme_PP ...           visemes, 0 to 1
     head_yaw, head_pitch, head_roll                       [degrees]
@@ -35,6 +35,7 @@ ARKIT = (
 )  # fmt: skip
 """The 52 shapes in the order in which ARKit counts them, as packets without names do."""
 
+NONSENSE = 3.0  # a shape beyond is no measurement
 HEAD_ANGLES = ("head_yaw", "head_pitch", "head_roll")
 EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_right")
 VISEMES = tuple(

@@ -56,10 +56,10 @@ def read(table: Table, request: Request) -> Take:
     numbers = table.numbers_of(wanted)
 
     channels = {
-        name: np.where(np.abs(numbers[name]) > FAR, np.nan, np.clip(numbers[name] / 5.0, 0.0, 1.0))
+        name: np.where(np.abs(numbers[name]) > FAR, np.nan, numbers[name] / 5.0)
         for name in intensities
     }
-    channels |= {name: np.clip(numbers[name], 0.0, 1.0) for name in only_present}
+    channels |= {name: numbers[name] for name in only_present}
     if only_present:
         notes.append(f"{', '.join(sorted(only_present))}: only present or absent, 0 or 1.")
     for column, (name, sign) in POSE.items():

@@ -55,7 +55,7 @@ def read(table: Table, request: Request) -> Take:
     others = {name: places[name] for name in ("facescore", *POSE) if name in places}
     wanted = units | shapes | others
     numbers = table.numbers_of(wanted)
-    channels = {name: np.clip(numbers[name], 0.0, 1.0) for name in units}
+    channels = {name: numbers[name] for name in units}
     channels |= shares({name: numbers[name] for name in shapes}, notes)
     channels |= _head(numbers, bool(shapes), notes)
     lost = ~(numbers.get("facescore", np.ones(1)) > 0.0)

@@ -99,10 +99,7 @@ def read_tracks(document: Any, source: str, request: Request) -> Take:
     if not tracks:
         raise UserError(f"{source}: no channel of visemes has any keys")
     times = np.unique(np.concatenate([keys[:, 0] for keys in tracks.values()]))
-    channels = {
-        name: np.clip(np.interp(times, keys[:, 0], keys[:, 1]), 0.0, 1.0)
-        for name, keys in tracks.items()
-    }
+    channels = {name: np.interp(times, keys[:, 0], keys[:, 1]) for name, keys in tracks.items()}
     channels = _made_clear(channels, notes)
     return whole_take(
         "Viseme tracks", source, times, channels, notes=notes, unknown=unknown,

@@ -21,6 +21,7 @@ from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import HAIR, Person, recoloured
 
 from ..control_names import parted
+from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
 from .mouth import Tongue, shaded_mouth
 from .surface_attachment import SurfaceAttachment
@@ -37,9 +38,13 @@ class Scene:
     name: str
     faces: npt.NDArray[np.int32]
     rest_positions: npt.NDArray[np.float64]
+    positions: npt.NDArray[np.float64]  # the vertices now [mm], (V, 3); read only for others
+    extent: npt.NDArray[np.float64]  # points that a camera must see to see it all [mm], (n, 3)
+    framed: npt.NDArray[np.float64]  # points that fill the frame of a camera [mm], (n, 3)
     focus: npt.NDArray[np.float64]  # where a camera close by looks [mm], shape (3,)
     groups: Mapping[str, tuple[str, ...]]  # all controls, by the heading that a panel shows
-    limits: Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
+    limits: Limits  # of the controls
+    values: ControlValues  # what each control is set to
     actions: Mapping[str, str] = MappingProxyType({})  # what controls do, where that is known
     called: str = ""  # whose head it is, if it is one
     expressions: tuple[str, ...] = ()  # whole faces, without those of a side
@@ -50,43 +55,19 @@ class Scene:
     wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
     fade: tuple[float, float, float, float] | None = None  # see render.Renderer.draw_mesh
     in_tone: Callable[[float], npt.NDArray[np.uint8]] | None = None  # the texture by ITA [deg]
-
-    @property
-    def positions(self) -> npt.NDArray[np.float64]:
-        """The vertices now [mm], shape (V, 3); read only for everybody else."""
-        raise NotImplementedError
-
-    @property
-    def extent(self) -> npt.NDArray[np.float64]:
-        """Points that a camera has to see, if it is to see the whole scene [mm], shape (n, 3)."""
-        return self.rest_positions
-
-    @property
-    def framed(self) -> npt.NDArray[np.float64]:
-        """Points that fill the frame of a camera [mm], shape (n, 3)."""
-        return self.extent
-
-    @property
-    def values(self) -> Mapping[str, float]:
-        """What each control is set to."""
-        raise NotImplementedError
-
-    @property
-    def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
-        """How open the skin is to light from all around, over the texture (H, W); None: all."""
-        return None
-
-    @property
-    def fine_shape(self) -> assets.FineShape | None:
-        """What its triangles do not hold of the skin."""
-        return None
+    ambient_occlusion: npt.NDArray[np.uint8] | None = None  # over the texture (H, W); None: none
+    fine_shape: assets.FineShape | None = None  # what its triangles do not hold of the skin
 
     def pose(self, channels: Mapping[str, float]) -> None:
         """Set controls, each cut off at its limits; what is not named becomes 0.
 
         Raises UserError on a name that is no control.
         """
-        raise NotImplementedError
+        self.take(self.limits.pose(channels))
+
+    def take(self, values: ControlValues) -> None:
+        """Set all controls."""
+        self.values = values
 
     def step(self, seconds: float) -> None:
         """Let time pass."""
@@ -94,7 +75,7 @@ class Scene:
 
     def reset(self) -> None:
         """Back to rest, at once."""
-        raise NotImplementedError
+        self.values = self.limits.pose({})
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         """Where the rigid parts are now: a (4, 4) matrix for each bone."""
@@ -123,7 +104,8 @@ class FaceScene(Scene):
         self.head = head
         self.simulation = simulation = simulation or sim.create(head)
         self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
-        self.groups, self.limits = simulation.groups, simulation.limits
+        self.positions = simulation.positions
+        self.groups, self.limits = simulation.groups, Limits(simulation.limits)
         self.actions = simulation.actions
         expressions = simulation.layers.get("Expressions", ())
         self.expressions = tuple(
@@ -136,7 +118,8 @@ class FaceScene(Scene):
             for part in shaded_mouth(head.parts)
         )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
-        self.wrinkles = head.wrinkles
+        self.wrinkles, self.fine_shape = head.wrinkles, head.fine_shape
+        self.ambient_occlusion = head.ambient_occlusion
         is_known = isinstance(head, assets.Head)
         person = head if isinstance(head, Person) else None
         if isinstance(head, FittedHead) and person is None:  # others have a shirt
@@ -146,7 +129,12 @@ class FaceScene(Scene):
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
+        hair = [part.vertices for part in self.parts if part.name.startswith(HAIR)]
+        self.extent = np.vstack([self.rest_positions, *hair])
+        lowest = float(landmarks[CHIN, 1]) - NECK  # what is below may lie beyond the frame
+        self.framed = self.extent[self.extent[:, 1] > lowest]
         self._moved_by: dict[str, dict[str, float]] = {}
+        self.values = self.limits.pose(simulation.values)
 
     def clone(self) -> FaceScene:
         """The same head once more, at rest, which moves by itself; that takes no time."""
@@ -154,39 +142,9 @@ class FaceScene(Scene):
         simulation.reset()
         return FaceScene(self.head, simulation)
 
-    @property
-    def positions(self) -> npt.NDArray[np.float64]:
-        return self.simulation.positions
-
-    @property
-    def extent(self) -> npt.NDArray[np.float64]:
-        hair = [part.vertices for part in self.parts if part.name.startswith(HAIR)]
-        return np.vstack([self.rest_positions, *hair])
-
-    @property
-    def framed(self) -> npt.NDArray[np.float64]:
-        """The head and the beginning of the neck; what is below may lie beyond the frame."""
-        lowest = float(self.rest_positions[self.landmarks[CHIN], 1]) - NECK
-        extent = self.extent
-        return np.asarray(extent[extent[:, 1] > lowest])
-
-    @property
-    def values(self) -> Mapping[str, float]:
-        return self.simulation.values
-
-    @property
-    def fine_shape(self) -> assets.FineShape | None:
-        return self.head.fine_shape
-
-    @property
-    def ambient_occlusion(self) -> npt.NDArray[np.uint8] | None:
-        return self.head.ambient_occlusion
-
-    def pose(self, channels: Mapping[str, float]) -> None:
-        try:
-            self.simulation.pose(channels, cut_off=True)
-        except ValueError as error:  # a name that is no control
-            raise UserError(str(error)) from None
+    def take(self, values: ControlValues) -> None:
+        super().take(values)
+        self.simulation.take(values.numbers)
 
     def step(self, seconds: float) -> None:
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
@@ -195,6 +153,7 @@ class FaceScene(Scene):
         self._bend_parts()
 
     def reset(self) -> None:
+        super().reset()
         self.simulation.reset()
         self._bend_parts()
 
@@ -214,10 +173,9 @@ class FaceScene(Scene):
         simulation = self.simulation
         if name not in self._moved_by:
             # Asked of the simulation, between two steps, so that nothing of layers is known here.
-            values = simulation.values
             simulation.pose({name: self.limits[name][1]})
             sums = simulation.sums
-            simulation.pose(values)
+            simulation.take(self.values.numbers)
             self._moved_by[name] = {each: abs(share) for each, share in sums.items() if share}
         return self._moved_by[name]
 
@@ -235,57 +193,36 @@ class PlaneScene(Scene):
     HEIGHT = 0.2  # crest above the middle, in lengths of the plane
 
     groups = MappingProxyType({"Wave": ("amplitude", "phase")})
-    limits = MappingProxyType({"amplitude": (0.0, 1.0), "phase": (0.0, 100.0)})
+    limits = Limits({"amplitude": (0.0, 1.0), "phase": (0.0, 100.0)})
 
     def __init__(self) -> None:
         plane = assets.load("plane")
         self.faces, self.rest_positions = plane.faces, plane.vertices
         self.focus = plane.vertices.mean(axis=0)
-        self._values = dict.fromkeys(self.limits, 0.0)
+        self.values = self.limits.pose({})
         self._length = float(np.ptp(plane.vertices, axis=0).max())
-        self._positions = plane.vertices.copy()
-
-    @property
-    def positions(self) -> npt.NDArray[np.float64]:
-        return self._positions
-
-    @property
-    def values(self) -> Mapping[str, float]:
-        return self._values
-
-    def pose(self, channels: Mapping[str, float]) -> None:
-        self._values.update({**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, channels)})
+        self.extent = self.framed = plane.vertices
+        self.positions = plane.vertices.copy()
 
     def step(self, seconds: float) -> None:
-        self._positions[:] = self.waved(self.rest_positions)[0]
+        self.positions[:] = self.waved(self.rest_positions)[0]
 
     def waved(
         self, points: npt.NDArray[np.float64]
     ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Where points of the flat plane z = 0 lie now, and the wave's normals there, (n, 3)."""
-        height = self._values["amplitude"] * self.HEIGHT * self._length
+        height = self.values["amplitude"] * self.HEIGHT * self._length
         frequency = 2.0 * np.pi * self.WAVES / self._length
         along = points.sum(axis=1) / np.sqrt(2.0)
-        angle = frequency * along - 2.0 * np.pi * self._values["phase"]
+        angle = frequency * along - 2.0 * np.pi * self.values["phase"]
         moved, normals = points.copy(), np.ones_like(points)
         moved[:, 2] += height * np.sin(angle)
         normals[:, :2] = -np.sqrt(0.5) * height * frequency * np.cos(angle)[:, None]
         return moved, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def reset(self) -> None:
-        self._values.update(dict.fromkeys(self.limits, 0.0))
-        self._positions[:] = self.rest_positions
-
-
-def clamped(
-    limits: Mapping[str, tuple[float, float]], channels: Mapping[str, float]
-) -> dict[str, float]:
-    """The channels, each cut off at its limits. Raises UserError on one that has none."""
-    for name in channels.keys() - limits.keys():
-        raise UserError(f"there is no control called '{name}'")
-    return {
-        name: min(max(value, limits[name][0]), limits[name][1]) for name, value in channels.items()
-    }
+        super().reset()
+        self.positions[:] = self.rest_positions
 
 
 SCENES: dict[str, Callable[[], Scene]] = {

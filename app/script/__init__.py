@@ -1,37 +1,9 @@
 """Animation scripts: keyframes of controls over time, in a TOML file.
 
-A script is a list of poses and, beside them, tracks::
-
-    title = "Hello"              # optional
-    scene = "face"               # optional: face (default) or plane
-    camera = "three-quarter"     # optional: a named view
-    sound = "hello.wav"          # optional: what is heard with it, as seen from the script
-    duration = 4.0               # optional [s]; the default is the time of the last key
-
-    [[pose]]                     # a whole pose: what it does not name is 0
-    time = 0.0                   # [s]
-
-    [[pose]]
-    time = 1.0
-    easing = "smooth"            # how this pose is approached, see below
-    name = "joy"                 # optional: the label of this key pose on a contact sheet
-    joy = 1.0                    # a control of any layer: an expression, an action unit,
-    jaw_open = 0.1               # a viseme, a muscle, the jaw, the gaze
-
-    [tracks]                     # single channels, added to the poses (a blink, a glance)
-    blink = [
-        { time = 2.0, value = 0 },
-        { time = 2.12, value = 1, easing = "ease-in" },
-        { time = 2.3, value = 0 },
-    ]
-    smile = '''
-    2.0 0.1
-    2.0167 0.12
-    '''                          # lines of time and value, eased linearly, as recordings have
-
+A script is a list of poses and, beside them, tracks that are added to these: of single controls,
+for a blink, a glance, or all of what was recorded; `docs/scripts.md` is the page on the file.
 Before its first key a channel keeps that key's value, after its last key the last one's.
-`docs/scripts.md` is the user's page of this format. Here is what a script is: poses and tracks of
-keys, and their values at any time.
+Here is what a script is: poses and tracks of keys, and their values at any time.
 """
 
 from __future__ import annotations
@@ -50,11 +22,11 @@ import numpy.typing as npt
 
 from risorius.schema import REST, OneOf, Record, Within, called
 
+from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
 
 Floats = npt.NDArray[np.float64]
 Easings = npt.NDArray[np.uint16]  # places in EASING_NAMES
-Limits = Mapping[str, tuple[float, float]]  # the lowest and highest value of each control
 
 DECIMALS = 6  # of numbers that come from sliders and clocks
 LONGEST_FILE = 2**25  # [bytes]; three quarters of an hour of capture, and /dev/zero has no end
@@ -197,8 +169,6 @@ class Channel:
             and np.array_equal(self.easings, other.easings)
         )
 
-    __hash__ = None  # type: ignore[assignment]
-
     @functools.cached_property
     def _parts(self) -> tuple[array[float], array[float], array[int]]:
         """The same numbers in sequences of Python's own, which are quicker to look into."""
@@ -295,20 +265,36 @@ class Script:
         return tuple(sorted({name for pose in self.poses for name in pose.values}))
 
     @functools.cached_property
+    def names(self) -> tuple[str, ...]:
+        """All controls that it moves: those that poses name, then those of tracks alone."""
+        return tuple(dict.fromkeys((*self.posed_names, *self.tracks)))
+
+    @functools.cached_property
     def _pose_times(self) -> tuple[float, ...]:
         return tuple(pose.time for pose in self.poses)
 
+    @functools.cached_property
+    def _pose_rows(self) -> Floats:
+        """What each pose has of the `posed_names`, a row for each."""
+        return np.array([[p.values.get(n, 0.0) for n in self.posed_names] for p in self.poses])
+
+    @functools.cached_property
+    def _placed_tracks(self) -> tuple[tuple[int, Channel], ...]:
+        """Which of the `names` each track adds to."""
+        return tuple((self.names.index(name), track) for name, track in self.tracks.items())
+
     def posed(self, time: float) -> dict[str, float]:
         """What the poses alone make of each control that they name, at `time` [s]."""
-        values = dict.fromkeys(self.posed_names, 0.0)
-        if self.poses:
-            before, after, share = _between(self._pose_times, time)
-            previous, following = self.poses[before], self.poses[after]
-            share = ALL_EASINGS[following.easing](share)
-            for name in {**previous.values, **following.values}:
-                start = previous.values.get(name, 0.0)
-                values[name] = start + (following.values.get(name, 0.0) - start) * share
-        return values
+        return dict(zip(self.posed_names, self._posed(time).tolist(), strict=True))
+
+    def _posed(self, time: float) -> Floats:
+        """The same in the order of the `posed_names`."""
+        if not self.posed_names:
+            return np.zeros(0)
+        before, after, share = _between(self._pose_times, time)
+        start, end = self._pose_rows[before], self._pose_rows[after]
+        posed: Floats = start + (end - start) * ALL_EASINGS[self.poses[after].easing](share)
+        return posed
 
     def posed_channel(self, name: str) -> Channel:
         """How the poses alone move a control, which is as a track of these keys would."""
@@ -322,10 +308,19 @@ class Script:
 
     def at(self, time: float) -> dict[str, float]:
         """The value of every channel that the script names, at `time` [s]."""
-        values = self.posed(time)
-        for name, channel in self.tracks.items():
-            values[name] = values.get(name, 0.0) + channel.value(time)
-        return values
+        return dict(zip(self.names, self._sums(time).tolist(), strict=True))
+
+    def values(self, time: float, limits: Limits) -> ControlValues:
+        """What all controls of a scene come to at `time` [s], within their limits."""
+        return limits.posed(limits.places(self.names), self._sums(time))
+
+    def _sums(self, time: float) -> Floats:
+        """What poses and tracks add up to, in the order of the `names`."""
+        sums = np.zeros(len(self.names))
+        sums[: len(self.posed_names)] = self._posed(time)
+        for place, track in self._placed_tracks:
+            sums[place] += track.value(time)
+        return sums
 
     def check(self, limits: Limits) -> None:
         """Raise UserError if the script names what the scene does not have, or asks too much.

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
-from ..scenes import clamped
-from . import DECIMALS, EASING_NAMES, LARGEST, Channel, Key, Limits, Pose, Script, rounded
+from . import DECIMALS, EASING_NAMES, LARGEST, Channel, Key, Pose, Script, rounded
 from .places import Places, among
 
 POSES = ""  # the track of whole poses; any other is called as its control is
@@ -135,13 +135,13 @@ def lasting(script: Script, seconds: float) -> Script:
     return replace(script, duration=min(max(on_frame(seconds), FRAME, *ends), LARGEST))
 
 
-def differing(script: Script, time: float, values: Values, limits: Limits) -> list[str]:
+def differing(script: Script, time: float, values: ControlValues) -> list[str]:
     """The controls whose values are not what the script makes of them at `time` [s]."""
-    told = clamped(limits, script.at(time))
-    return [name for name, value in values.items() if abs(value - told.get(name, 0.0)) > SAME]
+    is_away = np.abs(values.numbers - script.values(time, values.limits).numbers) > SAME
+    return [name for name, differs in zip(values, is_away.tolist(), strict=True) if differs]
 
 
-def keyed(script: Script, time: float, values: Values, limits: Limits) -> Script:
+def keyed(script: Script, time: float, values: ControlValues) -> Script:
     """The script with a key that shows these values at `time` [s].
 
     The key is a pose, which holds what the tracks do not add; where a pose cannot (a track closes
@@ -151,12 +151,13 @@ def keyed(script: Script, time: float, values: Values, limits: Limits) -> Script
     time = rounded(time)
     plain = script.posed(time)
     added = {name: track.value(time) for name, track in script.tracks.items()}
-    changed = differing(script, time, values, limits)
+    changed = differing(script, time, values)
     if script.tracks and not script.poses:
         keys = {name: values[name] for name in sorted(changed or script.tracks)}
         return _with_track_keys(_reaching(script, time), time, keys)
     wanted = plain | {name: values[name] - added.get(name, 0.0) for name in changed}
-    posed = {name: rounded(value) for name, value in clamped(limits, wanted).items()}
+    possible = values.limits.pose(wanted)
+    posed = {name: rounded(possible[name]) for name in wanted}
     rest = {name: values[name] - posed[name] for name in changed if name in script.tracks}
     keys = {name: value for name, value in rest.items() if abs(value - added[name]) > SAME}
     present = pose_at(script, time)

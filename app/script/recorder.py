@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import EASING_NAMES, Channel, Key, Limits, Script, rounded
+from ..control_names.limits import ControlValues
+from . import EASING_NAMES, Channel, Key, Script, rounded
 from .keyframes import FRAME, differing
 from .thinning import thinned
 
@@ -27,23 +28,23 @@ class Recorder:
     """
 
     def __init__(
-        self, played: Script, start: float, limits: Limits, held: Mapping[str, float] | None = None
+        self, played: Script, start: float, held: Mapping[str, float] | None = None
     ) -> None:
         """played: what the controls do where nobody moves them. start: [s]. held: from before."""
-        self._played, self._limits = played, limits
+        self._played = played
         self.held, self._kept = dict(held or {}), dict[str, float]()  # and what is recorded of it
         self.start = self.time = rounded(start)
         # Of each control that has moved: times [s] and what its track has, from the last key on.
         self.samples: dict[str, tuple[array[float], array[float]]] = {}
         thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
 
-    def add(self, time: float, values: Mapping[str, float]) -> None:
+    def add(self, time: float, values: ControlValues) -> None:
         """The controls are at `values` at a time [s], unless that is recorded already."""
         if time <= self.time:
             return
         before, self.time = self.time, time
         posed, at_first = self._played.posed(time), self._played.posed(before)
-        for name in differing(self._played, time, values, self._limits):
+        for name in differing(self._played, time, values):
             if name not in self.samples:
                 first = self._told(name, before) if before else values[name] - at_first.get(name, 0)
                 self.samples[name] = array("d", [before]), array("d", [first])

@@ -102,7 +102,7 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
     best, fullest, script = -1, scene.positions, script_for(None, scene.name)
     scene.reset()
     for number in range(round(script.duration * FRAMES_PER_SECOND) + 1):
-        scene.pose(script.at(number / FRAMES_PER_SECOND))
+        scene.take(script.values(number / FRAMES_PER_SECOND, scene.limits))
         scene.step(1.0 / FRAMES_PER_SECOND)
         count = len(refiner.refine(scene.positions).triangles)
         if count > best:

@@ -39,14 +39,6 @@ def test_a_mirror_swaps_sides_and_turns_the_head() -> None:
     }  # fmt: skip
 
 
-@given(shapes, st.dictionaries(st.sampled_from(SHAPES), st.floats(0.0, 1.0)), st.floats(0.0, 10.0))
-def test_shapes_stay_between_0_and_1_whatever_neutral_and_gain(
-    frame: Frame, neutral: Frame, gain: float
-) -> None:
-    calibrated = Calibration(neutral, default_gain=gain).apply(frame)
-    assert all(0.0 <= value <= 1.0 for value in calibrated.values())
-
-
 @given(frames)
 def test_what_is_neutral_now_is_rest(frame: Frame) -> None:
     calibrated = Calibration(neutral_now(frame)).apply(frame)

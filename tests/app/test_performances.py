@@ -13,7 +13,6 @@ from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance
 from risorius.app.recordings import Take
 from risorius.app.recordings.conversion import LEAD, Playback, lead_of, script_of
-from risorius.app.recordings.names import ARKIT
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import load_script
 from risorius.app.script.thinning import TOLERANCE
@@ -72,23 +71,6 @@ def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
         late[lead] = shifts[int(np.argmax(fits))]
     assert late[0.0] >= 2, "frames that the lips are late"
     assert abs(late[LEAD]) <= 1
-
-
-@given(
-    st.dictionaries(
-        st.sampled_from([*ARKIT, "AU12", "viseme_PP"]), st.floats(0.0, 1.0), min_size=1
-    ),
-    st.floats(-180.0, 180.0),
-    st.floats(0.0, 10.0),
-)
-def test_whatever_is_recorded_can_be_played(
-    ends: dict[str, float], yaw: float, gain: float
-) -> None:
-    """Values of a script are within the limits of its controls, whatever the gain."""
-    curves = {name: end * wave() for name, end in ends.items()}
-    take = take_of(**curves, head_yaw=yaw * wave(), eye_yaw_left=yaw * wave())
-    script, _ = script_of(take, Playback(gains=(f"all={gain}",)), limits_of("face"))
-    script.check(limits_of("face"))
 
 
 def test_one_frame_is_a_pose() -> None:

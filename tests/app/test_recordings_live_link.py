@@ -52,13 +52,13 @@ def test_fewer_columns(left_out: tuple[str, ...], tmp_path: Path) -> None:
 
 
 def test_values_that_are_none(tmp_path: Path) -> None:
-    """A value like -9.8e5 is no measurement, the frames beside it count; 1.2 is cut off at 1."""
+    """A value like -9.8e5 is no measurement, the frames beside it count; 1.2 is one."""
     columns = live_link()
     jaw = np.full(120, 0.5)
     jaw[7], jaw[9] = -9.8e5, 1.2
     take = read_take(written(tmp_path / "take.csv", columns | {"JawOpen": jaw}))
     assert take.channels["jawOpen"][7] == pytest.approx((0.5 + 0.5) / 2.0)
-    assert take.channels["jawOpen"][9] == 1.0
+    assert take.channels["jawOpen"][9] == 1.2
     assert told(take.notes, "far from 0 to 1")
 
 

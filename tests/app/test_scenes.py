@@ -1,23 +1,53 @@
 """Scenes: values are kept within limits, the plane waves, the face obeys."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from risorius import refine
 from risorius.app.errors import UserError
+from risorius.app.live.frame import put_shape
+from risorius.app.recordings.calibration import Calibration
+from risorius.app.recordings.conversion import Playback, script_of
+from risorius.app.recordings.mapping import controls_of
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
-from risorius.app.scenes import FaceScene, PlaneScene, clamped
+from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.script import Channel, Pose, Script
+from risorius.app.viewer.session.document import LiveOverride
+from risorius.app.viewer.session.session import Session
 
-LIMITS = {"a": (0.0, 1.0), "b": (-1.0, 1.0)}
+from .recording_files import take_of
 
 
-def test_values_are_cut_off_at_their_limits() -> None:
-    """What a script adds up to may be too much; a name without limits is an error."""
-    assert clamped(LIMITS, {"a": 1.4, "b": -3.0}) == {"a": 1.0, "b": -1.0}
-    assert clamped(LIMITS, {"a": 0.4}) == {"a": 0.4}
-    with pytest.raises(UserError, match="there is no control called 'c'"):
-        clamped(LIMITS, {"c": 1.0})
+@given(value=st.floats(-2.9, 2.9), gain=st.floats(0.0, 9.0))
+@settings(max_examples=20, deadline=None)
+def test_a_value_beyond_its_limits_is_cut_off_from_each_door(
+    scene: FaceScene, value: float, gain: float
+) -> None:
+    """A script, a hand, a recording and a live face; and not before all has been added to it."""
+    limits, rest, frame = scene.limits, scene.limits.pose({}), dict[str, float]()
+    script = Script("", 1.0, "", poses=(Pose(0.0, {"jaw_open": 0.5}),))
+    tracked = replace(script, tracks={"jaw_open": Channel([0.0], [value])})
+    session = Session(scene, script)
+    session.set("jaw_open", value)
+    gains = Playback(neutral="none", gains=(f"all={gain}",))
+    recorded, _ = script_of(take_of(seconds=0.0, jawOpen=value), gains, limits)
+    recorded.check(limits)
+    put_shape(frame, "jawOpen", value)
+    override = LiveOverride(limits)
+    override.take(controls_of(Calibration(default_gain=gain).apply(frame)) | {"none": 1.0}, 1.0)
+    for asked, name, values in (
+        (0.5 + value, "jaw_open", tracked.values(0.0, limits)),
+        (value, "jaw_open", session.current),
+        (gain * value, "jawOpen", recorded.values(0.0, limits)),
+        (gain * value, "jawOpen", override.over(rest)),
+    ):
+        scene.take(values)
+        assert scene.values[name] == pytest.approx(min(max(asked, 0.0), 1.0), abs=2e-3)
 
 
 def test_the_plane_waves() -> None:
@@ -34,7 +64,9 @@ def test_the_plane_waves() -> None:
 
 
 def test_the_face_takes_controls_of_every_layer(face: FaceScene) -> None:
-    """A pose may mix layers; the next pose forgets it."""
+    """A pose may mix layers; the next pose forgets it; an unknown name is refused."""
+    with pytest.raises(UserError, match="there is no control called 'c'"):
+        face.pose({"c": 1.0})
     assert len(face.expressions) >= 9
     face.pose({"joy": 0.5, "AU4_left": 1.7, "viseme_aa": 0.2, "jaw_open": 0.1})
     assert face.values["joy"] == 0.5 and face.values["AU4_left"] == 1.0

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from risorius.app.control_names.limits import Limits
 from risorius.app.performances import script_for
 from risorius.app.scenes import FaceScene
 from risorius.app.script import Script, keyframes
@@ -29,9 +30,8 @@ def hello() -> Script:
 def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene) -> None:
     """At its time the script says what the controls were; the other poses stay."""
     limits = scene.limits
-    zero = dict.fromkeys(limits, 0.0)
-    wanted = {**zero, "jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25}
-    script = keyframes.keyed(hello, 2.12, wanted, limits)
+    wanted = limits.pose({"jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25})
+    script = keyframes.keyed(hello, 2.12, wanted)
     for name, value in wanted.items():
         assert script.at(2.12).get(name, 0.0) == pytest.approx(value, abs=1e-9), name
     script.check(limits)
@@ -39,7 +39,7 @@ def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene)
     assert [key for key in script.tracks["blink"].keys if key.time != 2.12] == [
         key for key in hello.tracks["blink"].keys if key.time != 2.12
     ]
-    again = keyframes.keyed(hello, 1.0, {**zero, "jaw_open": 0.7}, limits)
+    again = keyframes.keyed(hello, 1.0, limits.pose({"jaw_open": 0.7}))
     assert again.poses[1].name == "joy" and again.poses[1].easing == "ease-out"
     assert again.poses[1].values == {"jaw_open": 0.7}
 
@@ -48,14 +48,14 @@ def test_a_key_in_a_recording(scene: FaceScene) -> None:
     """Where there are tracks only, those get a key that were changed; all if none was."""
     text = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1,easing='linear'}]\n"
     script = parse_script(text + "jaw_open=[{time=0,value=0.5}]", source="take.toml")
-    limits, zero = scene.limits, dict.fromkeys(scene.limits, 0.0)
-    changed = keyframes.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.1}, limits)
+    pose = scene.limits.pose
+    changed = keyframes.keyed(script, 1.0, pose({"joy": 0.5, "jaw_open": 0.1}))
     assert changed.poses == () and changed.tracks["joy"] == script.tracks["joy"]
     assert [(key.time, key.value) for key in changed.tracks["jaw_open"].keys] == [
         (0, 0.5),
         (1, 0.1),
     ]
-    held = keyframes.keyed(script, 1.0, {**zero, "joy": 0.5, "jaw_open": 0.5}, limits)
+    held = keyframes.keyed(script, 1.0, pose({"joy": 0.5, "jaw_open": 0.5}))
     assert len(held.tracks["joy"].keys) == 3 and len(held.tracks["jaw_open"].keys) == 2
     for time in np.linspace(0.0, 2.0, 9):
         assert held.at(time) == pytest.approx(script.at(time))
@@ -108,7 +108,7 @@ def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
 def test_raised_keys_stay_within_limits(amount: float, choice: list[bool]) -> None:
     """Chosen keys go by the amount as far as they may, others and all times stay, and back."""
     hello = load_script(HELLO)
-    limits = {"joy": (0.0, 1.0), "jaw_open": (0.0, 1.0), "blink": (0.0, 1.0)}
+    limits = Limits(dict.fromkeys(("joy", "jaw_open", "blink"), (0.0, 1.0)))
     everything = sorted(keyframes.places_of(hello))
     places = Places.of(*(place for place, is_in in zip(everything, choice, strict=True) if is_in))
     script = keyframes.raised(hello, places, amount, limits, {"joy"})

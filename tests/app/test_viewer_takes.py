@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from risorius.app.control_names.limits import Limits
 from risorius.app.errors import UserError
 from risorius.app.script import Channel, Key, Pose, Script
 from risorius.app.script.recorder import Recorder
@@ -44,7 +45,7 @@ def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -
     assert session.script == before and not session.work.script_is_unsaved
 
 
-LIMITS = dict.fromkeys(("a", "b", "c"), (0.0, 1.0))
+LIMITS = Limits(dict.fromkeys(("a", "b", "c"), (0.0, 1.0)))
 TIMES = st.integers(0, 120).map(lambda frame: round(frame / 30.0, 6))
 SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 EASINGS = st.sampled_from(["linear", "smooth", "hold", "ease-in", "ease-out"])
@@ -86,17 +87,17 @@ def test_punching_in_changes_nothing_else(
 
     To the bit, but for an eased way that is cut: that is followed as closely as can be seen.
     """
-    recorder, held, time = Recorder(played, start, LIMITS), dict[str, float](), start
+    recorder, held, time = Recorder(played, start), dict[str, float](), start
     shown = {}
     for move in moves:
         held |= move
         time += STEP
-        told = {name: min(max(value, 0.0), 1.0) for name, value in played.at(time).items()}
-        shown[time] = {**dict.fromkeys(LIMITS, 0.0), **told, **held}
+        told = played.values(time, LIMITS)
+        shown[time] = LIMITS.pose(held, told)
         recorder.add(time, shown[time])
     script, end = recorder.script(), round(time, 6)
     if script is None:
-        assert all(value == told.get(name, 0.0) for name, value in held.items())
+        assert all(value == told[name] for name, value in held.items())
         return
     script.check(LIMITS)
     assert script.poses == played.poses and script.duration == max(4.0, end)
@@ -105,7 +106,9 @@ def test_punching_in_changes_nothing_else(
         if name not in recorder.samples:
             assert script.tracks.get(name) is played.tracks.get(name)
             continue
-        begin = float(next(t for t, v in shown.items() if v[name] != played_at(played, t, name)))
+        begin = float(
+            next(t for t, v in shown.items() if v[name] != played.values(t, LIMITS)[name])
+        )
         keys = played.tracks.get(name, Channel([], [])).keys
         now = script.tracks[name]
         assert (np.diff(now.times) > 0.0).all()
@@ -120,11 +123,6 @@ def test_punching_in_changes_nothing_else(
         for moment, values in shown.items():
             if begin <= moment < end - 0.101:
                 assert script.at(moment)[name] == pytest.approx(values[name], abs=4e-3)
-
-
-def played_at(script: Script, time: float, name: str) -> float:
-    """What a script makes of a control of 0 to 1."""
-    return min(max(script.at(time).get(name, 0.0), 0.0), 1.0)
 
 
 def paused(session: Session) -> None:

@@ -45,10 +45,7 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
     ("pose", "values", "values", TABLES),
     ("pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
-    ("pose", "cut_off", "cut_off", (None, 1, "yes", [])),
-    ("jump", "values", "values", TABLES),
-    ("jump", "values", "control", tuple({name: 1.0} for name in NAMES)),
-    ("jump", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("take", "values", "values", ARRAYS),
     ("copy_from", "other", "other", (*NONSENSE, 3, sim.create(SimpleNamespace(**TRIANGLE)))),
     ("kick", "velocities", "velocities", ARRAYS),
     ("drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
@@ -59,9 +56,9 @@ WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
 RIGHT: dict[str, dict[str, Any]] = {
     "set": {"name": "jaw_open", "value": 0.5},
     "set_all": {"values": {"jaw_open": 0.5}},
-    "pose": {"values": {"jaw_open": 0.5}, "cut_off": True},
+    "pose": {"values": {"jaw_open": 0.5}},
+    "take": {},
     "drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
-    "jump": {"values": {"jaw_open": 0.5}},
     "copy_from": {"other": None},  # its clones are those of the simulation that is asked
     "kick": {"velocities": np.zeros((COUNT, 3))},
     "step": {"dt": 1 / 60},

@@ -33,11 +33,13 @@ def test_unknown_control_suggests_near_names(simulation: sim.Simulation) -> None
 
 
 def test_value_must_be_within_limits(simulation: sim.Simulation) -> None:
-    """Values out of limits are refused, and the limits named."""
+    """Values out of limits are refused, by name or in one array, and the limits named."""
     with pytest.raises(ValueError, match=r"'jaw_open': was -0.5, allowed is 0 to 1"):
         simulation.set("jaw_open", -0.5)
-    simulation.pose({"jaw_open": -0.5, "jaw_forward": 1.5}, cut_off=True)
-    assert (simulation.values["jaw_open"], simulation.values["jaw_forward"]) == (0.0, 1.0)
+    with pytest.raises(ValueError, match=r"was 1.5, allowed is 0 to 1; clamp it first"):
+        simulation.take(np.full(len(simulation.names), 1.5))
+    simulation.take(np.full(len(simulation.names), 0.5))
+    assert set(simulation.values.values()) == {0.5}
 
 
 def test_set_all_is_all_or_nothing(simulation: sim.Simulation) -> None:

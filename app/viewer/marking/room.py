@@ -16,6 +16,7 @@ from risorius import assets, render
 from risorius.assets.fitting.guess import FIRST, axes_turned
 from risorius.sim.landmarks import MIRRORED
 
+from ...control_names.limits import Limits
 from ...passes.labels import CameraLabels
 from ...refining.presets import STATIC
 from ...scenes import Scene
@@ -59,14 +60,14 @@ class MeshScene(Scene):
     """The mesh where it is placed now."""
 
     name = "face"
-    limits: Mapping[str, tuple[float, float]] = {}
+    limits = Limits({})
 
     def __init__(self, marking: Marking) -> None:
         self.rest_positions, self.faces = marking.positions, marking.faces
         self._marking = marking
 
     @property
-    def positions(self) -> FloatArray:
+    def positions(self) -> FloatArray:  # type: ignore[override]  # others keep theirs
         return self._marking.positions
 
 

@@ -9,10 +9,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Generic, TypeVar
 
+import numpy as np
+
 from risorius.assets.loading import read_words
 from risorius.sim.layers import BOTH_SIDES
 
-from ...scenes import FaceScene, Scene, clamped
+from ...control_names.limits import ControlValues, Limits
+from ...scenes import FaceScene, Scene
 from ...script import Script
 from ...script.script_file import preface_of, save_script
 
@@ -37,13 +40,9 @@ class SceneControls:
             if title in scene.groups and title != BOTH_SIDES
         }
 
-    def pose(self, values: Mapping[str, float]) -> dict[str, float]:
-        """A value for each control, within its limits; 0 where none is given."""
-        return {**dict.fromkeys(self.limits, 0.0), **clamped(self.limits, values)}
-
-    def alone(self, name: str) -> dict[str, float]:
+    def alone(self, name: str) -> ControlValues:
         """This control at its most, and no other."""
-        return self.pose({name: self.limits[name][1]})
+        return self.limits.pose({name: self.limits[name][1]})
 
     def moved_by(self, values: Mapping[str, float]) -> frozenset[str]:
         """The lowest controls that a pose moves."""
@@ -54,29 +53,29 @@ class SceneControls:
 class LiveOverride:
     """Where a live face has controls, and by what share of 0 (not at all) to 1 (all the way)."""
 
-    def __init__(self) -> None:
-        self._controls: Mapping[str, float] = {}
-        self._share = 0.0
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self.take({}, 0.0)
 
     def take(self, controls: Mapping[str, float], share: float) -> None:
-        """Override these controls from now on, and no others."""
-        self._controls, self._share = controls, share
+        """Override these controls from now on, and no others; those there are not are left out."""
+        known = tuple(name for name in controls if name in self._limits)
+        self._places = self._limits.places(known)
+        wanted = np.array([controls[name] for name in known], np.float64)
+        self._wanted, self._share = self._limits.cut_off(wanted, self._places), share
 
     @property
     def is_on(self) -> bool:
         """Whether anything is overridden."""
         return self._share > 0.0
 
-    def over(
-        self, values: Mapping[str, float], limits: Mapping[str, tuple[float, float]]
-    ) -> dict[str, float]:
-        """The values, overridden within limits; a control that has no value is left out."""
-        overridden = dict(values)
-        for name, wanted in self._controls.items() if self._share else ():
-            if name in values:
-                low, high = limits[name]
-                overridden[name] += self._share * (min(max(wanted, low), high) - values[name])
-        return overridden
+    def over(self, values: ControlValues) -> ControlValues:
+        """The values, overridden: what lies between two values is within their limits, too."""
+        if not self._share:
+            return values
+        numbers = values.numbers.copy()
+        numbers[self._places] += self._share * (self._wanted - numbers[self._places])
+        return ControlValues(self._limits, numbers)
 
 
 _QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")

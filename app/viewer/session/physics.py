@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from risorius import sim
 
+from ...control_names.limits import ControlValues
 from ...errors import UserError
 from ...motion.life import Idle, Values
 from ...scenes import FaceScene
@@ -104,7 +105,7 @@ class Physics:
         self._seen = self._session.scene.positions.copy()  # in that frame
         self._seen_bones = self._session.scene.bone_transforms()
         self._left_for = 0.0  # [s] that nobody has moved the face
-        self._posed: dict[str, float] = {}  # the values at the last step
+        self._posed: ControlValues | None = None  # at the last step
         self._still_for = 0.0  # [s] that no vertex has moved
 
     @property
@@ -132,7 +133,7 @@ class Physics:
         """
         steps = self._clock.steps(seconds, EARLIEST if is_urgent else EARLY)
         session, scene = self._session, self._session.scene
-        wanted = dict(session.current)
+        wanted = session.current
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
         self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP

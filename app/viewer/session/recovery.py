@@ -121,8 +121,8 @@ def unsaved_script(session: Session) -> Script:
     recorder = session.recorder
     script = (recorder.script() if recorder is not None else None) or session.script
     if _has_pose(session):
-        time, limits = keyframes.key_time(script, session.time), session.controls.limits
-        script = keyframes.keyed(script, time, session.values, limits)
+        time = keyframes.key_time(script, session.time)
+        script = keyframes.keyed(script, time, session.values)
     return script
 
 
@@ -136,6 +136,6 @@ def _state(session: Session) -> object:
     """What tells whether there is other work to be kept; quickly made and compared."""
     return (
         session.script if session.work.script_is_unsaved else None,
-        dict(session.values) if _has_pose(session) else None,
+        session.values if _has_pose(session) else None,
         session.recorded_seconds,
     )

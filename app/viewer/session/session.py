@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ...control_names import copied, mirrored, readable, twin_of
+from ...control_names.limits import ControlValues
 from ...errors import UserError, counted
 from ...motion import SETTLING
 from ...scenes import Scene
@@ -27,16 +28,16 @@ class Session:
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
         self.scene, self.controls = scene, SceneControls(scene)
-        self.values = self.controls.pose(script.at(0.0))
+        self.values = script.values(0.0, scene.limits)
         self.script = script
         self.file = ScriptFile.of(script)
         self.time, self.speed = 0.0, 1.0
         self.is_playing = self.is_looping = self.is_keying = False  # keying: hands set keys at once
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
-        self.is_following = any(self.values.values())  # the script; a neutral face need not yet
+        self.is_following = any(self.values.numbers)  # the script; a neutral face need not yet
         self._is_touched = False  # by hand, since something was noted
         self.recorder: Recorder | None = None  # of what is being recorded
-        self.live_override = LiveOverride()  # leaves no trace in what can be undone
+        self.live_override = LiveOverride(scene.limits)  # leaves no trace in what can be undone
         self.history = History(self._document())
         self.work = Work(self)
 
@@ -46,24 +47,24 @@ class Session:
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
         self.scene, self.controls = scene, SceneControls(scene)
-        self.values = self.controls.pose(self.values)
+        self.values = scene.limits.pose(self.values)
+        self.live_override = LiveOverride(scene.limits)
 
     # Controls by hand
 
     def set(self, name: str, value: float, *, linked: bool = False) -> None:
         """Set a control within its limits, and if `linked` its twin; a script that plays stops."""
-        for each in {name, twin_of(name)} if linked else {name}:
-            low, high = self.controls.limits[each]
-            self.values[each] = min(max(rounded(value), low), high)
-            if self.recorder is not None:  # the script goes on, and this is held
-                self.recorder.held[each] = self.values[each]
+        names = {name, twin_of(name)} if linked else {name}
+        self.values = self.scene.limits.pose(dict.fromkeys(names, rounded(value)), self.values)
+        if self.recorder is not None:  # the script goes on, and this is held
+            self.recorder.held.update((each, self.values[each]) for each in names)
         if not self.is_recording:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = self._is_touched = True
 
     def toggle_alone(self, name: str) -> None:
         """This control alone at its most, or neutral if it is so already."""
-        pose = self.controls.pose({}) if self.is_alone(name) else self.controls.alone(name)
+        pose = self.scene.limits.pose({}) if self.is_alone(name) else self.controls.alone(name)
         self.set_pose(pose, is_unsaved=False)
 
     def is_alone(self, name: str) -> bool:
@@ -72,13 +73,14 @@ class Session:
 
     def neutral(self) -> None:
         """All controls to zero; the skin swings back by itself."""
-        self.set_pose(self.controls.pose({}), is_unsaved=False)
+        self.set_pose(self.scene.limits.pose({}), is_unsaved=False)
 
     def mirror(self, source: str = "") -> None:
         """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
-        self.set_pose(copied(self.values, source) if source else mirrored(self.values))
+        values = copied(self.values, source) if source else mirrored(self.values)
+        self.set_pose(self.scene.limits.pose(values))
 
-    def set_pose(self, pose: dict[str, float], *, is_unsaved: bool = True) -> None:
+    def set_pose(self, pose: ControlValues, *, is_unsaved: bool = True) -> None:
         """Take a value for each control; a recording takes in what differs."""
         if self.recorder is not None:
             self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
@@ -89,17 +91,16 @@ class Session:
         self.note()
 
     @property
-    def current(self) -> dict[str, float]:
+    def current(self) -> ControlValues:
         """Where each control is now: by hand or script, and over it what a live face overrides."""
-        return self.live_override.over(self.values, self.controls.limits)
+        return self.live_override.over(self.values)
 
     @property
     def differing(self) -> frozenset[str]:
         """The controls that hands moved away from the script; it takes a look into every track."""
         if self.is_following or self.is_recording:
             return frozenset()
-        limits = self.controls.limits
-        return frozenset(keyframes.differing(self.script, self.time, self.values, limits))
+        return frozenset(keyframes.differing(self.script, self.time, self.values))
 
     # Undo
 
@@ -139,7 +140,7 @@ class Session:
             self._go_to(self.time)
         else:  # a pose is seen where it was made
             self.time = min(document.time, self.script.duration)
-            self.values, self.is_following = self.controls.pose(document.values), False
+            self.values, self.is_following = self.scene.limits.pose(document.values), False
         self.pose_is_unsaved = bool(document.values)
 
     # Time
@@ -158,8 +159,8 @@ class Session:
         self.time = 0.0
         self._follow_script()
         self.scene.reset()
-        self.scene.pose(self.current)
-        if any(self.current.values()):
+        self.scene.take(self.current)
+        if any(self.current.numbers):
             self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> Message:
@@ -218,9 +219,9 @@ class Session:
         self.note()
         return time
 
-    def _key(self, values: Mapping[str, float]) -> float:
-        time, limits = keyframes.key_time(self.script, self.time), self.controls.limits
-        self.script = keyframes.keyed(self.script, time, values, limits)
+    def _key(self, values: ControlValues) -> float:
+        time = keyframes.key_time(self.script, self.time)
+        self.script = keyframes.keyed(self.script, time, values)
         self.is_playing = False
         self._go_to(time)
         return time
@@ -239,13 +240,13 @@ class Session:
         current = self.current
         if self.recorder is not None:
             self.recorder.add(self.time, current)
-        self.scene.pose({**current, **(beneath or {})})
+        self.scene.take(self.scene.limits.pose(beneath, current) if beneath else current)
         self.scene.step(seconds)
 
     def _follow_script(self) -> None:
         self.is_following = True
-        held = self.recorder.held if self.recorder is not None else {}
-        self.values = self.controls.pose({**self.script.at(self.time), **held})
+        held, limits = self.recorder.held if self.recorder is not None else {}, self.scene.limits
+        self.values = limits.pose(held, self.script.values(self.time, limits))
 
     @property
     def is_recording(self) -> bool:
@@ -260,7 +261,7 @@ class Session:
         if self.recorder is None:
             held = {name: self.values[name] for name in self.differing}
             start = self.time % self.script.duration if self.is_looping else self.time
-            self.recorder = Recorder(self.script, start, self.controls.limits, held)
+            self.recorder = Recorder(self.script, start, held)
             self.time, self.pose_is_unsaved = self.recorder.start, False
             if not self.is_playing:
                 self.toggle_playing()
@@ -270,7 +271,7 @@ class Session:
         if recording is not None:
             self.script = recording
             self._go_to(rounded(self.time))  # which is the end, where the recording is the last
-        self.values, self.is_following = self.values | recorder.missed, False
+        self.values, self.is_following = self.scene.limits.pose(recorder.missed, self.values), False
         missed = self.differing  # a pose by hand
         self.is_following, self.pose_is_unsaved = not missed, bool(missed)
         what = counted(len(recorder.samples), "control")
@@ -302,7 +303,8 @@ class Work:
     def open(self, script: Script) -> None:
         """A pose to show, which a recording takes in, or a script to play, which ends it."""
         if is_pose(script):
-            self._session.set_pose(self._session.controls.pose(script.at(0.0)), is_unsaved=False)
+            pose = script.values(0.0, self._session.scene.limits)
+            self._session.set_pose(pose, is_unsaved=False)
         else:
             self._session.replace_script(script, ScriptFile.of(script))
 
@@ -344,4 +346,4 @@ class Work:
     @property
     def has_unsaved_pose(self) -> bool:
         """Whether there is a pose made by hand that no file has."""
-        return self._session.pose_is_unsaved and any(self._session.values.values())
+        return self._session.pose_is_unsaved and any(self._session.values.numbers)

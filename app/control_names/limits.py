@@ -1,0 +1,84 @@
+"""Limits of controls, and the one place where values are cut off at them.
+
+Tracks add to poses, gains multiply what was recorded, trackers overshoot: only what all of it comes
+to is cut off, where it becomes the value of a control, that is, in a key made of a recording or in
+the `ControlValues` of a scene. `sim` refuses what is beyond. What somebody wrote and cannot be
+meant is refused where it is read, see `Script.check`.
+
+Names become numbers here, too: a script or a stream has the same in each of its frames, so their
+places are found in its first.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import UserError
+
+Floats = npt.NDArray[np.float64]
+Places = npt.NDArray[np.intp]  # of controls among all N of a scene
+KNOWN = 256  # sets of names whose places are kept
+
+
+class Limits(dict[str, tuple[float, float]]):
+    """The lowest and the highest value of each control of a scene, by its name."""
+
+    def __init__(self, limits: Mapping[str, tuple[float, float]]) -> None:
+        super().__init__(limits)
+        self.place = {name: place for place, name in enumerate(limits)}
+        self._low, self._high = np.array([*limits.values()], np.float64).reshape(-1, 2).T
+        self.places = functools.lru_cache(KNOWN)(self._places)
+
+    def _places(self, names: tuple[str, ...]) -> Places:
+        """The places of controls, shape (n,). Raises UserError on one that there is not."""
+        for name in names:
+            if name not in self:
+                raise UserError(f"there is no control called '{name}'")
+        return np.array([self.place[name] for name in names], np.intp)
+
+    def cut_off(self, sums: Floats, places: Places) -> Floats:
+        """What controls asked for these sums have as values; both of shape (n,), or (T,) of one."""
+        values: Floats = np.minimum(np.maximum(sums, self._low[places]), self._high[places])
+        return values
+
+    def pose(self, sums: Mapping[str, float], over: ControlValues | None = None) -> ControlValues:
+        """Values of all controls, cut off; those not named as they are in `over`, else 0.
+
+        Raises UserError on a name that is no control.
+        """
+        return self.posed(self.places(tuple(sums)), np.array([*sums.values()], np.float64), over)
+
+    def posed(
+        self, places: Places, sums: Floats, over: ControlValues | None = None
+    ) -> ControlValues:
+        """The same of controls by their places; both of shape (n,)."""
+        numbers = np.zeros(len(self)) if over is None else over.numbers.copy()
+        numbers[places] = self.cut_off(sums, places)
+        return ControlValues(self, numbers)
+
+
+class ControlValues(Mapping[str, float]):
+    """A value for each control of a scene, within its limits: by name, or as `numbers` (N,)."""
+
+    def __init__(self, limits: Limits, numbers: Floats) -> None:
+        """Made by `Limits`, or of other values so that they stay within; nobody writes them."""
+        numbers.flags.writeable = False
+        self.limits, self.numbers = limits, numbers
+
+    def __getitem__(self, name: str) -> float:
+        return self.numbers.item(self.limits.place[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.limits)
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, ControlValues):
+            return np.array_equal(self.numbers, other.numbers)
+        return super().__eq__(other)
