@@ -51,6 +51,8 @@ def read_file(path: str | Path, *, kind: str, most: int) -> bytes:
         raise AssetError(f"cannot be read: {reason}; choose another {kind} file") from None
     if not content:
         raise AssetError(f"is empty; it must be a {kind} file")
+    if content.startswith((b"\x1f\x8b", b"PK\3\4")):
+        raise AssetError(f"is compressed (gzip or zip); unpack the {kind} file that is in it")
     return content
 
 

@@ -30,6 +30,7 @@ from .warp import Similarity, ThinPlateSpline, nearest_on
 # Outer corners of the eyes, tip of the nose, corners of the mouth: easily found by anybody, and
 # far apart in every direction.
 FIRST = (36, 45, 30, 48, 54)
+PAIRS = {"eyes": FIRST[:2], "corners of the mouth": FIRST[3:]}  # right and left
 FARTHEST_OFF = 14.0  # [mm] of the first points, in the mean: beyond it they are no face's
 NEAR = 30.0  # [mm] around landmarks: the part of the built-in face that is laid on the mesh
 MOST_POINTS = 300  # of that part (chosen; more take longer and find the same)
@@ -75,25 +76,31 @@ def placing(known: Known) -> Similarity:
 
     Raises AssetError where they are no face's, or that of a mirror image.
     """
-    head = load("head")
-    numbers = sorted(known)
+    similarity, off = _laid(known)
+    right = "right is the subject's own, on your left where the face looks at you"
+    if off.mean() > FARTHEST_OFF:
+        for pair, (a, b) in PAIRS.items():
+            other, less = _laid({**known, a: known[b], b: known[a]})
+            if less.mean() <= FARTHEST_OFF and not other.is_mirrored:
+                raise AssetError(f"the {pair} are swapped, landmarks {a} and {b}: {right}")
+        raise AssetError(
+            f"these points are no face's: landmark {sorted(known)[int(off.argmax())]} lies "
+            f"{off.max():.0f} mm off, the mean one {off.mean():.0f} mm; give each its own place"
+        )
+    if similarity.is_mirrored:
+        raise AssetError(f"left and right are swapped, or the mesh is mirrored: {right}")
+    return similarity
+
+
+def _laid(known: Known) -> tuple[Similarity, FloatArray]:
+    """What brings known landmarks nearest to the built-in ones, and how far off each is [mm]."""
+    head, numbers = load("head"), sorted(known)
     own = head.vertices[head.landmarks[numbers]]
     given = np.array([known[number] for number in numbers], dtype=np.float64)
     if not np.ptp(given, axis=0).any():
         raise AssetError("all landmarks are one point; give each its own place")
     similarity = Similarity.between(given, own)
-    off = np.linalg.norm(similarity.points(given) - own, axis=1)
-    if off.mean() > FARTHEST_OFF:
-        raise AssetError(
-            f"these points are no face's: landmark {numbers[int(off.argmax())]} lies "
-            f"{off.max():.0f} mm off, the mean one {off.mean():.0f} mm; give each its own place"
-        )
-    if similarity.is_mirrored:
-        raise AssetError(
-            "left and right are swapped, or the mesh is mirrored: right is the subject's own, on "
-            "your left where the face looks at you"
-        )
-    return similarity
+    return similarity, np.linalg.norm(similarity.points(given) - own, axis=1)
 
 
 def skin_around(vertices: FloatArray, faces: IndexArray, given: FloatArray) -> IndexArray:

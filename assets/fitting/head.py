@@ -131,15 +131,13 @@ def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
     try:
         return fit(found, numbers, points=points)
     except AssetError as error:
-        raise AssetError(f"{named(mesh)}: {error}") from None
+        told, is_face = error, [_is_face(found.vertices[numbers - first]) for first in (0, 1)]
+        if points is None and is_face == [False, True]:
+            told = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
+        raise AssetError(f"{named(mesh)}: {told}") from None
 
 
-def fit(
-    mesh: Mesh,
-    landmarks: IndexArray,
-    *,
-    points: FloatArray | None = None,
-) -> FittedHead:
+def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) -> FittedHead:
     """Fit the built-in head to a mesh with 68 landmarks.
 
     landmarks: vertex numbers, shape (68,); points: where they lie exactly [unit of the mesh], shape
@@ -272,6 +270,13 @@ def _placed(points: FloatArray, known: Head) -> Similarity:
         )
     _check_different(similarity.points(points), template)
     return similarity
+
+
+def _is_face(points: FloatArray) -> bool:
+    """Whether landmarks [unit of the mesh] are those of a face, in their order."""
+    with contextlib.suppress(AssetError):
+        return bool(_placed(points, load("head")))
+    return False
 
 
 def _check_size(skin: SkinPiece) -> None:

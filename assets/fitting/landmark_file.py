@@ -209,8 +209,7 @@ class Group:
         """What is told of a group that is not in its order."""
         return (
             f"landmarks {self.first} to {self.first + self.count - 1}, the {self.name}, are not in "
-            f"their order; right is: {self.right_order} (the subject's own right and left; vertex "
-            "numbers count from 0)"
+            f"their order; right is: {self.right_order} (the subject's own right and left)"
         )
 
 

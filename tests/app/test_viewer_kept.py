@@ -38,7 +38,7 @@ def path(tmp_path: Path) -> Path:
 def test_settings_come_back(tmp_path: Path) -> None:
     """What is written is read again."""
     path = tmp_path / "deep" / "viewer.json"
-    settings = Settings(size=(900, 700), theme="dark", folds={"Jaw": True})
+    settings = Settings(size=(900, 700), theme="dark", folds={"Jaw": True}, recent=["a"])
     settings.display.look, settings.display.compare = "paper", "wipe"
     settings.display.refiner, settings.display.overlays = "loop", ["muscles"]
     settings.display.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}

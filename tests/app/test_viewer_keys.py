@@ -8,7 +8,6 @@ import pytest
 from imgui_bundle import imgui
 
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.settings import load_settings, save_settings
 
 from .driving import NEEDS_A_SCREEN, click, middle, until, xdotool
 
@@ -61,15 +60,12 @@ def test_each_command_has_its_own_name_and_keys(viewer: Viewer) -> None:
 
 
 def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:
-    """The latest comes first; settings keep them; one that is gone is told in one line."""
+    """The latest comes first; one that is gone is told in one line."""
     paths = [tmp_path / f"{name}.toml" for name in ("first", "second")]
     for path in paths:
         path.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
         viewer.drop([str(path)])
     assert viewer.settings.recent[:2] == [str(path) for path in reversed(paths)]
-    saved = tmp_path / "viewer.json"
-    save_settings(saved, viewer.settings)
-    assert load_settings(saved)[0].recent == viewer.settings.recent
 
     def choose(path: Path) -> None:
         """Open a file by the menu."""

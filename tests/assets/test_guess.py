@@ -79,6 +79,7 @@ def test_more_points_make_it_better_and_stay() -> None:
     [
         (MIRRORED, "left and right are swapped"),
         (np.roll(np.arange(68), 18), "no face"),
+        (np.r_[:36, 45, 37:45, 36, 46:68], "the eyes are swapped, landmarks 36 and 45"),
         (np.zeros(68, int), "one point"),
     ],
 )

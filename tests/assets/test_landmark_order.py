@@ -1,5 +1,7 @@
 """Landmarks that are not in their order are refused by name; right ones, however rough, are not."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 
 from risorius import assets
 from risorius.assets import AssetError
-from risorius.assets.fitting import fit
+from risorius.assets.fitting import fit, fit_head
 from risorius.assets.fitting.landmark_file import GROUPS, Group, groups_in_disorder
 from tests.heads import Stranger, shape, stranger
 
@@ -62,10 +64,11 @@ def test_a_group_in_disorder_is_refused_in_one_line(group: Group, other: Strange
         fit(other.mesh, numbers)
 
 
-def test_numbers_counted_from_1_are_refused(other: Stranger) -> None:
+def test_numbers_counted_from_1_are_refused(other: Stranger, tmp_path: Path) -> None:
     """Each is the vertex behind the one that is meant."""
-    with pytest.raises(AssetError, match="count from 0"):
-        fit(other.mesh, (other.landmarks + 1).astype(np.int32))
+    mesh, numbers = other.write(tmp_path, landmarks=other.landmarks + 1)
+    with pytest.raises(AssetError, match=r"\.obj: landmarks count vertices from 1"):
+        fit_head(mesh, numbers)
 
 
 @pytest.mark.parametrize("by", [1, -1, 5])

@@ -85,7 +85,7 @@ MESHES: dict[str, tuple[bytes | str, Kind | str]] = {
     "corner beyond.obj": (f"{V}f 1 2 {10**30}\n", "line 4: 'f 1 2 1000"),
     "long line.obj": (V + "f" + " 1" * 600_000, "line 4: more than 500000 vertices or"),
     "many vertices.obj": (b"v 0 0 0\n" * 510_000, "line 500001: more than 500000 vertices or"),
-    "gzip.obj": (b"\x1f\x8b\x08\x00" + bytes(40), "binary data"),
+    "gzip.obj": (b"\x1f\x8b\x08\x00" + bytes(40), "is compressed"),
     "mixed polygons.ply": (PLY.replace("3 0 2 3", "4 0 1 2 3"), Kind.MESH),
     "binary.ply": (BINARY + BODY, Kind.MESH),
     "binary cut.ply": (BINARY + BODY[:-3], BROKEN),
