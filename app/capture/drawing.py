@@ -60,6 +60,9 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     camera = _framing(scene, "front")
     camera.orbit(yaw, pitch)
     camera.target = scene.focus.copy()
+    _, high, near = np.stack(camera.axes()) @ (scene.framed - camera.target).T
+    half = (1.0 - MARGIN) * math.tan(math.radians(0.5 * camera.field_of_view))
+    camera.distance = max(camera.distance, float((near + np.abs(high) / half).max()))
     camera.zoom(zoom)
     return camera
 

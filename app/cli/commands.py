@@ -68,13 +68,7 @@ class Live:
                     raise UserError(f"--{name} goes with --live, which says what is listened to")
             return None
         PROTOCOLS[self.live].check()
-        return Listening(
-            self.live,
-            self.address,
-            self.port,
-            playback.gains,
-            playback.mirror,
-        )
+        return Listening(self.live, self.address, self.port, playback.gains, playback.mirror)
 
 
 @click.command()

@@ -24,7 +24,7 @@ from .experiments import Outcome
 from .figure_10 import Variant
 
 PHASES = (0.0, 0.33, 0.66)  # moments of the wave
-VIEW = "28,-30,0.68"  # from here no corner shows its underside, which no light reaches
+VIEW = "28,-30,0.796"  # from here no corner shows its underside, which no light reaches
 FINENESS = 24  # cells of the true sine in each cell of the plane, each way: smaller than pixels
 BACKGROUND = 250.0  # grey level; pictures stand on white, and no part of the plane is as light
 SHADINGS = (("flat", FLAT), ("Gouraud", GOURAUD))

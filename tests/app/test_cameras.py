@@ -22,7 +22,7 @@ def test_numbers_stand_around_the_middle_of_the_face(scene: FaceScene) -> None:
 def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene: FaceScene) -> None:
     """A camera that stood too near steps back; one that stood further away stays there."""
     near, far = whole_scene(scene, "0,0,4"), whole_scene(scene, "0,0,0.2")
-    for camera in (near, far):
+    for camera in (near, far, camera_for(scene, "150,5,1")):
         clip = camera.projection_matrix(1.0) * camera.view_matrix()
         ends = np.column_stack([scene.rest_positions, np.ones(len(scene.rest_positions))])
         seen = ends @ np.asarray(clip)
