@@ -85,7 +85,7 @@ def measure(mixtures: int) -> list[Pose]:
         now = settled_positions(simulation, values, SETTLE)
         gaps = _gaps(head, simulation, refiner, name)
         inverted = _inverted(simulation.rest_positions, now, head.faces)
-        deep = simulation.penetrations()
+        deep = simulation.anatomy.penetrations()
         poses.append(Pose(name, *gaps, inverted, deep["lips"], deep["lids"], deep["teeth"]))
     return poses
 
@@ -94,13 +94,14 @@ def _gaps(
     head: Any, simulation: sim.Simulation, refiner: refine.Refiner, name: str
 ) -> tuple[float | None, float | None]:
     """The slit between the lips and the height of an eye that are shut in a pose [mm]."""
-    moved = {control for control, value in simulation.sums.items() if value != 0.0}
+    sums = simulation.controls.sums
+    moved = {control for control, value in sums.items() if value != 0.0}
     is_turned = moved and all(control.startswith("head_") for control in moved)  # and nothing else
-    if is_turned or name not in (*simulation.layers[UNITS], *MOUTH_SHUT, *EYES_SHUT):
+    if is_turned or name not in (*simulation.controls.layers[UNITS], *MOUTH_SHUT, *EYES_SHUT):
         return None, None
     is_shut = name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING + EYES_SHUT
     landmarks = simulation.positions[head.landmarks]
-    shut = [side for side in ("right", "left") if simulation.sums[f"{CLOSER}_{side}"] >= SHUT]
+    shut = [side for side in ("right", "left") if sums[f"{CLOSER}_{side}"] >= SHUT]
     slits, eyes = [], []
     for positions, triangles in meshes_of(simulation, refiner).values():
         if is_shut:
@@ -115,10 +116,11 @@ def _values(
     simulation: sim.Simulation, mixtures: int, generator: np.random.Generator
 ) -> Iterator[tuple[str, dict[str, float]]]:
     """Name and values of every action unit, expression and so on, then of random mixtures."""
-    for names_of_layer in simulation.layers.values():
+    controls = simulation.controls
+    for names_of_layer in controls.layers.values():
         yield from ((name, {name: 1.0}) for name in names_of_layer)
     # The pose of the head turns all triangles alike; it is left out.
-    limits = {n: simulation.limits[n] for n in simulation.controls if not n.startswith("head_")}
+    limits = {n: controls.limits[n] for n in controls.lowest if not n.startswith("head_")}
     names = np.array(list(limits))
     for number in range(mixtures):
         chosen = generator.choice(
@@ -160,7 +162,7 @@ def _turned_by(yaw: float, pitch: float) -> Array:
 
 def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Array]:
     """Triangles (n, 3, 3) of the eyeballs that the head brings, turned as they are now, by side."""
-    bones, found = simulation.bone_transforms(), {}
+    bones, found = simulation.bones.transforms(), {}
     for part in head.parts:
         if part.name.startswith("eyeball_"):
             turn = np.asarray(bones[part.bone], dtype=np.float64)

@@ -64,14 +64,14 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
     name = ALSO_CALLED.get(name.lower(), name)
     for ways in ([name], [f"{name}Left", f"{name}Right"]):
         shapes = [shape_of(each) or "" for each in ways]
-        if set(shapes) <= set(simulation.tables.shares):
+        if set(shapes) <= set(simulation.controls.tables.shares):
             return shapes
     return []
 
 
 def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
     """How far shapes at 1 move the skin [mm], (V, 3), beyond what they make good of another."""
-    share_of = simulation.tables.share_of
+    share_of = simulation.controls.tables.share_of
     base = {share_of[each]: 1.0 for each in shapes if each in share_of}
     start = settled_positions(simulation, base, SETTLE) if base else simulation.rest_positions
     return settled_positions(simulation, {**base, **dict.fromkeys(shapes, 1.0)}, SETTLE) - start

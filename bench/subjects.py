@@ -146,7 +146,7 @@ def settled_positions(
 ) -> Points:
     """Hold controls from rest for some frames of 1/60 s; a copy of the vertices [mm], (V, 3)."""
     simulation.reset()
-    simulation.set_all(values)
+    simulation.controls.set_all(values)
     for _ in range(frames):
         simulation.step(1.0 / 60.0)
     return simulation.positions.copy()

@@ -1,7 +1,7 @@
 """Risorius' simulation: a mass-spring face driven by muscle contraction.
 
     simulation = sim.create(assets.load("head"))
-    simulation.set("zygomaticus_major_left", 0.8)
+    simulation.controls.set("zygomaticus_major_left", 0.8)
     simulation.step(1 / 60)
     simulation.positions        # (V, 3)
 

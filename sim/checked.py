@@ -31,13 +31,6 @@ def number(what: str, value: Any) -> float:
     return result
 
 
-def flag(what: str, value: Any) -> bool:
-    """True or False, and nothing that only counts as such."""
-    if not isinstance(value, bool | np.bool_):
-        raise ValueError(f"{what}: was {quoted(value)}, must be True or False")
-    return bool(value)
-
-
 def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Array:
     """Finite numbers of a shape, a copy in rows; wanted: the shape in words."""
     wanted = wanted or str(shape)

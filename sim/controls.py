@@ -14,7 +14,7 @@ Source: time constants of facial muscle, measured on the model (45 rad/s gives t
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -56,7 +56,9 @@ class Controls:
     The first C of all N controls are the lowest; only they have a wanted sum and an activation.
     """
 
-    controls: tuple[str, ...]
+    names: tuple[str, ...]
+    """Of all controls."""
+    lowest: tuple[str, ...]
     """Names of the lowest controls: muscles, lips, jaw, gaze, head."""
     layers: Mapping[str, tuple[str, ...]]
     """Names of the controls above, by the title of their layer, from the bottom up."""
@@ -66,10 +68,14 @@ class Controls:
     """Control names by the title under which a panel may list them, layers last."""
     actions: Mapping[str, str]
     """What each control does, in words; "" where its file does not say."""
+    tables: Layers
+    """What each control of the layers adds to the C lowest ones, in their order."""
+    reached: Array
+    """Activations of the lowest controls now, and a 0 behind them, shape (C + 1,)."""
 
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
-        self.controls = tuple(control.name for control in controls)
-        self.names = (*self.controls, *layers.shares)
+        self.lowest, self.tables = tuple(control.name for control in controls), layers
+        self.names = (*self.lowest, *layers.shares)
         self.limits = MappingProxyType(_limits(controls, layers))
         groups: dict[str, tuple[str, ...]] = {}
         for control in controls:
@@ -89,10 +95,11 @@ class Controls:
         ]
         self._values: Array = np.zeros(len(self.names))
         self.wanted: Array = np.zeros(len(controls))
-        self.activation: Array = np.zeros(len(controls))
+        self.reached: Array = np.zeros(len(controls) + 1)
+        self.activation = self.reached[:-1]
         self._speed: Array = np.zeros(len(controls))
 
-    def _index(self, name: str) -> int:
+    def place(self, name: str) -> int:
         """Place of a control among `names`, of a lowest one also in `wanted` and `activation`.
 
         ValueError offers near names.
@@ -116,16 +123,16 @@ class Controls:
     @property
     def sums(self) -> dict[str, float]:
         """What each lowest control adds up to: its own value and those of the layers above it."""
-        return dict(zip(self.controls, self.wanted.tolist(), strict=True))
+        return dict(zip(self.lowest, self.wanted.tolist(), strict=True))
 
-    def _now(self, name: str) -> float:
-        """The activation of a lowest control; 0 for one that this face does not have."""
-        place = self._places.get(name, len(self.controls))
-        return float(self.activation[place]) if place < len(self.controls) else 0.0
+    def places_in_reached(self, names: Iterable[str]) -> npt.NDArray[np.intp]:
+        """Places of lowest controls in `reached`; of those that this face has not, the last."""
+        none = len(self.lowest)
+        return np.array([min(self._places.get(name, none), none) for name in names], np.intp)
 
     def set(self, name: str, value: float) -> None:
         """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
-        self._index(name)  # what is no name may not even be a key
+        self.place(name)  # what is no name may not even be a key
         self.set_all({name: value})
 
     def set_all(self, values: Mapping[str, float]) -> None:
@@ -141,7 +148,7 @@ class Controls:
             raise ValueError(f"values: was {quoted(values)}, must be a mapping of name to number")
         wanted = others.copy()
         for name, value in values.items():
-            wanted[self._index(name)] = finite(f"control '{name}'", value)
+            wanted[self.place(name)] = finite(f"control '{name}'", value)
         self.take(wanted)
 
     def take(self, values: npt.ArrayLike) -> None:
@@ -154,7 +161,7 @@ class Controls:
                 f"{low[place]:g} to {high[place]:g}; clamp it first"
             )
         self._values[:] = wanted
-        count = len(self.controls)
+        count = len(self.lowest)
         self.wanted[:] = self._values[:count]
         if len(self._shares):
             counted = self._values.copy()
@@ -165,22 +172,22 @@ class Controls:
             np.maximum(self.wanted, least, out=self.wanted, where=least > 0.0)
             np.clip(self.wanted, self._low, self._high, out=self.wanted)
 
-    def _advance(self, dt: float) -> None:
+    def advance(self, dt: float) -> None:
         """Let activations follow their values for `dt` [s]: exact critically damped motion."""
         follow(self.wanted, self.activation, self._speed, self._rate, dt)
 
-    def _arrive(self) -> None:
+    def arrive(self) -> None:
         """Let activations be where their values are, at once."""
         self.activation[:], self._speed[:] = self.wanted, 0.0
 
-    def _copy(self, other: Controls) -> None:
+    def copy_from(self, other: Controls) -> None:
         """Take on values and activations of controls of the same face."""
         self._values[:], self.wanted[:] = other._values, other.wanted
         self.activation[:], self._speed[:] = other.activation, other._speed
 
     def reset(self) -> None:
         """All values and activations to zero at once."""
-        for array in (self._values, self.wanted, self.activation, self._speed):
+        for array in (self._values, self.wanted, self.reached, self._speed):
             array[:] = 0.0
 
 
@@ -201,21 +208,16 @@ class MuscleDrive:
     def __init__(self, rig: Rig, names: tuple[str, ...], controls: Controls) -> None:
         self._controls = controls
         halved = {muscle.name for muscle in rig.muscles if muscle.halves}
-        self._own = np.array([controls._index(name) for name in names], dtype=np.int64)
+        self._own = controls.places_in_reached(names)
         wholes = [name.removesuffix("_left").removesuffix("_right") for name in names]
         drive = {muscle.name: muscle.drive for muscle in rig.muscles}
         self._power = rig.tissue.drive_power * np.array([drive[w] for w in wholes], np.float64)
-        self._has_whole = np.array([whole in halved for whole in wholes], dtype=np.bool_)
-        self._whole = np.array(
-            [controls._index(w if w in halved else n) for w, n in zip(wholes, names, strict=True)],
-            dtype=np.int64,
-        )
+        self._whole = controls.places_in_reached(w if w in halved else "" for w in wholes)
 
     def activation(self) -> Array:
         """Activation 0..1 of each muscle, shape (M,): its own control plus that of both halves."""
-        reached = self._controls.activation
-        whole = np.where(self._has_whole, reached[self._whole], 0.0)
-        return np.minimum(np.maximum(reached[self._own] + whole, 0.0), 1.0)
+        reached = self._controls.reached
+        return np.minimum(np.maximum(reached[self._own] + reached[self._whole], 0.0), 1.0)
 
     def pull(self, activation: Array) -> Array:
         """What the fibres feel: a power that makes the skin's motion about linear, shape (M,)."""

@@ -110,7 +110,7 @@ class FaceModel:
     controls: tuple[Control, ...]
     layers: Layers
 
-    def grip(self, activation: Array, jaw: tuple[float, float, float], closed: float) -> Grip:
+    def grip(self, activation: Array, jaw: tuple[float, ...], closed: float) -> Grip:
         """How firmly the lips stick together; the jaw and some muscles part them.
 
         activation: of each muscle, shape (M,); jaw: its values open, forward, sideways; closed: how

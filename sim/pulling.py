@@ -69,7 +69,7 @@ class Pull:
     ) -> None:
         """Begin at a face as it is, which stays as it is.
 
-        vertices, firmness: of the finger, shapes (n,), as for `Simulation.drag`. candidates:
+        vertices, firmness: of the finger, shapes (n,), as for `Touch.drag`. candidates:
         controls that may be used, in one tuple those that go together, as both sides of a muscle
         do. sight: direction in which the finger is seen, shape (3,).
         """
@@ -91,8 +91,8 @@ class Pull:
         """Before the first answer, find the controls that matter, and slopes; whether any does."""
         if self._given:
             self.candidates, self._given = self._near(self._given), ()
-            firsts, values = [names[0] for names in self.candidates], self._home.values
-            limits = [self._home.limits[first] for first in firsts]
+            controls, firsts = self._home.controls, [names[0] for names in self.candidates]
+            values, limits = controls.values, [controls.limits[first] for first in firsts]
             self._low, self._high = np.array(limits, np.float64).reshape(-1, 2).T
             self._value = self._start = np.array([values[first] for first in firsts], np.float64)
             self._slope = np.zeros((len(firsts), *self._from.shape))
@@ -182,8 +182,8 @@ class Pull:
 
     def _towards(self, names: Names, share: float) -> dict[str, float]:
         """Controls moved by a share of their range, the other way where there is no room."""
-        low, high = self._base.limits[names[0]]
-        value = self._base.values[names[0]]
+        low, high = self._base.controls.limits[names[0]]
+        value = self._base.controls.values[names[0]]
         step = share * (high - low)
         moved = value + step if value + step <= high else max(value - step, low)
         return dict.fromkeys(names, moved)

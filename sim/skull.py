@@ -3,7 +3,7 @@
 Skin is simulated in coordinates of the cranium; head pose moves the result as a whole about the
 joint with the spine. The mandible turns about the axis through both condyles and glides with
 them; skin hangs on both by a weight. Eyeballs turn in place. These are rigid degrees of freedom
-beside the muscles: no spring moves a bone.
+beside the muscles: no spring moves a bone. What is moved now is in bones.py.
 
 Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin).
 Differs from it: the condyles also glide (a real jaw opens by turning and sliding), and the jaw
@@ -13,7 +13,6 @@ moves forward and sideways, to a side by turning about the condyle of that side.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -33,7 +32,6 @@ HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
 BACKWARD = 0.15  # of the way forward: nobody draws the jaw back by more than two millimetres
 HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late
 LATERAL, UP, FORWARD = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-Activation = Callable[[str], float]  # of a control, by its name
 SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
 
 
@@ -235,54 +233,3 @@ def mandible_weight_from_landmarks(
     seeds = np.concatenate([vertices, np.flatnonzero(fixed), np.flatnonzero(lips)])
     wanted = np.concatenate([values, np.zeros(fixed.sum()), (lip_side[lips] < 0.0) * 1.0])
     return np.clip(surface.harmonic(seeds.astype(np.int64), wanted, hold=SEED_HOLD), 0.0, 1.0)
-
-
-class Bones:
-    """The bones of a face in motion; what did not move is not worked out anew."""
-
-    jaw: tuple[float, float, float] = (0.0, 0.0, 0.0)  # values: open, forward, sideways
-    mandible: RigidMotion = REST
-    head: RigidMotion = REST
-
-    def __init__(self, skull: Skull, space: FaceSpace) -> None:
-        self._skull, self._space = skull, space
-        self._head_values = (0.0, 0.0, 0.0)
-        self.turn: Array = np.eye(4)  # of the head, for column vectors [head units]
-
-    def follow(self, now: Activation) -> None:
-        """Jaw and head go where the controls are now."""
-        jaw = now("jaw_open"), now("jaw_forward"), now("jaw_sideways")
-        if jaw != self.jaw:
-            self.jaw = jaw
-            self.mandible = self._skull.mandible_motion(*jaw)
-        head = now("head_pitch"), now("head_yaw"), now("head_roll")
-        if head != self._head_values:
-            self._head_values = head
-            self.head = self._skull.head_motion(*head)
-            self.turn = np.eye(4) if self.head is REST else self.head.matrix(self._space)
-
-    def gaze(self, now: Activation) -> Array:
-        """Where each eyeball looks: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
-        sides = [ball.side.value for ball in self._skull.eyeballs]
-        ways = ("horizontal", "vertical")
-        gaze = [[now(f"gaze_{way}_{side}") for way in ways] for side in sides]
-        return np.array(gaze, dtype=np.float64).reshape(-1, 2)
-
-    def transforms(self, now: Activation) -> dict[str, Array]:
-        """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
-        transforms = {
-            "neck": np.eye(4),
-            "cranium": self.head.matrix(self._space),
-            "mandible": self.head.after(self.mandible).matrix(self._space),
-        }
-        for ball, gaze in zip(self._skull.eyeballs, self.gaze(now), strict=True):
-            motion = self._skull.eye_motion(ball, *gaze)
-            transforms[f"eye_{ball.side.value}"] = self.head.after(motion).matrix(self._space)
-        return transforms
-
-    def pivots(self) -> dict[str, Array]:
-        """What each bone turns about at rest, name of `transforms` -> (3,) [head units]."""
-        middle = self._skull.condyles.mean(axis=0)
-        points = {"cranium": middle + self._skull.head.joint, "mandible": middle}
-        points.update({f"eye_{ball.side.value}": ball.centre for ball in self._skull.eyeballs})
-        return {name: self._space.to_head(point) for name, point in points.items()}

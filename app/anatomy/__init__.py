@@ -98,14 +98,14 @@ class Anatomy:
             names += ["cranium", "mandible", "spine"]
         if "muscles" in view.structures:
             names.append("nose")
-        self._skull = self._skull or build_skull(scene.head, scene.simulation.pivots())
+        self._skull = self._skull or build_skull(scene.head, scene.simulation.bones.pivots())
         self._necks = self._necks or neck_sections(scene.head)
         muscles = [self._muscles_now(scene)] if "muscles" in view.structures else []
         return [*self._necks, *(self._skull[name] for name in names), *muscles]
 
     def _muscles_now(self, scene: FaceScene) -> Muscles:
         """The muscles, shaped anew unless nothing has moved: a camera that turns is no reason."""
-        bones, sums = scene.bone_transforms(), scene.simulation.sums
+        bones, sums = scene.bone_transforms(), scene.simulation.controls.sums
         now = np.concatenate([scene.positions, *bones.values()], axis=None)
         now = np.append(now, list(sums.values()))
         if self._muscles is None:

@@ -72,7 +72,7 @@ class Muscles:
         simulation.reset()
         self.names: list[tuple[str, int]] = []  # of linear muscles, and the number of a fibre
         widths = list[float]()
-        for name, lines in simulation.fibres().items():
+        for name, lines in simulation.anatomy.fibres().items():
             row = scene.head.rig["muscle"].get(
                 name.removesuffix("_left").removesuffix("_right"), {}
             )
@@ -88,14 +88,14 @@ class Muscles:
             edge = _resampled(marks[None, list(numbers)])[0]
             away = (edge - marks[AROUND_OF[end]].mean(axis=0)) * (1.0, 1.0, 0.0)
             away /= np.linalg.norm(away, axis=1, keepdims=True)
-            names = simulation.sums
+            names = simulation.controls.sums
             own = [name for name in names if name.startswith(start) and name.endswith(end)]
             for outward, width in bands:
                 rings.append(edge + outward * away)
                 widths.append(width)
                 self._controls.append(own)
         self._width = np.array(widths)[:, None]
-        self._middle = np.array([marks[27, 0], *simulation.pivots()["mandible"][1:]])
+        self._middle = np.array([marks[27, 0], *simulation.bones.pivots()["mandible"][1:]])
         self._bone_depth = np.asarray(scene.head.bone_depth)
         self._bind(np.array(rings), scene)
         self._length = _lengths(self._lines(simulation, scene.rest_positions))
@@ -115,14 +115,14 @@ class Muscles:
 
     def _lines(self, simulation: Any, x: Floats) -> Floats:
         """The middles of all bands, (b, ROWS, 3), those of the sphincters last."""
-        found = simulation.fibres()
+        found = simulation.anatomy.fibres()
         fibres = _resampled(np.array([found[name][number] for name, number in self.names]))
         carried = np.einsum("brk,brkc->brc", self._share, x[self._carriers])
         return np.concatenate([fibres, carried + self._shift])
 
     def follow(self, scene: Any) -> None:
         """Take the shape and the colours of now."""
-        sums, bone = scene.simulation.sums, scene.bone_transforms()["cranium"]
+        sums, bone = scene.simulation.controls.sums, scene.bone_transforms()["cranium"]
         middle = bone[:3, :3] @ self._middle + bone[:3, 3]
         skin = _Skin(scene.positions, scene.faces, self._bone_depth, middle)
         lines = self._lines(scene.simulation, scene.positions)

@@ -24,7 +24,7 @@ def labels_of_face(
     scene: FaceScene, camera: render.OrbitCamera, size: tuple[int, int], depth: Any
 ) -> dict[str, Any]:
     """All that is known of a face as it is now; `depth`: the depth map of its picture, (H, W)."""
-    arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.sums))
+    arkit = solved(scene, ARKIT_SHAPES, _in_one_frame(scene.simulation.controls.sums))
     labels = labels_of(scene, camera, size, depth)
     pixels = np.array(labels["landmarks"]["pixels"])[:68]
     positions = scene.positions @ scene.bone_transforms()["cranium"][:3, :3]  # as if not turned
@@ -45,10 +45,10 @@ def action_units(scene: FaceScene) -> dict[str, float]:
     as much is counted as units can tell. A unit without side is the stronger of its sides, as FACS
     scores it where sides are not told apart.
     """
-    sums = _in_one_frame(scene.simulation.sums)
+    sums = _in_one_frame(scene.simulation.controls.sums)
     found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))
     units = {}
-    for name in sorted(scene.simulation.layers[ACTION_UNITS], key=by_number):
+    for name in sorted(scene.simulation.controls.layers[ACTION_UNITS], key=by_number):
         names = (name, f"{name}_left", f"{name}_right")
         units[name] = round(max(float(found[each][0]) for each in names if each in found), DIGITS)
     return units

@@ -129,7 +129,7 @@ def record(
     positions = np.empty((most, *scene.positions.shape), np.float32)
     bones: list[Mapping[str, Floats]] = []
     shapes: list[list[Singles]] = [[] for _ in scene.parts]
-    simulation = scene.simulation if isinstance(scene, FaceScene) else None
+    moved = scene.simulation.controls if isinstance(scene, FaceScene) else None
     controls, activations = list[Floats](), list[Floats]()
     for now in play(scene, script, frames_per_second, until=end, progress=progress):
         if now < begin - 0.5 / frames_per_second:
@@ -139,10 +139,10 @@ def record(
         for kept, part in zip(shapes, scene.parts, strict=True):
             kept.append(part.vertices)
         controls.append(scene.values.numbers)
-        activations.append(np.array([*simulation.sums.values()] if simulation else []))
+        activations.append(np.array([] if moved is None else moved.wanted))
     matrices = {name: np.stack([each[name] for each in bones]) for name in bones[0]}
     skin = Surface(
-        "skin" if simulation else scene.name,
+        "skin" if moved else scene.name,
         scene.rest_positions,
         scene.faces,
         positions[: len(bones)],
@@ -156,9 +156,7 @@ def record(
         (skin, *(_surface_of(*each, matrices) for each in zip(scene.parts, shapes, strict=True))),
         matrices,
         dict(zip(scene.values, np.stack(controls, axis=1), strict=True)),
-        dict(
-            zip(simulation.sums if simulation else (), np.stack(activations, axis=1), strict=True)
-        ),
+        dict(zip(moved.lowest if moved else (), np.stack(activations, axis=1), strict=True)),
     )
 
 

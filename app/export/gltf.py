@@ -92,7 +92,7 @@ def _take_pose_out(clip: Clip, shapes: Floats) -> None:
     """Leave shapes of the skin, (N, V, 3), as the head's bone finds them."""
     if not isinstance(clip.scene, FaceScene):
         return
-    share = clip.scene.simulation.head_weight[:, None]
+    share = clip.scene.simulation.bones.head_weight[:, None]
     for shape, matrix in zip(shapes, clip.bones[HEAD], strict=True):
         if not np.array_equal(matrix, np.eye(4)):
             turns = np.eye(3) + share[:, :, None] * (matrix[:3, :3] - np.eye(3))
@@ -110,7 +110,7 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
         node: dict[str, Any] = {"name": piece.surface.name}
         share = None
         if piece.bone is None and isinstance(clip.scene, FaceScene):
-            node["skin"], share = skeleton.skin, clip.scene.simulation.head_weight
+            node["skin"], share = skeleton.skin, clip.scene.simulation.bones.head_weight
         node["mesh"] = _add_mesh(glb, clip, piece, skeleton.pivot(piece.bone), share)
         number = glb.add("nodes", node)
         if piece.bone is None:
@@ -229,7 +229,7 @@ class Skeleton:
         if not isinstance(clip.scene, FaceScene):
             self.roots = [self._add(bone, None) for bone in sorted(used)]
             return
-        pivots = clip.scene.simulation.pivots()
+        pivots = clip.scene.simulation.bones.pivots()
         self._pivots = {NECK: pivots[HEAD], **pivots}
         self.roots = [self._add(NECK, None)]
         head = self._add(HEAD, NECK)

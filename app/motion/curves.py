@@ -37,7 +37,7 @@ def solved(
     """The values of a layer's controls that come nearest to these activations, by name.
 
     layer: its title. activations: what each of the lowest controls comes to in N frames, shape
-    (N,), as `simulation.sums` and `Clip.activations` have it. controls: what was set to make them,
+    (N,), as `Controls.sums` and `Clip.activations` have it. controls: what was set to make them,
     shape (N,) each; of this layer's controls that counts as it is, and only the rest is solved for.
 
     A control that has sides (AU12) is told by these alone (AU12_left, AU12_right). Raises UserError
@@ -45,8 +45,8 @@ def solved(
     """
     names = sided(scene, layer)
     assert isinstance(scene, FaceScene)
-    simulation, tables = scene.simulation, scene.simulation.tables
-    frames = np.stack([activations[name] for name in simulation.controls], axis=1)
+    tables = scene.simulation.controls.tables
+    frames = np.stack([activations[name] for name in scene.simulation.controls.lowest], axis=1)
     shares = np.stack([tables.shares[name] for name in names])
     highest = np.array([scene.limits[name][1] for name in names])
     known = _known(names, tables, controls or {}, len(frames), highest)
@@ -61,7 +61,7 @@ def sided(scene: Scene, layer: str) -> tuple[str, ...]:
     """The controls of a layer, without those that have sides; UserError where there is no such."""
     if not isinstance(scene, FaceScene):
         raise UserError(f"{layer}: the scene '{scene.name}' has no muscles; take the scene face")
-    names = scene.simulation.layers.get(layer, ())
+    names = scene.simulation.controls.layers.get(layer, ())
     if not names:
         raise UserError(f"{layer}: this head has no such controls; take the built-in head")
     return tuple(name for name in names if name + SIDES[0] not in names)

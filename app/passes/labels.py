@@ -74,9 +74,8 @@ def labels_of(
         "roll": math.atan2(-turned[1, 0], turned[1, 1]),
     }
     ways = {side: gaze(scene, side) for side in SIDES}
-    labels["activations"] = {
-        name: round(value, DIGITS) for name, value in scene.simulation.sums.items() if value
-    }
+    sums = scene.simulation.controls.sums
+    labels["activations"] = {name: round(value, DIGITS) for name, value in sums.items() if value}
     labels["head"] = {
         "R": _plain(rotation),
         "t": _plain(placed.to_camera(cranium[None, :3, 3])[0]),

@@ -105,9 +105,9 @@ class FaceScene(Scene):
         self.simulation = simulation = simulation or sim.create(head)
         self.faces, self.rest_positions = simulation.faces, simulation.rest_positions
         self.positions = simulation.positions
-        self.groups, self.limits = simulation.groups, Limits(simulation.limits)
-        self.actions = simulation.actions
-        expressions = simulation.layers.get("Expressions", ())
+        controls = simulation.controls
+        self.groups, self.limits = controls.groups, Limits(controls.limits)
+        self.actions, expressions = controls.actions, controls.layers.get("Expressions", ())
         self.expressions = tuple(
             name for name in expressions if parted(name)[0] not in {*expressions} - {name}
         )
@@ -134,7 +134,7 @@ class FaceScene(Scene):
         lowest = float(landmarks[CHIN, 1]) - NECK  # what is below may lie beyond the frame
         self.framed = self.extent[self.extent[:, 1] > lowest]
         self._moved_by: dict[str, dict[str, float]] = {}
-        self.values = self.limits.pose(simulation.values)
+        self.values = self.limits.pose(controls.values)
 
     def clone(self) -> FaceScene:
         """The same head once more, at rest, which moves by itself; that takes no time."""
@@ -144,7 +144,7 @@ class FaceScene(Scene):
 
     def take(self, values: ControlValues) -> None:
         super().take(values)
-        self.simulation.take(values.numbers)
+        self.simulation.controls.take(values.numbers)
 
     def step(self, seconds: float) -> None:
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
@@ -158,7 +158,7 @@ class FaceScene(Scene):
         self._bend_parts()
 
     def _bend_parts(self) -> None:
-        bent, bones = self.simulation.tongue(), self.bone_transforms()
+        bent, bones = self.simulation.anatomy.tongue(), self.bone_transforms()
         for part in self.parts:
             if isinstance(part, SurfaceAttachment):
                 part.follow(self.positions, bones[part.bone])
@@ -166,16 +166,16 @@ class FaceScene(Scene):
                 part.bend(bent)
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
-        return self.simulation.bone_transforms()
+        return self.simulation.bones.transforms()
 
     def moved_by(self, name: str) -> Mapping[str, float]:
         """The lowest controls that a control at its most moves, and how far."""
-        simulation = self.simulation
+        controls = self.simulation.controls
         if name not in self._moved_by:
             # Asked of the simulation, between two steps, so that nothing of layers is known here.
-            simulation.pose({name: self.limits[name][1]})
-            sums = simulation.sums
-            simulation.take(self.values.numbers)
+            controls.pose({name: self.limits[name][1]})
+            sums = controls.sums
+            controls.take(self.values.numbers)
             self._moved_by[name] = {each: abs(share) for each, share in sums.items() if share}
         return self._moved_by[name]
 

@@ -148,7 +148,7 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
             camera = camera_for(scene, viewpoint.view)
             camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))
             camera.pan(*viewpoint.aside)
-            parts, bones = tuple(scene.parts), simulation.bone_transforms()
+            parts, bones = tuple(scene.parts), simulation.bones.transforms()
             green = tuple(
                 replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0)
                 for part in parts

@@ -149,7 +149,7 @@ def test_the_tongue_of_a_fitted_head_comes_out(
 ) -> None:
     """Its own lips are what it lies on."""
     settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})
-    bent, jaw = simulation.tongue(), simulation.bone_transforms()["mandible"]
+    bent, jaw = simulation.anatomy.tongue(), simulation.bones.transforms()["mandible"]
     assert bent is not None
     reach = (bent @ jaw[:3, :3].T + jaw[:3, 3])[:, 2].max()
     assert 4.0 < reach - simulation.positions[fitted.landmarks[66], 2] < 20.0

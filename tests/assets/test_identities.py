@@ -165,7 +165,7 @@ def test_expressions_work_on_persons(
         moved = []
         for each in (simulation, usual):
             each.reset()
-            each.pose({pose: 1.0})
+            each.controls.pose({pose: 1.0})
             for _ in range(60):
                 each.step(1.0 / 60.0)
             moved.append(np.linalg.norm(each.positions - each.rest_positions, axis=1).max())

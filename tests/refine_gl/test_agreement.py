@@ -32,7 +32,7 @@ def poses(head: Head) -> dict[str, Points]:
     for name in POSES:
         face.reset()
         if name != "rest":
-            face.set(name, 1.0)
+            face.controls.set(name, 1.0)
         for _ in range(60):
             face.step(1 / 60)
         found[name] = face.positions.copy()
@@ -183,7 +183,7 @@ def test_coherent_frames(frames: int, rules: str, head: Head) -> None:
     processor, card = bound_twice(head.faces, head.vertices, coherent=True, **RULES[rules])
     for frame in range(frames):
         for place, name in enumerate(("joy", "anger", "yawn")):
-            face.set(name, float(frame // 20 % 3 == place))
+            face.controls.set(name, float(frame // 20 % 3 == place))
         face.step(1 / 60)
         assert_same(processor, card, face.positions)
     assert isinstance(processor, refine.Kahler) and processor.history is not None

@@ -4,6 +4,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
+from risorius.sim.controls import Controls
 
 
 @pytest.fixture(scope="session")
@@ -17,3 +18,9 @@ def simulation(shared_simulation: sim.Simulation) -> sim.Simulation:
     """The simulation of the built-in head, at rest."""
     shared_simulation.reset()
     return shared_simulation
+
+
+@pytest.fixture
+def controls(simulation: sim.Simulation) -> Controls:
+    """Those of the simulation, all at zero."""
+    return simulation.controls

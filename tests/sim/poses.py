@@ -15,7 +15,7 @@ Array = npt.NDArray[np.float64]
 
 def both_sides(simulation: sim.Simulation, values: Mapping[str, float]) -> dict[str, float]:
     """Values for muscle names without a side, applied to both sides where there are two."""
-    known = set(simulation.controls)
+    known = set(simulation.controls.lowest)
     return {
         control: value
         for name, value in values.items()
@@ -29,7 +29,7 @@ def settled_displacement(
 ) -> Array:
     """Pose the face from rest and return how far it moved [mm], shape (V, 3)."""
     simulation.reset()
-    simulation.set_all(values)
+    simulation.controls.set_all(values)
     for _ in range(frames):
         simulation.step(FRAME)
     moved: Array = simulation.positions - simulation.rest_positions

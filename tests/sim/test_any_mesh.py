@@ -49,9 +49,9 @@ def _with_flaws() -> SimpleNamespace:
 def test_any_mesh_is_stable_and_comes_back(mesh: Any, generator: np.random.Generator) -> None:
     """Kicked hard, a mesh of any size swings and returns to rest; it has no controls."""
     simulation = sim.create(mesh)
-    assert simulation.controls == ()
+    assert simulation.controls.lowest == ()
     size = float(np.ptp(simulation.rest_positions, axis=0).max())
-    simulation.kick(generator.normal(scale=2.0 * size, size=simulation.positions.shape))
+    simulation.touch.kick(generator.normal(scale=2.0 * size, size=simulation.positions.shape))
     simulation.step(1 / 20)
     assert 1e-4 * size < np.abs(simulation.positions - simulation.rest_positions).max() < 2.0 * size
     for _ in range(120):
@@ -64,7 +64,7 @@ def test_input_arrays_are_copied(head: Head) -> None:
     mesh = _grid()
     before = mesh.vertices.copy()
     simulation = sim.create(mesh)
-    simulation.kick(np.ones_like(before))
+    simulation.touch.kick(np.ones_like(before))
     simulation.step(FRAME)
     assert np.array_equal(mesh.vertices, before)
     mesh.vertices[:] = 7.0
@@ -74,14 +74,14 @@ def test_input_arrays_are_copied(head: Head) -> None:
 def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head: Head) -> None:
     """Landmarks alone give gaze and head pose, own weights a jaw and lips; a rig gives muscles."""
     simulation = sim.create(without(head, "rig"))
-    assert set(simulation.groups) == {"Lips", "Jaw", "Gaze", "Head", "Both sides"}
+    assert set(simulation.controls.groups) == {"Lips", "Jaw", "Gaze", "Head", "Both sides"}
     assert moved_landmarks(head, settled_displacement(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
 
 
 def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head: Head) -> None:
     """Without landmarks a rig cannot be placed, but its tissue still holds the skin."""
     simulation = sim.create(without(head, "landmarks", "eyes", "jaw_axis"))
-    assert simulation.controls == ()
+    assert simulation.controls.lowest == ()
     simulation.step(FRAME)
 
 

@@ -21,7 +21,7 @@ def test_head_turns_as_one(
 ) -> None:
     """Skin above the neck moves with the cranium: up, to the left, top of the head to the left."""
     settled_displacement(simulation, {control: 0.5})
-    cranium = simulation.bone_transforms()["cranium"]
+    cranium = simulation.bones.transforms()["cranium"]
     carried = head.vertices @ cranium[:3, :3].T + cranium[:3, 3]
     face = head.landmarks
     assert np.abs(simulation.positions[face] - carried[face]).max() < 1e-6
@@ -65,7 +65,7 @@ def test_teeth_hold_the_lips_off(simulation: sim.Simulation, head: Head) -> None
     """Rolled lips and sucked cheeks come to rest on the teeth; without teeth they go deeper."""
     values = {"orbicularis_oris_roll_upper": 1.0, "orbicularis_oris_roll_lower": 1.0}
     settled_displacement(simulation, values)
-    assert simulation.penetrations()["teeth"] < 1e-6
+    assert simulation.anatomy.penetrations()["teeth"] < 1e-6
     teeth = [part for part in head.parts if part.name.startswith("teeth_")]
     swollen = [
         SimpleNamespace(name=p.name, bone=p.bone, vertices=p.vertices * (1.0, 1.0, 1.08))

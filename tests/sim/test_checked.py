@@ -1,6 +1,7 @@
 """The doors of `sim`: whatever is handed in wrongly is a ValueError that says what is allowed."""
 
 from collections.abc import Callable
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
@@ -38,29 +39,27 @@ TRIANGLE = {"vertices": np.eye(3) * 10.0, "faces": np.array([[0, 1, 2]])}
 
 # Method, the argument that is wrong, what it is called in the text, and what it is in turn.
 WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
-    ("set", "name", "control", (*NAMES, [], {})),
-    ("set", "value", "control 'jaw_open'", (*NO_NUMBER, -1, 2)),
-    ("set_all", "values", "values", TABLES),
-    ("set_all", "values", "control", tuple({name: 1.0} for name in NAMES)),
-    ("set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
-    ("pose", "values", "values", TABLES),
-    ("pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
-    ("take", "values", "values", ARRAYS),
+    ("controls.set", "name", "control", (*NAMES, [], {})),
+    ("controls.set", "value", "control 'jaw_open'", (*NO_NUMBER, -1, 2)),
+    ("controls.set_all", "values", "values", TABLES),
+    ("controls.set_all", "values", "control", tuple({name: 1.0} for name in NAMES)),
+    ("controls.set_all", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("controls.pose", "values", "values", TABLES),
+    ("controls.pose", "values", "control 'jaw_open'", tuple({"jaw_open": v} for v in NO_NUMBER)),
+    ("controls.take", "values", "values", ARRAYS),
     ("copy_from", "other", "other", (*NONSENSE, 3, sim.create(SimpleNamespace(**TRIANGLE)))),
-    ("kick", "velocities", "velocities", ARRAYS),
-    ("drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
-    ("drag", "targets", "targets", ARRAYS),
-    ("drag", "firmness", "firmness", SHARES),
+    ("touch.kick", "velocities", "velocities", ARRAYS),
+    ("touch.drag", "vertices", "vertices", NUMBERS[:3] + NUMBERS[4:]),  # none is as many as any
+    ("touch.drag", "targets", "targets", ARRAYS),
+    ("touch.drag", "firmness", "firmness", SHARES),
     ("step", "dt", "dt", (*NO_NUMBER, 0, -1, 1, True)),
 ]
 RIGHT: dict[str, dict[str, Any]] = {
-    "set": {"name": "jaw_open", "value": 0.5},
-    "set_all": {"values": {"jaw_open": 0.5}},
-    "pose": {"values": {"jaw_open": 0.5}},
-    "take": {},
-    "drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
-    "copy_from": {"other": None},  # its clones are those of the simulation that is asked
-    "kick": {"velocities": np.zeros((COUNT, 3))},
+    "controls.set": {"name": "jaw_open", "value": 0.5},
+    "controls.set_all": {"values": {"jaw_open": 0.5}},
+    "controls.pose": {"values": {"jaw_open": 0.5}},
+    "touch.drag": {"vertices": [0, 1], "targets": POINTS, "firmness": [0.5, 1.0]},
+    "touch.kick": {"velocities": np.zeros((COUNT, 3))},
     "step": {"dt": 1 / 60},
 }
 
@@ -95,9 +94,9 @@ def test_wrong_arguments_are_told(
     """Each is a ValueError with the argument's name, and nothing has changed by it."""
     small.reset()
     for value in values:
-        wrong = {**RIGHT[method], argument: value}
-        refused(lambda wrong=wrong: getattr(small, method)(**wrong), begins)  # type: ignore[misc]
-    assert not any(small.values.values())
+        wrong = {**RIGHT.get(method, {}), argument: value}
+        refused(lambda wrong=wrong: attrgetter(method)(small)(**wrong), begins)  # type: ignore[misc]
+    assert not any(small.controls.values.values())
     small.step(1 / 60)
     assert np.array_equal(small.positions, small.rest_positions)
 
@@ -179,10 +178,10 @@ def test_arrays_of_any_layout_are_taken(layout: Callable[[Any], Any]) -> None:
     mesh.vertices, mesh.faces = layout(mesh.vertices), layout(mesh.faces)
     other = sim.create(mesh)
     push, rows = np.arange(3.0 * COUNT).reshape(COUNT, 3), np.array([1, 2])
-    plain.kick(push)
-    other.kick(layout(push))
-    plain.drag(rows, push[:2], [1.0, 1.0])
-    other.drag(layout(rows), layout(push[:2]), layout(np.ones(2)))
+    plain.touch.kick(push)
+    other.touch.kick(layout(push))
+    plain.touch.drag(rows, push[:2], [1.0, 1.0])
+    other.touch.drag(layout(rows), layout(push[:2]), layout(np.ones(2)))
     for each in (plain, other):
         each.step(1 / 60)
     assert np.array_equal(plain.positions, other.positions)

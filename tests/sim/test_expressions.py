@@ -200,9 +200,10 @@ def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
 def test_skin_never_enters_the_eyeball(simulation: sim.Simulation, head: Head, gaze: float) -> None:
     """Through a blink with everything around the eye active, no vertex sinks into the eyeball."""
-    around = [n for n in simulation.controls if "oculi" in n or "frontalis" in n or "super" in n]
+    lowest = simulation.controls.lowest
+    around = [n for n in lowest if "oculi" in n or "frontalis" in n or "super" in n]
     for level in (1.0, 0.0):
-        simulation.set_all({**dict.fromkeys(around, level), "gaze_vertical": gaze})
+        simulation.controls.set_all({**dict.fromkeys(around, level), "gaze_vertical": gaze})
         for _ in range(20):
             simulation.step(FRAME)
             for eye in head.eyes:
@@ -228,7 +229,7 @@ def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
         chin = moved_landmarks(head, settled_displacement(simulation, {"jaw_sideways": sign}), 8)
         assert 8.0 < sign * chin[0] < 12.0
         assert abs(chin[2]) < 1.5
-        matrix = simulation.bone_transforms()["mandible"]
+        matrix = simulation.bones.transforms()["mandible"]
         condyles = head.jaw_axis @ matrix[:3, :3].T + matrix[:3, 3] - head.jaw_axis
         assert (np.abs(sign * condyles[:, 0] - 10.0) < 2.0).all()
         assert np.abs(condyles[:, 1:]).max() < 1.5
@@ -238,7 +239,7 @@ def test_gaze_turns_the_eyes(simulation: sim.Simulation, head: Head) -> None:
     """+1 looks to the subject's left and up, about the centre; the upper lid follows."""
     moved = settled_displacement(simulation, {"gaze_horizontal": 1.0, "gaze_vertical": 1.0})
     for eye in head.eyes:
-        matrix = simulation.bone_transforms()[f"eye_{eye.name}"]
+        matrix = simulation.bones.transforms()[f"eye_{eye.name}"]
         pupil = (
             matrix[:3, :3] @ (eye.centre + np.array([0.0, 0.0, eye.radius]))
             + matrix[:3, 3]
@@ -254,7 +255,8 @@ def test_each_eye_looks_for_itself(simulation: sim.Simulation, head: Head) -> No
     """Eyes converge, and a lid follows its own eye: the other one stays where it is."""
     gaze = {"gaze_horizontal_left": -0.5, "gaze_horizontal_right": 0.5, "gaze_vertical_left": -1.0}
     moved = settled_displacement(simulation, gaze)
-    left, right = (simulation.bone_transforms()[f"eye_{side}"][:3, 2] for side in ("left", "right"))
+    bones = simulation.bones.transforms()
+    left, right = (bones[f"eye_{side}"][:3, 2] for side in ("left", "right"))
     assert left[0] < -0.2 < 0.2 < right[0]
     assert left[1] < -0.4 and abs(right[1]) < 0.01
     assert moved_landmarks(head, moved, 43, 44)[1] < -1.5
@@ -263,10 +265,10 @@ def test_each_eye_looks_for_itself(simulation: sim.Simulation, head: Head) -> No
 
 def test_fibres_shorten(simulation: sim.Simulation) -> None:
     """The drawn fibres of a contracting muscle get shorter; there are some for every muscle."""
-    relaxed = simulation.fibres()
+    relaxed = simulation.anatomy.fibres()
     assert all(relaxed[name] for name in relaxed)
     settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
-    tight = simulation.fibres()["zygomaticus_major_left"]
+    tight = simulation.anatomy.fibres()["zygomaticus_major_left"]
     for before, after in zip(relaxed["zygomaticus_major_left"], tight, strict=True):
         assert _length(after) < 0.8 * _length(before)
 

@@ -189,29 +189,29 @@ def test_a_row_cannot_hold_what_is_a_share() -> None:
         controls(SHARED, layer("Y", above={"part": 1.0}))
 
 
-def test_the_shipped_tables_are_complete(simulation: sim.Simulation, head: Head) -> None:
+def test_the_shipped_tables_are_complete(controls: Controls, head: Head) -> None:
     """Every action unit, expression and viseme is there, with words for what it does."""
-    names = simulation.limits
+    names = controls.limits
     sided = {unit: (f"{unit}_left", f"{unit}_right") for unit in ("AU30", "AU46")}
     for unit in ACTION_UNITS:
         assert all(name in names for name in sided.get(unit, (unit,))), unit
     assert all(f"{unit}{side}" in names for unit in ONE_SIDED for side in ("_left", "_right"))
-    assert set(EXPRESSIONS) <= set(simulation.layers["Expressions"])
-    assert simulation.layers["Visemes"] == tuple(f"viseme_{sound}" for sound in VISEMES)
-    shapes = simulation.layers["ARKit shapes"]
+    assert set(EXPRESSIONS) <= set(controls.layers["Expressions"])
+    assert controls.layers["Visemes"] == tuple(f"viseme_{sound}" for sound in VISEMES)
+    shapes = controls.layers["ARKit shapes"]
     assert {part: sum(name.startswith(part) for name in shapes) for part in ARKIT} == ARKIT
     assert len(shapes) == 52
-    assert tuple(simulation.layers) == (BOTH_SIDES, *TITLES)
+    assert tuple(controls.layers) == (BOTH_SIDES, *TITLES)
     for title in TITLES:
-        assert all(simulation.actions[name] for name in simulation.layers[title])
+        assert all(controls.actions[name] for name in controls.layers[title])
 
 
-def test_each_row_of_the_shipped_tables_does_something(simulation: sim.Simulation) -> None:
+def test_each_row_of_the_shipped_tables_does_something(controls: Controls) -> None:
     """At full value a muscle or a bone is asked for something; silence is silent."""
     for title in TITLES:
-        for name in simulation.layers[title]:
-            simulation.pose({name: 1.0, **({"jawOpen": 0.5} if name == "mouthClose" else {})})
-            assert any(simulation.sums.values()) == (name != "viseme_sil"), name
+        for name in controls.layers[title]:
+            controls.pose({name: 1.0, **({"jawOpen": 0.5} if name == "mouthClose" else {})})
+            assert any(controls.sums.values()) == (name != "viseme_sil"), name
 
 
 def mirrored(sums: dict[str, float]) -> dict[str, float]:
@@ -224,26 +224,26 @@ def mirrored(sums: dict[str, float]) -> dict[str, float]:
     return found
 
 
-def test_sides_of_arkit_shapes_ask_for_the_same(simulation: sim.Simulation) -> None:
+def test_sides_of_arkit_shapes_ask_for_the_same(controls: Controls) -> None:
     """Whatever a shape of the left asks of the left, its twin asks of the right."""
 
     def sums(name: str) -> dict[str, float]:
-        simulation.pose({name: 1.0})
-        return simulation.sums
+        controls.pose({name: 1.0})
+        return controls.sums
 
-    shapes = simulation.layers["ARKit shapes"]
+    shapes = controls.layers["ARKit shapes"]
     twins = [name.removesuffix("Left") for name in shapes if name.endswith("Left")]
     assert len(twins) == 20
     for base in twins:
         assert sums(f"{base}Right") == pytest.approx(mirrored(sums(f"{base}Left"))), base
 
 
-def test_expressions_have_sides(simulation: sim.Simulation) -> None:
+def test_expressions_have_sides(controls: Controls) -> None:
     """Both sides together ask for the whole; a one-sided face has its image on the other side."""
 
     def sums(*names: str) -> dict[str, float]:
-        simulation.pose(dict.fromkeys(names, 0.5))
-        return {name: value for name, value in simulation.sums.items() if value}
+        controls.pose(dict.fromkeys(names, 0.5))
+        return {name: value for name, value in controls.sums.items() if value}
 
     for name in ("joy", "sadness", "surprise", "anger", "disgust", "fear", "blink"):
         assert sums(f"{name}_left", f"{name}_right") == pytest.approx(sums(name)), name
@@ -253,12 +253,12 @@ def test_expressions_have_sides(simulation: sim.Simulation) -> None:
         assert sums(f"{name}_right") == pytest.approx(mirrored(sums(name))), name
 
 
-def test_the_jaw_of_a_funnel_counts_once(simulation: sim.Simulation) -> None:
+def test_the_jaw_of_a_funnel_counts_once(controls: Controls) -> None:
     """Lips that funnel open the jaw where it is shut, and leave it where it is open."""
-    simulation.pose({"AU22": 1.0, "mouthPucker": 0.5})
-    assert simulation.sums["jaw_open"] == pytest.approx(0.22)
-    simulation.pose({"AU22": 1.0, "jawOpen": 0.5})
-    assert simulation.sums["jaw_open"] == 0.5
+    controls.pose({"AU22": 1.0, "mouthPucker": 0.5})
+    assert controls.sums["jaw_open"] == pytest.approx(0.22)
+    controls.pose({"AU22": 1.0, "jawOpen": 0.5})
+    assert controls.sums["jaw_open"] == 0.5
 
 
 def test_mouth_close_shuts_an_open_jaw(simulation: sim.Simulation, head: Head) -> None:
@@ -275,7 +275,7 @@ def test_mouth_close_shuts_an_open_jaw(simulation: sim.Simulation, head: Head) -
 @pytest.mark.parametrize("title", ["Action units", "Visemes", "ARKit shapes"])
 def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title: str) -> None:
     """No row turns more than a few triangles over, nor throws skin away."""
-    for name in simulation.layers[title]:
+    for name in simulation.controls.layers[title]:
         if name.endswith(("_left", "_right")) or name in HEAD_UNITS:
             continue
         moved = settled_displacement(simulation, {name: 1.0}, frames=45)
@@ -307,7 +307,7 @@ def test_speech_is_crisp(simulation: sim.Simulation, head: Head, sound: str) -> 
     lips = head.landmarks[48:68]
     target = settled_displacement(simulation, {f"viseme_{sound}": 1.0}, frames=90)[lips]
     simulation.reset()
-    simulation.pose({f"viseme_{sound}": 1.0})
+    simulation.controls.pose({f"viseme_{sound}": 1.0})
     size = float((target**2).sum())
     reached = []
     for _ in range(60):

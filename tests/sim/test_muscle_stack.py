@@ -28,9 +28,9 @@ def stacked(head: Head, stack: dict[str, list[str]], **changes: float) -> Simple
 
 def displaced(simulation: sim.Simulation, muscle: str) -> Array:
     """How far the points of a relaxed muscle are from where they rest, shape (B, n, 3)."""
-    now = np.array(simulation.fibres()[muscle])
+    now = np.array(simulation.anatomy.fibres()[muscle])
     simulation.reset()
-    return now - np.array(simulation.fibres()[muscle])
+    return now - np.array(simulation.anatomy.fibres()[muscle])
 
 
 def test_a_muscle_rises_on_the_bulge_beneath(head: Head) -> None:

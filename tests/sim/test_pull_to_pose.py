@@ -16,7 +16,7 @@ LEFT_LID, INNER_BROW, LEFT_WING = 44, 22, 35
 
 def candidates(face: sim.Simulation) -> list[tuple[str, ...]]:
     """All muscles of one side, and the jaw."""
-    names = face.controls
+    names = face.controls.lowest
     return [
         (name,)
         for name in names
@@ -46,7 +46,7 @@ def values_of(pull: sim.Pull) -> dict[str, float]:
 
 def settled(face: sim.Simulation, values: dict[str, float]) -> Array:
     """Where the skin lies at last under these controls."""
-    face.set_all(values)
+    face.controls.set_all(values)
     for _ in range(60):
         face.step(FRAME)
     return face.positions.copy()

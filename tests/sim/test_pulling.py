@@ -18,14 +18,14 @@ def test_skin_follows_a_finger_and_swings_back(simulation: sim.Simulation) -> No
     """Pulled by 20 mm it comes most of the way and takes skin around along; let go, it rests."""
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
-    simulation.drag(grabbed, target, np.ones(len(grabbed)))
+    simulation.touch.drag(grabbed, target, np.ones(len(grabbed)))
     for _ in range(60):
         simulation.step(FRAME)
     moved = simulation.positions - simulation.rest_positions
     assert moved[grabbed, 0].min() > 12.0
     others = np.setdiff1d(np.arange(len(moved)), grabbed)
     assert 2.0 < np.abs(moved[others]).max() < 20.0
-    simulation.end_drag()
+    simulation.touch.end_drag()
     for _ in range(120):
         simulation.step(FRAME)
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
@@ -33,13 +33,13 @@ def test_skin_follows_a_finger_and_swings_back(simulation: sim.Simulation) -> No
 
 def test_a_finger_knows_where_a_turned_head_is(simulation: sim.Simulation) -> None:
     """With the head turned aside the skin still goes where the finger goes."""
-    simulation.set("head_yaw", 1.0)
+    simulation.controls.set("head_yaw", 1.0)
     for _ in range(90):
         simulation.step(FRAME)
     before = simulation.positions.copy()
     grabbed = cheek(simulation)
     offset = np.array([10.0, 12.0, 0.0])
-    simulation.drag(grabbed, before[grabbed] + offset, np.ones(len(grabbed)))
+    simulation.touch.drag(grabbed, before[grabbed] + offset, np.ones(len(grabbed)))
     for _ in range(60):
         simulation.step(FRAME)
     moved = (simulation.positions - before)[grabbed].mean(axis=0)
@@ -55,6 +55,6 @@ def test_a_mad_finger_breaks_nothing(
     for _ in range(40):
         offset = generator.uniform(-100.0, 100.0, 3)
         target = simulation.rest_positions[grabbed] + offset
-        simulation.drag(grabbed, target, np.ones(len(grabbed)))
+        simulation.touch.drag(grabbed, target, np.ones(len(grabbed)))
         simulation.step(1.0 / 20.0)
         assert np.abs(simulation.positions - simulation.rest_positions).max() < 200.0

@@ -22,7 +22,7 @@ def test_energy_only_falls_without_input(
     simulation: sim.Simulation, generator: np.random.Generator, speed: float
 ) -> None:
     """After a blow the energy falls in every frame and is gone after a second and a half."""
-    simulation.kick(generator.normal(scale=speed, size=simulation.positions.shape))
+    simulation.touch.kick(generator.normal(scale=speed, size=simulation.positions.shape))
     energies = [_energy(simulation)]
     for _ in range(90):
         simulation.step(FRAME)
@@ -37,15 +37,16 @@ def test_random_jumps_stay_bounded_and_come_back(
     simulation: sim.Simulation, generator: np.random.Generator, frames_per_second: float
 ) -> None:
     """Every control jumps in every frame; the face stays in bounds and is at rest after 2 s."""
-    limits = [simulation.limits[name] for name in simulation.controls]
+    controls = simulation.controls
+    limits = [controls.limits[name] for name in controls.lowest]
     furthest = 0.0
     for _ in range(int(2.0 * frames_per_second)):
-        for name, (low, high) in zip(simulation.controls, limits, strict=True):
-            simulation.set(name, generator.choice([low, high, generator.uniform(low, high)]))
+        for name, (low, high) in zip(controls.lowest, limits, strict=True):
+            controls.set(name, generator.choice([low, high, generator.uniform(low, high)]))
         simulation.step(1.0 / frames_per_second)
         furthest = max(furthest, float(np.abs(_moved(simulation)).max()))
     assert 5.0 < furthest < 110.0
-    simulation.set_all(dict.fromkeys(simulation.controls, 0.0))
+    simulation.controls.set_all(dict.fromkeys(simulation.controls.lowest, 0.0))
     for _ in range(int(2.0 * frames_per_second)):
         simulation.step(1.0 / frames_per_second)
     assert np.abs(_moved(simulation)).max() < 0.01
@@ -55,7 +56,7 @@ def test_everything_at_once_on_and_off(simulation: sim.Simulation) -> None:
     """All muscles at full strength, switched on and off every tenth of a second."""
     for beat in range(20):
         level = float(beat % 2)
-        simulation.set_all({name: level for name in simulation.controls})
+        simulation.controls.set_all({name: level for name in simulation.controls.lowest})
         for _ in range(6):
             simulation.step(FRAME)
         assert np.abs(_moved(simulation)).max() < 110.0
@@ -64,9 +65,9 @@ def test_everything_at_once_on_and_off(simulation: sim.Simulation) -> None:
 def test_two_runs_are_bit_identical(simulation: sim.Simulation, head: Head) -> None:
     """The same inputs give the same bits, also in a simulation built anew."""
     other = sim.create(head)
-    values = dict.fromkeys(simulation.controls, 0.5)
+    values = dict.fromkeys(simulation.controls.lowest, 0.5)
     for run in (simulation, other):
-        run.set_all(values)
+        run.controls.set_all(values)
         for dt in (1 / 60, 1 / 24, 1 / 240, 1 / 47.3, 1 / 20):
             run.step(dt)
     assert simulation.positions.tobytes() == other.positions.tobytes()
@@ -86,7 +87,7 @@ def test_frame_length_hardly_matters(simulation: sim.Simulation) -> None:
     poses = []
     for rate in (20, 60, 240):
         simulation.reset()
-        simulation.set_all(values)
+        simulation.controls.set_all(values)
         for _ in range(rate // 4):
             simulation.step(1.0 / rate)
         poses.append(simulation.positions.copy())
@@ -106,7 +107,7 @@ def test_broken_state_is_reported(simulation: sim.Simulation) -> None:
 
 def _moved(simulation: sim.Simulation) -> np.ndarray:
     """How far the skin is from rest, seen from the cranium [mm]."""
-    head = simulation.bone_transforms()["cranium"]
+    head = simulation.bones.transforms()["cranium"]
     return (simulation.positions - head[:3, 3]) @ head[:3, :3] - simulation.rest_positions
 
 

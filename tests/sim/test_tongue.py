@@ -27,14 +27,14 @@ def part(head: Head, name: str) -> Part:
 
 def placed(simulation: sim.Simulation, points: Array, bone: str) -> Array:
     """Points of a part where its bone has them."""
-    matrix = simulation.bone_transforms()[bone]
+    matrix = simulation.bones.transforms()[bone]
     moved: Array = points @ matrix[:3, :3].T + matrix[:3, 3]
     return moved
 
 
 def tongue_now(simulation: sim.Simulation) -> Array:
     """The tongue's vertices in the head's coordinates."""
-    bent = simulation.tongue()
+    bent = simulation.anatomy.tongue()
     assert bent is not None
     return placed(simulation, bent, "mandible")
 
@@ -61,7 +61,7 @@ def with_middles(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
 def test_a_resting_tongue_is_the_part(simulation: sim.Simulation, head: Head) -> None:
     """Without the controls nothing moves it, whatever the jaw does."""
     settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
-    bent = simulation.tongue()
+    bent = simulation.anatomy.tongue()
     assert bent is not None
     assert np.abs(bent - part(head, "tongue").vertices).max() < 1e-4
 
@@ -135,11 +135,11 @@ def test_the_measure_sees_what_is_pierced(head: Head) -> None:
 
 def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
     """It needs some frames, even as the lips burst open, and is back half a second later."""
-    simulation.pose({"jaw_open": 0.4, "tongue_out": 1.0})
+    simulation.controls.pose({"jaw_open": 0.4, "tongue_out": 1.0})
     before, steps = tongue_now(simulation), []
     for frame in range(60):
         if frame == 30:
-            simulation.pose({"jaw_open": 0.4})
+            simulation.controls.pose({"jaw_open": 0.4})
         simulation.step(FRAME)
         now = tongue_now(simulation)
         steps.append(np.linalg.norm(now - before, axis=1).max())
@@ -150,6 +150,6 @@ def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
 def test_a_head_without_a_tongue_has_the_controls_all_the_same(head: Head) -> None:
     """Tables speak of it, and nothing is drawn."""
     bare = sim.create(without(head))
-    bare.pose({"tongue_out": 1.0})
+    bare.controls.pose({"tongue_out": 1.0})
     bare.step(FRAME)
-    assert bare.tongue() is None
+    assert bare.anatomy.tongue() is None

@@ -130,7 +130,7 @@ class SkinDrag:
         offset = point - self.point
         length = float(np.linalg.norm(offset))
         self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
-        self._simulation.drag(self._vertices, self._from + self.offset, self._firmness)
+        self._simulation.touch.drag(self._vertices, self._from + self.offset, self._firmness)
         if self._pull is not None:
             self._pull.targets = self._at_rest + offset
             if len(self._simulation.faces) < DENSE:
@@ -139,7 +139,7 @@ class SkinDrag:
 
     def muscle(self) -> str | None:
         """The one under the finger, if any."""
-        return muscle_at(self.point, self._simulation.fibres())
+        return muscle_at(self.point, self._simulation.anatomy.fibres())
 
     def let_go(self) -> Message:
         """The skin stays where muscles hold it, and else swings back; what was solved."""
@@ -157,7 +157,7 @@ class SkinDrag:
 
     def drop(self) -> None:
         """Hold on to the skin no longer."""
-        self._simulation.end_drag()
+        self._simulation.touch.end_drag()
 
     def _obey(self, pull: sim.Pull) -> None:
         """Set what was solved, and put back what was set before and is needed no more."""
@@ -175,7 +175,7 @@ def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple
     Beside the middle (`is_aside`) linked sides move alike, so nothing goes to one of them.
     """
     found, values = list[tuple[str, ...]](), session.values
-    lowest = session.scene.simulation.controls  # type: ignore[attr-defined]
+    lowest = session.scene.simulation.controls.lowest  # type: ignore[attr-defined]
     for name in lowest:
         twin, is_whole = twin_of(name), f"{name}_left" in lowest
         if is_whole or name.startswith(NOT_PULLED):

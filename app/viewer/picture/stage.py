@@ -208,7 +208,7 @@ def pointed_lines(scene: Scene, shares: Mapping[str, float]) -> list[render.Line
 
     shares: name -> how far it goes. One without sides stands for both.
     """
-    fibres = scene.simulation.fibres() if shares and isinstance(scene, FaceScene) else {}
+    fibres = scene.simulation.anatomy.fibres() if shares and isinstance(scene, FaceScene) else {}
     seen: dict[str, float] = {}
     for name, share in shares.items():
         for side in (name, f"{name}_left", f"{name}_right"):

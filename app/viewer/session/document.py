@@ -31,7 +31,7 @@ class SceneControls:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self.limits = scene.limits
-        own = scene.simulation.controls if isinstance(scene, FaceScene) else self.limits
+        own = scene.simulation.controls.lowest if isinstance(scene, FaceScene) else self.limits
         self.muscles = frozenset(own)
         order = [*read_words()["order"], *scene.groups]
         self.groups = {

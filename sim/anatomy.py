@@ -1,0 +1,63 @@
+"""What lies under the skin of a face now: to draw and to measure; nothing of it moves the face."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from .bones import Bones
+from .controls import Controls, MuscleDrive
+from .face_model import FaceModel
+from .state import State
+
+
+class Anatomy:
+    """Contracted muscles, the tongue, and how deep skin sits in what is under it."""
+
+    def __init__(
+        self, model: FaceModel, state: State, controls: Controls, bones: Bones, drive: MuscleDrive
+    ) -> None:
+        self._model, self._state, self._bones, self._drive = model, state, bones, drive
+        self._controls = controls
+        self._tongue = controls.places_in_reached(("tongue_out", "tongue_up"))
+        if model.tongue is not None:
+            self._resting_tongue = model.space.to_head(model.tongue.rest)
+            self._resting_tongue.flags.writeable = False
+
+    def tongue(self) -> npt.NDArray[np.float64] | None:
+        """Vertices of the part "tongue" now, shape (T, 3); None for a head without one.
+
+        As the mandible's motion finds them: its bone's matrix has still to be applied. A tongue at
+        rest is the same array each time.
+        """
+        model = self._model
+        if model.tongue is None:
+            return None
+        out, up = np.maximum(self._controls.reached[self._tongue], 0.0).tolist()
+        if out == up == 0.0:
+            return self._resting_tongue
+        return model.space.to_head(model.tongue.bent(out, up, self._state.x, self._bones.mandible))
+
+    def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
+        """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
+        pull = self._drive.pull(self._drive.activation())
+        lines = self._model.muscles.lines(pull, self._bones.mandible, self._state.x)
+        space, head = self._model.space, self._bones.head
+        return {
+            name: [space.to_head(line + head.displacements(line)) for line in found]
+            for name, found in lines.items()
+        }
+
+    def penetrations(self) -> dict[str, float]:
+        """How deep skin sits in what it must not enter, at most, less than at rest [mm].
+
+        Names: "lips" (in the other lip, more than sealed lips are pressed together), "lids" (in an
+        eyeball), "teeth".
+        """
+        skin, x, bones = self._model.skin, self._state.x, self._bones
+        grip = self._model.grip(self._drive.activation(), bones.jaw, bones.lips_closed)
+        return {
+            "lips": skin.lips.deepest(x, skin.rest, grip.overlap),
+            "lids": skin.eyes.deepest(x),
+            "teeth": skin.teeth.deepest(x, bones.mandible),
+        }

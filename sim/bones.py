@@ -1,0 +1,73 @@
+"""The bones of one face in motion: they go where the controls are, and skin goes with them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .controls import Controls
+from .face_model import FaceModel
+from .landmarks import Array
+from .skull import HEAD_CONTROLS, REST
+
+
+class Bones:
+    """Cranium, mandible and eyeballs; what did not move is not worked out anew.
+
+    mandible_weight, head_weight: how far each vertex goes with the mandible, given or guessed, and
+    with the head's pose, which fades to 0 down the neck; 0 to 1, shape (V,).
+    jaw: its values now: open, forward, sideways. lips_closed: how far lips are kept together over
+    an open jaw now, 0 to 1. weight: the mandible's weights with that, shape (V,).
+    """
+
+    def __init__(self, model: FaceModel, controls: Controls) -> None:
+        self._skull, self._space = model.skull, model.space
+        self.mandible_weight, self._closed_weight = model.skull.mandible_weight, model.closed_weight
+        self.head_weight = model.turns[:, 0]
+        sides = [ball.side.value for ball in model.skull.eyeballs]
+        ways = [f"gaze_{way}_{side}" for side in sides for way in ("horizontal", "vertical")]
+        mouth = ("jaw_open", "jaw_forward", "jaw_sideways", "lips_closed")
+        self._controls = controls
+        self._mouth, self._head, self._gaze = map(
+            controls.places_in_reached, (mouth, HEAD_CONTROLS, ways)
+        )
+        self.jaw, self._head_values = (0.0, 0.0, 0.0), [0.0, 0.0, 0.0]
+        self.mandible = self.head = REST  # seen from the cranium, and from the neck
+        self.turn: Array = np.eye(4)  # of the head, for column vectors [head units]
+
+    def follow(self) -> None:
+        """Jaw, lips and head go where the controls are now."""
+        reached = self._controls.reached
+        *values, self.lips_closed = reached[self._mouth].tolist()
+        if (jaw := tuple(values)) != self.jaw:
+            self.jaw = jaw
+            self.mandible = self._skull.mandible_motion(*jaw)
+        self.weight = self.mandible_weight
+        if self.lips_closed > 0.0:
+            self.weight = self.weight + self.lips_closed * (self._closed_weight - self.weight)
+        if (head := reached[self._head].tolist()) != self._head_values:
+            self._head_values = head
+            self.head = self._skull.head_motion(*head)
+            self.turn = np.eye(4) if self.head is REST else self.head.matrix(self._space)
+
+    def gaze(self) -> Array:
+        """Where each eyeball looks: to the subject's left and up, -1 to 1, shape (eyes, 2)."""
+        return self._controls.reached[self._gaze].reshape(-1, 2)
+
+    def transforms(self) -> dict[str, Array]:
+        """Motion of each bone from rest to now, name -> (4, 4) for column vectors [head units]."""
+        transforms = {
+            "neck": np.eye(4),
+            "cranium": self.head.matrix(self._space),
+            "mandible": self.head.after(self.mandible).matrix(self._space),
+        }
+        for ball, gaze in zip(self._skull.eyeballs, self.gaze(), strict=True):
+            motion = self._skull.eye_motion(ball, *gaze)
+            transforms[f"eye_{ball.side.value}"] = self.head.after(motion).matrix(self._space)
+        return transforms
+
+    def pivots(self) -> dict[str, Array]:
+        """What each bone turns about at rest, name of `transforms` -> (3,) [head units]."""
+        middle = self._skull.condyles.mean(axis=0)
+        points = {"cranium": middle + self._skull.head.joint, "mandible": middle}
+        points.update({f"eye_{ball.side.value}": ball.centre for ball in self._skull.eyeballs})
+        return {name: self._space.to_head(point) for name, point in points.items()}

@@ -1,0 +1,73 @@
+"""What hands do to the skin: they strike it, and draw at it by springs."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from . import checked
+from .bones import Bones
+from .face_model import FaceModel
+from .landmarks import Array
+from .state import State
+
+FINGER_RATE = 350.0  # rad/s of the firmest pull: outdoes the skin, stable at the longest substep
+
+
+class Touch:
+    """Hands at the skin of one simulation."""
+
+    def __init__(self, model: FaceModel, state: State, positions: Array, bones: Bones) -> None:
+        """positions: of the skin now [head units], shape (V, 3)."""
+        self._model, self._state, self._positions = model, state, positions
+        self._bones = bones
+        self.end_drag()
+
+    def kick(self, velocities: npt.ArrayLike) -> None:
+        """Add velocities [head units / s], shape (V, 3): a blow.
+
+        Raises ValueError for another shape, and for what is not finite.
+        """
+        added = checked.numbers("velocities", velocities, self._positions.shape)
+        self._state.v[:] += self._in_standard_space(added)
+
+    def drag(
+        self, vertices: npt.ArrayLike, targets: npt.ArrayLike, firmness: npt.ArrayLike
+    ) -> None:
+        """Hang vertices on springs until the next `drag` or `end_drag`: a finger draws at the skin.
+
+        vertices: their numbers, shape (n,), none twice. targets: where each is drawn to [head
+        units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
+        shape (n,). Raises ValueError where they do not fit together.
+        """
+        wanted = "different vertex numbers, shape (n,)"
+        count = len(self._positions)
+        numbers = checked.vertex_numbers("vertices", vertices, (None,), count, wanted)
+        points = checked.numbers("targets", targets, (len(numbers), 3))
+        share = checked.numbers("firmness", firmness, (len(numbers),))
+        if not ((share >= 0.0) & (share <= 1.0)).all():
+            raise ValueError(
+                f"firmness: runs from {share.min():g} to {share.max():g}, must be from 0 to 1"
+            )
+        if len(np.unique(numbers)) < len(numbers):
+            raise ValueError(f"vertices: some are there twice, must be {wanted}")
+        away = self._in_standard_space(points - self._positions[numbers])
+        self._vertices, self._to = numbers, self._state.x[numbers] + away
+        self._stiffness = share * self._model.skin.mass[numbers] * FINGER_RATE**2
+
+    def end_drag(self) -> None:
+        """End every `drag`; the skin swings back."""
+        self._vertices, self._to = np.zeros(0, np.int64), np.zeros((0, 3))
+        self._stiffness = np.zeros(0)
+
+    def add_to(self, state: State) -> None:
+        """Add the springs to what holds and pulls the skin."""
+        if len(self._vertices):
+            drawn = self._to - state.carried[self._vertices]
+            state.hold[self._vertices] += self._stiffness
+            state.pull[self._vertices] += self._stiffness[:, None] * drawn
+
+    def _in_standard_space(self, vectors: Array) -> Array:
+        """Vectors (n, 3) of the head, wherever that is turned now."""
+        turned: Array = self._model.space.vectors_to_standard(vectors) @ self._bones.head.rotation
+        return turned
