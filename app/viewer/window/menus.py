@@ -48,8 +48,8 @@ def file_menu(
     def recent() -> Iterator[Command]:
         """What was opened or saved lately, and can be opened again."""
         for paths in (each.split("\n") for each in settings.recent):
-            first = Path(paths[0])
-            label = f"{first.name}   {first.parent}".replace("##", "# #")
+            names = " + ".join(Path(path).name for path in paths)
+            label = f"{names}   {Path(paths[0]).parent}".replace("##", "# #")
             yield command(label, "", partial(file_drop.open, paths))
 
     other = partial(command, can_run=lambda: file_drop.has_other_head)

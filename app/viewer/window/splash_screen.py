@@ -18,7 +18,8 @@ from risorius import render
 from ..interface.gui import FONT, FONT_SIZE, THEMES, Theme, wait_for_event
 from ..settings import Settings, load_settings
 
-LOADING, COMPILING = "Loading the face ...", "Compiling, once for each kind of work ..."
+LOADING = "Loading the face ..."
+COMPILING = "Compiling, once for each kind of work: up to half a minute ..."
 FIRST_SIZE = 1280, 800  # [units of a screen of ordinary density]
 PAUSE = 0.05  # [s] between two looks at what the user does
 LOG = logging.getLogger("risorius.jit")  # where it is told what is compiled
