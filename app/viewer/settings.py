@@ -52,8 +52,6 @@ TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
 TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 MOST_RECENT = 10  # files that are remembered
 MOST_TOLD = 4  # of values that are of no use; a line has room for no more
-
-
 FRAMES = "frames"  # pictures in a folder
 
 
