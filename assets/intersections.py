@@ -22,11 +22,9 @@ def self_intersections(vertices: Points, faces: Faces) -> Faces:
     hit = np.zeros(len(pairs), dtype=bool)
     for one, other in ((0, 1), (1, 0)):
         for k in range(3):
-            start = corner[pairs[:, one], k]
-            end = corner[pairs[:, one], (k + 1) % 3]
+            start, end = corner[pairs[:, one], k], corner[pairs[:, one], (k + 1) % 3]
             hit |= _segment_cuts(start, end, corner[pairs[:, other]])
-    cutting: Faces = pairs[hit].astype(np.int32)
-    return cutting
+    return np.asarray(pairs[hit], np.int32)
 
 
 def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
@@ -36,10 +34,10 @@ def _near_pairs(corner: Points) -> npt.NDArray[np.int64]:
     near = scipy.spatial.cKDTree(centre).query_ball_point(centre, 2.0 * radius)  # of the larger one
     second = np.concatenate(near).astype(np.int64)
     first = np.repeat(np.arange(len(near)), [len(each) for each in near])
-    pairs = np.unique(np.sort(np.column_stack([first, second])[first != second], axis=1), axis=0)
+    rank = np.argsort(np.argsort(radius))
+    pairs = np.sort(np.column_stack([first, second])[rank[first] > rank[second]], axis=1)
     distance = np.linalg.norm(centre[pairs[:, 0]] - centre[pairs[:, 1]], axis=1)
-    meeting: npt.NDArray[np.int64] = pairs[distance < radius[pairs].sum(axis=1)]
-    return meeting
+    return np.asarray(pairs[distance < radius[pairs].sum(axis=1)])
 
 
 def _segment_cuts(start: Points, end: Points, triangle: Points) -> npt.NDArray[np.bool_]:

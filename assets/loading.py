@@ -6,6 +6,7 @@ the layers of controls above the muscles are text files, written by hand (`rigs/
 for controls (`words.toml`).
 """
 
+import functools
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -42,8 +43,9 @@ def load(name: Literal["head"]) -> Head: ...
 def load(name: Literal["plane"]) -> Plane: ...
 @overload
 def load(name: str) -> Head | Plane: ...
+@functools.cache
 def load(name: str) -> Head | Plane:
-    """Load the asset called `name` ("head" or "plane"); its arrays are read-only.
+    """Load the asset called `name` ("head" or "plane"), once; nobody may change what is in it.
 
     Raises AssetError for an unknown name, and for a missing or broken file.
     """

@@ -29,7 +29,7 @@ from ..norms import measures_of
 from ..smooth import smooth_step
 from .space import Identity, Sex, person_space, scores_of
 
-NEARER = (1.0, 0.85, 0.7, 0.5, 0.0)  # shares of the weights, tried in turn
+NEARER = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # shares of the weights, tried in turn
 MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own side
 EAR_ROUNDS, EAR_STEP = 8, 0.5  # of standing out, by so much each [mm]
 GIVE = 0.2  # of the warp of what lies in the head

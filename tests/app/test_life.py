@@ -35,15 +35,15 @@ def pupils(scene: FaceScene) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     return found
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_eyes_blink_as_often_as_people_do_at_rest(seed: int) -> None:
     """17 a minute (Bentivoglio et al. 1997), none while another lasts."""
-    waits = np.diff(life_blinks(Life(seed), 600.0))
-    assert 16.0 < len(waits) / 10.0 < 18.0
+    waits = np.diff(life_blinks(Life(seed), 300.0))
+    assert 15.0 < len(waits) / 5.0 < 19.0
     assert waits.min() > 0.5 and waits.max() < 8.0 and np.ptp(waits) > 3.0
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
     """Glances over his face, and at times beside it; they come back within some seconds."""
     life, off = Life(seed), []
