@@ -35,28 +35,14 @@ def capture(
     """
     _check(script, options, output, sheet, time)
     _check_passes(script, output, options)
-    most = [0]
+    counts = [0]
     if sheet is not None:
-        most.append(_draw_sheet(script, options, sheet, progress))
+        counts.append(_draw_sheet(script, options, sheet, progress))
     if output is not None and _is_image(output):
-        moment = _moment_of(script, options, time)
-        playing = _played(script, options, moment, progress)
-        for frame in (draw() for now, draw in playing if now == moment):
-            save_labelled(output, frame.image, frame.known)
-            most.append(frame.triangle_count)
+        counts.append(_draw_picture(script, options, output, time, progress))
     elif output is not None:
-        begin, end = options.span or (0.0, script.duration)
-        frames = round((end - begin) * options.frames_per_second + 0.5) + 1
-        count = processes.worthwhile(options, frames)
-        sink = _sink_for(output, options, overwrite, soundtrack_of(script, options.span))
-        playing = _played(script, options, end, progress, count)
-        with sink as add, contextlib.closing(playing):
-            for now, draw in playing:
-                if now >= begin - 0.5 / options.frames_per_second:
-                    frame = draw()
-                    add(frame.image, frame.known)
-                    most.append(frame.triangle_count)
-    return max(most)
+        counts.append(_draw_film(script, options, output, overwrite, progress))
+    return max(counts)
 
 
 def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: bool) -> int:
@@ -73,11 +59,38 @@ def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: 
     return most
 
 
-def _moment_of(script: Script, options: CaptureOptions, time: float | None) -> float:
-    """The time [s] of the frame of which a picture is taken."""
+def _draw_picture(
+    script: Script, options: CaptureOptions, output: Path, time: float | None, progress: bool
+) -> int:
+    """Draw the frame at a time [s]; the number of its triangles."""
     if time is None:
         time = script.key_poses[0].time if script.key_poses else script.duration
-    return round(time * options.frames_per_second) / options.frames_per_second
+    moment = round(time * options.frames_per_second) / options.frames_per_second
+    playing = _played(script, options, moment, progress)
+    (frame,) = [draw() for now, draw in playing if now == moment]
+    save_labelled(output, frame.image, frame.known)
+    return frame.triangle_count
+
+
+def _draw_film(
+    script: Script, options: CaptureOptions, output: Path, overwrite: bool, progress: bool
+) -> int:
+    """Draw a film, or by its name a folder of frames; the largest number of triangles in them."""
+    rate, most = options.frames_per_second, 0
+    begin, end = options.span or (0.0, script.duration)
+    count = processes.worthwhile(options, round((end - begin) * rate + 0.5) + 1)
+    if format_of(output):
+        sink = outputs.film(output, options.size, rate, soundtrack_of(script, options.span))
+    else:
+        sink = outputs.folder(output, overwrite=overwrite)
+    playing = _played(script, options, end, progress, count)
+    with sink as add, contextlib.closing(playing):
+        for now, draw in playing:
+            if now >= begin - 0.5 / rate:
+                frame = draw()
+                add(frame.image, frame.known)
+                most = max(most, frame.triangle_count)
+    return most
 
 
 def _played(
@@ -154,12 +167,3 @@ def soundtrack_of(script: Script, span: tuple[float, float] | None = None) -> So
     """What is heard in a film of a script, or of a span of it [s]: its sound, as far as it goes."""
     begin, end = span or (0.0, script.duration)
     return None if script.sound is None else Soundtrack(script.sound, end - begin, begin)
-
-
-def _sink_for(
-    output: Path, options: CaptureOptions, overwrite: bool, soundtrack: Soundtrack | None
-) -> contextlib.AbstractContextManager[outputs.FrameSink]:
-    """A film or a folder of frames, by what the output is called."""
-    if format_of(output):
-        return outputs.film(output, options.size, options.frames_per_second, soundtrack)
-    return outputs.folder(output, overwrite=overwrite)

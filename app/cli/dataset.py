@@ -51,13 +51,7 @@ MOST = 1_000_000  # samples; their names have six digits
     "Print the table that --sample replaces, and end.",
 )
 def dataset(
-    count: int,
-    output: Path,
-    passes: str,
-    jobs: int,
-    resume: bool,
-    quiet: bool,
-    **drawn: Any,
+    count: int, output: Path, passes: str, jobs: int, resume: bool, quiet: bool, **drawn: Any
 ) -> None:
     """Make pictures of faces with exact labels.
 

@@ -168,12 +168,7 @@ class Stage:
             self.surface.begin()
             overlays = [] if is_photo else pointed_lines(self.scene, view.pointed)
         self.pipeline.draw(
-            view.camera,
-            style,
-            viewports,
-            anatomy=display.anatomy,
-            overlays=overlays,
-            timer=timed,
+            view.camera, style, viewports, anatomy=display.anatomy, overlays=overlays, timer=timed
         )
         with timed("draw"):
             self.surface.target.flush()

@@ -34,10 +34,7 @@ class Recovery:
     found: Path | None = None  # the script that a window left behind which ended
 
     def __init__(
-        self,
-        folder: Path | None,
-        session: Session,
-        clock: Callable[[], float] = time.monotonic,
+        self, folder: Path | None, session: Session, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self._clock, self._session = clock, session
         self._path = folder and folder / f"unsaved-{session.scene.name}.toml"
