@@ -49,8 +49,12 @@ class DrawnMesh:
     ) -> None:
         """Fill the lent buffers with refined triangles, for whoever looks through the area."""
         view = refine.View(camera.eye)
-        out: Any = self.stream  # of the kind that `Pipeline.bind` has found it to take
-        self.mesh, self.positions = self.refiner.refine(positions, out=out, view=view), positions
+        self.positions = positions
+        if isinstance(self.stream, render.GpuStream):
+            assert isinstance(self.refiner, refine.GpuRefiner)  # see `Pipeline.bind`
+            self.mesh = self.refiner.refine_on_card(positions, self.stream, view)
+        else:
+            self.mesh = self.refiner.refine(positions, self.stream, view)
 
     def upload(self, style: render.Style, wrinkling: Amounts | None = None) -> None:
         """Hand over what was refined last, and how far the scene's vertices wrinkle."""
@@ -119,8 +123,7 @@ class Pipeline:
         refiner = refiner_for(self.scene, asked)
         room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
         stream: render.Stream | render.GpuStream
-        is_on_gpu = isinstance(refiner, refine.BaseRefiner) and refiner.runs_on_gpu
-        if self.renderer.lends_gpu_streams and is_on_gpu:
+        if self.renderer.lends_gpu_streams and isinstance(refiner, refine.GpuRefiner):
             ends = self.scene.rest_positions[refiner.edges]
             longest = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0)
             stream = self.renderer.lend_gpu_stream(*room, margin=float(longest))

@@ -196,7 +196,7 @@ def _card_cases(load: Load) -> list[_Case]:
         buffers = own.run(GpuBuffers, own.gl, *room)
 
         def frame(positions: Points, card: KahlerGl = card, out: GpuBuffers = buffers) -> None:
-            card.refine(positions, out=out)
+            card.refine_on_card(positions, out)
             own_context().gl.finish()
 
         serial = _own(f"kahler, {title}", load, "kahler", **options)

@@ -43,7 +43,7 @@ from .beyond.options import create_kahler
 from .border.base import BaseRefiner
 from .border.checker import BrokenMeshError, check
 from .border.corner_values import Values
-from .border.plugin import GpuStream, Origins, RefinedMesh, Refiner, Stream, View
+from .border.plugin import GpuRefiner, GpuStream, Origins, RefinedMesh, Refiner, Stream, View
 from .border.registry import Registry, create, parameters, refiners
 from .border.stream import StreamArrays
 from .hosts import WeldedRefiner
@@ -75,6 +75,7 @@ __all__ = [
     "Criterion",
     "Displacement",
     "FrameBuffers",
+    "GpuRefiner",
     "GpuStream",
     "Kahler",
     "Loop",

@@ -9,7 +9,7 @@ import functools
 import logging
 import operator
 from collections.abc import Sequence
-from typing import Any, Literal, Unpack, cast
+from typing import Literal, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from risorius.refine import (
     THRESHOLD_TWICE,
     BaseRefiner,
     Criterion,
+    GpuRefiner,
     GpuStream,
     Kahler,
     NormalDrop,
@@ -92,10 +93,8 @@ def _tell(text: str) -> None:
     log.warning(text)
 
 
-class KahlerGl(BaseRefiner):
+class KahlerGl(BaseRefiner, GpuRefiner):
     """Refinement after Kähler, Haber, Seidel 2003, by compute shaders."""
-
-    runs_on_gpu = True
 
     def __init__(
         self,
@@ -165,18 +164,21 @@ class KahlerGl(BaseRefiner):
     def refine(
         self,
         positions: npt.NDArray[np.floating],
-        out: Stream | GpuStream | None = None,
+        out: Stream | None = None,
         view: View | None = None,
     ) -> RefinedMesh:
-        """Turn deformed `positions`, shape (V, 3), into triangles; see `Refiner.refine`.
-
-        `out`: a stream on the card, whose context is current here, or one of arrays.
-        """
-        if out is not None and not hasattr(out, "command_buffer"):
+        """Turn deformed `positions`, shape (V, 3), into triangles; see `Refiner.refine`."""
+        if out is not None:
             return super().refine(positions, out, view)
         self.take(positions, view)
-        mesh = self._refine_own(view) if out is None else self._refine_in(out, operator.call, view)
-        return cast(RefinedMesh, mesh)  # it has all members of one
+        return cast(RefinedMesh, self._refine_own(view))  # it has all members of one
+
+    def refine_on_card(
+        self, positions: npt.NDArray[np.floating], out: GpuStream, view: View | None = None
+    ) -> RefinedMesh:
+        """Refine into the buffers of a stream; see `GpuRefiner`."""
+        self.take(positions, view)
+        return cast(RefinedMesh, self._refine_in(out, operator.call, view))
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Refine in a context of our own, and copy the frame into arrays that were lent."""
@@ -196,7 +198,7 @@ class KahlerGl(BaseRefiner):
             self._own_buffers = own.run(GpuBuffers, own.gl, *room)
         return self._refine_in(self._own_buffers, own.run, view)
 
-    def _refine_in(self, stream: Any, run: Run, view: View | None) -> GpuMesh:
+    def _refine_in(self, stream: GpuStream, run: Run, view: View | None) -> GpuMesh:
         """Refine into the buffers of a stream; a context that is new gets the mesh first."""
         if self._frames is None or self._frames.gl is not stream.context:
             self._frames = run(

@@ -84,7 +84,8 @@ class Controls:
         self.layers = layers.groups
         self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
         self._places = {name: n for n, name in enumerate(self.names)}
-        self._bounds = np.array([self.limits[name] for name in self.names]).reshape(-1, 2)
+        bounds = np.array([self.limits[name] for name in self.names]).reshape(-1, 2)
+        self._least, self._most = bounds[:, 0] - SLACK, bounds[:, 1] + SLACK
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
         self._low = np.array([c.low for c in controls], dtype=np.float64)
         self._high = np.array([c.high for c in controls], dtype=np.float64)
@@ -154,11 +155,13 @@ class Controls:
     def take(self, values: npt.ArrayLike) -> None:
         """Set all controls, in the order of `names`, shape (N,); if one is refused, none is set."""
         wanted = numbers("values", values, self._values.shape)
-        low, high = self._bounds.T
-        for place in np.flatnonzero((wanted < low - SLACK) | (wanted > high + SLACK)):
+        is_beyond = (wanted < self._least) | (wanted > self._most)
+        if is_beyond.any():
+            place = int(is_beyond.argmax())
+            name, (low, high) = self.names[place], self.limits[self.names[place]]
             raise ValueError(
-                f"control '{self.names[place]}': was {wanted[place]:g}, allowed is "
-                f"{low[place]:g} to {high[place]:g}; clamp it first"
+                f"control '{name}': was {wanted[place]:g}, allowed is {low:g} to {high:g}; "
+                "clamp it first"
             )
         self._values[:] = wanted
         count = len(self.lowest)

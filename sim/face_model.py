@@ -1,15 +1,7 @@
 """From a mesh to everything a simulation needs: checks the head, places bones, lids, muscles and
 springs.
 
-A head may be any object with `vertices` and `faces`. What else it brings makes it more of a face:
-
-    landmarks                   size, lips, lids; without them a plain spring mesh, still stable
-    landmarks + rig             muscles
-    layers                      action units, expressions, ... above the muscles (layers.py)
-    jaw_axis, mandible_weight   a jaw; guessed from landmarks where one is missing
-    eyes                        gaze and contact; guessed from landmarks
-    parts                       teeth (parts named "teeth_..."), which lips and cheeks rest on, and
-                                a "tongue"
+A head may be any object with `vertices` and `faces`; what else it brings makes it more of a face.
 
 Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
 """
@@ -66,6 +58,18 @@ LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
 LARGEST = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
+
+
+class Given(NamedTuple):
+    """What a head may have beside its mesh, and what that makes; None for what it has not."""
+
+    landmarks: Any  # size, lips, lids; without them a plain spring mesh, still stable
+    rig: Any  # muscles, where there are landmarks
+    layers: Any  # action units, expressions, ... above the muscles (layers.py)
+    jaw_axis: Any  # a jaw, with its weight; guessed from landmarks where one is missing
+    mandible_weight: Any
+    eyes: Any  # gaze and contact; guessed from landmarks
+    parts: Any  # teeth (named "teeth_..."), which lips and cheeks rest on, and a "tongue"
 
 
 class SkinModel(NamedTuple):
@@ -131,8 +135,9 @@ class FaceModel:
 def build_face_model(head: Any) -> FaceModel:
     """Build a face from a mesh; ValueError names the attribute of the head that is wrong."""
     vertices, faces = mesh_of("head", head)
-    numbers = _landmark_numbers(head, len(vertices))
-    rig = read_rig(getattr(head, "rig", None) or {})
+    given = Given(*(getattr(head, name, None) for name in Given._fields))
+    numbers = _landmark_numbers(given.landmarks, len(vertices))
+    rig = read_rig(given.rig or {})
     if numbers is None:
         rig = Rig(rig.tissue, rig.jaw, rig.eyes)
     points = None if numbers is None else vertices[numbers]
@@ -140,7 +145,7 @@ def build_face_model(head: Any) -> FaceModel:
     surface = build_surface(space.to_standard(vertices), faces)
     landmarks = None if points is None else space.to_standard(points)
     side = np.zeros(len(vertices)) if landmarks is None else lip_side(surface, landmarks)
-    skull = _skull(head, rig, space, surface, landmarks, side)
+    skull = _skull(given, rig, space, surface, landmarks, side)
     known = np.zeros((LANDMARK_COUNT, 3)) if landmarks is None else landmarks
     placed = place_muscles(rig, surface, known, side)
     seal = rig.tissue.lip_seal * rig.tissue.stiffness_scale
@@ -164,15 +169,15 @@ def build_face_model(head: Any) -> FaceModel:
         edges=edges,
         lips=lips,
         eyes=watch_eyeballs(surface, skull.eyeballs),
-        teeth=watch_teeth(getattr(head, "parts", None), surface, space),
+        teeth=watch_teeth(given.parts, surface, space),
     )
     return FaceModel(
         vertices=vertices, space=space, rig=rig, surface=surface, landmarks=known, lip_side=side,
         skull=skull, muscles=muscles, lids=lids, skin=skin,
-        tongue=place_tongue(getattr(head, "parts", None), space, numbers),
+        tongue=place_tongue(given.parts, space, numbers),
         passive_hold=passive, turns=_turning_share(surface, landmarks),
         closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
-        controls=controls, layers=_layers(head, rig, controls),
+        controls=controls, layers=_layers(given.layers, rig, controls),
     )  # fmt: skip
 
 
@@ -204,9 +209,8 @@ def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
     return vertices, faces.astype(np.int32)
 
 
-def _landmark_numbers(head: Any, vertex_count: int) -> npt.NDArray[np.int64] | None:
+def _landmark_numbers(given: Any, vertex_count: int) -> npt.NDArray[np.int64] | None:
     """Checked vertex numbers of the 68 landmarks, None if the head has none."""
-    given = getattr(head, "landmarks", None)
     if given is None:
         return None
     wanted = f"{LANDMARK_COUNT} vertex numbers"
@@ -214,18 +218,17 @@ def _landmark_numbers(head: Any, vertex_count: int) -> npt.NDArray[np.int64] | N
     return checked.vertex_numbers("head.landmarks", given, shape, vertex_count, wanted)
 
 
-def _optional(head: Any, name: str, shape: tuple[int, ...]) -> Array | None:
+def _optional(name: str, given: Any, shape: tuple[int, ...]) -> Array | None:
     """A checked optional array of the head."""
-    given = getattr(head, name, None)
     return None if given is None else checked.numbers(f"head.{name}", given, shape)
 
 
 def _skull(
-    head: Any, rig: Rig, space: FaceSpace, surface: Surface, landmarks: Array | None, side: Array
+    head: Given, rig: Rig, space: FaceSpace, surface: Surface, landmarks: Array | None, side: Array
 ) -> Skull:
     """Bones from what the head brings, the rest guessed from landmarks; without either no jaw."""
-    axis = _optional(head, "jaw_axis", (2, 3))
-    weight = _optional(head, "mandible_weight", (surface.vertex_count,))
+    axis = _optional("jaw_axis", head.jaw_axis, (2, 3))
+    weight = _optional("mandible_weight", head.mandible_weight, (surface.vertex_count,))
     condyles = None if axis is None else space.to_standard(axis)
     if landmarks is not None:
         if condyles is None:
@@ -237,12 +240,12 @@ def _skull(
     # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
     weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
     weight[weight < LEAST_MANDIBLE] = 0.0
-    return Skull(condyles, weight, _eyeballs(head, space, landmarks), rig.jaw, rig.eyes, rig.head)
+    balls = _eyeballs(head.eyes, space, landmarks)
+    return Skull(condyles, weight, balls, rig.jaw, rig.eyes, rig.head)
 
 
-def _eyeballs(head: Any, space: FaceSpace, landmarks: Array | None) -> tuple[Eyeball, ...]:
+def _eyeballs(given: Any, space: FaceSpace, landmarks: Array | None) -> tuple[Eyeball, ...]:
     """The head's eyes, or guessed ones where it has landmarks; none otherwise."""
-    given = getattr(head, "eyes", None)
     if given is None:
         return () if landmarks is None else eyeballs_from_landmarks(landmarks)
     balls = []
@@ -312,7 +315,7 @@ def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Co
     return tuple(controls)
 
 
-def _layers(head: Any, rig: Rig, controls: tuple[Control, ...]) -> Layers:
+def _layers(given: Any, rig: Rig, controls: tuple[Control, ...]) -> Layers:
     """The head's layers; a face without muscles has nothing that its tables could speak of."""
-    tables = getattr(head, "layers", ()) if rig.muscles else ()
+    tables = given if rig.muscles and given is not None else ()
     return read_layers(tables, [control.name for control in controls])

@@ -8,6 +8,7 @@ Source: the plug-in of Kähler, Haber, Seidel 2003, Fig. 1.
 
 from abc import abstractmethod
 from collections.abc import Mapping
+from functools import cached_property
 from types import MappingProxyType
 from weakref import WeakValueDictionary
 
@@ -42,8 +43,6 @@ class BaseRefiner(Refiner):
     of a triangle's corners is the same mix of these rows, texture coordinates and attributes too.
     """
 
-    runs_on_gpu = False
-    """Whether `refine` takes a `GpuStream`, too."""
     connectivity: Connectivity
     """Edges, neighbours and wedges of the mesh, found once."""
     rest_positions: Doubles
@@ -82,7 +81,6 @@ class BaseRefiner(Refiner):
         self.normals = np.zeros_like(self.points)
         self.edge_splits = np.zeros(len(self.connectivity.edges), dtype=np.uint8)
         self._shape = positions.shape
-        self._own_stream: OwnStream | None = None
         self._accepted: StreamArrays = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
 
@@ -94,12 +92,9 @@ class BaseRefiner(Refiner):
         """
 
     def reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
-        """Let the stream grow to this size if it can, and return its arrays, checked.
-
-        The same tuple as long as they are the same arrays.
-        """
-        if hasattr(stream, "reserve"):
-            stream.reserve(vertex_count, triangle_count)
+        """Let our own stream grow to this size; return the arrays of a stream, checked."""
+        if stream is self._own_stream:
+            self._own_stream.reserve(vertex_count, triangle_count)
             self._accept(stream, vertex_count, triangle_count)
         return self._accepted
 
@@ -162,8 +157,8 @@ class BaseRefiner(Refiner):
         Raises ValueError if `positions` or the arrays of `out` have a wrong shape or type, or if
         positions are not finite.
         """
-        stream = self._lend_own_stream() if out is None else out
-        if out is not None and not hasattr(out, "reserve"):
+        stream = self._own_stream if out is None else out
+        if out is not None:
             self._accept(out, self.vertex_capacity, self.triangle_capacity)
         self.take(positions, view)
         vertex_count, triangle_count = self.fill(stream, view)
@@ -226,12 +221,9 @@ class BaseRefiner(Refiner):
         self._accepted = StreamArrays(vertices, triangles, source)
         self._geometry = vertices[:, 0:3], vertices[:, 3:6]
 
-    def _lend_own_stream(self) -> OwnStream:
-        if self._own_stream is None:
-            self._own_stream = OwnStream(
-                self.vertex_columns, self.vertex_capacity, self.triangle_capacity
-            )
-        return self._own_stream
+    @cached_property
+    def _own_stream(self) -> OwnStream:
+        return OwnStream(self.vertex_columns, self.vertex_capacity, self.triangle_capacity)
 
     def values_in(self, vertices: Floats) -> tuple[Floats | None, Mapping[str, Floats]]:
         """Texture coordinates and attributes in rows of a frame, shape (N, columns): views."""

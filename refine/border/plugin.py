@@ -85,11 +85,8 @@ class Origins(NamedTuple):
 class Stream(Protocol):
     """Arrays lent by the caller, which the refiner fills from the top.
 
-    They have room for `vertex_capacity` and `triangle_capacity`, unless the stream has a method
-    `reserve(vertex_count, triangle_count)`: that is called before each frame is written, with what
-    the frame needs, and may put larger arrays in place, or the next of several.
-
-    The arrays may be views of mapped memory: of a file, of another process, of a buffer of the GPU.
+    They have room for `vertex_capacity` and `triangle_capacity`, and may be others in each frame.
+    They may be views of mapped memory: of a file, of another process, of a buffer of the GPU.
     The built-in refiners read rows again that they have written in the same frame, so the memory
     should be fast to read, too.
     """
@@ -185,3 +182,13 @@ class Refiner(Protocol):
     @abstractmethod
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh (allocates)."""
+
+
+class GpuRefiner(Refiner):
+    """A refiner that writes on the graphics card, too."""
+
+    @abstractmethod
+    def refine_on_card(
+        self, positions: npt.NDArray[np.floating], out: GpuStream, view: View | None = None
+    ) -> RefinedMesh:
+        """`refine` into a stream, whose context is current; what is read of the mesh is fetched."""

@@ -83,7 +83,7 @@ def test_buffers_of_another_context(surface: render.Surface) -> None:
     processor, card = bound()
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     stream = GpuBuffers(surface.gl, *room)
-    mesh, wanted = card.refine(BENT, out=stream), processor.refine(BENT)
+    mesh, wanted = card.refine_on_card(BENT, stream), processor.refine(BENT)
     assert not {"vertices", "triangles", "source", "_counts"} & set(vars(mesh))
     assert mesh.triangle_count == wanted.triangle_count
     assert "vertices" not in vars(mesh)
@@ -104,7 +104,7 @@ def test_a_lost_context_is_made_anew(rules: str) -> None:
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     for size in ((32, 32), (64, 48)):
         with render.open_offscreen(size) as surface:
-            mesh = card.refine(BENT, out=GpuBuffers(surface.gl, *room))
+            mesh = card.refine_on_card(BENT, GpuBuffers(surface.gl, *room))
             np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
     assert_same(processor, card, BENT)
 

@@ -96,28 +96,13 @@ def test_stream_that_becomes_read_only(name: str) -> None:
     assert array.tobytes() == before
 
 
-class Growing:
-    """A stream that is asked for room in every frame, and hands out new arrays each time."""
-
-    def __init__(self, refiner: refine.Refiner) -> None:
-        self.columns, self.asked = refiner.vertex_columns, 0
-        self.reserve(0, 0)
-
-    def reserve(self, vertex_count: int, triangle_count: int) -> None:
-        """Take new arrays of just this size."""
-        self.asked += 1
-        self.vertices = np.full((vertex_count, self.columns), np.nan, dtype=np.float32)
-        self.triangles = np.full((triangle_count, 3), 2**32 - 1, dtype=np.uint32)
-        self.source = np.full(triangle_count, -1, dtype=np.int32)
-
-
 def test_any_row_of_streams() -> None:
     """Whoever was written to before, a frame goes where it should, and nowhere else."""
     mesh = meshes.irregular(3)
     refiner = kahler(mesh)
     frames = [mesh.vertices + amount * (meshes.wrinkled(mesh, 4) - mesh.vertices)
               for amount in (0.0, 0.3, 1.0)]  # fmt: skip
-    streams = [None, stream_for(refiner), stream_for(refiner), Growing(refiner)]
+    streams = [None, *(stream_for(refiner) for _ in range(3))]
     fresh = [kahler(mesh).refine(frame) for frame in frames]
     assert len({len(frame.triangles) for frame in fresh}) == 3
     rng = np.random.default_rng(5)
@@ -134,26 +119,6 @@ def test_any_row_of_streams() -> None:
                 assert [other.vertices.tobytes(), other.triangles.tobytes()] == kept[id(other)]
         if stream is not None:
             kept[id(stream)] = [stream.vertices.tobytes(), stream.triangles.tobytes()]
-    asked = streams[3].asked
-    refiner.refine(frames[0], out=streams[3])
-    refiner.refine(frames[0], out=streams[3])
-    assert streams[3].asked == asked + 2
-
-
-def test_lent_stream_that_stops_growing() -> None:
-    """Arrays that took the frame before are refused when they are too small for this one."""
-    mesh = meshes.irregular(9)
-    refiner = kahler(mesh)
-    stream = Growing(refiner)
-    refiner.refine(mesh.vertices, out=stream)
-    stream.reserve = lambda *_: None  # type: ignore[method-assign]
-    with pytest.raises(ValueError, match=r"stream.vertices must be .* shape \(>= \d+, 6\), got"):
-        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
-    before = len(stream.vertices)
-    stream.vertices = np.zeros((refiner.vertex_capacity, 6), dtype=np.float32)
-    with pytest.raises(ValueError, match=r"stream.triangles must be .* shape \(>= \d+, 3\), got"):
-        refiner.refine(meshes.wrinkled(mesh, 1), out=stream)
-    assert len(refiner.refine(mesh.vertices, out=stream).positions) == before
 
 
 def test_stream_may_be_the_input() -> None:
