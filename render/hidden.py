@@ -78,16 +78,17 @@ class Occluder:
         """Choose the faces of parts that are not surely hidden; all at once, which takes less."""
         vertices, faces, first = [], [], 0
         for buffers, transform in placed:
-            part = buffers.part
-            vertices.append(part.vertices @ transform[:3, :3].T + transform[:3, 3])
-            faces.append(part.faces + first)
-            first += len(part.vertices)
+            for side in buffers.sides():
+                vertices.append(side @ transform[:3, :3].T + transform[:3, 3])
+                faces.append(buffers.part.faces + first)
+                first += len(side)
         if not placed:
             return
         is_seen = self.may_be_seen(np.concatenate(vertices), np.concatenate(faces))
         ends = np.cumsum([len(each) for each in faces])
-        for (buffers, _), chosen in zip(placed, np.split(is_seen, ends[:-1]), strict=True):
-            buffers.choose(chosen)
+        chosen = iter(np.split(is_seen, ends[:-1]))
+        for buffers, _ in placed:
+            buffers.choose(np.logical_or.reduce([next(chosen) for _ in buffers.sides()]))
 
     def may_be_seen(
         self,

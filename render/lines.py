@@ -24,16 +24,8 @@ class Lines(NamedTuple):
     """0 to 1, in front."""
 
     def segments(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
-        """Position and sRGB of all points, (n, 6), and the ends of each segment, (s, 2).
-
-        Raises ValueError for another number of colours.
-        """
+        """Position and sRGB of all points, (n, 6), and the ends of each segment, (s, 2)."""
         polylines, colours = self.polylines, np.asarray(self.colour, np.float32)
-        if colours.shape not in ((3,), (len(polylines), 3)):
-            raise ValueError(
-                f"colour has shape {colours.shape}; it must be (3,), or one row per line: "
-                f"({len(polylines)}, 3)"
-            )
         counts = np.array([len(line) for line in polylines], np.int64)
         if not counts.sum():
             return np.zeros((0, 6), np.float32), np.zeros((0, 2), np.uint32)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from risorius.geometry.colour import to_linear
 
 from .camera import CameraView
-from .parts import LAYERS, Part
+from .parts import Part
 from .programs import write_uniform
 from .style import SPLIT_PALETTE, ColourBy, Light, Style
 from .texture import BumpMap
@@ -38,7 +38,7 @@ def mesh_shader(style: Style, has_texture: bool, maps: Iterable[BumpMap], fades:
 def part_shader(kind: str, has_shadow: bool, is_cut: bool) -> list[str]:
     """The file and the defines of the program of parts of a kind, see `PartBuffers`."""
     if kind == "SHELLS":
-        return ["shells.glsl", f"LAYERS {LAYERS}"]
+        return ["shells.glsl"]
     shadows = ["SHADOWS"] * (has_shadow and kind != "STRANDS")
     sunk = ["SUNK"] * (is_cut and kind != "STRANDS")
     return ["surface.glsl", "PIXEL", "COLOURED", kind, *shadows, *sunk]
@@ -97,15 +97,10 @@ def value_texture(
 ) -> moderngl.Texture:
     """One small number per triangle, shape (M,), to be looked up by gl_PrimitiveID.
 
-    Raises ValueError where they are no such thing.
+    Raises ValueError where there are none, or not as many.
     """
     if values is None:
         raise ValueError("the style colours by values, so draw_mesh needs values, one per triangle")
-    if values.shape != (triangle_count,) or values.dtype != np.uint8:
-        raise ValueError(
-            f"values has shape {values.shape} and dtype {values.dtype}; it must be "
-            f"({triangle_count},) uint8, one per uploaded triangle"
-        )
     rows = np.zeros((max(-(-triangle_count // VALUES_PER_ROW), 1), VALUES_PER_ROW), np.uint8)
     rows.reshape(-1)[:triangle_count] = values
     return gl.texture((VALUES_PER_ROW, len(rows)), 1, rows.tobytes(), dtype="u1", alignment=1)

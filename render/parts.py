@@ -9,12 +9,15 @@ import numpy.typing as npt
 
 from risorius.geometry.colour import to_linear
 
-from .camera import box_corners
+from .camera import CameraView, box_corners
+from .translucency import blending
 
 OF_SHELLS = "in_strand", "in_way", "in_dense"
 # What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
-LAYERS = 9  # of shells; with more a picture takes longer, with fewer one sees between them
+LAYERS, FEWEST = 9, 2  # of shells; with more a picture takes longer, with fewer one sees between
+LAYER_PIXELS = 4.0  # that a layer is there for, where they are thickest
+ROOT, TIP = -0.6, 0.4  # of that way, from vertices
 
 
 class Part(Protocol):
@@ -58,18 +61,15 @@ class PartBuffers:
 
     def __init__(self, gl: moderngl.Context, part: Part) -> None:
         self.part = part
-        shapes = {np.shape(part.vertices), np.shape(part.normals), np.shape(part.colours)}
-        if len(shapes) != 1 or np.shape(part.vertices)[1:] != (3,):
-            raise ValueError(
-                f"part '{part.name}': vertices {np.shape(part.vertices)}, normals "
-                f"{np.shape(part.normals)} and colours {np.shape(part.colours)} must all be (n, 3)"
-            )
         self._gl = gl
         # What it is drawn with: a define of surface.glsl, or SHELLS for shells.glsl.
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
         if columns:
             self.kind, layout, *more = STRIPED[columns]
+        self._way = None if part.striation is None or columns < 6 else part.striation[:, 2:5]
+        if self._way is not None:
+            self._thick = float(np.abs((self._way * part.normals).sum(axis=1)).max())
         self._layout = (f"3f 3f 3f{layout}", "in_position", "in_normal", "in_colour", *more)
         # Over what was drawn before, by its opacity.
         self.is_mixed = self.kind in ("STRANDS", "SHELLS")
@@ -100,10 +100,15 @@ class PartBuffers:
         if len(chosen):
             self._chosen.write(chosen)
 
-    def draw(self, program: moderngl.Program, *, chosen: bool = False) -> None:
+    def sides(self) -> list[npt.NDArray[np.float32]]:
+        """Its vertices; of shells those of the innermost and of the outermost."""
+        part, way = self.part, self._way
+        return [part.vertices] if way is None else [part.vertices + at * way for at in (ROOT, TIP)]
+
+    def draw(self, program: moderngl.Program, *, chosen: bool = False, layers: int = 1) -> None:
         """Draw it; the program has in_position, and in_normal and in_colour if it wants them.
 
-        chosen: only the faces that were chosen last.
+        chosen: only the faces that were chosen last. layers: how often, of shells.
         """
         if chosen and not self._chosen_count:
             return
@@ -118,9 +123,20 @@ class PartBuffers:
             )
         count = self._chosen_count if chosen else len(self.part.faces)
         self._gl.enable(moderngl.CULL_FACE)
-        layers = LAYERS if "in_way" in program else 1
         self._arrays[program, indices].render(vertices=3 * count, instances=layers)
         self._gl.disable(moderngl.CULL_FACE)
+
+    def draw_shells(self, program: moderngl.Program, view: CameraView, *, chosen: bool) -> None:
+        """Draw its layers from the inside out; the outer ones, which are thin, hide nothing."""
+        _, _, width, height = view.viewport
+        pixels = view.camera.focal(width / height, height) / view.camera.distance
+        layers = int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST, LAYERS))
+        inner = -(-layers // 2)
+        program["layers"] = layers
+        for first, count in ((0, inner), (inner, layers - inner)):
+            program["first"] = first
+            with blending(self._gl, hides=first == 0):
+                self.draw(program, chosen=chosen, layers=count)
 
 
 PlacedPart = tuple[PartBuffers, npt.NDArray[np.float64]]  # and the matrix of its bone

@@ -249,9 +249,11 @@ class Renderer:
             program = programs[buffers.kind]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
             set_part(program, buffers.kind, buffers.part, style.light, view)
-            hides = buffers.kind == "SHELLS"
-            with blending(self._gl, hides=hides) if buffers.is_mixed else nullcontext():
-                buffers.draw(program, chosen=is_chosen and not hides)
+            if buffers.kind == "SHELLS":
+                buffers.draw_shells(program, view, chosen=is_chosen)
+                continue
+            with blending(self._gl) if buffers.is_mixed else nullcontext():
+                buffers.draw(program, chosen=is_chosen)
 
     def draw_geometry(
         self,

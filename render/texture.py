@@ -69,14 +69,8 @@ class Texture(_Mipmaps):
                 f"the texture's image has {image.shape[1]} x {image.shape[0]} texels; this driver "
                 f"takes at most {limit} each way: shrink the image"
             )
-        wanted = image.shape[:2]
-        if occlusion is not None and (occlusion.shape != wanted or occlusion.dtype != np.uint8):
-            raise ValueError(
-                f"occlusion has shape {occlusion.shape} and dtype {occlusion.dtype}; it must be "
-                f"{wanted} uint8, as the texture's image"
-            )
         self.redness = _median_redness(image)
-        alpha = np.full(wanted, 255, np.uint8) if occlusion is None else occlusion
+        alpha = np.full(image.shape[:2], 255, np.uint8) if occlusion is None else occlusion
         light = to_linear(np.arange(256) / 255.0).astype(np.float32)[image]
         texels = np.dstack([light, alpha / np.float32(255.0)])
         super().__init__(surface, _roots(texels))

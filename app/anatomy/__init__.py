@@ -85,7 +85,7 @@ class Anatomy:
         return DrawOrder(
             structures + others,
             under=((structures, cut), (others, None)),
-            over=strands,
+            over=strands + self._whole(scene, view, (HAIR,)),
             opacity=view.opacity,
             cut=cut,
             is_opened=True,
@@ -117,12 +117,14 @@ class Anatomy:
 
     def _soft(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
         """What lines the mouth; where there are bones alone, only on the side that is whole."""
-        parts = [part for part in scene.parts if part.name.startswith(SOFT)]
+        if "muscles" not in view.structures:
+            return self._whole(scene, view, SOFT)
+        return [part for part in scene.parts if part.name.startswith(SOFT)]
+
+    def _whole(self, scene: FaceScene, view: AnatomyView, names: tuple[str, ...]) -> list[Any]:
+        """Parts, by how their names begin, on the side that is not opened; none if both are."""
         side = SIDES[view.side]
-        if "muscles" in view.structures:
-            return parts
-        if not side:
-            return []
+        parts = [part for part in scene.parts if side and part.name.startswith(names)]
         for part in parts:
             if (side, part.name) not in self._halves:
                 aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(scene)[0]

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import HAIR, Person, recoloured
+from risorius.assets.identities import HAIR, Person, built_in_hair, recoloured
 
 from ..control_names import parted
 from ..control_names.limits import ControlValues, Limits
@@ -120,7 +120,8 @@ class FaceScene(Scene):
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles, self.fine_shape = head.wrinkles, head.fine_shape
         self.ambient_occlusion = head.ambient_occlusion
-        is_known = isinstance(head, assets.Head)
+        if is_known := isinstance(head, assets.Head):
+            self.parts = (*self.parts, built_in_hair(head))
         person = head if isinstance(head, Person) else None
         if isinstance(head, FittedHead) and person is None:  # others have a shirt
             self.fade = head.fade()

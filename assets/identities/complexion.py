@@ -26,10 +26,10 @@ from risorius.geometry.colour import to_linear, to_screen
 
 from ..data_files import Image, read_arrays, read_image
 from ..loading import load
-from ..model import FloatArray, Part, Segment, SingleArray
+from ..model import FloatArray, Head, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from .brows import Brows, drawn_brows, painted, stubble
-from .hair import CUTS, HAIR, Fall, Hairline, drawn_hairline, hair_of, scalp_of
+from .hair import CUTS, HAIR, OWN_CUT, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair
 from .person import Person
 from .space import Identity, Sex
@@ -250,14 +250,21 @@ def _with_hair(
     person: Person, parts: Sequence[Part], angle: float, features: Features
 ) -> tuple[Part, ...]:
     """The parts of a person with the hair of its cut; angle: ITA [deg]."""
-    others = tuple(part for part in parts if part.name != HAIR)
+    others = tuple(part for part in parts if not part.name.startswith(HAIR))
     cut = CUTS[person.identity.cut]
     uv, behind = person.uv.astype(np.float64), _behind(_tints(), features)
     scalp = scalp_of(person.vertices, person.faces, uv, behind)
     colour, length = _hair_colour(angle, features), person.identity.hair
     if isinstance(cut, Fall):
-        return (*others, falling_hair(cut, scalp, person, colour, length))
+        return (*others, *falling_hair(cut, scalp, person, colour, length))
     return (*others, hair_of(cut, scalp, colour, length))
+
+
+def built_in_hair(head: Head) -> Part:
+    """What stands on the scalp of the built-in head, where the picture shows it cropped."""
+    behind = np.float32(0.01 * BEHIND) * read_arrays(head.beside("_tints.npz"))["scalp"] - IN_FRONT
+    scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)
+    return hair_of(OWN_CUT, scalp, to_screen(LOCKS_LIGHTER * to_linear(np.array(OWN.hair))), 1.0)
 
 
 def _behind(tints: _Tints, features: Features) -> SingleArray:

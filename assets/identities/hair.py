@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import map_coordinates
 
 from risorius.geometry.normals import vertex_normals
 
@@ -30,6 +31,7 @@ LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
 CLEAR, SUNK = 0.5, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
+FLAT = -10.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
 PAINTED, HEM = 3.0, 26.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
 
 
@@ -58,22 +60,21 @@ class Fall:
 
     parting: from the middle of the face, to the subject's left, to where it parts.
     below: how far below the ears it ends.
-    volume: how far it stands off the head.
     """
 
     parting: float
     below: float
-    volume: float
 
 
+OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5, behind=40.0)  # of the built-in head
 CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
-        "parted": Fall(26.0, 96.0, 14.0),
-        "centred": Fall(0.0, 106.0, 14.0),
-        "aside": Fall(-22.0, 100.0, 15.0),
+        "parted": Fall(26.0, 96.0),
+        "centred": Fall(0.0, 106.0),
+        "aside": Fall(-22.0, 100.0),
         "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
-        "short": Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5, behind=40.0),
+        "short": OWN_CUT,
         "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=40.0),
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
         "brushed": Cut((0.15, 0.4, 0.9), 9.0, 28.0, 0.35, behind=18.0),
@@ -86,13 +87,12 @@ CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
 class Hairline:
     """Where hair begins, beside the built-in head's: how far behind [mm].
 
-    front, temples: in the middle, and more at the corners of the forehead. peak: how far a widow's
-    peak comes down between them. crown: how bald the top is, 0 to 1.
+    front, temples: in the middle, and more at the corners of the forehead.
+    crown: how bald the top is, 0 to 1.
     """
 
     front: float = 0.0
     temples: float = 0.0
-    peak: float = 0.0
     crown: float = 0.0
 
     def shift(self, size: int) -> SingleArray:
@@ -100,7 +100,6 @@ class Hairline:
         across, up = np.linspace(-0.5, 0.5, size), np.linspace(1.0, 0.0, size)[:, None]
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
-        row -= self.peak * np.exp(-((across / 0.022) ** 2))
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
         top = np.exp(-((across / 0.13) ** 4) - ((up - 0.78) / 0.14) ** 4)
         return (row * ahead + self.crown * BALD * top).astype(np.float32)
@@ -110,10 +109,10 @@ def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> H
     """The hairline of somebody of a sex and age.
 
     It is straight, round, or like an M as often as among 456 persons (women 43, 39, 18 %, men 46,
-    11, 43 %), a widow's peak has every third; men's lies 4.5 mm higher (Kashiyama and others 2021,
-    "Hairline morphology", Plast. Reconstr. Surg. Glob. Open 9:e3765). Its recession is chosen.
+    11, 43 %); men's lies 4.5 mm higher (Kashiyama and others 2021, "Hairline morphology", Plast.
+    Reconstr. Surg. Glob. Open 9:e3765). Its recession is chosen.
     """
-    kind, has_peak, share, bald = random.uniform(0.0, 1.0, 4)
+    kind, _, share, bald = random.uniform(0.0, 1.0, 4)
     front = float(np.clip(random.normal(0.0, 3.0), -6.0, 6.0))
     straight, round_ = (0.46, 0.57) if is_man else (0.43, 0.82)
     temples = 0.0 if kind < straight else -5.0 if kind < round_ else 6.0 + 6.0 * share
@@ -122,7 +121,6 @@ def drawn_hairline(is_man: bool, years: float, random: np.random.Generator) -> H
     return Hairline(
         front=(0.5 if is_man else -2.0) + front + 0.6 * receded,
         temples=temples + (receded if is_man else 0.0),
-        peak=5.0 * share + 2.0 if has_peak < (0.33 if is_man else 0.3) else 0.0,
         crown=float(is_man and bald < 0.5 * late),
     )
 
@@ -150,17 +148,20 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     crosses = np.ptp(angle[faces], axis=1) > np.pi
     again, number = np.unique(faces[crosses], return_inverse=True)
     faces[crosses] = len(points) + number.reshape(-1, 3)
-    rows = np.concatenate([np.arange(len(points)), again])
+    angle = np.concatenate([angle, angle[again] + 2.0 * np.pi * (angle[again] < 0.0)])
+    used, number = np.unique(faces, return_inverse=True)
+    faces, angle = number.reshape(-1, 3).astype(np.int32), angle[used]
+    rows = np.concatenate([np.arange(len(points)), again])[used]
     points, normals, behind, away, out = (
         each[rows] for each in (points, normals, behind, away, out)
     )
-    angle = np.concatenate([angle, angle[again] + 2.0 * np.pi * (angle[again] < 0.0)])
     radius = np.linalg.norm(points - middle, axis=1).mean()
     comb = unit(np.cross(np.cross(whorl, out), normals))
     comb *= np.sign((comb * (out * np.cos(away)[:, None] - whorl)).sum(axis=1))[:, None]
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long = length * long * smooth_step(0.0, cut.behind, behind)
-    way = long[:, None] * (cut.lift * normals + np.sqrt(1.0 - cut.lift**2) * comb)
+    lift = cut.lift * smooth_step(*FLAT, behind)[:, None]
+    way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
     # Far outside the hairline it is under the skin.
     points = points + (CLEAR + SUNK * np.minimum(behind + 4.0, 0.0))[:, None] * normals
     curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
@@ -188,9 +189,8 @@ def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArra
 
     def far(places: Points) -> Values:
         """How far places on the texture lie behind the hairline [mm]."""
-        row, column = (1.0 - places[:, 1]) * height, places[:, 0] * width
-        texel = row.astype(int).clip(0, height - 1), column.astype(int).clip(0, width - 1)
-        return np.asarray(behind[texel], np.float64)
+        at = [(1.0 - places[:, 1]) * height - 0.5, places[:, 0] * width - 0.5]
+        return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 
     is_layereded = (far(uv) > 0.0)[faces].any(axis=1)
     used, number = np.unique(faces[is_layereded], return_inverse=True)

@@ -7,7 +7,6 @@ inside out, and a second one that is seen from within.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +19,7 @@ from ..smooth import unit
 from ..topology import grid_faces
 from .hair import HAIR, MEAN, Fall, Scalp
 
-STRANDS, SAMPLES = 44, 34  # of one side, and along each
+STRANDS, SAMPLES = 26, 20  # of one side, and along each
 ABOVE_EARS, BEHIND_EARS = 22.0, 8.0  # [mm] that the middle of the head lies so
 WIDEST = np.radians(-6.0)  # how far below it strands leave the head
 ROUNDED = np.radians(12.0)  # beside that edge, as far as hair is thinner
@@ -28,13 +27,15 @@ EDGE = np.radians(60.0)  # from the face's middle, from where on hair hangs besi
 SHARP, HIGHEST = 120.0, 24.0  # of the mean over directions that tells how far the skin is
 CLEAR = 3.5  # [mm] of the inner side, off the skin
 SLIDE = 1.3  # of layers along strands, beside their distance
+OUTER = 0.4  # of the volume, that layers fill
 FINE = 0.22  # of the way along strands, in which they change less than short ones
 HEM, RAGGED = 20.0, 4.0  # [mm] over which tips thin out, and by which they are uneven
 PARTED, FRONT = 2.0, 6.0  # [mm] over which hair gets dense from the parting, from the face
 FULL = 2.0  # density where no layer is thin
+VOLUME = 14.0  # [mm] that it stands off the head
 LOW, RISES = 0.4, 0.3  # of the volume at the roots, and of the way over the head until it is whole
-LIMP = 3.5  # steps along strands, over which they bend from the head
-THIN_ENDS, CURVED_IN = 0.6, 0.14  # of the volume and of the radius, that tips have less
+LIMP = 2.0  # steps along strands, over which they bend from the head
+THIN_ENDS, CURVED_IN = 0.8, 0.14  # of the volume and of the radius, that tips have less
 SLEEK = 0.45  # how much it shines
 AT_A_POINT = 0.01  # share of the way out in normals: where strands meet there is no triangle
 
@@ -49,10 +50,13 @@ class _Strands(NamedTuple):
     left: FloatArray
 
 
-def falling_hair(cut: Fall, scalp: Scalp, head: Any, colour: FloatArray, length: float) -> Part:
-    """The part that is drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut.
+def falling_hair(
+    cut: Fall, scalp: Scalp, head: Any, colour: FloatArray, length: float
+) -> tuple[Part, ...]:
+    """The parts that are drawn as hair, the inner side first.
 
     head: with vertices, anatomy and landmarks.
+    colour: sRGB, shape (3,); length: beside that of the cut.
     """
     vertices, at = head.vertices, head.anatomy
     ear = 0.5 * (vertices[at["tragion_left"]] + vertices[at["tragion_right"]])
@@ -66,12 +70,13 @@ def falling_hair(cut: Fall, scalp: Scalp, head: Any, colour: FloatArray, length:
         mean = (weights * far**HIGHEST).sum(axis=-1) / weights.sum(axis=-1)
         return np.asarray(mean ** (1.0 / HIGHEST))
 
-    sides = []
-    for side in (-1.0, 1.0):
-        strands = _strands(cut, side, head, middle, skin, ear[1] - cut.below * length)
-        sides.append(_surface(strands, side, colour, is_inside=False))
-        sides.append(_surface(strands, side, colour, is_inside=True))
-    return _joined(sides)
+    end = ear[1] - cut.below * length
+    sides = [(side, _strands(cut, side, head, middle, skin, end)) for side in (-1.0, 1.0)]
+    return tuple(
+        _surface(strands, side, colour, is_inside=is_inside)
+        for is_inside in (True, False)
+        for side, strands in sides
+    )
 
 
 def _strands(
@@ -96,14 +101,13 @@ def _strands(
     # Beside the face the outer side comes round to the inner one.
     beside = np.clip((angle - EDGE) / ROUNDED, 0.0005, 1.0)[:, None]
     risen = LOW + (1.0 - LOW) * np.sin(0.5 * np.pi * np.clip(over / RISES, 0.0, 1.0))
-    thick = cut.volume * risen * np.sqrt(1.0 - (1.0 - beside) ** 2)
+    thick = VOLUME * risen * np.sqrt(1.0 - (1.0 - beside) ** 2)
     grids = []
     for off in (np.zeros_like(thick), thick):
         grid = middle + (skin(ways) + CLEAR + off)[..., None] * ways
-        narrower = 1.0 - CURVED_IN * drop**2
         start = grid[:, -1]
         wide = np.linalg.norm((start - middle)[:, [0, 2]], axis=1)
-        wide = wide[:, None] * narrower - THIN_ENDS * drop**2 * off[:, -1:]
+        wide = wide[:, None] * (1.0 - CURVED_IN * drop**2) - THIN_ENDS * drop**2 * off[:, -1:]
         fall = middle + wide[..., None] * flat[:, None]
         fall[..., 1] = start[:, 1:2] + drop * (end - RAGGED - start[:, 1:2])
         bent = np.concatenate([grid, fall], axis=1)
@@ -137,13 +141,14 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
     low, high, across, along, left = strands
     ahead = unit(np.gradient(high, axis=1).reshape(-1, 3)).reshape(high.shape)
     thickness = np.linalg.norm(high - low, axis=-1, keepdims=True)
-    way = high - low + SLIDE * thickness * ahead
-    places, beside = low + MEAN * (high - low), np.abs(across - across[0])[:, None]
-    dense = np.minimum(left / HEM, np.minimum(0.3 + along / PARTED, 0.45 + beside / FRONT))
-    dense = np.minimum(dense, FULL)
-    if is_inside:
-        dense = np.minimum(left / HEM, FULL)  # nothing shines through at its front
-        way, places = -0.1 * (high - low) + 0.2 * thickness * ahead, low
+    way = OUTER * (high - low + SLIDE * thickness * ahead)
+    places = high - OUTER * (1.0 - MEAN) * (high - low)
+    beside = np.abs(across - across[0])[:, None]
+    dense = np.minimum(left / HEM, FULL)
+    if is_inside:  # nothing shines through at its front
+        way, places = -0.1 * (high - low) + 0.2 * thickness * ahead, 0.5 * (low + high)
+    else:
+        dense = np.minimum(dense, np.minimum(0.3 + along / PARTED, 0.8 + beside / FRONT))
     points = places.reshape(-1, 3)
     faces = grid_faces(np.arange(len(points)).reshape(along.shape))
     if (side > 0.0) != is_inside:
@@ -161,7 +166,7 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
         axis=-1,
     )
     return Part(
-        name=HAIR,
+        name=HAIR + "_inside" * is_inside + ("_left" if side > 0.0 else "_right"),
         vertices=points.astype(np.float32),
         normals=normals.astype(np.float32),
         faces=faces,
@@ -170,14 +175,3 @@ def _surface(strands: _Strands, side: float, colour: FloatArray, *, is_inside: b
         shine=SLEEK,
         striation=striation.reshape(-1, 6).astype(np.float32),
     )
-
-
-def _joined(parts: list[Part]) -> Part:
-    """One part of several alike."""
-    starts = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    faces = [part.faces + start for part, start in zip(parts, starts, strict=True)]
-    arrays: dict[str, Any] = {
-        name: np.concatenate([getattr(part, name) for part in parts])
-        for name in ("vertices", "normals", "colours", "striation")
-    }
-    return replace(parts[0], faces=np.concatenate(faces).astype(np.int32), **arrays)

@@ -133,8 +133,6 @@ class PersonSpace:
     """Vertices, shape (V, 3)."""
     modes: FloatArray
     """Shape (k, V, 3)."""
-    own: FloatArray
-    """Weights of the built-in head, shape (k,)."""
     slopes: FloatArray
     """How the measures of NORMS change with each weight [mm], shape (m, k)."""
     pushed: FloatArray
@@ -191,7 +189,7 @@ def person_space() -> PersonSpace:
     ways = np.array([way for _, way, *_ in POINTS], dtype=np.float64)
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     pushed = np.einsum("kni,ni->nk", modes[:, numbers], ways)
-    return PersonSpace(mean, modes, own, slopes, pushed, head.anatomy)
+    return PersonSpace(mean, modes, slopes, pushed, head.anatomy)
 
 
 def sample_identity(

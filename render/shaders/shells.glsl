@@ -19,11 +19,14 @@ in float in_dense;  // how dense they are, 0 to 1; beyond, uneven strands are wh
 uniform mat4 model_view;
 uniform mat4 projection;
 uniform float gloss;
+uniform int first;  // of the layers that are drawn, from the inside out
+uniform int layers;  // of all
 const float MEAN = 0.6;
+const float LOWEST = 0.15;  // place of the first layer, beside their distance: no gap is below it
 out Surface { VARYINGS } surface;
 
 void main() {
-    float layer = (float(gl_InstanceID) + 0.5) / float(LAYERS);
+    float layer = (float(first + gl_InstanceID) + LOWEST) / float(layers);
     vec4 position = model_view * vec4(in_position + (layer - MEAN) * in_way, 1.0);
     vec3 normal = normalize(mat3(model_view) * in_normal), along = mat3(model_view) * in_way;
     // Hair scatters light, so it is lit some way past where it turns away.
@@ -51,9 +54,9 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const float SIDEWAYS = 5.0;              // how soon layers are whole, from their side to their front
+const float SIDEWAYS = 0.55;              // how far to the front layers are whole
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
-const float LEAST_FACING = 0.12;         // from which on all of a layer is passed
+const float LEAST_FACING = 0.1;          // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 
@@ -78,9 +81,9 @@ void main() {
     float tall = 0.65 + 0.5 * tones.x + 0.4 * tones.y;
     float far = tall * smoothstep(0.0, 1.0, surface.dense + dot(RAGGED, tones));
     float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(2.0 * far, 0.0, 1.0);
-    // Seen from the side, a look goes past many strands; and upper layers are lines with gaps.
-    cover = 1.0 - pow(1.0 - min(cover, 0.999), 1.0 / clamp(surface.facing, LEAST_FACING, 1.0));
-    cover *= mix(1.0, clamp(SIDEWAYS * surface.facing, 0.0, 1.0), min(3.0 * surface.layer, 1.0));
+    // Seen from the side, a look goes past many roots; but of tips it sees lines with gaps.
+    if (surface.layer > 0.5) cover *= smoothstep(0.05, SIDEWAYS, surface.facing);
+    else cover = 1.0 - pow(1.0 - min(cover, 0.999), 1.0 / clamp(surface.facing, LEAST_FACING, 1.0));
     if (cover < 0.02) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;
     // Tilted toward the root and toward the tip.

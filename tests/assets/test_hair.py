@@ -40,8 +40,8 @@ def haired(cut: str, *, number: int = 0, receded: float = 0.0, length: float = 1
 
 
 def hair_of(person: Person) -> Part:
-    """Its hair."""
-    return next(part for part in person.parts if part.name == HAIR)
+    """Its hair; of that which hangs beside the face, the outer side on the left."""
+    return [part for part in person.parts if part.name.startswith(HAIR)][-1]
 
 
 def passes_of(studio: Capture, wanted: Sequence[str]) -> dict[str, Any]:
@@ -133,7 +133,7 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     image, classes = label_of(haired("fringed"))
     is_hair = classes == Segment.HAIR
     assert is_hair.mean() > 0.04 and (classes[0] == Segment.BACKGROUND).all()
-    assert image[is_hair].mean() < 0.7 * image[classes == Segment.SKIN].mean()
+    assert image[is_hair].mean() < 0.75 * image[classes == Segment.SKIN].mean()
     assert (label_of(haired("cropped"))[1] == Segment.HAIR).sum() < is_hair.sum()
     parts = Anatomy(scene).draw_order(AnatomyView(("muscles",))).parts
-    assert parts and not [part for part in parts if part.name == HAIR]
+    assert parts and not [part for part in parts if part.name.startswith(HAIR)]

@@ -45,11 +45,3 @@ def test_lines_are_not_joined(surface: render.Surface) -> None:
         )
     columns = np.nonzero(drawn(surface.read().astype(np.int32)).any(axis=0))[0]
     assert len(columns) > 2 and not ((columns > 20) & (columns < 76)).any()
-
-
-def test_line_colours_must_fit(surface: render.Surface) -> None:
-    """One colour, or one per line."""
-    line = np.zeros((3, 3))
-    renderer = render.Renderer(surface)
-    with pytest.raises(ValueError, match=r"colour has shape \(2, 3\); it must be \(3,\), or one"):
-        renderer.draw_lines(Lines([line], np.zeros((2, 3))), renderer.view(facing()))
