@@ -25,11 +25,9 @@ class Bones:
         self.head_weight = model.turns[:, 0]
         sides = [ball.side.value for ball in model.skull.eyeballs]
         ways = [f"gaze_{way}_{side}" for side in sides for way in ("horizontal", "vertical")]
-        mouth = ("jaw_open", "jaw_forward", "jaw_sideways", "lips_closed")
-        self._controls = controls
-        self._mouth, self._head, self._gaze = map(
-            controls.places_in_reached, (mouth, HEAD_CONTROLS, ways)
-        )
+        self._controls, places = controls, controls.places_in_reached
+        self._mouth = places(("jaw_open", "jaw_forward", "jaw_sideways", "lips_closed"))
+        self._head, self._gaze = places(HEAD_CONTROLS), places(ways)
         self.jaw, self._head_values = (0.0, 0.0, 0.0), [0.0, 0.0, 0.0]
         self.mandible = self.head = REST  # seen from the cranium, and from the neck
         self.turn: Array = np.eye(4)  # of the head, for column vectors [head units]

@@ -150,11 +150,13 @@ class Controls:
         wanted = others.copy()
         for name, value in values.items():
             wanted[self.place(name)] = finite(f"control '{name}'", value)
-        self.take(wanted)
+        self._take(wanted)
 
     def take(self, values: npt.ArrayLike) -> None:
         """Set all controls, in the order of `names`, shape (N,); if one is refused, none is set."""
-        wanted = numbers("values", values, self._values.shape)
+        self._take(numbers("values", values, self._values.shape))
+
+    def _take(self, wanted: Array) -> None:
         is_beyond = (wanted < self._least) | (wanted > self._most)
         if is_beyond.any():
             place = int(is_beyond.argmax())

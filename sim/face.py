@@ -61,6 +61,7 @@ class Simulation:
         for array in (self.positions, self.rest_positions):
             array.flags.writeable = False
         self.faces, self.areas = surface.faces, surface.areas
+        self._axes = model.space.axes * model.space.scale
         self.controls = Controls(model.controls, model.layers)
         self.bones = Bones(model, self.controls)
         self._drive = MuscleDrive(model.rig, model.muscles.names, self.controls)
@@ -118,8 +119,8 @@ class Simulation:
             advance(state, model.skin, Tick(count, tick / count, self._grip, bones.mandible))
             self.controls.advance(tick / 2.0)
         broken = to_posed_head(
-            state.x, model.surface.positions, model.space.axes * model.space.scale,
-            self.rest_positions, bones.turn, model.turns, self._positions,
+            state.x, model.surface.positions, self._axes, self.rest_positions, bones.turn,
+            model.turns, self._positions,
         )  # fmt: skip
         if broken:
             raise SimulationUnstable(

@@ -40,8 +40,7 @@ class Touch:
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
         shape (n,). Raises ValueError where they do not fit together.
         """
-        wanted = "different vertex numbers, shape (n,)"
-        count = len(self._positions)
+        wanted, count = "different vertex numbers, shape (n,)", len(self._positions)
         numbers = checked.vertex_numbers("vertices", vertices, (None,), count, wanted)
         points = checked.numbers("targets", targets, (len(numbers), 3))
         share = checked.numbers("firmness", firmness, (len(numbers),))
@@ -69,5 +68,5 @@ class Touch:
 
     def _in_standard_space(self, vectors: Array) -> Array:
         """Vectors (n, 3) of the head, wherever that is turned now."""
-        turned: Array = self._model.space.vectors_to_standard(vectors) @ self._bones.head.rotation
-        return turned
+        standard = self._model.space.vectors_to_standard(vectors)
+        return np.asarray(standard @ self._bones.head.rotation)

@@ -12,7 +12,7 @@ places are found in its first.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import ItemsView, Iterator, Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -77,6 +77,9 @@ class ControlValues(Mapping[str, float]):
 
     def __len__(self) -> int:
         return len(self.numbers)
+
+    def items(self) -> ItemsView[str, float]:
+        return dict(zip(self.limits, self.numbers.tolist(), strict=True)).items()
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, ControlValues):

@@ -55,13 +55,15 @@ class LiveOverride:
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
+        self._names: tuple[str, ...] | None = None
         self.take({}, 0.0)
 
     def take(self, controls: Mapping[str, float], share: float) -> None:
         """Override these controls from now on, and no others; those there are not are left out."""
-        known = tuple(name for name in controls if name in self._limits)
-        self._places = self._limits.places(known)
-        wanted = np.array([controls[name] for name in known], np.float64)
+        if (names := tuple(controls)) != self._names:  # a stream has the same in each frame
+            self._names, self._known = names, tuple(n for n in names if n in self._limits)
+            self._places = self._limits.places(self._known)
+        wanted = np.array([controls[name] for name in self._known], np.float64)
         self._wanted, self._share = self._limits.cut_off(wanted, self._places), share
 
     @property
