@@ -21,7 +21,6 @@ from ..errors import UserError
 
 Floats = npt.NDArray[np.float64]
 Places = npt.NDArray[np.intp]  # of controls among all N of a scene
-KNOWN = 256  # sets of names whose places are kept
 
 
 class Limits(dict[str, tuple[float, float]]):
@@ -31,7 +30,7 @@ class Limits(dict[str, tuple[float, float]]):
         super().__init__(limits)
         self.place = {name: place for place, name in enumerate(limits)}
         self._low, self._high = np.array([*limits.values()], np.float64).reshape(-1, 2).T
-        self.places = functools.lru_cache(KNOWN)(self._places)
+        self.places = functools.lru_cache(256)(self._places)  # of so many sets of names
 
     def _places(self, names: tuple[str, ...]) -> Places:
         """The places of controls, shape (n,). Raises UserError on one that there is not."""
@@ -42,8 +41,7 @@ class Limits(dict[str, tuple[float, float]]):
 
     def cut_off(self, sums: Floats, places: Places) -> Floats:
         """What controls asked for these sums have as values; both of shape (n,), or (T,) of one."""
-        values: Floats = np.minimum(np.maximum(sums, self._low[places]), self._high[places])
-        return values
+        return np.asarray(np.minimum(np.maximum(sums, self._low[places]), self._high[places]))
 
     def pose(self, sums: Mapping[str, float], over: ControlValues | None = None) -> ControlValues:
         """Values of all controls, cut off; those not named as they are in `over`, else 0.
