@@ -28,26 +28,10 @@ from ..data_files import Image
 from ..errors import AssetError
 from ..loading import load
 from ..meshes import Mesh, read_mesh
-from ..model import (
-    Eye,
-    FineShape,
-    FloatArray,
-    Head,
-    IndexArray,
-    Layer,
-    Part,
-    SingleArray,
-    Wrinkles,
-)
+from ..model import Eye, FineShape, FloatArray, Head, IndexArray, Layer, Part, SingleArray, Wrinkles
 from ..topology import boundary_loops, decimated
 from ..user_files import named
-from .landmark_file import (
-    COUNT,
-    check_lips,
-    groups_in_disorder,
-    nearest_vertices,
-    read_landmarks,
-)
+from .landmark_file import COUNT, check_lips, groups_in_disorder, nearest_vertices, read_landmarks
 from .mesh_validation import SkinPiece, check_manifold, check_openings, skin_of, without_bag
 from .organs import FittedSkin, place_eyes, place_parts, with_eyelid_rims
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
@@ -211,7 +195,8 @@ def _painted(
     if mesh.texture is not None:
         own = own_picture(mesh.texture, whole.file_faces, whole.is_turned)
     if own is not None and skin is whole:
-        return own[1], own[0], maps_in(known, built_in, own[1])
+        height, width = own[0].shape[:2]
+        return own[1], own[0], maps_in(known, built_in, own[1], (height, width))
     (picture, light), layout = plain_skin(known), built_in
     if skin is not whole and (own is not None or mesh.colours is not None):
         normals = vertex_normals(whole.vertices, whole.faces)

@@ -35,7 +35,7 @@ from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
 from ..model import FloatArray, IndexArray
 from ..user_files import named, read_file
-from .mesh_validation import SkinPiece, path_lengths
+from .mesh_validation import SkinPiece, path_lengths, pieces_of
 from .warp import nearest_on
 
 COUNT = 68
@@ -161,8 +161,7 @@ def _read_each(kind: Any, found: list[Any]) -> list[Any]:
 
 def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
     """The vertices nearest to points; each point must be near the mesh."""
-    on_mesh = nearest_on(points, np.zeros_like(points), mesh.vertices, mesh.faces)
-    distance = np.linalg.norm(on_mesh.interpolate(mesh.vertices) - points, axis=1)
+    triangles, distance = _triangles_at(points, mesh, mesh.faces)
     allowed = FARTHEST_OFF * float(np.linalg.norm(np.diff(points[OUTER_EYE_CORNERS], axis=0)))
     if distance.max() > allowed:
         place = int(distance.argmax())
@@ -170,7 +169,18 @@ def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
             f"landmark {place} lies {distance[place]:.3g} units off the mesh; allowed are "
             f"{allowed:.3g} (a twentieth of the eyes' distance): are unit and axes the mesh's?"
         )
-    return nearest_vertices(points, mesh.vertices, mesh.faces)
+    # Beside an eye a lash may have been marked, or the ball: the skin is what most points lie on.
+    piece = pieces_of(mesh.faces, len(mesh.vertices))[mesh.faces[:, 0]]
+    skin = mesh.faces[piece == np.bincount(piece[triangles]).argmax()]
+    if _triangles_at(points, mesh, skin)[1].max() > allowed:
+        skin = mesh.faces
+    return nearest_vertices(points, mesh.vertices, skin)
+
+
+def _triangles_at(points: FloatArray, mesh: Mesh, faces: IndexArray) -> tuple[Any, FloatArray]:
+    """The triangles nearest to points, and how far off they are, shapes (n,)."""
+    found = nearest_on(points, np.zeros_like(points), mesh.vertices, faces)
+    return found.triangles, np.linalg.norm(found.interpolate(mesh.vertices) - points, axis=1)
 
 
 def nearest_vertices(points: FloatArray, vertices: FloatArray, faces: IndexArray) -> IndexArray:

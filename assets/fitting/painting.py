@@ -170,11 +170,16 @@ def drawn_over(picture: Image, layout: Layout, colours: FloatArray | tuple[Image
     return drawn
 
 
-def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image, Image]:
+def maps_in(
+    known: Head, theirs: Layout, own: Layout, size: tuple[int, int] = (SIZE, SIZE)
+) -> tuple[Wrinkles, Image, Image]:
     """The built-in head's wrinkles, segments and light, in a layout of another mesh's own.
 
-    theirs: where the same triangles lie in the built-in layout.
+    theirs: where the same triangles lie in the built-in layout. size: of the picture (H, W), which
+    light goes with.
     """
+    import PIL.Image  # which to load a head takes no time for
+
     texels = texels_within(own, (SIZE, SIZE))
     place = texels.interpolate(theirs.corners)
     segments = np.full((SIZE, SIZE), Segment.SKIN, np.uint8)
@@ -189,6 +194,7 @@ def maps_in(known: Head, theirs: Layout, own: Layout) -> tuple[Wrinkles, Image, 
     wrinkles = np.full((SIZE, SIZE, 4), (128, 128, 0, 0), np.uint8)
     level = (128.0 + slope * (127.0 / steepest)).round().clip(1, 255).astype(np.uint8)
     wrinkles[texels.rows, texels.columns] = np.column_stack([level, found[:, 2:]])
+    light = np.asarray(PIL.Image.fromarray(light).resize(size[::-1]))
     return replace(known.wrinkles, map=wrinkles, steepest=steepest), segments, light
 
 

@@ -10,7 +10,14 @@ from hypothesis import strategies as st
 from risorius import assets
 from risorius.assets import AssetError
 from risorius.assets.fitting import fit, fit_head
-from risorius.assets.fitting.landmark_file import GROUPS, Group, groups_in_disorder
+from risorius.assets.fitting.landmark_file import (
+    GROUPS,
+    Group,
+    groups_in_disorder,
+    landmarks_text,
+    read_landmarks,
+)
+from risorius.assets.meshes import Mesh
 from tests.heads import Stranger, shape, stranger
 
 HEAD = assets.load("head")
@@ -69,6 +76,18 @@ def test_numbers_counted_from_1_are_refused(other: Stranger, tmp_path: Path) -> 
     mesh, numbers = other.write(tmp_path, landmarks=other.landmarks + 1)
     with pytest.raises(AssetError, match=r"\.obj: landmarks count vertices from 1"):
         fit_head(mesh, numbers)
+
+
+def test_a_point_on_a_lash_means_the_skin_beneath(other: Stranger, tmp_path: Path) -> None:
+    """The mesh may have lashes and eyeballs of its own, on which one clicks beside the eye."""
+    points, count = other.mesh.vertices[other.landmarks], len(other.mesh.vertices)
+    lash = points[36] + 0.001 * np.eye(3)
+    faces = np.vstack([other.mesh.faces, [[count, count + 1, count + 2]]]).astype(np.int32)
+    mesh = Mesh(np.vstack([other.mesh.vertices, lash]), faces)
+    points[36] = lash.mean(axis=0)
+    marks = tmp_path / "marks.json"
+    marks.write_text(landmarks_text(dict(enumerate(points.tolist()))))
+    assert read_landmarks(marks, mesh)[0].tolist() == other.landmarks.tolist()
 
 
 @pytest.mark.parametrize("by", [1, -1, 5])

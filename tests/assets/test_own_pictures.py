@@ -90,7 +90,7 @@ def test_own_picture_lies_where_the_file_has_it(
     files = write(tmp_path, other)
     _striped().save(tmp_path / "skin.png")
     head, plain = fit_head(*files), fit(other.mesh, other.landmarks)
-    assert head.albedo.shape == (SIZE, SIZE, 3)
+    assert head.albedo.shape == (SIZE, SIZE, 3) and head.ambient_occlusion.shape == (SIZE, SIZE)
     assert len(head.vertices) == len(plain.vertices)
     assert np.allclose(head.vertices[head.faces], plain.vertices[plain.faces], atol=1e-3)
     uv, face_uv = _uv(other)

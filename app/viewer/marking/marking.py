@@ -34,6 +34,7 @@ from ..session.document import History
 SEEN_RADIUS = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
 SUFFIX = ".json"
 INNER_LIPS = range(60, 68)
+AROUND = 4  # vertices: the nearest one alone may be behind a lid's edge, and look aside
 FORWARD = np.array([0.0, 0.0, 1.0])  # out of a face that is upright
 
 FloatArray = npt.NDArray[np.float64]
@@ -157,11 +158,12 @@ class Marking:
             self.current = ORDER[0]
 
     def seen(self, numbers: Iterable[int]) -> tuple[FloatArray, FloatArray]:
-        """Where marks are seen, and the normals of the skin there, shape (n, 3) each."""
+        """Where marks are seen, shape (n, 3), and normals of the skin around, shape (n, k, 3)."""
         chosen = list(numbers)
         places = [self.marks.places[number] for number in chosen]
         points = self.placing.points(np.reshape(places, (-1, 3)))
-        normals = self._normals[self._nearest.query(points)[1]]
+        nearest = range(1, min(AROUND, len(self.positions)) + 1)
+        normals = self._normals[self._nearest.query(points, nearest)[1]]
         if self.is_upright:  # skin between lips that touch looks up or down, and is seen from ahead
             normals[[number in INNER_LIPS for number in chosen]] = FORWARD
         return points, normals

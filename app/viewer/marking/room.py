@@ -46,7 +46,8 @@ SIDES = {
 }
 BEGIN = (
     "Click the point on the skin that the guide shows. Where the head does not look at you, drag "
-    "it with the mouse until it does, and press Turn until it stands upright. The wheel zooms."
+    "it with the mouse until it does, and press Turn until it stands upright. The wheel zooms, the "
+    "middle button moves."
 )
 GO_ON = (
     "Drag points that are not where they belong; a click on the skin moves this one. White inside: "
@@ -99,7 +100,8 @@ class MarkingView(View):
         points, normals = self._marking.seen(numbers)
         spots = places_in(self.area, self.camera, points)
         to_eye = self.camera.eye - points
-        toward = (normals * to_eye).sum(axis=1) / np.linalg.norm(to_eye, axis=1)
+        toward = np.einsum("nki,ni->nk", normals, to_eye).max(axis=1)
+        toward /= np.linalg.norm(to_eye, axis=1)
         return {n: spots[index] for index, n in enumerate(numbers) if toward[index] > FACING}
 
 
