@@ -171,7 +171,7 @@ class Capture:
             for each in scene.bone_transforms().values()
         ]
         parts = [part.vertices for part in scene.parts]
-        values = [*scene.values.values()]
+        values = scene.values.numbers
         now = np.concatenate([scene.positions, *bones, *parts, values, camera.eye], axis=None)
         width, height = self.viewports[0].area[2:]
         pixels = camera.focal(width / height, height) / np.linalg.norm(camera.eye - camera.target)

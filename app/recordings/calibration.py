@@ -21,12 +21,11 @@ import numpy as np
 
 from ..control_names import TURNED, twin_of
 from ..errors import UserError
-from .names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES, angle_of, shape_of
+from .names import ANGLES, ARKIT, HEAD_ANGLES, VISEMES, angle_of, shape_of
 from .take import Array, Take
 
 Value = TypeVar("Value", float, Array)
 
-ANGLES = frozenset((*HEAD_ANGLES, *EYE_ANGLES))
 LEAST_RANGE = 0.2  # what a neutral face leaves of a channel; more would stretch noise to a motion
 HIGHEST_GAIN = 10.0
 LOW = 5.0  # percentile that counts as neutral

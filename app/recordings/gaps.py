@@ -12,11 +12,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..errors import UserError
+from .names import ANGLES, NONSENSE
 from .take import Array, Take
 
 SHORT_GAP = 0.3  # [s] that is bridged by a straight line
 MISSING_ROWS = 4.0  # of usual steps: what is longer, and no short gap, is a hole in the recording
-LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement, and shares are 1 at most
+LARGEST_ANGLE = 360.0  # [degrees]; a larger one is no measurement
 LONGEST_TAKE = 86_400.0  # [s]
 
 
@@ -36,8 +37,8 @@ def whole_take(
     """
     told = list(notes)
     channels = {
-        name: np.where(np.abs(values) > LARGEST_ANGLE, np.nan, values)
-        for name, values in channels.items()
+        name: np.where(np.abs(v) > (LARGEST_ANGLE if name in ANGLES else NONSENSE), np.nan, v)
+        for name, v in channels.items()
     }
     channels = {name: values for name, values in channels.items() if np.isfinite(values).any()}
     if not channels:

@@ -38,6 +38,7 @@ ARKIT = (
 NONSENSE = 3.0  # a shape beyond is no measurement
 HEAD_ANGLES = ("head_yaw", "head_pitch", "head_roll")
 EYE_ANGLES = ("eye_yaw_left", "eye_pitch_left", "eye_yaw_right", "eye_pitch_right")
+ANGLES = frozenset((*HEAD_ANGLES, *EYE_ANGLES))
 VISEMES = tuple(
     f"viseme_{sound}" for sound in "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 )

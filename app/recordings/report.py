@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import counted, in_one_line
-from .calibration import ANGLES, Calibration
+from .calibration import Calibration
 from .mapping import chosen
-from .names import ARKIT
+from .names import ANGLES, ARKIT
 from .take import Take
 
 WIDTH = 100  # [characters] of a line
