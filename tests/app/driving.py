@@ -117,8 +117,7 @@ def click(viewer: Viewer, name: str, *, times: int = 1) -> None:
 
 def drag(viewer: Viewer, place: tuple[int, int], by: tuple[int, int], *, button: int = 1) -> None:
     """Press, move and stay pressed."""
-    xdotool(viewer, "mousemove", *place)
-    xdotool(viewer, "mousedown", button)
+    xdotool(viewer, "mousemove", *place, "mousedown", button)
     xdotool(viewer, "mousemove_relative", "--", *by)
 
 
@@ -202,13 +201,10 @@ def key_at(viewer: Viewer, place: KeyPlace) -> tuple[int, int]:
 def press(viewer: Viewer, place: tuple[int, int], *keys: str, button: int = 1) -> None:
     """Click somewhere, with keys held down; never the second half of a double click."""
     usual, viewer.gui.double_click_time = viewer.gui.double_click_time, 0.0
-    xdotool(viewer, "mousemove", *place)
-    for key in keys:
-        xdotool(viewer, "keydown", key)
+    held = [word for key in keys for word in ("keydown", key)]
+    xdotool(viewer, "mousemove", *place, *held)
     xdotool(viewer, "mousedown", button)
-    xdotool(viewer, "mouseup", button)
-    for key in keys:
-        xdotool(viewer, "keyup", key)
+    xdotool(viewer, "mouseup", button, *(word for key in keys for word in ("keyup", key)))
     viewer.gui.double_click_time = usual
 
 

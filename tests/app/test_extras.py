@@ -1,12 +1,11 @@
 """Without extras: pictures are drawn, and what is missing is named with what installs it."""
 
+import json
 import os
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
-
-import pytest
 
 from risorius.app.cli.doctor import EXTRAS
 
@@ -20,6 +19,14 @@ class Missing:
 sys.meta_path.insert(0, Missing())
 """
 RUN = "from risorius.__main__ import run; run()"
+EACH = """
+import json
+from click.testing import CliRunner
+from risorius.__main__ import command
+
+ended = [CliRunner().invoke(command(), words.split()) for words in sys.argv[1:]]
+print(json.dumps([(each.exit_code, each.stderr) for each in ended]))
+"""
 EVERY_HELP = """
 from click.testing import CliRunner
 from risorius.__main__ import command
@@ -44,15 +51,23 @@ def plain(*words: str, folder: Path, code: str = RUN) -> subprocess.CompletedPro
     )  # fmt: skip
 
 
+def each_of(*commands: str, folder: Path) -> list[tuple[int, list[str]]]:
+    """Exit codes and lines of errors of commands, one after the other in one process."""
+    (folder / "take.csv").write_text("time,jawOpen\n0,0\n0.1,0.5\n0.2,0\n")
+    (folder / "list.txt").write_text("export --set joy -o joy.npz\n")
+    ended = plain(*commands, folder=folder, code=EACH)
+    assert ended.returncode == 0, ended.stderr
+    return [
+        (code, [line for line in told.splitlines() if not line.startswith("Compiling")])
+        for code, told in json.loads(ended.stdout)
+    ]
+
+
 def test_a_picture_needs_no_extra(tmp_path: Path) -> None:
     """Nor does a glTF file."""
-    small = ("--size", "64x48", "--quiet")
-    for words in (
-        ("capture", "--set", "joy", "-o", "joy.png", *small),
-        ("export", "--set", "joy", "-o", "joy.glb", "--quiet"),
-    ):
-        ended = plain(*words, folder=tmp_path)
-        assert ended.returncode == 0, ended.stderr
+    picture = "capture --set joy -o joy.png --size 64x48 --quiet"
+    ended = each_of(picture, "export --set joy -o joy.glb --quiet", folder=tmp_path)
+    assert [code for code, _ in ended] == [0, 0], ended
     assert (tmp_path / "joy.png").exists() and (tmp_path / "joy.glb").exists()
 
 
@@ -74,31 +89,25 @@ def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
     assert lines["Missing"].startswith("window, films;")
 
 
-@pytest.mark.parametrize(
-    ("extra", "command"),
-    [
-        ("window", "view"),
-        ("window", "replay take.csv --quiet"),
-        ("window", "bench window"),
-        ("films", "bench capture"),
-        ("films", "capture --set joy -o joy.mp4 --size 64x48 --quiet"),
-        ("live", "view --live vmc"),
-        ("export", "export --set joy -o joy.usdz --quiet"),
-        ("export", "export --set joy -o joy.vtkhdf --quiet"),
-        ("passes", "capture --set joy -o joy.png --passes depth --size 64x48 --quiet"),
-        ("cluster", "batch list.txt --scheduler tcp://127.0.0.1:9 --quiet"),
-    ],
-)
-def test_what_is_missing_is_named(extra: str, command: str, tmp_path: Path) -> None:
+def test_what_is_missing_is_named(tmp_path: Path) -> None:
     """In one line, with the command that installs it; nothing is left behind."""
-    (tmp_path / "take.csv").write_text("time,jawOpen\n0,0\n0.1,0.5\n0.2,0\n")
-    (tmp_path / "list.txt").write_text("export --set joy -o joy.npz\n")
-    before = {"take.csv", "list.txt"}
-    ended = plain(*command.split(), folder=tmp_path)
-    told = [line for line in ended.stderr.splitlines() if not line.startswith("Compiling")]
-    assert ended.returncode == 2 and len(told) == 1, ended.stderr
-    assert ended.stderr.endswith(f"; install it: pip install 'risorius[{extra}]'\n")
-    assert {path.name for path in tmp_path.iterdir()} - {"list_logs"} == before
+    missing = {
+        "view": "window",
+        "replay take.csv --quiet": "window",
+        "bench window": "window",
+        "bench capture": "films",
+        "capture --set joy -o joy.mp4 --size 64x48 --quiet": "films",
+        "view --live vmc": "live",
+        "export --set joy -o joy.usdz --quiet": "export",
+        "export --set joy -o joy.vtkhdf --quiet": "export",
+        "capture --set joy -o joy.png --passes depth --size 64x48 --quiet": "passes",
+        "batch list.txt --scheduler tcp://127.0.0.1:9 --quiet": "cluster",
+    }
+    ended = each_of(*missing, folder=tmp_path)
+    for (command, extra), (code, lines) in zip(missing.items(), ended, strict=True):
+        assert code == 2 and len(lines) == 1, (command, code, lines)
+        assert lines[0].endswith(f"; install it: pip install 'risorius[{extra}]'"), command
+    assert {path.name for path in tmp_path.iterdir()} - {"list_logs"} == {"take.csv", "list.txt"}
 
 
 def test_extras_bring_what_they_are_named_for() -> None:

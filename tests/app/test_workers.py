@@ -80,8 +80,6 @@ def test_what_kills_every_process_is_given_up(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="died 3 times, at last of SIGSEGV"):
         run(working.die, log=log)
     assert "working.py" in log.read_text()
-    with pytest.raises(UserError, match="died of SIGSEGV"):
-        run(working.die, attempts=1)
 
 
 @pytest.mark.parametrize(
@@ -116,7 +114,6 @@ def test_libraries_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     assert run(working.library_threads, jobs=1024) == ["1"]
     monkeypatch.setenv("LP_NUM_THREADS", "7")
     assert share_of_cores() == 7
-    assert run(working.library_threads) == ["7"]
     assert run(working.library_threads, jobs=2) == ["3"]
     for told, share in (("0", 1), ("many", len(os.sched_getaffinity(0)))):
         monkeypatch.setenv("LP_NUM_THREADS", told)
@@ -132,7 +129,10 @@ def test_whoever_stops_early_leaves_no_process() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "number",
+    [signal.SIGINT, signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)],
+)
 def test_nothing_runs_on_when_it_is_stopped(tmp_path: Path, number: signal.Signals) -> None:
     """Ctrl-C, `kill`, and even the end of the process that asked without a word."""
     process = started("-c", STOPPED, tmp_path)

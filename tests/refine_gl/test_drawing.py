@@ -41,7 +41,7 @@ def scene() -> FaceScene:
     return scene
 
 
-@pytest.fixture(params=[0, 4])
+@pytest.fixture(scope="module", params=[0, 4])
 def pipeline(request: pytest.FixtureRequest, scene: FaceScene) -> Iterator[Pipeline]:
     """It on a surface, of one sample per pixel, and of four."""
     with render.open_offscreen(SIZE, samples=request.param) as surface:
@@ -109,7 +109,7 @@ def test_nothing_comes_back(scene: FaceScene, monkeypatch: pytest.MonkeyPatch) -
         assert card.refiner._fetched_splits is None  # type: ignore[attr-defined]
 
 
-@pytest.mark.parametrize("options", [["paper"], ["paper", "--compare", "none"], ["smooth"]])
+@pytest.mark.parametrize("options", [["paper", "--compare", "none"], ["smooth"]])
 def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
     """`capture --refiner kahler-gl` draws what `--refiner kahler` draws."""
     pictures = []
@@ -122,6 +122,7 @@ def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
     assert np.array_equal(*pictures)
 
 
+@pytest.mark.slow
 def test_samples_of_data_sets_are_the_same(tmp_path: Path) -> None:
     """`dataset --refiner kahler-gl` makes the pictures, passes and labels that `kahler` makes."""
     passes = ("depth", "normal", "splits", "segmentation")
