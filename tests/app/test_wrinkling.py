@@ -97,4 +97,5 @@ def test_furrows_of_age_are_pulled_flat() -> None:
     lip = (np.abs(aged.rest_positions[:, 0]) < 10.0) & (y > 8.0) & (y < 14.0)
     assert fold.sum() > 2
     assert after[fold, 0].mean() < 0.5 * before[fold, 0].mean()
+    assert (after[fold, 0] < 0.8 * before[fold, 0]).all()
     assert after[lip].max() > 1.5 * before[lip].max() > 0.0
