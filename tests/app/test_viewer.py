@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from risorius.app.viewer import Viewer
+from risorius.app.viewer.picture.skin import HELD
 from risorius.app.viewer.picture.stage import pointed_lines
 from risorius.app.viewer.settings import Display, Settings, load_settings
 
@@ -244,12 +245,19 @@ def landmark(viewer: Viewer, number: int) -> tuple[int, int]:
 
 
 def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:
-    """Pull the left corner of the mouth up and out: it stays as the finger goes; Ctrl+Z undoes."""
+    """Pull the left corner of the mouth up and out: it stays as it was held; Ctrl+Z undoes."""
     viewer.settings.is_linked = False
+    shown = list[dict[str, float]]()
+
+    def is_held() -> bool:
+        shown.append(dict(viewer.session.values))
+        return shown[-HELD - 2 :] == (HELD + 2) * shown[-1:]
+
     drag(viewer, landmark(viewer, 54), (12, -14))
-    assert until(viewer, lambda: viewer.session.values[f"{MAJOR}_left"] > 0.2)
+    assert until(viewer, is_held)
     xdotool(viewer, "mouseup", 1)
     solved = dict(viewer.session.values)
+    assert solved == shown[-1]
     assert solved[f"{MAJOR}_left"] > 0.3
     assert len([name for name, value in solved.items() if value]) <= 4
     assert not any(value for name, value in solved.items() if name.endswith("_right"))

@@ -90,6 +90,7 @@ def muscle_at(point: Array, fibres: Mapping[str, Sequence[Array]]) -> str | None
 
 FINGER = 16.0  # [mm] the finger's radius
 FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
+HELD = 10  # frames at one place: then one sees what letting go would leave
 DENSE = 10_000  # triangles of a head whose muscles are solved only when it is let go
 NOT_PULLED = ("gaze_", "head_", "tongue_", "lips_closed")  # controls that no finger on skin means
 
@@ -111,7 +112,7 @@ class SkinDrag:
         self._from = positions[self._vertices].copy()
         near = np.minimum(distance[self._vertices] / FINGER, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
-        self.offset = np.zeros(3)
+        self.offset, self._held_for = np.zeros(3), 0
         poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
@@ -129,12 +130,14 @@ class SkinDrag:
             self._at_rest = self._pull.targets
         offset = point - self.point
         length = float(np.linalg.norm(offset))
+        before = self.offset
         self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
+        self._held_for = self._held_for + 1 if np.array_equal(before, self.offset) else 0
         self._simulation.touch.drag(self._vertices, self._from + self.offset, self._firmness)
         if self._pull is not None:
             self._pull.targets = self._at_rest + offset
-            if len(self._simulation.faces) < DENSE:
-                self._pull.follow()
+            if len(self._simulation.faces) < DENSE and self._held_for <= HELD:
+                (self._pull.solve if self._held_for == HELD else self._pull.follow)()
                 self._obey(self._pull)
 
     def muscle(self) -> str | None:
