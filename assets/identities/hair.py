@@ -163,7 +163,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     lift = cut.lift * smooth_step(*FLAT, behind)[:, None]
     way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
     # Far outside the hairline it is under the skin.
-    points = points + (CLEAR + SUNK * np.minimum(behind + 4.0, 0.0))[:, None] * normals
+    off = CLEAR * smooth_step(0.0, HEM, behind) + SUNK * np.minimum(behind + 4.0, 0.0)
+    points = points + off[:, None] * normals
     curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
     dense = np.minimum((behind - PAINTED) / HEM, 2.0)
     striation = np.column_stack([curled[1] * radius * angle, curled[0] * radius * away, way, dense])
@@ -192,8 +193,7 @@ def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArra
         at = [(1.0 - places[:, 1]) * height - 0.5, places[:, 0] * width - 0.5]
         return np.asarray(map_coordinates(behind, at, order=1, mode="nearest"), np.float64)
 
-    is_layereded = (far(uv) > 0.0)[faces].any(axis=1)
-    used, number = np.unique(faces[is_layereded], return_inverse=True)
+    used, number = np.unique(faces[(far(uv) > 0.0)[faces].any(axis=1)], return_inverse=True)
     faces, normals = number.reshape(-1, 3).astype(np.int32), vertex_normals(vertices, faces)[used]
     points, uv = vertices[used], uv[used]
     for _ in range(LEVELS):

@@ -56,7 +56,7 @@ const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each othe
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const float SIDEWAYS = 0.55;              // how far to the front layers are whole
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
-const float LEAST_FACING = 0.05;         // from which on all of a layer is passed
+const float LEAST_FACING = 0.25;        // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 
@@ -81,7 +81,7 @@ void main() {
     float tall = 0.65 + 0.5 * tones.x + 0.4 * tones.y;
     // Seen from the side, a look goes past many strands; but of the tips it sees lines with gaps.
     float seen = clamp(2.5 * surface.facing, LEAST_FACING, 1.0);
-    float dense = surface.dense > 0.0 ? (surface.dense + 0.15 * (1.0 - seen)) / seen : 0.0;
+    float dense = surface.dense / seen;
     float far = tall * smoothstep(0.0, 1.0, dense + dot(RAGGED, tones));
     float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(2.0 * far, 0.0, 1.0);
     if (surface.layer > 0.5) cover *= smoothstep(0.05, SIDEWAYS, surface.facing);
