@@ -115,7 +115,8 @@ def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
         viewer.frame()
     begin, used = time.perf_counter(), time.process_time()
     while time.perf_counter() - begin < IDLE_SECONDS:
-        viewer.wait_for_frame()
+        viewer.pause()
+        viewer.frame()
     return (time.process_time() - used) / (time.perf_counter() - begin)
 
 

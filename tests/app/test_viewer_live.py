@@ -169,7 +169,8 @@ def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     with Sender(LOOPBACK, face.port, "Ada") as sender:
         sender.send({"jawOpen": 0.8})
-        viewer.wait_for_frame()
+        viewer.pause()
+        viewer.frame()
         assert face.silence < 60.0 and not viewer.is_idle
 
 

@@ -100,7 +100,6 @@ class Physics:
 
     def begin_anew(self) -> None:
         """Another scene may be about to move."""
-        self.has_stepped = False  # in this frame
         self.has_moved = False  # since the last frame in which it had, as far as one can see
         self._seen = self._session.scene.positions.copy()  # in that frame
         self._seen_bones = self._session.scene.bone_transforms()
@@ -139,13 +138,22 @@ class Physics:
         self._left_for = 0.0 if is_driven or life is None else self._left_for + steps * STEP
         if is_driven:  # even in a frame too short for a step: the window must not go to sleep
             self._still_for = 0.0
-        self.has_stepped = steps > 0 and (life is not None or not self.is_at_rest)
-        if not self.has_stepped:
-            self.has_moved = False
+        self.has_moved = False
+        if steps == 0 or (life is None and self.is_at_rest):
             return
         self._posed = wanted
-        self._times.next_frame()
+        moved = self._step(steps, life)
+        # Muscles follow late: what has not moved yet may still be about to.
+        self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
+        self.has_moved = not self.is_left_alone or self._is_to_be_seen()
+        if self.has_moved:
+            self._seen, self._seen_bones = scene.positions.copy(), scene.bone_transforms()
+
+    def _step(self, steps: int, life: Life | None) -> float:
+        """Take steps; how far the farthest vertex went in the last of them [mm]."""
+        session, scene = self._session, self._session.scene
         before = scene.positions
+        self._times.next_frame()
         with self._times.timed("simulation"):
             try:
                 for _ in range(steps):
@@ -156,12 +164,7 @@ class Physics:
                 scene.reset()
                 self._still_for = 0.0
                 raise UserError(str(error)) from None
-        moved = float(np.abs(scene.positions - before).max(initial=0.0))
-        # Muscles follow late: what has not moved yet may still be about to.
-        self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
-        self.has_moved = not self.is_left_alone or self._is_to_be_seen()
-        if self.has_moved:
-            self._seen, self._seen_bones = scene.positions.copy(), scene.bone_transforms()
+        return float(np.abs(scene.positions - before).max(initial=0.0))
 
     def _is_to_be_seen(self) -> bool:
         """Whether the face has moved enough since it was last seen to move."""

@@ -75,11 +75,6 @@ class Viewer(Application):
                     break
                 self.pause()
 
-    def wait_for_frame(self) -> None:
-        """Wait until something happens, or it is time to look around; then show a frame."""
-        self.pause()
-        self.frame()
-
     # One turn of the loop
 
     def frame(self) -> None:
