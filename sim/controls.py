@@ -84,21 +84,21 @@ class Controls:
         self.layers = layers.groups
         self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
         self._places = {name: n for n, name in enumerate(self.names)}
-        bounds = np.array([self.limits[name] for name in self.names]).reshape(-1, 2)
+        bounds = np.array([*self.limits.values()], np.float64).reshape(-1, 2)
         self._least, self._most = bounds[:, 0] - SLACK, bounds[:, 1] + SLACK
+        self._low, self._high = bounds[: len(controls)].T.copy()
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
-        self._low = np.array([c.low for c in controls], dtype=np.float64)
-        self._high = np.array([c.high for c in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
-        self._floors = np.array([layers.floors[name] for name in layers.shares])  # (N - C, C)
+        floors = np.array([*layers.floors.values()]).reshape(len(layers.floors), len(controls))
+        self._floored = np.flatnonzero(floors.any(axis=1))  # few rows of layers have any
+        self._floors = floors[self._floored]
         self._share_of = [
             (self._places[name], self._places[whole]) for name, whole in layers.share_of.items()
         ]
         self._values: Array = np.zeros(len(self.names))
-        self.wanted: Array = np.zeros(len(controls))
+        self.wanted, self._speed = np.zeros((2, len(controls)))
         self.reached: Array = np.zeros(len(controls) + 1)
         self.activation = self.reached[:-1]
-        self._speed: Array = np.zeros(len(controls))
 
     def place(self, name: str) -> int:
         """Place of a control among `names`, of a lowest one also in `wanted` and `activation`.
@@ -173,7 +173,7 @@ class Controls:
             for index, whole in self._share_of:
                 counted[index] = share_of_whole(self._values[index], self._values[whole])
             self.wanted += counted[count:] @ self._shares
-            least = (counted[count:, None] * self._floors).max(axis=0)
+            least = (counted[count:][self._floored, None] * self._floors).max(axis=0, initial=0.0)
             np.maximum(self.wanted, least, out=self.wanted, where=least > 0.0)
             np.clip(self.wanted, self._low, self._high, out=self.wanted)
 
