@@ -171,7 +171,7 @@ class Pipeline:
             for viewport in viewports:
                 viewport.drawn.upload(style, amounts)
         with timer("draw"):
-            order = self.anatomy.draw_order(anatomy)
+            order = self.anatomy.draw_order(anatomy, has_hair=style.textured)  # else form is seen
             areas = dict.fromkeys(viewport.area for viewport in viewports)
             self.renderer.draw_background(style, *areas)
             for drawn, area, clip in viewports:

@@ -70,12 +70,12 @@ class Anatomy:
         self._followed = np.empty(0)  # what they were shaped by
         self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
 
-    def draw_order(self, view: AnatomyView) -> DrawOrder:
+    def draw_order(self, view: AnatomyView, *, has_hair: bool = True) -> DrawOrder:
         """What is asked for as it is now, and the scene's parts that do not hide it."""
         scene = self._scene
         if not isinstance(scene, FaceScene) or not view.structures or view.opacity >= 1.0:
-            hair = [part for part in scene.parts if part.name.startswith(HAIR)]
-            return DrawOrder(hair, over=scene.parts)
+            parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
+            return DrawOrder([p for p in parts if p.name.startswith(HAIR)], over=parts)
         structures = self._structures(scene, view)
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
         others = stay + self._soft(scene, view)
@@ -85,7 +85,7 @@ class Anatomy:
         return DrawOrder(
             structures + others,
             under=((structures, cut), (others, None)),
-            over=strands + self._whole(scene, view, (HAIR,)),
+            over=strands + self._whole(scene, view, (HAIR,) if has_hair else ()),
             opacity=view.opacity,
             cut=cut,
             is_opened=True,

@@ -269,7 +269,7 @@ class Drawing(Subject):
         type=click.Choice(["textured", "plain", "clay"]),
         default="textured",
         show_default=True,
-        help="clay is plain grey, as in the paper's pictures.",
+        help="clay is plain grey, as in the paper's pictures. Only textured skin has hair.",
     )
     splits: bool = option(is_flag=True, help="Colour triangles by their number of splits.")
     wireframe: bool = option(is_flag=True, help="Draw the edges of every triangle.")

@@ -126,7 +126,7 @@ def label_of(person: Person, size: int = 200) -> tuple[npt.NDArray[Any], npt.NDA
 
 
 def test_hair_is_seen_framed_and_labelled() -> None:
-    """It is in the picture as a whole, has its class, and is away where muscles are shown."""
+    """It is in the picture as a whole, has its class, and is away over muscles and on clay."""
     scene = FaceScene(person_called("ada"))
     assert scene.fade is None  # the shirt covers the end of the neck
     assert scene.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
@@ -135,5 +135,7 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     assert is_hair.mean() > 0.04 and (classes[0] == Segment.BACKGROUND).all()
     assert image[is_hair].mean() < 0.75 * image[classes == Segment.SKIN].mean()
     assert (label_of(haired("cropped"))[1] == Segment.HAIR).sum() < is_hair.sum()
-    parts = Anatomy(scene).draw_order(AnatomyView(("muscles",))).parts
-    assert parts and not [part for part in parts if part.name.startswith(HAIR)]
+    anatomy = Anatomy(scene)
+    opened, clay = AnatomyView(("muscles",)), AnatomyView()
+    for parts in (anatomy.draw_order(opened).parts, anatomy.draw_order(clay, has_hair=False).parts):
+        assert parts and not [part for part in parts if part.name.startswith(HAIR)]
