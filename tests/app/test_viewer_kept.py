@@ -291,7 +291,9 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
 
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
-@pytest.mark.parametrize("how", [signal.SIGHUP, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "how", [pytest.param(signal.SIGHUP, marks=pytest.mark.slow), signal.SIGKILL]
+)
 def test_a_window_that_ended_is_recovered(
     at_work: subprocess.Popen[str], tmp_path: Path, how: signal.Signals
 ) -> None:

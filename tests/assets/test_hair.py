@@ -29,6 +29,9 @@ from risorius.assets.identities import (
 from risorius.assets.identities.hair import Fall
 from risorius.assets.model import Part
 
+FIRST = "cropped", "parted", "tied", "fringed"  # of each kind one; the others pass later
+EVERY_CUT = [pytest.param(cut, marks=[pytest.mark.slow] * (cut not in FIRST)) for cut in CUTS]
+
 
 @cache
 def haired(cut: str, *, number: int = 0, receded: float = 0.0, length: float = 1.0) -> Person:
@@ -49,7 +52,7 @@ def passes_of(studio: Capture, wanted: Sequence[str]) -> dict[str, Any]:
     return Passes(studio.pipeline, studio.viewports[-1].drawn).draw(studio.camera, wanted)
 
 
-@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("cut", EVERY_CUT)
 def test_hair_is_a_sound_part(cut: str) -> None:
     """Arrays fit each other, and triangles are seen from the side to which normals point."""
     part = hair_of(haired(cut))
@@ -65,7 +68,7 @@ def test_hair_is_a_sound_part(cut: str) -> None:
     assert (agreeing > 0.0).mean() > 0.9  # a fringe hangs over its hairline: its lower side turns
 
 
-@pytest.mark.parametrize("cut", CUTS)
+@pytest.mark.parametrize("cut", EVERY_CUT)
 def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut: str) -> None:
     """Where it is dense it is over the skin; none hangs before brows, eyes, nose and mouth."""
     person = haired(cut)
