@@ -119,7 +119,8 @@ def advice_in_words(face: LiveFace, own_address: str) -> str:
         unusable = f", of no use: {face.unusable}" if face.unusable else ""
         return f"packets: {face.received}{unusable}"
     if face.listening.address == LOOPBACK:
-        return "for a phone, listen to the whole network; without one, type: risorius send"
+        trial = "; without one, type: risorius send" * (face.listening.kind == "livelink")
+        return f"for a phone, listen to the whole network{trial}"
     if face.listening.address == ANYWHERE and own_address:
         return f"in the app, let it send to {own_address}, port {face.port}"
     return f"in the app, let it send to port {face.port} of this computer"
