@@ -121,11 +121,7 @@ def typology_angle(light: npt.ArrayLike) -> FloatArray:
 
 
 def recoloured(
-    angle: float,
-    *,
-    blood: float = 1.0,
-    features: Features = PLAIN,
-    haired_as: float | None = None,
+    angle: float, *, blood: float = 1.0, features: Features = PLAIN, haired_as: float | None = None
 ) -> Image:
     """The skin of the built-in head in a tone, laid out as its `albedo`, (H, W, 3), uint8.
 
