@@ -70,8 +70,8 @@ def head_views(size: tuple[int, int] = CELL) -> Image:
     cells = []
     for title, style in STYLES.items():
         for view in VIEWS:
-            static = Refinement(refiner=STATIC)
-            options = CaptureOptions(size, refinement=static, style=style, camera=view)
+            look = Refinement(refiner=STATIC if title == "flat" else None)
+            options = CaptureOptions(size, refinement=look, style=style, camera=view)
             cells.append((f"{view}, {title}", figures.shoot(scene, {}, options)))
     return figures.sheet(cells, len(VIEWS))
 
