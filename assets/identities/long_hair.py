@@ -123,8 +123,7 @@ def _cut_off(inner: FloatArray, outer: FloatArray, end: float, across: FloatArra
     uneven = RAGGED * (0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0))
     rows: list[list[FloatArray]] = [[], [], [], []]
     for low, high, lowest in zip(inner, outer, end + uneven, strict=True):
-        steps = np.linalg.norm(np.diff(high, axis=0), axis=1)
-        along = np.concatenate([[0.0], np.cumsum(steps)])
+        along = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(high, axis=0), axis=1)))
         below = np.flatnonzero(high[:, 1] < lowest)
         last = along[below[0]] if len(below) else along[-1]
         at = np.linspace(0.0, last, SAMPLES)
