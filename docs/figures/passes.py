@@ -37,7 +37,7 @@ COLOURS = {
     Segment.LEFT_BROW: (95, 175, 45), Segment.RIGHT_EAR: (205, 60, 205),
     Segment.LEFT_EAR: (140, 60, 165), Segment.MOUTH_INTERIOR: (110, 10, 20),
     Segment.TOP_LIP: (225, 55, 60), Segment.BOTTOM_LIP: (250, 135, 140),
-    Segment.NECK: (105, 105, 195),
+    Segment.NECK: (105, 105, 195), Segment.HAIR: (120, 85, 50), Segment.CLOTHING: (60, 75, 90),
 }  # fmt: skip
 
 
