@@ -9,6 +9,7 @@ with the wrinkles that the simulation makes), and `persons` (at rest, then in ot
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import figures
 
@@ -51,7 +52,7 @@ def system() -> Image:
     """One smile: what pulls, what is moved, where it is split, and what is seen."""
     mesh = render.Style(textured=False, albedo=render.CLAY, wireframe=True)
     splits = replace(mesh, colour_by=render.ColourBy.SPLITS)
-    steps = {
+    steps: dict[str, dict[str, Any]] = {
         "muscles pull": {"anatomy": AnatomyView(("muscles", "skull"), 0.1)},
         "on 2030 triangles": {"refinement": Refinement(refiner=STATIC), "style": mesh},
         "split where they bend": {"refinement": Refinement(PAPERS_PRESET), "style": splits},
