@@ -55,7 +55,7 @@ class Scene:
     wrinkles: assets.Wrinkles | None = None  # where skin wrinkles
     fade: tuple[float, float, float, float] | None = None  # see render.Renderer.draw_mesh
     in_tone: Callable[[float], npt.NDArray[np.uint8]] | None = None  # the texture by ITA [deg]
-    ambient_occlusion: npt.NDArray[np.uint8] | None = None  # over the texture (H, W); None: none
+    ambient_occlusion: npt.NDArray[np.uint8] | None = None  # over the texture (H, W), or all open
     fine_shape: assets.FineShape | None = None  # what its triangles do not hold of the skin
 
     def pose(self, channels: Mapping[str, float]) -> None:
