@@ -95,7 +95,7 @@ class _Tints:
     beard: SingleArray  # (H, W)
     brow: SingleArray  # (H, W)
     scalp: SingleArray  # (H, W)
-    lids: SingleArray  # their edges, where lashes root, as revision 2dcc8525 drew them (H, W)
+    lids: SingleArray  # their edges, where lashes root (H, W)
     detail: SingleArray  # what of the picture's lightness is relief, in powers of e (H, W)
     skin: FloatArray  # (5,)
     melanins: FloatArray  # of the tones in `angles`
