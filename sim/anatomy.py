@@ -8,6 +8,7 @@ import numpy.typing as npt
 from .bones import Bones
 from .controls import Controls, MuscleDrive
 from .face_model import FaceModel
+from .landmarks import polyline_distance
 from .state import State
 
 
@@ -47,6 +48,17 @@ class Anatomy:
             name: [space.to_head(line + head.displacements(line)) for line in found]
             for name, found in lines.items()
         }
+
+    def muscle_at(self, point: npt.ArrayLike, reach: float) -> str | None:
+        """The muscle whose fibres come nearest to a point (3,) of the skin, within `reach`."""
+        at = np.asarray(point, np.float64)[None]
+        nearest = {  # its end once more: a fibre may be a single point
+            name: min(float(polyline_distance(at, np.vstack([x, x[-1:]]))[0]) for x in lines)
+            for name, lines in self.fibres().items()
+            if lines
+        }
+        name = min(nearest, key=lambda each: nearest[each], default="")
+        return name if nearest.get(name, np.inf) <= reach else None
 
     def penetrations(self) -> dict[str, float]:
         """How deep skin sits in what it must not enter, at most, less than at rest [mm].

@@ -8,9 +8,11 @@ work and the rest of the face left alone. Over the controls u, within their limi
 
 i runs over the vertices under the finger, with shares s that add up to 1 and targets t, drawn by d
 on average; j over all others, with areas a against that under the finger. A counts less what lies
-along the line of sight, of which a mouse says nothing. The first price keeps controls few, the
-second moderate. Targets farther than the few strongest controls reach that way are brought in to
-there: prices are in proportion to d, and beyond that nothing would be worth them any more.
+along the line of sight, of which a mouse says nothing. Prices keep controls moderate; few they are
+because the one that mends most is taken first, then what mends most beside it, by slopes at the
+start. So targets alone tell which, not the way that a finger took: what is seen while it moves is
+what stays. Targets farther than the few strongest controls reach that way are brought in to there:
+prices are in proportion to d, and beyond that nothing would be worth them any more.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
@@ -40,16 +42,14 @@ MOST = 16  # controls that are looked at: those that move the finger's skin most
 MEANT = 0.15  # of how far a control moves any skin: one that moves the finger's less is not meant
 PROBE = 0.25  # of a control's range, to measure its slope
 ALONG = 0.05  # what a distance along the line of sight counts
-REST = 0.03  # what the rest of the face counts, against as large an area under the finger
-PRICE = 0.024  # of a control at its limit, against skin that does not come along at all
-EFFORT = 0.2  # the same, as the square of its share: two that do the same share it
-FINAL = 0.17  # of these three when it is known which controls: those come as near as they can
+REST = 0.0051  # what the rest of the face counts, against as large an area under the finger
+PRICE = 0.0041  # of a control at its limit, against skin that does not come along at all
+EFFORT = 0.034  # the same, as the square of its share: two that do the same share it
 FEW = 3  # controls at most are used; and so many strongest tell how far targets can be
 SWEEPS, STILL = 60, 1e-4  # through all controls at most, and a change that is none
 ROUNDS, NEAR = 6, 0.01  # of Gauss and Newton at most, and a change that is none
-LEAST = 0.02  # of a control's range: what changes by less is left alone
 WORTH = 0.015  # of the squared distances: what mends less beside others is left alone
-ALIKE = 0.2  # of that: whose worth differs by less stay or go together, as both sides of a muscle
+ALIKE = 0.2  # of that: whose worth differs by less come together, as both sides of a muscle
 MEAGRE = 0.25  # of the squared distances: who mends less does not pull that way at all
 Names = tuple[str, ...]
 
@@ -102,7 +102,7 @@ class Pull:
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._low, self._high = self._low[is_meant], self._high[is_meant]
             self._value = self._start = self._start[is_meant]
-            self._slope, self._turn = self._slope[is_meant], 0
+            self._slope = self._slope[is_meant]
             self._first = self._slope.copy()
         return bool(self.candidates)
 
@@ -124,27 +124,20 @@ class Pull:
         there = (self._base.positions if self.mends else self._from)[self._vertices]
         return float(np.sqrt(self._square(self.targets - there)))
 
-    def follow(self, count: int = 4) -> None:
-        """A step of Gauss and Newton from where it is, after `count` slopes were measured anew."""
-        if not self._look():
-            return
-        every = len(self._value)
-        self._measure([(self._turn + n) % every for n in range(min(count, every))])
-        self._turn += count
-        self._aim()
-        self._improve(np.ones(every, np.bool_), 1.0)
-
     def solve(self) -> None:
         """The answer for these targets, whatever the finger did on its way."""
         if not self._look():
             return
         self._base.copy_from(self._home)
-        self._slope[:], self._value = self._first, self._start.copy()
+        self._slope[:], self._value = self._first, self._start
         self._aim()
-        self._improve_all(np.ones(len(self._start), np.bool_), 1.0)
         needed = self._needed()
-        self._go(np.where(needed, self._value, self._start))
-        self._improve_all(needed, FINAL)
+        for _ in range(ROUNDS):
+            before = self._value
+            self._go(before + self._system().least(needed))
+            if np.abs(self._value - before).max(initial=0.0) < NEAR:
+                break
+            self._measure(np.flatnonzero(self._value != self._start))
 
     def _aim(self) -> None:
         """Where the finger draws to, no farther than the strongest controls together reach."""
@@ -202,50 +195,35 @@ class Pull:
         values = zip(value.tolist(), self.candidates, strict=True)
         _rest(self._base, {name: each for each, names in values for name in names})
 
-    def _improve_all(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
-        """Until nothing changes much."""
-        for _ in range(ROUNDS):
-            before = self._value
-            self._improve(usable, thrift)
-            if np.abs(self._value - before).max(initial=0.0) < NEAR:
-                break
-            self._measure(np.flatnonzero(self._value != self._start))
-
-    def _improve(self, usable: npt.NDArray[np.bool_], thrift: float) -> None:
-        """One step of Gauss and Newton over usable controls (C,); thrift: of all prices."""
-        self._go(self._value + self._system(thrift).least(usable))
-
     def _needed(self) -> npt.NDArray[np.bool_]:
-        """The FEW that changed whom the others cannot do without, (C,)."""
-        needed = np.abs(self._value - self._start) > LEAST * (self._high - self._low)
-        system = self._system(FINAL)
-        worth = WORTH * self._drawn
-        while needed.any():
-            best = system.cost(needed)
-            loss = np.full(len(needed), np.inf)
-            for c in np.flatnonzero(needed):
-                loss[c] = system.cost(needed & (np.arange(len(needed)) != c)) - best
-            spared = loss <= loss.min() + ALIKE * worth
-            is_worth = system.cost(needed & ~spared) - best > worth * spared.sum()
-            if is_worth and needed.sum() <= FEW:
-                break
-            needed &= ~spared
-        return needed
+        """The FEW that mend most, one after the other, by slopes at the start, (C,)."""
+        system, worth = self._system(), WORTH * self._drawn
+        each = np.eye(len(self._start), dtype=np.bool_)
+        needed, cost = np.zeros(len(each), np.bool_), 0.0
+        while True:
+            costs = np.array([system.cost(needed | one) for one in each])
+            best = needed | each[costs.argmin()]
+            alike = needed | (costs <= costs.min() + ALIKE * worth)
+            if alike.sum() > best.sum() and system.cost(alike) < costs.min() - worth:
+                best = alike
+            if best.sum() > FEW or costs.min() > cost - worth:
+                return needed
+            needed, cost = best, system.cost(best)
 
-    def _system(self, thrift: float) -> _Lasso:
+    def _system(self) -> _Lasso:
         """The problem as it looks from here."""
         now, count = self._base.positions, len(self._value)
         root = np.sqrt(self._share)[:, None]
         under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
         off = (((self._aims - now[self._vertices]) @ self._seen) * root).ravel()
         slope = self._slope.reshape(count, -1)
-        others = slope * np.repeat(thrift * REST * self._area, 3)
-        effort = thrift * EFFORT * self._drawn
+        others = slope * np.repeat(REST * self._area, 3)
+        effort = EFFORT * self._drawn
         changed = self._value - self._start
         return _Lasso(
             under @ under.T + others @ slope.T + effort * np.eye(count),
             under @ off + others @ (self._from - now).ravel() - effort * changed,
-            0.5 * thrift * PRICE * self._drawn / np.maximum(self._high, -self._low),
+            0.5 * PRICE * self._drawn / np.maximum(self._high, -self._low),
             changed, self._low - self._start, self._high - self._start,
         )  # fmt: skip
 

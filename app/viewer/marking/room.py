@@ -26,7 +26,6 @@ from ..interface.gui import LEFT, Gui, colour, em, fixed_panel, ink_of
 from ..interface.widgets import muted
 from ..messages import Message, Messages, Task
 from ..picture.mouse import CameraMouse
-from ..picture.skin import Ray, skin_under
 from ..picture.stage import Painter, Stage, View
 from ..settings import Display, Settings
 from .marking import GROUP_OF, GROUPS, FloatArray, Marking
@@ -220,9 +219,9 @@ class MarkingMouse(CameraMouse):
     """A click places the current mark, a drag moves one, or turns the camera."""
 
     def __init__(
-        self, view: MarkingView, surface: render.WindowSurface, marking: Marking, messages: Messages
+        self, view: MarkingView, stage: Stage, marking: Marking, messages: Messages
     ) -> None:
-        super().__init__(view, surface)
+        super().__init__(view, stage)
         self._seen, self._marking, self._messages = view, marking, messages
 
     def _hover(self, io: Any) -> None:
@@ -255,8 +254,7 @@ class MarkingMouse(CameraMouse):
     def _put(self, io: Any) -> bool:
         """Place the current mark under the mouse; whether there is skin on which it is seen."""
         marking, before = self._marking, self._marking.marks
-        ray = Ray.through(self._view.camera, self._view.viewport, self._place(io))
-        point = skin_under(ray, marking.positions, marking.faces)
+        point = self._skin_under(io)
         if point is None:
             return False
         marking.put(marking.current, point)
@@ -292,7 +290,7 @@ class Room:
         self.view = MarkingView(marking, app.settings, surface)
         stage = Stage(surface, MeshScene(marking), self.view.display, app.times)
         self.painter = Painter(stage, self.view, messages)
-        self.mouse = MarkingMouse(self.view, surface, marking, messages)
+        self.mouse = MarkingMouse(self.view, stage, marking, messages)
         own, shared = self._commands(), [each for each in others if each.label in SHARED]
         self.commands = (*own, *shared)
         menus = MenuBar(gui, messages, self.commands, lambda: app.session.work.unsaved)

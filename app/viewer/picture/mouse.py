@@ -1,22 +1,22 @@
 """The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
 Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
-wheel zooms. What a finger does to the skin is in skin.py.
+wheel zooms to where the mouse is. What a finger does to the skin is in skin.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+import numpy as np
 from imgui_bundle import imgui
-
-from risorius import render
 
 from ...scenes import FaceScene
 from ..interface.gui import LEFT, MIDDLE, RIGHT, em
 from ..messages import Messages
-from .skin import Ray, SkinDrag, skin_under
+from .skin import Array, Ray, SkinDrag, skin_under
 from .stage import Stage, View
 
 Grab = Callable[..., SkinDrag]
@@ -24,14 +24,15 @@ Select = Callable[[str], None]
 
 DEGREES_PER_EM = 5.5
 ZOOM_PER_NOTCH = 1.1
+CLOSEST = 0.15  # of the scene's radius, from what is zoomed to: a head moves a little
 CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
 
 
 class CameraMouse:
     """Turns and moves a camera by the mouse, from press to release; the left button may do more."""
 
-    def __init__(self, view: View, surface: render.WindowSurface) -> None:
-        self._view, self._surface = view, surface
+    def __init__(self, view: View, stage: Stage) -> None:
+        self._view, self._stage = view, stage
         self.forget()
 
     def forget(self) -> None:
@@ -57,7 +58,7 @@ class CameraMouse:
                 if imgui.is_mouse_clicked(button):
                     self._press(io, button)
             if io.mouse_wheel:
-                self._view.camera.zoom(ZOOM_PER_NOTCH**io.mouse_wheel)
+                self._zoom(io)
 
     def _hover(self, io: Any) -> None:
         """The mouse is over the picture, and does nothing."""
@@ -91,13 +92,28 @@ class CameraMouse:
         x, y = self._pressed_at
         return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
 
-    def _place(self, io: Any) -> tuple[float, float]:
-        """Where the mouse is [pixels from the lower left corner of the surface]."""
-        width, height = self._surface.size
-        return (
-            io.mouse_pos.x * width / max(io.display_size.x, 1.0),
-            height - io.mouse_pos.y * height / max(io.display_size.y, 1.0),
-        )
+    def _ray(self, io: Any) -> Ray:
+        """Through the mouse, in the viewport that it is in."""
+        width, height = self._stage.surface.size
+        x = io.mouse_pos.x * width / max(io.display_size.x, 1.0)
+        y = height - io.mouse_pos.y * height / max(io.display_size.y, 1.0)
+        viewports = self._stage.viewports(self._view.display, self._view.viewport)
+        under = [each for each in viewports if x >= each.seen[0]] or viewports[:1]
+        return Ray.through(self._view.camera, under[-1].area, (x, y))
+
+    def _skin_under(self, io: Any) -> Array | None:
+        """The point of the mesh that the mouse is on."""
+        scene = self._stage.scene
+        return skin_under(self._ray(io), scene.positions, scene.faces)
+
+    def _zoom(self, io: Any) -> None:
+        """What the mouse is on stays under it: skin, or beside it what is as far as the target."""
+        camera, point, before = self._view.camera, self._skin_under(io), self._view.camera.distance
+        if point is None:
+            point = self._ray(io).at_depth_of(camera.target, camera.axes()[2])
+        room = float(np.linalg.norm(camera.eye - point)) / (CLOSEST * camera.scene_radius)
+        camera.zoom(min(ZOOM_PER_NOTCH**io.mouse_wheel, max(room, 1.0)))
+        camera.target = point + (camera.target - point) * (camera.distance / before)
 
 
 class Mouse(CameraMouse):
@@ -109,9 +125,8 @@ class Mouse(CameraMouse):
         self, view: View, stage: Stage, messages: Messages, grab: Grab, select_muscle: Select
     ) -> None:
         """grab: makes a finger. select_muscle: called with the name of one that was clicked."""
-        super().__init__(view, stage.surface)
-        self._stage, self._messages = stage, messages
-        self._grab, self._select_muscle = grab, select_muscle
+        super().__init__(view, stage)
+        self._messages, self._grab, self._select_muscle = messages, grab, select_muscle
 
     def forget(self) -> None:
         super().forget()
@@ -131,14 +146,10 @@ class Mouse(CameraMouse):
     def _take(self, io: Any) -> str:
         if self._is_at_divider(io.mouse_pos.x):
             return "divider"
-        scene = self._stage.scene
-        if not isinstance(scene, FaceScene):
+        point = self._skin_under(io)
+        if point is None or not isinstance(self._stage.scene, FaceScene):
             return "orbit"
-        ray = self._ray(io)
-        point = skin_under(ray, scene.positions, scene.faces)
-        if point is None:
-            return "orbit"
-        self.skin_drag = self._grab(point, ray.direction, poses=not io.key_ctrl)
+        self.skin_drag = self._grab(point, self._ray(io).direction, poses=not io.key_ctrl)
         return "skin"
 
     def _drag(self, io: Any) -> None:
@@ -148,7 +159,8 @@ class Mouse(CameraMouse):
             self._view.display.divider = min(max((io.mouse_pos.x - left) / width, 0.0), 1.0)
         elif self.skin_drag is not None and (self._has_moved(io) or self.is_dragging_skin):
             across = self._view.camera.axes()[2]
-            self.skin_drag.to(self._ray(io).at_depth_of(self.skin_drag.point, across))
+            to = self._ray(io).at_depth_of(self.skin_drag.point, across)
+            self._messages.attempt(partial(self.skin_drag.to, to))
 
     def _release(self, io: Any) -> None:
         if self.skin_drag is not None:
@@ -163,10 +175,3 @@ class Mouse(CameraMouse):
         display = self._view.display
         left, _, width, _ = self._view.area
         return display.compare == "wipe" and abs(x - left - display.divider * width) < 0.4 * em()
-
-    def _ray(self, io: Any) -> Ray:
-        """Through the mouse, in the viewport that it is in."""
-        place = self._place(io)
-        viewports = self._stage.viewports(self._view.display, self._view.viewport)
-        under = [each for each in viewports if place[0] >= each.seen[0]] or viewports[:1]
-        return Ray.through(self._view.camera, under[-1].area, place)

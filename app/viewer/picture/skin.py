@@ -1,12 +1,12 @@
 """The skin under the mouse: where that is, which muscle is there, and a finger that pulls it.
 
-Dragged skin hangs on springs between the vertices under the mouse and where it drags. Muscles and
-jaw follow (sim.Pull), and hold it when the springs go.
+Muscles and jaw alone bring the skin as near to the mouse as they can (sim.Pull): so it stays where
+it is seen when it is let go. Skin that is only pulled hangs on springs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from risorius import render, sim
 from risorius.geometry.rays import PARALLEL, crossings
-from risorius.sim.landmarks import polyline_distance
 
 from ...control_names import OPPOSITE, TURNED, called, parted, twin_of
 from ..messages import Message
@@ -73,25 +72,8 @@ def skin_under(ray: Ray, positions: Array, faces: npt.NDArray[Any]) -> Array | N
     return point
 
 
-def muscle_at(point: Array, fibres: Mapping[str, Sequence[Array]]) -> str | None:
-    """The muscle whose fibres come nearest to a point of the skin, or None if all are far."""
-    nearest = {  # its end once more: a fibre may be a single point
-        name: min(
-            float(polyline_distance(point[None], np.vstack([line, line[-1:]]))[0]) for line in lines
-        )
-        for name, lines in fibres.items()
-        if lines
-    }
-    if not nearest:
-        return None
-    name = min(nearest, key=lambda each: nearest[each])
-    return name if nearest[name] <= MUSCLE_REACH else None
-
-
 FINGER = 16.0  # [mm] the finger's radius
 FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
-HELD = 10  # frames at one place: then one sees what letting go would leave
-DENSE = 10_000  # triangles of a head whose muscles are solved only when it is let go
 NOT_PULLED = ("gaze_", "head_", "tongue_", "lips_closed")  # controls that no finger on skin means
 
 
@@ -112,7 +94,7 @@ class SkinDrag:
         self._from = positions[self._vertices].copy()
         near = np.minimum(distance[self._vertices] / FINGER, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
-        self.offset, self._held_for = np.zeros(3), 0
+        self.offset, self._solved, self._due = np.zeros(3), np.zeros(3), 0.0
         poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
@@ -122,54 +104,59 @@ class SkinDrag:
         self._own: dict[str, float] = {}  # what solved controls had before
         self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
 
-    def to(self, point: Array) -> None:
+    def to(self, point: Array) -> Message:
         """Drag to a point, or toward it if that is too far; once in each frame."""
-        if self._pull is None and self._candidates:
-            finger = self._vertices, self._firmness
-            self._pull = sim.Pull(self._simulation, *finger, self._candidates, self._sight)
-            self._at_rest = self._pull.targets
-        offset = point - self.point
-        length = float(np.linalg.norm(offset))
-        before = self.offset
-        self.offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
-        self._held_for = self._held_for + 1 if np.array_equal(before, self.offset) else 0
-        self._simulation.touch.drag(self._vertices, self._from + self.offset, self._firmness)
-        if self._pull is not None:
-            self._pull.targets = self._at_rest + offset
-            if len(self._simulation.faces) < DENSE and self._held_for <= HELD:
-                (self._pull.solve if self._held_for == HELD else self._pull.follow)()
-                self._obey(self._pull)
+        self.offset = offset = point - self.point
+        if not self._candidates:
+            length = float(np.linalg.norm(offset))
+            offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
+            self._simulation.touch.drag(self._vertices, self._from + offset, self._firmness)
+            return None
+        # A dense head takes long: at least half of the time is for the picture.
+        begin = time.perf_counter()
+        if begin < self._due or np.array_equal(offset, self._solved):
+            return None
+        line = self._solve()
+        self._due = 2.0 * time.perf_counter() - begin
+        return line
 
     def muscle(self) -> str | None:
         """The one under the finger, if any."""
-        return muscle_at(self.point, self._simulation.anatomy.fibres())
+        name: str | None = self._simulation.anatomy.muscle_at(self.point, MUSCLE_REACH)
+        return name
 
     def let_go(self) -> Message:
         """The skin stays where muscles hold it, and else swings back; what was solved."""
         self.drop()
-        pull = self._pull
-        if pull is None:
+        if self._pull is None:
             return None
-        pull.solve()
-        self._obey(pull)
+        line = self._solve()
         self._session.note()
-        if not pull.changes:
-            return "No muscle draws the skin this way: it swings back"
-        told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
-        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short of the mouse"
+        return line
 
     def drop(self) -> None:
         """Hold on to the skin no longer."""
         self._simulation.touch.end_drag()
 
-    def _obey(self, pull: sim.Pull) -> None:
-        """Set what was solved, and put back what was set before and is needed no more."""
+    def _solve(self) -> Message:
+        """Set what is solved, put back what was set before and is needed no more, and tell."""
+        if self._pull is None:
+            finger = self._vertices, self._firmness
+            self._pull = sim.Pull(self._simulation, *finger, self._candidates, self._sight)
+            self._at_rest = self._pull.targets
+        pull, self._solved = self._pull, self.offset
+        pull.targets = self._at_rest + self.offset
+        pull.solve()
         solved = {name: value for names, value in pull.changes.items() for name in names}
         present = self._session.values  # others may move meanwhile, by a script that is recorded
         self._own = {name: present[name] for name in solved} | self._own
         for name, value in {**self._own, **solved}.items():
             if value != present[name]:
                 self._session.set(name, value)
+        if not solved:
+            return "No muscle draws the skin this way; with Ctrl it is pulled all the same"
+        told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
+        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short of the mouse"
 
 
 def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple[str, ...]]:
