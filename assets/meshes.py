@@ -1,9 +1,8 @@
 """Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, and what paints it.
 
-trimesh reads all but OBJ. It likes to merge and reorder
-vertices on loading, and to open the pictures and materials that a file names; here every vertex and
-triangle stays where the file has it, because landmarks and animation caches count on their numbers.
-What paints an OBJ file is in files beside it; see pictures.py.
+trimesh reads all but OBJ. It likes to merge and reorder vertices on loading, and to open the
+pictures and materials that a file names; here every vertex and triangle stays where the file has
+it, because landmarks and animation caches count on their numbers. What paints OBJ: pictures.py.
 """
 
 import io
@@ -64,7 +63,8 @@ def read_mesh(path: str | Path) -> Mesh:
     try:
         if suffix not in FORMATS:
             known = ", ".join(f".{name}" for name in FORMATS)
-            raise AssetError(f"its name must end in {known}: save the mesh in one of these formats")
+            cure = "unpack it" if suffix in ("gz", "zip") else "save the mesh as one of these"
+            raise AssetError(f"its name must end in {known}: {cure}")
         content = read_file(path, kind="mesh", most=MOST_MEGABYTES)
         same, colours, notes = None, None, tuple[str, ...]()
         if suffix == "obj":

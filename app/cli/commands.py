@@ -234,7 +234,7 @@ def open_window(
                 if line and not viewer.messages.text:  # unless there is something wrong to be told
                     viewer.messages.say(line)
             if mesh is not None:
-                viewer.mark(mesh)
+                viewer.read(mesh)()
             viewer.run(playing=playing, once=once)
 
 

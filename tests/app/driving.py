@@ -45,7 +45,7 @@ def settle(viewer: Viewer) -> None:
 
     def is_steady() -> bool:
         shown.append((dict(viewer.gui.places), imgui.get_io().want_text_input))
-        return shown[-STEADY:] == STEADY * shown[-1:]
+        return viewer.file_drop.making is None and shown[-STEADY:] == STEADY * shown[-1:]
 
     # While a face moves, panels may be older than what was set.
     with mock.patch.object(viewer, "refresh", 0.0):

@@ -190,7 +190,7 @@ class TestInTheWindow:
 
     def test_a_mark_is_put_only_where_it_is_seen(self, viewer: Viewer, mesh: Path) -> None:
         """A click into the open neck meets skin from behind: it is no mark, as a line says."""
-        viewer.mark(mesh)
+        viewer.read(mesh)()
         room = self.room(viewer)
         room.view.camera.orbit(180.0)
         settle(viewer)
@@ -245,10 +245,10 @@ class TestInTheWindow:
     def test_marks_are_not_lost_without_a_question(self, viewer: Viewer, mesh: Path) -> None:
         """Leaving and closing ask; a second mesh, too; saving in answer goes on."""
         viewer.session.set("jaw_open", 0.5)
-        viewer.mark(mesh)
+        viewer.read(mesh)()
         xdotool(viewer, "key", "ctrl+w")
         assert viewer.room is None  # nothing was marked, and the pose is not in danger
-        viewer.mark(mesh)
+        viewer.read(mesh)()
         self.mark_first(viewer)
         room = viewer.room
         click(viewer, "Leave")

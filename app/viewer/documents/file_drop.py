@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
@@ -14,11 +16,11 @@ from risorius.assets.meshes import FORMATS
 from ...errors import UserError
 from ...recordings import is_recording
 from ...scenes import Scene, build_scene, own_head
+from ..interface.gui import wake_up
 from ..messages import Message, Task
 from .file_dialogs import FileDialogs
 from .scripts import SOUNDS, ScriptCommands
 
-FITTING, READING = "Fitting the muscles to this head", "Reading this mesh"  # as is announced
 MESHES = tuple(f".{name}" for name in FORMATS)
 LANDMARKS = ".json"
 
@@ -30,7 +32,7 @@ def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
     """
     found: dict[str, Path] = {}
     for path in paths:
-        end = path.suffix.lower()
+        end = Path(path.name.lower().removesuffix(".gz")).suffix  # whose reader tells what to do
         kind = "mesh" if end in MESHES else "sound" if end in SOUNDS else "script"
         if end == LANDMARKS and not is_recording(path):
             kind = "landmarks"
@@ -42,75 +44,98 @@ def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
 
 
 class FileDrop:
-    """Opens dropped files; a head, which takes a while, in a frame after it was announced."""
+    """Opens dropped files; a head, which takes seconds, is made in a thread meanwhile."""
 
     def __init__(
         self,
         files: FileDialogs,
         scripts: ScriptCommands,
         show_scene: Callable[[Scene], None],
-        mark: Callable[[Path, Path | None], Message],
+        read: Callable[[Path, Path | None], Task],
     ) -> None:
         """show_scene: puts a scene with another head in place of the present one.
 
-        mark: has the landmarks of a mesh marked, or those of a file that are missing.
+        read: in a thread; what has the landmarks of a mesh marked, or those of a file that are
+        missing.
         """
         self._files, self._scripts, self._show_scene = files, scripts, show_scene
-        self._mark = mark
-        self.announced: Task | None = None  # what fits a head, once it was said that it will
-        self.has_other_head = False  # than the built-in one
+        self._read = read
+        self.making: Future[Task] | None = None  # what shows a head
+        self._what, self._begun, self._told = "", 0.0, 0  # when, and for how long it is known [s]
 
     def open(self, paths: Sequence[str]) -> Message:
-        """Open files, or announce that a head will be fitted."""
+        """Open files, or begin to make a head."""
         gone = next((path for path in paths if not Path(path).exists()), None)
         if gone is not None:
             raise UserError(f"{gone}: no such file")
         found = sorted_out([Path(path) for path in paths])
-        if not found.keys() & {"mesh", "landmarks"}:
-            return self._open(**found)
-        self.announced = partial(self._open, **found)
-        return f"{FITTING if 'landmarks' in found else READING} ..."
+        mesh, landmarks = found.pop("mesh", None), found.pop("landmarks", None)
+        if mesh is None and landmarks is not None:
+            raise UserError(
+                f"{landmarks.name}: is half of a head; drop it together with its mesh, an .obj say"
+            )
+        if mesh is None:
+            return self._play(found)
+        what = "Reading" if landmarks is None else "Fitting muscles to"
+        self._begin(f"{what} {mesh.name}", partial(self._make, mesh, landmarks, found))
+        return None
 
-    def show_person(self, who: int | str | None) -> Message:
-        """Announce a person by number or name, in place of the head; None: the built-in head."""
-        self.announced = lambda: self._show_scene(
-            build_scene("face", None if who is None else person_called(who))
-        )
-        self.has_other_head = who is not None
-        return f"Making {'the built-in head' if who is None else person_in_words(who)} ..."
+    def show_person(self, who: int | str | None) -> None:
+        """Begin to make a person by number or name, in place of the head; None: the built-in."""
 
-    def _open(
-        self,
-        mesh: Path | None = None,
-        landmarks: Path | None = None,
-        script: Path | None = None,
-        sound: Path | None = None,
-    ) -> Message:
-        """Show the head first, then what shall be played on it."""
-        line, remark = None, ""
-        if mesh is not None and landmarks is None:
-            line = self._mark(mesh, None)
-            self._scripts.note_recent(mesh)
-        elif landmarks is not None:
-            if mesh is None:
-                raise UserError(
-                    f"{landmarks.name}: is half of a head; drop it together with its mesh, an .obj "
-                    "say"
-                )
-            try:
-                self._show_scene(build_scene("face", own_head(mesh, landmarks)))
-            except UnfinishedError:
-                return self._mark(mesh, landmarks)
-            except assets.AssetError as error:
-                raise UserError(str(error)) from None
-            self.has_other_head = True
-            self._scripts.note_recent(mesh, landmarks)
-            line, remark = f"{mesh.name}: opened", f" with {mesh.name}"
-        if script is not None:
-            line = self._scripts.open(script, remark) or line
-        if sound is not None:
-            line = self._scripts.set_sound(sound)
-        return line
+        def make() -> Task:
+            person = None if who is None else person_called(who)
+            return partial(self._show_scene, build_scene("face", person))
+
+        self._begin(f"Making {'the built-in head' if who is None else person_in_words(who)}", make)
+
+    def _begin(self, what: str, make: Callable[[], Task]) -> None:
+        """Have a thread make what shows a head; one that is being made is wanted no more."""
+        self._what, self._begun, self._told = what, time.monotonic(), -1
+        thread = ThreadPoolExecutor(1)
+        self.making = thread.submit(make)
+        self.making.add_done_callback(lambda _: wake_up())
+        thread.shutdown(wait=False)
+
+    @property
+    def has_news(self) -> bool:
+        """Whether there is more to be told of what is being made than a moment ago."""
+        making, seconds = self.making, int(time.monotonic() - self._begun)
+        return making is not None and (making.done() or seconds > self._told)
+
+    def poll(self) -> Message:
+        """Tell how long it has taken so far, or show it."""
+        making = self.making
+        if making is not None and making.done():
+            self.making = None
+            return making.result()()
+        self._told = int(time.monotonic() - self._begun)
+        return f"{self._what} ... {self._told} s"
+
+    def _make(self, mesh: Path, landmarks: Path | None, others: Mapping[str, Path]) -> Task:
+        """In a thread: what shows a head, or has it marked, and plays what came with it."""
+        show, remark = None, ""
+        try:
+            if landmarks is not None:
+                scene = build_scene("face", own_head(mesh, landmarks))
+                show, remark = partial(self._show_scene, scene), f" with {mesh.name}"
+        except UnfinishedError:
+            pass  # it is marked further
+        except assets.AssetError as error:
+            raise UserError(str(error)) from None
+        show_first = show or self._read(mesh, landmarks)
+
+        def go_on() -> Message:
+            """Show the head first, then what shall be played on it."""
+            line = show_first() or (f"{mesh.name}: opened" if remark else None)
+            self._scripts.note_recent(*filter(None, (mesh, landmarks)))
+            return self._play(others, remark) or line
+
+        return go_on
+
+    def _play(self, found: Mapping[str, Path], remark: str = "") -> Message:
+        line = self._scripts.open(found["script"], remark) if "script" in found else None
+        return self._scripts.set_sound(found["sound"]) if "sound" in found else line
 
     def ask_head(self) -> None:
         """Ask for a mesh; show it with the landmarks beside it, or have them marked."""

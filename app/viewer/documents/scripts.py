@@ -96,12 +96,8 @@ class ScriptCommands:
 
     def ask_open(self) -> None:
         """Ask for a script, a pose or a recording, and show it."""
-        self._files.ask(
-            "Open script, pose or recording",
-            self.open,
-            saving=False,
-            suffixes=(SUFFIX, *RECORDINGS),
-        )
+        title, ends = "Open script, pose or recording", (SUFFIX, *RECORDINGS)
+        self._files.ask(title, self.open, saving=False, suffixes=ends)
 
     def open(self, path: Path, remark: str = "") -> Message:
         """Show the script, pose or recording of a file; if work would be lost, ask first.

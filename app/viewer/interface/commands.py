@@ -130,13 +130,7 @@ def command_button(
     is_on = is_wanted or (command.is_on is not None and command.is_on())
     ink = colour(gui.theme.accent, 0.6) if is_on else None
     imgui.begin_disabled(not command.can_run())
-    if button(
-        gui,
-        label or command.label,
-        name=name,
-        width=width,
-        meaning=meaning or command.displayed_keys,
-        highlight=ink,
-    ):
+    text, told = label or command.label, meaning or command.displayed_keys
+    if button(gui, text, name=name, width=width, meaning=told, highlight=ink):
         messages.carry_out(command.run)
     imgui.end_disabled()

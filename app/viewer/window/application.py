@@ -13,14 +13,14 @@ from risorius.assets.fitting import FittedHead
 from ...control_names import readable
 from ...errors import UserError
 from ...refining.refiners import refiner_for
-from ...scenes import BUILT_IN, Scene, build_scene
+from ...scenes import Scene, build_scene
 from ...script import Script
 from ..context import ApplicationContext
 from ..documents.export import ExportDialog
 from ..documents.file_drop import FileDrop
 from ..interface.commands import Command, MenuBar
 from ..marking import Marking, Room
-from ..messages import Message
+from ..messages import Message, Task
 from ..panels.face import FacePanel
 from ..panels.layout import Layout
 from ..panels.live import LivePanel
@@ -101,8 +101,7 @@ class Application(ApplicationContext):
         self.time_axis = TimeAxis()
         self.selection = KeySelection(session)
         self.room: Room | None = None  # a mesh whose landmarks are being marked
-        self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.mark)
-        self.file_drop.has_other_head = session.scene.called not in ("", BUILT_IN)
+        self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.read)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(
                 self.scripts, self.file_drop, self.exporter, settings, self.ask_to_close
@@ -160,6 +159,8 @@ class Application(ApplicationContext):
 
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""
+        if self.room is not None and self.room.marking.unsaved:
+            raise UserError("landmarks were moved meanwhile: use this head once more")
         self.session.move_to(scene)
         self.leave_marking()
         display = self.settings.display
@@ -173,18 +174,22 @@ class Application(ApplicationContext):
         if refused:
             self.messages.say(refused)
 
-    def mark(self, mesh: Path, landmarks: Path | None = None) -> Message:
-        """Mark the landmarks of a mesh, or go on with those of a file; the face waits meanwhile.
+    def read(self, mesh: Path, landmarks: Path | None = None) -> Task:
+        """Read a mesh, in any thread; what has its landmarks marked, or goes on with a file's.
 
-        UserError where that cannot be.
+        The face waits meanwhile. UserError where that cannot be.
         """
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
-        self.leave_marking()
-        self.mouse.forget()
-        self.session.is_playing = False
-        self.room = Room(marking, self, self.commands, self.file_drop.open, self.leave_marking)
-        return line
+
+        def mark() -> Message:
+            self.leave_marking()
+            self.mouse.forget()
+            self.session.is_playing = False
+            self.room = Room(marking, self, self.commands, self.file_drop.open, self.leave_marking)
+            return line
+
+        return mark
 
     def leave_marking(self) -> None:
         """Back to the face."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ...control_names import readable
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
+from ...scenes import BUILT_IN
 from ...script import EASINGS
 from ..documents.export import Exporter
 from ..documents.file_drop import FileDrop
@@ -52,7 +53,8 @@ def file_menu(
             label = f"{names}   {Path(paths[0]).parent}".replace("##", "# #")
             yield command(label, "", partial(file_drop.open, paths))
 
-    other = partial(command, can_run=lambda: file_drop.has_other_head)
+    built_in = "", BUILT_IN
+    other = partial(command, can_run=lambda: exporter.session.scene.called not in built_in)
     export = partial(command, can_run=lambda: exporter.job is None)
     return (
         command("New script", "Ctrl+N", scripts.new),
@@ -109,13 +111,8 @@ def switch_of(
     off: object = False,
 ) -> Command:
     """A command that gives a field of some part one value or the other."""
-    return Command(
-        menu,
-        label,
-        key,
-        lambda: switch(part(), field, on, off),
-        lambda: bool(getattr(part(), field) == on),
-    )
+    is_on: Callable[[], bool] = lambda: bool(getattr(part(), field) == on)  # noqa: E731
+    return Command(menu, label, key, lambda: switch(part(), field, on, off), is_on)
 
 
 def keys_menu(session: Session, selection: KeySelection) -> Menu:
@@ -195,7 +192,7 @@ HELP = tuple(  # what the mouse does, to be read
         ("left on the skin", "pose; Ctrl: pull; click: muscle"),
         ("left beside, or right", "orbit"),
         ("middle, or Shift", "pan"),
-        ("wheel", "zoom"),
+        ("wheel", "zoom to where the mouse is"),
         ("double click a slider", "type a number"),
         ("right click a slider", "back to 0"),
         ("drag a key", "move what is selected; Ctrl: anywhere"),

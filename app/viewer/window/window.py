@@ -87,7 +87,9 @@ class Viewer(Application):
         if self.exporter.has_news:
             self._awake = max(self._awake, 1)
         self.messages.attempt(self.exporter.poll, stays=True)
-        announced = self.file_drop.announced
+        if self.file_drop.has_news:
+            self._awake, self.messages.text = max(self._awake, 2), ""  # its box grows a frame late
+            self.messages.attempt(self.file_drop.poll, stays=True)
         now = time.perf_counter()
         elapsed, self._last = now - self._last, now
         room = self.room
@@ -101,10 +103,6 @@ class Viewer(Application):
             return  # what is shown stays as it is; of a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
-        if announced is not None:
-            self.file_drop.announced, self.messages.text = None, ""
-            self.messages.attempt(announced)
-            self._last = time.perf_counter()
         if is_moving and not self.is_left_alone:
             self.shown_painter.level_of_detail.note(time.perf_counter() - now)
         self._awake = max(self._awake - 1, 0)
@@ -175,7 +173,8 @@ class Viewer(Application):
     def _wait(self) -> None:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
         is_watching = self.files.is_waiting or imgui.get_io().want_text_input  # a cursor blinks
-        patience = WATCHFUL_WAIT if is_watching or self.exporter.job is not None else IDLE_WAIT
+        is_watching |= self.file_drop.making is not None or self.exporter.job is not None
+        patience = WATCHFUL_WAIT if is_watching else IDLE_WAIT
         due_in = min(self.recovery.due_in(), self.live.due_in())
         patience = min(patience, max(due_in, 0.0))
         self.soundtrack.rest()
