@@ -88,7 +88,7 @@ def landmarks(viewer: Viewer) -> None:
     with tempfile.TemporaryDirectory() as folder:
         mesh = Path(folder) / "anna.obj"
         mesh.write_text("\n".join(lines))
-        viewer.mark(mesh)
+        viewer.read(mesh)()
     assert viewer.room is not None
     marking = viewer.room.marking
     for number in FIRST:
