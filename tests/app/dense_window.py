@@ -11,8 +11,9 @@ from Xlib import Xatom, display
 
 from risorius.app.performances import script_for
 from risorius.app.viewer import Viewer
+from risorius.assets.loading import load
 
-from .driving import click, drag, middle, moved, nose, settle, show_controls, until, xdotool
+from .driving import click, drag, middle, moved, seen_at, settle, show_controls, until, xdotool
 
 DOTS_PER_INCH = 192
 SIZE = (1200, 800)
@@ -50,7 +51,8 @@ def _findings(viewer: Viewer) -> dict[str, object]:
     slid = viewer.session.values["jaw_open"]
     click(viewer, "Neutral")
     until(viewer, lambda: moved(viewer) < 0.5)
-    drag(viewer, nose(viewer), (50, 40))
+    corner = viewer.session.scene.positions[load("head").landmarks[54]]
+    drag(viewer, seen_at(viewer, corner), (50, -40))
     until(viewer, lambda: moved(viewer) > 4.0)
     dragged = moved(viewer)
     xdotool(viewer, "mouseup", 1)
