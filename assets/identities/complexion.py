@@ -214,10 +214,7 @@ def coloured(
 
 
 def _with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
-    """Parts with eyeballs in a colour of IRIS_SHARES, else ValueError.
-
-    They ship as `assets/eyeballs.py` of revision 58023cbf painted them.
-    """
+    """Parts with eyeballs in a colour of IRIS_SHARES, else ValueError."""
     if name not in IRIS_SHARES:
         raise ValueError(f"no eyes are {name!r}; allowed are {', '.join(IRIS_SHARES)}")
     colours = iter(read_arrays(load("head").beside("_eyes.npz"))[name] / np.float32(255.0))
@@ -348,25 +345,21 @@ def _tints() -> _Tints:
     from PIL import Image as Pictures
 
     head = load("head")
-    soft_ones = ("melanin", "blood", "lips", "beard", "brow", "scalp")
     arrays = read_arrays(head.beside("_tints.npz"))
     height, width = head.albedo.shape[:2]
     soft = {}
-    for name in soft_ones:
+    for name in ("melanin", "blood", "lips", "beard", "brow", "scalp"):
         coarse = Pictures.fromarray(arrays[name].astype(np.float32) / 100.0)
         finer = coarse.resize((width, height), Pictures.Resampling.BILINEAR)
         soft[name] = np.asarray(finer, dtype=np.float32)
     soft["beard"] = scipy.ndimage.gaussian_filter(soft["beard"], BEARD_BLUR) * (1.0 - soft["lips"])
     hair = (arrays["hair"] / 100.0).astype(np.float32)
-    hair_light = to_linear(np.array(OWN.hair)).astype(np.float32)
     light = to_linear(np.arange(256) / 255.0).astype(np.float32)[head.albedo]
-    bare = np.maximum(light - hair[..., None] * hair_light, 0.0)
+    bare = np.maximum(light - hair[..., None] * to_linear(OWN.hair).astype(np.float32), 0.0)
     skin, weights = arrays["skin"][:3], arrays["skin"][3:]
     melanins = np.linspace(MOST, LEAST, 200)
-    tones = []
-    for melanin in melanins:
-        density, redness, _ = _changes(float(melanin), 1.0)
-        tones.append(skin * np.exp(-weights[0] * density - weights[1] * redness))
+    changes = [_changes(float(melanin), 1.0) for melanin in melanins]
+    tones = [skin * np.exp(-weights[0] * more - weights[1] * red) for more, red, _ in changes]
     lightness = np.log(np.maximum(bare.mean(axis=2), 1e-3))
     detail = (lightness - scipy.ndimage.uniform_filter(lightness, DETAIL)) * (hair < 0.02)
     return _Tints(

@@ -25,14 +25,14 @@ from ..smooth import Points, Values, smooth_step, unit
 from ..topology import quarter
 
 HAIR = "hair"  # the name of the part
-SHINE, DULL = 0.25, 0.7  # and how much of it curls have not
+SHINE, DULL = 0.13, 0.6  # and how much of it curls have not
 BALD = 40.0  # [mm] behind which the hairline lies where the top is bald
 LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
-CLEAR, SUNK = 0.5, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
+CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
 FLAT = -10.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
-PAINTED, HEM = 3.0, 26.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
+PAINTED, HEM = 1.0, 20.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
 
 
 @dataclass(frozen=True)
@@ -162,8 +162,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     long = length * long * smooth_step(0.0, cut.behind, behind)
     lift = cut.lift * smooth_step(*FLAT, behind)[:, None]
     way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
-    # Far outside the hairline it is under the skin.
-    off = CLEAR * smooth_step(0.0, HEM, behind) + SUNK * np.minimum(behind + 4.0, 0.0)
+    off = CLEAR * smooth_step(-2.0, 8.0, behind) + SUNK * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
     curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
     dense = np.minimum((behind - PAINTED) / HEM, 2.0)
@@ -200,8 +199,9 @@ def scalp_of(vertices: Points, faces: IndexArray, uv: Points, behind: SingleArra
         cut = quarter(faces, len(points))
         faces, ends = cut.faces, points[cut.edges]
         middle = ends.mean(axis=1, keepdims=True)
+        # Where skin is hollow its triangles, which may be seen, lie over it.
         above = ((middle - ends) * normals[cut.edges]).sum(axis=2, keepdims=True)
-        bulge = -BULGE * (above * normals[cut.edges]).mean(axis=1)
+        bulge = -BULGE * (np.minimum(above, 0.0) * normals[cut.edges]).mean(axis=1)
         points = np.vstack([points, middle[:, 0] + bulge])
         normals = np.vstack([normals, unit(normals[cut.edges].mean(axis=1))])
         uv = np.vstack([uv, uv[cut.edges].mean(axis=1)])

@@ -35,7 +35,8 @@ EAR_ROUNDS, EAR_STEP = 8, 0.5  # of standing out, by so much each [mm]
 GIVE = 0.2  # of the warp of what lies in the head
 MOST_RESTING = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
 FROWN = np.array([15.0, 18.0, 30.0])  # [mm] about the glabella, that furrows of age leave out
-NARROWER_NECK, NECK_AXIS = 0.07, np.array([0.0, 0.0, 5.0])  # share, of women's; [mm]
+NARROWER_NECK, NECK_AXIS = 0.12, np.array([0.0, 0.0, -8.0])  # share, of women's; [mm]
+STEEP, BACK, SOON = 0.35, 20.0, 30.0  # the jaw's line rises to there [mm]; below it the neck begins
 LOWER = -0.96  # of the iris' radius, that the lower lid lies at
 ROWS_OF_LIDS = (1.0, 1.0, 1.0, 0.7, 0.25)  # how far rows around the eye go with the lid's edge
 CORNER, BROW = 9.0, 11.0  # [mm] about corners of the mouth and brows, that go with them
@@ -94,21 +95,18 @@ def _made(identity: Identity) -> Person:
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
     bent = _resting_face(known, bent, eyes, identity)
     vertices = ears_off_head(known, lids_on_eyes(known, bent, eyes, LID_SHARES))
-    if identity.sex is Sex.WOMAN:
-        chin = vertices[known.anatomy["menton"], 1]
-        narrower = NARROWER_NECK * smooth_step(-chin, 30.0 - chin, -vertices[:, 1])
-        vertices[:, ::2] -= narrower[:, None] * (vertices - NECK_AXIS)[:, ::2]
+    neck = vertices[known.anatomy["menton"]], identity.sex
+    vertices = _on_neck(vertices, *neck)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
     if (turned.sum(axis=1) <= 0.0).any() or len(self_intersections(vertices, known.faces)):
         raise AssetError("nobody is so: a triangle of the skin is turned over, or cuts another")
     vertices.flags.writeable = False
-    normals = vertex_normals(vertices, known.faces)
     named = _named(known)
-    larger = float(
-        np.sqrt(np.var(vertices[named], 0).sum() / np.var(known.vertices[named], 0).sum())
-    )
+    spread, usual = (np.var(x[named], 0).sum() for x in (vertices, known.vertices))
+    larger = float(np.sqrt(spread / usual))
     warp = ThinPlateSpline(known.vertices[named], vertices[named], GIVE)
-    skin = FittedSkin(vertices, normals, vertices[known.landmarks], known.mandible_weight)
+    normals, landmarks = vertex_normals(vertices, known.faces), vertices[known.landmarks]
+    skin = FittedSkin(vertices, normals, landmarks, known.mandible_weight)
     return Person(
         vertices=vertices,
         faces=known.faces,
@@ -116,7 +114,9 @@ def _made(identity: Identity) -> Person:
         bone_depth=larger * known.bone_depth,
         eyes=eyes,
         parts=tuple(
-            old if old.bone == "neck" else new
+            replace(old, vertices=_on_neck(old.vertices.astype(float), *neck).astype(np.float32))
+            if old.bone == "neck"
+            else new
             for old, new in zip(known.parts, place_parts(known, skin, warp, eyes), strict=True)
         ),
         uv=known.uv,
@@ -136,6 +136,13 @@ def _made(identity: Identity) -> Person:
         fine_shape=known.fine_shape,
         identity=identity,
     )
+
+
+def _on_neck(points: FloatArray, chin: FloatArray, sex: Sex) -> FloatArray:
+    """Points of a skin or a shirt, of which those below the jaw lie on the neck of that sex."""
+    below = chin[1] - points[:, 1:2] + STEEP * (chin[2] - np.maximum(points[:, 2:], BACK))
+    narrower = NARROWER_NECK * (sex is Sex.WOMAN) * smooth_step(0.0, SOON, below)
+    return np.asarray(points - narrower * [1.0, 0.0, 1.0] * (points - NECK_AXIS))
 
 
 def _resting_face(

@@ -54,11 +54,12 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const float SIDEWAYS = 0.55;              // how far to the front layers are whole
+const vec2 SIDEWAYS = vec2(0.35, 0.7);   // how far to the front single strands are told apart
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
 const float LEAST_FACING = 0.25;        // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
+const float SHARP = 0.01;                // that of outlines: layers are there or not, and no veil
 
 // A number for each place of a grid, 0 to 1, by a hash without sine; two grids at once.
 vec2 chance(vec2 column, vec2 row) {
@@ -78,13 +79,13 @@ void main() {
     vec2 at = surface.strand.x / vec2(THIN, THICK), number = floor(at), place = at - number;
     vec2 share = clamp(1.5 - fwidth(surface.strand.x) / vec2(THIN, THICK), 0.0, 1.0);
     vec2 tones = share * (mix(reach(number), reach(number + 1.0), smoothstep(0.0, 1.0, place)) - 0.5);
-    float tall = 0.65 + 0.5 * tones.x + 0.4 * tones.y;
     // Seen from the side, a look goes past many strands; but of the tips it sees lines with gaps.
     float seen = clamp(2.5 * surface.facing, LEAST_FACING, 1.0);
+    float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
+    float tall = mix(0.6, 0.65 + 0.5 * tones.x + 0.4 * tones.y, single);
     float dense = surface.dense / seen;
     float far = tall * smoothstep(0.0, 1.0, dense + dot(RAGGED, tones));
-    float cover = clamp((far - surface.layer) / SOFT + 0.5, 0.0, 1.0) * clamp(2.0 * far, 0.0, 1.0);
-    if (surface.layer > 0.5) cover *= smoothstep(0.05, SIDEWAYS, surface.facing);
+    float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * clamp(3.5 * far, 0.0, 1.0);
     if (cover < 0.02) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;
     // Tilted toward the root and toward the tip.
