@@ -66,7 +66,7 @@ class Fall:
     below: float
 
 
-OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 14.0, 0.5, behind=40.0)  # of the built-in head
+OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 22.0, 0.58, behind=30.0)  # of the built-in head
 CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
@@ -165,7 +165,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     off = CLEAR * smooth_step(-2.0, 8.0, behind) + SUNK * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
     curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
-    dense = np.minimum((behind - PAINTED) / HEM, 2.0)
+    uneven = 2.0 * np.sin(0.22 * radius * angle) + 1.5 * np.sin(0.57 * radius * angle + 1.0)
+    dense = np.minimum((behind - PAINTED + uneven) / HEM, 2.0)
     striation = np.column_stack([curled[1] * radius * angle, curled[0] * radius * away, way, dense])
     return Part(
         name=HAIR,

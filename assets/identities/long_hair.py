@@ -55,8 +55,7 @@ def falling_hair(
 ) -> tuple[Part, ...]:
     """The parts that are drawn as hair, the inner side first.
 
-    head: with vertices, anatomy and landmarks.
-    colour: sRGB, shape (3,); length: beside that of the cut.
+    head: with vertices and anatomy. colour: sRGB, shape (3,); length: beside that of the cut.
     """
     vertices, at = head.vertices, head.anatomy
     ear = 0.5 * (vertices[at["tragion_left"]] + vertices[at["tragion_right"]])

@@ -54,7 +54,7 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const vec2 SIDEWAYS = vec2(0.35, 0.7);   // how far to the front single strands are told apart
+const vec2 SIDEWAYS = vec2(0.45, 0.75);  // how far to the front single strands are told apart
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
 const float LEAST_FACING = 0.25;        // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
