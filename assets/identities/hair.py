@@ -31,7 +31,7 @@ LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
 CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
-FLAT = -10.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
+FLAT = 0.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
 PAINTED, HEM = 1.0, 20.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
 
 
@@ -66,7 +66,7 @@ class Fall:
     below: float
 
 
-OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 22.0, 0.58, behind=30.0)  # of the built-in head
+OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 22.0, 0.58, behind=50.0)  # of the built-in head
 CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),

@@ -56,7 +56,7 @@ const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each othe
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const vec2 SIDEWAYS = vec2(0.45, 0.75);  // how far to the front single strands are told apart
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
-const float LEAST_FACING = 0.25;        // from which on all of a layer is passed
+const float LEAST_FACING = 0.4;         // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 const float SHARP = 0.01;                // that of outlines: layers are there or not, and no veil
