@@ -60,7 +60,7 @@ def system() -> Image:
     }
     scene, cells = FaceScene(), []
     for title, how in steps.items():
-        options = CaptureOptions((320, 440), camera="-26,3,1.15", captions=False, **how)
+        options = CaptureOptions((320, 440), camera="-26,3,1.06", captions=False, **how)
         cells.append((title, figures.shoot(scene, {"joy": 0.85}, options)))
     return figures.sheet(cells, len(steps))
 
