@@ -123,13 +123,13 @@ class Anatomy:
 
     def _whole(self, scene: FaceScene, view: AnatomyView, names: tuple[str, ...]) -> list[Any]:
         """Parts, by how their names begin, on the side that is not opened; none if both are."""
-        side = SIDES[view.side]
+        side = SIDES[view.side]  # a part of long hair may lie on one side alone
         parts = [part for part in scene.parts if side and part.name.startswith(names)]
         for part in parts:
             if (side, part.name) not in self._halves:
                 aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(scene)[0]
                 self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
-        return [self._halves[side, part.name] for part in parts]
+        return [half for part in parts if len((half := self._halves[side, part.name]).faces)]
 
 
 def _middle(scene: FaceScene) -> Any:

@@ -3,8 +3,7 @@
 They ship as data (`data/skull.npz`). Programs of revision f4bd608f (`assets/skull.py`,
 `assets/throat.py`) carved them from the skin that the built-in head then had, moved inward by the
 depth of its bone, by measures of an adult skull; they are a proxy. Landmarks carry them to another
-head. Where that is not made of the built-in head's vertices, its cranium is pushed in where it
-would come out of the skin.
+head, and its cranium is pushed in where it would come out of the skin.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ COLOURS = {
 }
 BROWS = slice(17, 27)  # landmarks
 CROWN, OCCIPUT, EARS = 55.0, -20.0, 65.0  # [mm] above and behind there are none; ears lie aside
-BACK, COVERED, BESIDE = 40.0, 2.0, 40.0  # [mm] behind condyles; skin on bone; to skin that tells
+BACK, COVERED, BESIDE = 28.0, 2.0, 40.0  # [mm] behind condyles; skin on bone; to skin that tells
 FAT, FLESH = np.array([0.82, 0.62, 0.42]), np.array([0.50, 0.17, 0.15])
 RINGS = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)  # how far out; colour
 
@@ -52,8 +51,10 @@ def build_skull(
     arrays = read_arrays(FILE)
     known = arrays["skin"]
     kept, own = load("head").landmarks, head.landmarks
-    is_known = hasattr(head, "anatomy")  # made of the built-in head's vertices
-    if is_known:
+    bare = np.arange(len(head.vertices))
+    if hasattr(head, "anatomy"):  # made of the built-in head's vertices
+        ears = [row for name, row in load("head").rings.items() if "ear_" in name]
+        bare = np.setdiff1d(bare, np.concatenate(ears))  # bone lies under no ear
         is_far = (known[:, 1] > CROWN) | (known[:, 2] < OCCIPUT) & (abs(known[:, 0]) < EARS)
         named = [at for name, at in head.anatomy.items() if not name.startswith("tragion")]
         kept = own = np.concatenate([own, named, np.flatnonzero(is_far)])
@@ -61,17 +62,16 @@ def build_skull(
         np.vstack([known[kept], arrays["condyles"]]),
         np.vstack([head.vertices[own], pivots["mandible"]]),
     )
-    skin = scipy.spatial.cKDTree(head.vertices)
-    normals = vertex_normals(head.vertices, head.faces)
+    skin, normals = head.vertices[bare], vertex_normals(head.vertices, head.faces)[bare]
     parts = {}
     for name in names:
         faces = arrays[f"{name}_faces"].T.astype(np.int32)  # steps from the first corners
         faces[:, 0] = np.cumsum(faces[:, 0])
         faces[:, 1:] += faces[:, :1]
         points = warp.points(STEP * arrays[f"{name}_vertices"].T)
-        if name == "cranium" and not is_known:  # landmarks say nothing of its top and back
-            away, near = skin.query(points)
-            out = ((points - head.vertices[near]) * normals[near]).sum(axis=1) + COVERED
+        if name == "cranium":  # what is named says little of its top, back and sides
+            away, near = scipy.spatial.cKDTree(skin).query(points)
+            out = ((points - skin[near]) * normals[near]).sum(axis=1) + COVERED
             is_free = points[:, 1] > head.vertices[head.landmarks[BROWS], 1].max()
             is_free |= points[:, 2] < pivots["mandible"][2] - BACK
             is_free &= away < BESIDE

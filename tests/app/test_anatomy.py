@@ -139,11 +139,11 @@ def test_the_command_draws_anatomy(tmp_path: Path) -> None:
     plain, opened = tmp_path / "plain.png", tmp_path / "opened.png"
 
     def run(*more: str) -> Any:
-        """The command in this process."""
         return risorius(*always, *more)
 
     assert run("-o", str(plain)).exit_code == 0
     told = ("--anatomy", "--dissect", "left", "--skin-opacity", "0.1")
+    assert run(*told, "--person", "ada", "-o", str(opened)).exit_code == 0  # with long hair
     assert run(*told, "-o", str(opened)).exit_code == 0
     first, second = (np.array(Image.open(path)).astype(int) for path in (plain, opened))
     off = np.abs(first - second).max(axis=2) > 24

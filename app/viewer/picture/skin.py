@@ -85,7 +85,7 @@ class SkinDrag:
     ) -> None:
         """sight: direction in which the point is seen. poses: whether muscles shall hold it."""
         self._session, self._sight, self.point = session, sight, point
-        self._simulation: Any = session.scene.simulation  # type: ignore[attr-defined]
+        self._simulation: sim.Simulation = session.scene.simulation  # type: ignore[attr-defined]
         positions = self._simulation.positions
         distance = np.linalg.norm(positions - point, axis=1)
         self._vertices = np.flatnonzero(distance < FINGER)
@@ -122,8 +122,7 @@ class SkinDrag:
 
     def muscle(self) -> str | None:
         """The one under the finger, if any."""
-        name: str | None = self._simulation.anatomy.muscle_at(self.point, MUSCLE_REACH)
-        return name
+        return self._simulation.anatomy.muscle_at(self.point, MUSCLE_REACH)
 
     def let_go(self) -> Message:
         """The skin stays where muscles hold it, and else swings back; what was solved."""

@@ -53,8 +53,7 @@ def file_menu(
             label = f"{names}   {Path(paths[0]).parent}".replace("##", "# #")
             yield command(label, "", partial(file_drop.open, paths))
 
-    built_in = "", BUILT_IN
-    other = partial(command, can_run=lambda: exporter.session.scene.called not in built_in)
+    other = partial(command, can_run=lambda: exporter.session.scene.called not in ("", BUILT_IN))
     export = partial(command, can_run=lambda: exporter.job is None)
     return (
         command("New script", "Ctrl+N", scripts.new),
@@ -111,7 +110,10 @@ def switch_of(
     off: object = False,
 ) -> Command:
     """A command that gives a field of some part one value or the other."""
-    is_on: Callable[[], bool] = lambda: bool(getattr(part(), field) == on)  # noqa: E731
+
+    def is_on() -> bool:
+        return bool(getattr(part(), field) == on)
+
     return Command(menu, label, key, lambda: switch(part(), field, on, off), is_on)
 
 
