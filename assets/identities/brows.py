@@ -81,7 +81,9 @@ def painted(brows: Brows, size: int) -> SingleArray:
 
 def _hairs(brows: Brows, random: np.random.Generator) -> FloatArray:
     """Places along each hair root to tip, seen from the front [mm], shape (n, PARTS + 1, 2)."""
-    first, base, last = brows.inner, *_ends()
+    head = load("head")  # where they begin and end
+    inner, outer = head.vertices[head.landmarks[[22, 26]]]
+    first, base, last = brows.inner, inner[1] - 4.5, outer[0] - 1.5
     middle = 0.45 * first + 0.55 * brows.peak
     rises = np.array([0.0, 0.72 * brows.rise, brows.rise, brows.rise - brows.fall])
     line = scipy.interpolate.PchipInterpolator([first, middle, brows.peak, last], base + rises)
@@ -122,14 +124,6 @@ def _paint(cover: SingleArray, hairs: FloatArray, side: float, tones: FloatArray
     soft = scipy.ndimage.gaussian_filter(fine, SOFT)
     covered = cover[low[1] : low[1] + high, low[0] : low[0] + wide]
     np.maximum(covered, np.clip(fine + UNDER * soft, 0.0, 0.92), out=covered)
-
-
-@lru_cache(maxsize=1)
-def _ends() -> tuple[float, float]:
-    """How high brows begin on the built-in head, and x of their tails [mm]."""
-    head = load("head")
-    inner, outer = (head.vertices[head.landmarks[k]] for k in (22, 26))
-    return float(inner[1]) - 4.5, float(outer[0]) - 1.5
 
 
 def _on_texture(places: FloatArray, side: float) -> npt.NDArray[np.float64]:

@@ -28,6 +28,7 @@ from ..data_files import Image, read_arrays, read_image
 from ..loading import load
 from ..model import FloatArray, Head, Part, Segment, SingleArray
 from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
+from ..smooth import smooth_step
 from .brows import Brows, drawn_brows, painted, stubble
 from .hair import CUTS, HAIR, OWN_CUT, Fall, Hairline, drawn_hairline, hair_of, scalp_of
 from .long_hair import falling_hair
@@ -46,8 +47,8 @@ DARK_SKIN, LATER_GREY = -30.0, 10.0  # ITA below which hair turns grey so much l
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
 BEARD_SHADOW = 0.12  # density of shaved hair in the shipped picture
 BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the hairline back
-GROWN = 0.94  # of a scalp, that is covered by long hair
-ROOTS = 0.5  # of the light, between them
+GROWN, COVERED = 0.99, 22.0  # of a scalp, what hair covers [mm] behind the hairline, where dense
+ROOTS = 0.5  # of the light, between them where they are dense
 BEARD_BLUR = 14.0  # [texels]
 BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin is called brow
 DETAIL = 9  # [texels] below which relief is told from colour
@@ -127,7 +128,7 @@ def recoloured(
 
     angle: ITA [deg], DARKEST to LIGHTEST, else ValueError. blood: as a share of what such skin has;
     0.7 is pale, 1.3 flushed. haired_as: ITA of the skin with which hair goes that stands on
-    it, so that no scalp shines through; None where hair is painted alone.
+    it, so that no scalp shines through; None: hair is painted alone, from the built-in hairline on.
     """
     if not DARKEST <= angle <= LIGHTEST:
         raise ValueError(f"angle is {angle}; it must be {DARKEST:g} (dark) to {LIGHTEST:g} (light)")
@@ -136,8 +137,11 @@ def recoloured(
     hair = _hair_light(angle if haired_as is None else haired_as, features)
     grey = features.grey * np.where(tints.scalp > 0.01, np.float32(1.0), np.float32(GREY_BROWS))
     skin = tints.skin[:3] * np.exp(-tints.skin[3] * density - tints.skin[4] * redness)
-    kept = _kept_hair(tints, features)
-    covered = 0.0 if haired_as is None else _grown_over(tints, features)
+    kept, covered = _kept_hair(tints, features), np.zeros_like(tints.hair)
+    if haired_as is not None:
+        kept = np.where(tints.scalp > 0.01, np.float32(0.0), kept)
+        covered = _grown_over(tints, features)
+    shaded = 1.0 - (1.0 - ROOTS) * covered
     light = np.empty_like(tints.light)
     relief = features.relief * tints.detail
     lips, beard = features.lips * BLOOD, features.beard * SHADOW
@@ -152,7 +156,7 @@ def recoloured(
         bare = tints.light[..., channel] * np.exp(-lost) + skin[channel] * (tints.hair - kept)
         own = hair[channel] + grey * (GREY_LIGHT[channel] - hair[channel])
         haired = bare + own * kept
-        light[..., channel] = haired + covered * (ROOTS * own - haired)
+        light[..., channel] = haired + covered * (own * shaded - haired)
     steps = (np.sqrt(np.clip(light, 0.0, 1.0)) * (LEVELS - 1)).astype(np.int16)
     return _screen_bytes()[steps]
 
@@ -170,7 +174,7 @@ def _hair_colour(angle: float, features: Features) -> FloatArray:
 
 
 def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
-    """How much of hair's colour is on each texel, with a person's brows, lids and hairline."""
+    """How much of hair's colour is on each texel, with a person's brows and lids."""
     kept = tints.hair
     if features.brows is not None:
         kept = np.where(tints.brow < 1.99, np.float32(0.0), kept)
@@ -179,15 +183,13 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
         kept = np.maximum(kept, np.float32(features.lid_line) * tints.lids)
     if features.stubble > 0.0:
         kept = np.maximum(kept, np.float32(features.stubble) * stubble(len(kept)) * tints.beard)
-    receded = features.hairline.shift(len(kept))
-    share = np.clip(_behind(tints, features) / np.clip(2.0 * receded, 0.1, 14.0), 0.0, 1.0)
-    return np.where((tints.scalp > 0.01) & (receded > 0.0), kept * share, kept)
+    return kept
 
 
 def _grown_over(tints: _Tints, features: Features) -> SingleArray:
-    """How much long hair covers each texel of the scalp."""
-    covered = GROWN * np.clip((_behind(tints, features) - 3.0) / 10.0, 0.0, 1.0)
-    return np.asarray(covered, dtype=np.float32)
+    """How much of each texel of the scalp hair covers that stands on it."""
+    behind = _behind(tints, features).astype(np.float64)
+    return np.asarray(GROWN * smooth_step(0.0, COVERED, behind), np.float32)
 
 
 def coloured(
@@ -227,8 +229,7 @@ def _with_irises(parts: Sequence[Part], name: str) -> tuple[Part, ...]:
 def _haired_segments(segments: Image, features: Features) -> Image:
     """What texels belong to, with brows and the hairline of a person."""
     tints, brows = _tints(), (Segment.RIGHT_BROW, Segment.LEFT_BROW)
-    kept = _kept_hair(tints, features)
-    is_bald = (segments == Segment.HAIR) & (kept < 0.5 * tints.hair)
+    is_bald = (segments == Segment.HAIR) & (_grown_over(tints, features) < 0.5)
     found = np.where(is_bald, np.uint8(Segment.SKIN), segments)
     if features.brows is not None:
         found[np.isin(found, brows)] = Segment.SKIN
@@ -261,9 +262,9 @@ def built_in_hair(head: Head) -> Part:
 
 
 def _behind(tints: _Tints, features: Features) -> SingleArray:
-    """How far texels lie behind somebody's hairline [mm]."""
-    lies = BEHIND * tints.scalp - IN_FRONT
-    moved = lies - features.hairline.shift(len(tints.scalp))
+    """How far texels lie behind somebody's hairline [mm]; half as far where hair is thin."""
+    lies, line = BEHIND * tints.scalp - IN_FRONT, features.hairline
+    moved = (lies - line.shift(len(tints.scalp))) / (1.0 + line.crown)
     return np.where(tints.scalp > 0.01, moved, lies).astype(np.float32)
 
 

@@ -1,7 +1,7 @@
 // What each pixel shows, as numbers: no light, no blending, one sample.
 // BUMPS, FINE: of the skin, as in surface.glsl.
 
-#define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts;
+#define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts; float dense;
 
 #if defined(VERTEX_STAGE)
 
@@ -11,6 +11,8 @@ in vec2 in_uv;      // of the skin; parts have none
 #if defined(BUMPS)
 in vec2 in_bumps;
 #endif
+in vec3 in_way;     // of shells; whatever has none is solid
+in float in_dense;
 uniform mat4 model_view;
 uniform mat4 projection;
 out Surface { SURFACE } surface;
@@ -24,6 +26,7 @@ void main() {
 #if defined(BUMPS)
     surface.bump_amounts = in_bumps;
 #endif
+    surface.dense = in_way == vec3(0.0) && in_dense == 0.0 ? 1.0 : in_dense;
     gl_Position = projection * position;
 }
 
@@ -38,7 +41,10 @@ uniform float first;  // number of the first triangle of this drawing call, coun
 layout(location = 0) out vec4 normal_and_depth;
 layout(location = 1) out vec4 number_side_uv;
 
+const float HALF = 0.5;  // of strands are there: where there are fewer, one sees what is behind them
+
 void main() {
+    if (surface.dense < HALF) discard;
     float side = gl_FrontFacing ? 1.0 : -1.0;
     // From OpenGL's axes of the camera to those of pictures: x right, y down, z away from the eye.
     vec3 normal = side * surface.normal / max(length(surface.normal), 1e-20);

@@ -8,6 +8,10 @@
 
 #define VARYINGS vec3 diffuse; vec3 shine; vec3 colour; vec2 strand; float cosine; float layer; float dense; float facing;
 
+uniform int layers;         // of all
+const float MEAN = 0.6;     // of the strands' way to the tips of the longest
+const float LOWEST = 0.15;  // place of the first layer, beside their distance: no gap is below it
+
 #if defined(VERTEX_STAGE)
 
 in vec3 in_position;  // on the skin, and MEAN of the way to the tips from there
@@ -20,9 +24,6 @@ uniform mat4 model_view;
 uniform mat4 projection;
 uniform float gloss;
 uniform int first;  // of the layers that are drawn, from the inside out
-uniform int layers;  // of all
-const float MEAN = 0.6;
-const float LOWEST = 0.15;  // place of the first layer, beside their distance: no gap is below it
 out Surface { VARYINGS } surface;
 
 void main() {
@@ -56,6 +57,7 @@ const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each othe
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const vec2 SIDEWAYS = vec2(0.45, 0.75);  // how far to the front single strands are told apart
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
+const vec2 CRISP = vec2(1.5, 3.0);       // of hems, where locks are seen, and single strands
 const float LEAST_FACING = 0.4;         // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
@@ -82,11 +84,15 @@ void main() {
     // Seen from the side, a look goes past many strands; but of the tips it sees lines with gaps.
     float seen = clamp(2.5 * surface.facing, LEAST_FACING, 1.0);
     float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
-    float tall = mix(0.6, 0.65 + 0.5 * tones.x + 0.4 * tones.y, single);
-    float dense = surface.dense / seen;
-    float far = tall * smoothstep(0.0, 1.0, dense + dot(RAGGED, tones));
-    float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * clamp(3.5 * far, 0.0, 1.0);
-    if (cover < 0.02) discard;
+    // Its outline is the layer about the mean, whatever their number.
+    float outline = (floor(MEAN * float(layers) - LOWEST + 0.5) + LOWEST) / float(layers) + SHARP;
+    float tall = mix(outline, 0.65 + 0.5 * tones.x + 0.4 * tones.y, single);
+    // Toward hems there are fewer strands, and shorter ones; where they are finer than a pixel, a veil.
+    float dense = surface.dense / seen + dot(RAGGED, tones);
+    float there = clamp(mix(CRISP.x, CRISP.y, share.x) * (dense - 0.5) + 0.5, 0.0, 1.0);
+    float far = tall * smoothstep(0.0, 1.0, dense);
+    float cover = clamp((far - surface.layer) / mix(SHARP, SOFT, single) + 0.5, 0.0, 1.0) * there;
+    if (cover < 0.08) discard;
     float uneven = 0.6 * tones.x + 0.4 * tones.y;
     // Tilted toward the root and toward the tip.
     float first = surface.cosine + UNEVEN * uneven - TILT, second = first + 2.0 * TILT;

@@ -55,10 +55,7 @@ def test_named_places_are_what_they_are(head: assets.Head, place: str) -> None:
 
 def test_lips_ears_and_lids_follow_their_rows(head: assets.Head) -> None:
     """The red is lip, above or below, what is behind it is mouth, the helix is ear."""
-    upper, lower = (
-        slice(1, 5),
-        slice(10, 14),
-    )  # without the middle, which is both sides', and corner
+    upper, lower = slice(1, 5), slice(10, 14)  # without corners, and the middle of both sides
     for row in (3, 4):
         ring = head.rings[f"mouth_{row}_left"]
         assert set(at(head, ring[upper])) == {Segment.TOP_LIP}
