@@ -59,23 +59,30 @@ class Fall:
     """How hair falls that is long enough to, beside the face; chosen by eye, all in [mm].
 
     parting: from the middle of the face, to the subject's left, to where it parts.
-    below: how far below the ears it ends.
+    below: how far below the ears it ends. slant: how much higher it does so in front than behind.
+    wave: how far its waves swing. tucked: the side where it lies behind the ear, 1 the subject's
+    left; 0: none.
     """
 
     parting: float
     below: float
+    slant: float = 0.0
+    wave: float = 0.6
+    tucked: float = 0.0
 
 
-OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 22.0, 0.58, behind=50.0)  # of the built-in head
+OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 21.0, 0.5, behind=50.0)  # of the built-in head
 CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
-        "parted": Fall(26.0, 96.0),
-        "centred": Fall(0.0, 106.0),
-        "aside": Fall(-22.0, 100.0),
+        "parted": Fall(26.0, 94.0, slant=-6.0),
+        "tucked": Fall(24.0, 92.0, slant=6.0, tucked=1.0),
+        "centred": Fall(0.0, 128.0, slant=14.0),
+        "wavy": Fall(-6.0, 112.0, slant=12.0, wave=3.5),
+        "aside": Fall(-22.0, 100.0, slant=4.0, wave=1.4),
         "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
         "short": OWN_CUT,
-        "fringed": Cut((0.35, 0.75, -0.4), 18.0, 26.0, 0.32, behind=40.0),
+        "fringed": Cut((0.35, 0.75, -0.4), 16.0, 24.0, 0.24, behind=34.0),
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
         "brushed": Cut((0.15, 0.4, 0.9), 9.0, 28.0, 0.35, behind=18.0),
         "curly": Cut((0.1, 0.75, -0.6), 9.0, 20.0, 0.8, behind=18.0, curl=1.0),
@@ -101,7 +108,7 @@ class Hairline:
         row = self.front * np.exp(-((across / 0.17) ** 4))
         row += self.temples * np.exp(-(((np.abs(across) - 0.12) / 0.05) ** 2))
         ahead = 1.0 - smooth_step(0.74, 0.82, up)
-        top = np.exp(-((across / 0.13) ** 4) - ((up - 0.78) / 0.14) ** 4)
+        top = np.exp(-((across / 0.14) ** 2) - ((up - 0.78) / 0.15) ** 2)
         return (row * ahead + self.crown * BALD * top).astype(np.float32)
 
 
