@@ -30,9 +30,11 @@ vec3 hemisphere(vec3 normal) {
     return mix(ground, sky, 0.5 * normal.y + 0.5);
 }
 
-Lit studio(vec3 normal, vec3 to_eye, float subsurface, float gloss, float sharpness) {
+// `openness`: how much of the rim gets there. It comes from behind, so that what folds take of all
+// light they take of the rim first: it throws no shadows of its own.
+Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float gloss, float sharpness) {
     vec3 scatter = SCATTER * subsurface;
-    float rim = max(dot(normal, TO_RIM), 0.0);
+    float rim = max(dot(normal, TO_RIM), 0.0) * openness;
     float grazing = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
     float fresnel = grazing * grazing * grazing;
     vec3 ambient = hemisphere(normal);

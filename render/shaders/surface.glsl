@@ -111,7 +111,7 @@ void main() {
 #elif defined(FLAT)
     surface.to_eye = normalize(-position.xyz);
 #elif defined(GOURAUD)
-    Lit lit = studio(normal, normalize(-position.xyz), subsurface, gloss, sharpness);
+    Lit lit = studio(normal, normalize(-position.xyz), 1.0, subsurface, gloss, sharpness);
     surface.key = lit.key;
     surface.rest = lit.rest;
     surface.specular = lit.specular;
@@ -289,6 +289,7 @@ vec3 shading_normal() {
 #endif
 
 void main() {
+    vec3 front = front_albedo();
     float solid = 1.0;
 #if defined(FADED)
     solid = smoothstep(0.0, 1.0, dot(fade, vec4(surface.position, 1.0)));
@@ -313,11 +314,11 @@ void main() {
     Strand strand = strand_at(surface.fibre);
     normal = stranded(normal, surface.position, surface.fibre.x, strand.slope);
 #endif
-    Lit lit = studio(normal, to_eye, subsurface, gloss, sharpness);
+    float shade = ambient_occlusion * ambient_occlusion;
+    Lit lit = studio(normal, to_eye, shade * shade * shade, subsurface, gloss, sharpness);
     vec3 inner = inside(normal);
     float facing = dot(normal, to_eye);
 #endif
-    vec3 front = front_albedo();
 #if defined(TEXTURED)
     // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
