@@ -268,7 +268,8 @@ def _holds(muscles: MuscleForces, lids: Lids | None, count: int) -> tuple[Array,
     if lids is not None:
         for hold in (passive, greatest):
             np.add.at(hold, lids.vertices.vertex, lids.hold)
-        np.add.at(greatest, lids.vertices.vertex, lids.vertices.fold_hold)
+        moved = lids.vertices.fold_hold + lids.vertices.shut_hold
+        np.add.at(greatest, lids.vertices.vertex, moved)
     return passive, greatest
 
 

@@ -11,7 +11,8 @@ so that at close = 1 the lids meet on every eye, however wide, and wherever the 
 lies between the front edges of the lids comes to lie in one line: a margin is as thick as skin,
 and lids that meet with a slanted margin leave a groove, out of which the cornea looks.
 The open lid takes the fold under the brow along, as levator palpebrae ends in both; the fold is
-held only while it is moved, so that the brow can come down on it.
+held only while it is moved, so that the brow can come down on it. A shut lid is held twice as
+firmly, because its muscle presses it down, and a brow that rises does not draw it open.
 A closing lid slides towards the nose, as the ring of fibres in it is fixed there; a raised one a
 little away from it; and both lids a little to where the eye looks, as the cornea draws them.
 The lids of each eye follow the gaze of that eye alone.
@@ -69,6 +70,7 @@ class LidVertices(NamedTuple):
     aperture: Array  # (eyes,) rad, greatest height of the opening
     along: Array  # (L,) share of the slide: 1 at the middle of the margin .. 0 around the eye
     fold_hold: Array  # (L,) stiffness that holds the fold while it is moved
+    shut_hold: Array  # (L,) stiffness by which its muscle presses down an upper lid that is shut
     centres: Array  # (eyes, 3)
     radii: Array  # (eyes,)
     up: Array  # (eyes, 3) unit, across the lid axis
@@ -111,6 +113,7 @@ def place_lids(
     ]
     joined = _OneEye(*(np.concatenate(column) for column in zip(*parts, strict=True)))
     areas = rig.tissue.stiffness_scale * surface.areas[joined.vertex]
+    hold = eyes.lid_stiffness * areas * joined.weight
     vertices = LidVertices(
         vertex=joined.vertex.astype(np.int32),
         eye=np.repeat(np.arange(len(parts)), [len(p.vertex) for p in parts]).astype(np.int32),
@@ -123,6 +126,7 @@ def place_lids(
         aperture=np.array([part.opening.max() for part in parts]),
         along=joined.along,
         fold_hold=eyes.fold_stiffness * areas * np.maximum(joined.fold - joined.weight, 0.0),
+        shut_hold=hold * joined.upper,
         centres=np.array([ball.centre for ball in eyeballs]),
         radii=np.array([ball.radius for ball in eyeballs]),
         up=np.array([up for up, _ in axes]),
@@ -136,7 +140,6 @@ def place_lids(
         sideways_follow=eyes.lids_follow_sideways,
     )
     vertices = vertices._replace(sink=joined.sink - _lift(vertices, surface, eyeballs))
-    hold = eyes.lid_stiffness * areas * joined.weight
     return Lids(vertices, hold, _lid_muscles(rig, eyeballs, names))
 
 
@@ -321,6 +324,7 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
         free *= 1.0 - close
         angle += free
         state.hold[i] += lids.fold_hold[row] * min(abs(free) / FOLD_FIRM, 1.0)
+        state.hold[i] += lids.shut_hold[row] * close
         aside = gaze[e, 0] * lids.inward[e, 0] * lids.radii[e]
         inward = lids.along[row] * (inward + lids.sideways_follow * aside)
         c, s = np.cos(angle) - 1.0, np.sin(angle)
