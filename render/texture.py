@@ -19,7 +19,7 @@ Slopes = tuple[Image, float]  # a map (H, W, 2), and what 255 in it is, see `Bum
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
 LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
 _BUMP_UNIT, _AROUND_UNIT, _FINE_UNIT = 5, 6, 7  # texture units; 4 is for a window's enlargement
-_AROUND_LEVEL = 3  # of the smaller versions: a texel there is the mean of 8 x 8
+_AROUND_LEVEL = 5  # of the smaller versions: a texel there is the mean of 32 x 32
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 

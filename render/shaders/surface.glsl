@@ -322,7 +322,7 @@ void main() {
 #if defined(TEXTURED)
     // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
-    lit.specular *= 1.0 + 1.6 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
+    lit.specular *= 1.0 + 2.4 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
     // Pores and hairs, darker than what is around them, break the highlight; and it lies in hollows
     // less than on what stands out. On dark skin a plain one would be all that is seen.
     float shown_here = dot(front, lightness_weights);

@@ -114,10 +114,10 @@ def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shadin
 
 def test_lips_gloss(surface: render.Surface) -> None:
     """What is much redder than most of the picture shines more than the gloss of the skin."""
-    lips = plain_image((212, 176, 160), (64, 64))
-    lips[16:48, 16:48] = (200, 120, 108)
+    lips = plain_image((212, 176, 160), (256, 256))
+    lips[64:192, 64:192] = (200, 120, 108)
     shine = {}
-    for name, image in (("lips", lips), ("all lips", plain_image((200, 120, 108), (64, 64)))):
+    for name, image in (("lips", lips), ("all lips", plain_image((200, 120, 108), (256, 256)))):
         frames = [
             textured(surface, image, replace(PLAIN, gloss=gloss), shape=square(bulge=0.4))
             for gloss in (0.0, 1.0)
