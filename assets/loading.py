@@ -86,16 +86,12 @@ def read_words() -> Mapping[str, Any]:
 
 def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
     """Parts lie one after the other in shared arrays: an npz entry costs more than its numbers."""
-    vertices, normals, colours, roots, faces = (
-        np.split(arrays[f"part_{name}"], np.cumsum(arrays[f"part_{of}_counts"])[:-1])
-        for name, of in (
-            ("vertices", "vertex"),
-            ("normals", "vertex"),
-            ("colours", "vertex"),
-            ("roots", "vertex"),
-            ("faces", "face"),
-        )
+    of_vertex, of_face = (np.cumsum(arrays[f"part_{of}_counts"])[:-1] for of in ("vertex", "face"))
+    names = "vertices", "normals", "colours", "roots"
+    vertices, normals, colours, roots = (
+        np.split(arrays[f"part_{name}"], of_vertex) for name in names
     )
+    faces = np.split(arrays["part_faces"], of_face)
     return tuple(
         Part(
             name=name,

@@ -31,7 +31,6 @@ from .space import Identity, Sex, person_space, scores_of
 
 NEARER = (1.0, 0.85, 0.7, 0.5, 0.25, 0.0)  # shares of the weights, tried in turn
 MIDDLE = 20.0  # [mm] beside the middle, where an uneven face comes to its own side
-EAR_ROUNDS, EAR_STEP = 8, 0.5  # of standing out, by so much each [mm]
 GIVE = 0.2  # of the warp of what lies in the head
 MOST_RESTING = {Sex.WOMAN: 0.45, Sex.MAN: 0.5}
 FROWN = np.array([15.0, 18.0, 30.0])  # [mm] about the glabella, that furrows of age leave out
@@ -94,7 +93,7 @@ def _made(identity: Identity) -> Person:
     bent = space.mean + space.moved(np.array(identity.weights)) + askew
     eyes = tuple(_eye(known, eye, bent) for eye in known.eyes)
     bent = _resting_face(known, bent, eyes, identity)
-    vertices = ears_off_head(known, lids_on_eyes(known, bent, eyes, LID_SHARES))
+    vertices = lids_on_eyes(known, bent, eyes, LID_SHARES)
     neck = vertices[known.anatomy["menton"]], identity.sex
     vertices = _on_neck(vertices, *neck)
     turned = cross_products(vertices, known.faces) * cross_products(known.vertices, known.faces)
@@ -174,20 +173,6 @@ def _resting_face(
     ):
         away = scipy.spatial.cKDTree(vertices[points]).query(vertices)[0]
         x += np.exp(-((away / wide) ** 2))[:, None] * way
-    return x
-
-
-def ears_off_head(known: Head, vertices: FloatArray) -> FloatArray:
-    """Vertices of which those of the ears stand out so far that they do not cut into the head."""
-    x = vertices.copy()
-    rows = [known.rings[f"ear_{row}_{side}"] for row in range(1, 5) for side in ("left", "right")]
-    roots = [known.rings[f"ear_0_{side}"] for side in ("left", "right")]
-    ear = np.setdiff1d(np.concatenate(rows), np.concatenate(roots))
-    for _ in range(EAR_ROUNDS):
-        cutting = np.intersect1d(known.faces[np.unique(self_intersections(x, known.faces))], ear)
-        if not len(cutting):
-            break
-        x[cutting, 0] += EAR_STEP * np.sign(known.vertices[cutting, 0])
     return x
 
 
