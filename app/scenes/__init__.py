@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
-from risorius.assets.identities import HAIR, Person, built_in_hair, recoloured
+from risorius.assets.identities import Person, built_in_hair, recoloured
 
 from ..control_names import parted
 from ..control_names.limits import ControlValues, Limits
@@ -121,7 +121,7 @@ class FaceScene(Scene):
         self.wrinkles, self.fine_shape = head.wrinkles, head.fine_shape
         self.ambient_occlusion = head.ambient_occlusion
         if is_known := isinstance(head, assets.Head):
-            self.parts = (*self.parts, built_in_hair(head))
+            self.parts = (*self.parts, *built_in_hair(head))
         person = head if isinstance(head, Person) else None
         if isinstance(head, FittedHead) and person is None:  # others have a shirt
             self.fade = head.fade()
@@ -130,7 +130,7 @@ class FaceScene(Scene):
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
-        hair = [part.vertices for part in self.parts if part.name.startswith(HAIR)]
+        hair = [part.vertices for part in self.parts if part.striation is not None]
         self.extent = np.vstack([self.rest_positions, *hair])
         lowest = float(landmarks[CHIN, 1]) - NECK  # what is below may lie beyond the frame
         self.framed = self.extent[self.extent[:, 1] > lowest]

@@ -66,8 +66,7 @@ class Features:
     brows: of a person, else the built-in head's. lid_line: how dark lashes make the edges of the
     lids, 0 to 1. stubble: how much of the skin short hairs of a beard cover. beard, lips: density
     of its shadow, and of blood in them, beside that of the built-in head. relief: of pores and
-    patches, as a share beside its own. fair, grey: shares of such hair. hairline: where hair
-    begins.
+    patches, beside its own. fair, grey: shares of such hair. hairline: where hair begins.
     """
 
     brows: Brows | None = None
@@ -107,18 +106,12 @@ class _Tints:
         return float(np.interp(angle, self.angles, self.melanins))
 
 
-def lab(light: npt.ArrayLike) -> FloatArray:
-    """L*, a*, b* of linear light 0..1, shape (..., 3)."""
+def typology_angle(light: npt.ArrayLike) -> FloatArray:
+    """ITA [deg] of linear light 0..1, shape (..., 3), by its L* and b*."""
     relative = np.asarray(light, dtype=np.float64) @ TO_XYZ.T / WHITE
     root = np.where(relative > 0.008856, np.cbrt(relative), 7.787 * relative + 16.0 / 116.0)
-    x, y, z = np.moveaxis(root, -1, 0)
-    return np.stack([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)], axis=-1)
-
-
-def typology_angle(light: npt.ArrayLike) -> FloatArray:
-    """ITA [deg] of linear light 0..1, shape (..., 3)."""
-    found = lab(light)
-    return np.asarray(np.degrees(np.arctan2(found[..., 0] - 50.0, found[..., 2])))
+    _, y, z = np.moveaxis(root, -1, 0)
+    return np.asarray(np.degrees(np.arctan2(116.0 * y - 66.0, 200.0 * (y - z))))
 
 
 def recoloured(
@@ -165,12 +158,6 @@ def _hair_light(angle: float, features: Features) -> FloatArray:
     """Linear light of somebody's hair that is not grey, shape (3,); angle: ITA [deg]."""
     hair = _changes(_tints().melanin_of(angle), 1.0)[2]
     return np.asarray(hair + features.fair * (to_linear(np.array(FAIR_HAIR)) - hair))
-
-
-def _hair_colour(angle: float, features: Features) -> FloatArray:
-    """The colour of somebody's hair (sRGB), shape (3,); angle: ITA [deg]."""
-    hair = _hair_light(angle, features)
-    return to_screen(LOCKS_LIGHTER * (hair + features.grey * (GREY_LIGHT - hair)))
 
 
 def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
@@ -248,13 +235,14 @@ def _with_hair(
     cut = CUTS[person.identity.cut]
     uv, behind = person.uv.astype(np.float64), _behind(_tints(), features)
     scalp = scalp_of(person.vertices, person.faces, uv, behind)
-    colour, length = _hair_colour(angle, features), person.identity.hair
+    light, length = _hair_light(angle, features), person.identity.hair
+    colour = to_screen(LOCKS_LIGHTER * (light + features.grey * (GREY_LIGHT - light)))
     if isinstance(cut, Fall):
         return (*others, *falling_hair(cut, scalp, person, colour, length))
-    return (*others, hair_of(cut, scalp, colour, length))
+    return (*others, *hair_of(cut, scalp, colour, length))
 
 
-def built_in_hair(head: Head) -> Part:
+def built_in_hair(head: Head) -> tuple[Part, ...]:
     """What stands on the scalp of the built-in head, where the picture shows it cropped."""
     behind = np.float32(0.01 * BEHIND) * read_arrays(head.beside("_tints.npz"))["scalp"] - IN_FRONT
     scalp = scalp_of(head.vertices, head.faces, head.uv.astype(np.float64), behind)

@@ -10,8 +10,8 @@ After Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary sur
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ from risorius.geometry.normals import vertex_normals
 
 from ..model import FloatArray, IndexArray, Part, SingleArray
 from ..smooth import Points, Values, smooth_step, unit
-from ..topology import quarter
+from ..topology import grid_faces, quarter
 
 HAIR = "hair"  # the name of the part
 SHINE, DULL = 0.13, 0.6  # and how much of it curls have not
@@ -30,6 +30,8 @@ BALD = 40.0  # [mm] behind which the hairline lies where the top is bald
 LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
+LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 260, 5, 22.0, 0.045  # single hairs; the last two in [mm]
+RISE, STRAY, DROOP = (0.05, 0.4), 0.2, 0.2  # how far off, aside and down they go, as shares of it
 CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
 FLAT = 0.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
 PAINTED, HEM = 1.0, 20.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
@@ -60,13 +62,14 @@ class Fall:
 
     parting: from the middle of the face, to the subject's left, to where it parts.
     below: how far below the ears it ends. slant: how much higher it does so in front than behind.
-    wave: how far its waves swing. tucked: the side where it lies behind the ear, 1 the subject's
-    left; 0: none.
+    layered: and beside the face. wave: how far its waves swing. tucked: the side where it lies
+    behind the ear, 1 the subject's left; 0: none.
     """
 
     parting: float
     below: float
     slant: float = 0.0
+    layered: float = 8.0
     wave: float = 0.6
     tucked: float = 0.0
 
@@ -75,11 +78,11 @@ OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 21.0, 0.5, behind=50.0)  # of the built-in
 CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
-        "parted": Fall(26.0, 94.0, slant=-6.0),
-        "tucked": Fall(24.0, 92.0, slant=6.0, tucked=1.0),
-        "centred": Fall(0.0, 128.0, slant=14.0),
-        "wavy": Fall(-6.0, 112.0, slant=12.0, wave=3.5),
-        "aside": Fall(-22.0, 100.0, slant=4.0, wave=1.4),
+        "parted": Fall(26.0, 84.0, slant=-8.0),
+        "tucked": Fall(24.0, 100.0, slant=8.0, tucked=1.0),
+        "centred": Fall(0.0, 130.0, slant=12.0, layered=30.0),
+        "wavy": Fall(-6.0, 112.0, slant=10.0, layered=24.0, wave=4.5),
+        "aside": Fall(-22.0, 104.0, slant=6.0, layered=36.0, wave=1.6),
         "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
         "short": OWN_CUT,
         "fringed": Cut((0.35, 0.75, -0.4), 16.0, 24.0, 0.24, behind=34.0),
@@ -141,8 +144,8 @@ class Scalp(NamedTuple):
     behind: Values
 
 
-def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
-    """The part that is drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut."""
+def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[Part, ...]:
+    """The parts drawn as hair; colour: sRGB, shape (3,); length: beside that of the cut."""
     points, normals, faces, behind = scalp
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     whorl = unit(np.array([cut.whorl]))[0]
@@ -175,7 +178,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
     uneven = 2.0 * np.sin(0.22 * radius * angle) + 1.5 * np.sin(0.57 * radius * angle + 1.0)
     dense = np.minimum((behind - PAINTED + uneven) / HEM, 2.0)
     striation = np.column_stack([curled[1] * radius * angle, curled[0] * radius * away, way, dense])
-    return Part(
+    hair = Part(
         name=HAIR,
         vertices=(points + MEAN * way).astype(np.float32),
         normals=normals.astype(np.float32),
@@ -184,6 +187,38 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> Part:
         bone="cranium",
         shine=SHINE * (1.0 - DULL * cut.curl),
         striation=striation.astype(np.float32),
+    )
+    return loose_hairs([hair]), hair
+
+
+def loose_hairs(hair: Sequence[Part]) -> Part:
+    """Single hairs that stand off the outline of parts, which layers leave smooth."""
+    random, t = np.random.default_rng(0), np.linspace(0.0, 1.0, LOOSE_STEPS)[:, None, None]
+    names = "vertices", "normals", "colours", "striation"
+    rows = [np.hstack([getattr(part, each) for each in names])[part.faces] for part in hair]
+    corners = np.concatenate(rows).astype(np.float64)
+    corners = random.choice(corners[corners[:, :, 14].min(axis=1) > 0.5], LOOSE)
+    found = np.einsum("nij,ni->nj", corners, random.dirichlet((1.0, 1.0, 1.0), LOOSE))
+    root, normal, colour, _, way, _ = np.split(found, [3, 6, 9, 11, 14], axis=1)
+    normal = unit(normal)
+    across = unit(np.cross(normal, way))
+    off, aside = random.uniform(*RISE, (LOOSE, 1)), random.normal(0.0, STRAY, (LOOSE, 1))
+    along = LOOSE_LENGTH * (np.cross(across, normal) + off * normal + aside * across)
+    bent = LOOSE_LENGTH * DROOP * (normal + np.array([0.0, 1.0, 0.0]))
+    turn = np.radians([0.0, 120.0, 240.0])[:, None]
+    ring = np.cos(turn) * normal[:, None] + np.sin(turn) * across[:, None]
+    places = root[:, None, None] + t * along[:, None, None] - t * t * bent[:, None, None]
+    places = places + THIN * ring[:, None]
+    numbers = np.arange(places.size // 3).reshape(places.shape[:3])
+    return replace(
+        hair[0],
+        name=HAIR + "_loose",
+        vertices=places.reshape(-1, 3).astype(np.float32),
+        normals=np.broadcast_to(ring[:, None], places.shape).reshape(-1, 3).astype(np.float32),
+        faces=np.concatenate([grid_faces(each, closed=True) for each in numbers]),
+        colours=np.repeat(colour, LOOSE_STEPS * 3, axis=0).astype(np.float32),
+        strand_radius=THIN,
+        striation=None,
     )
 
 

@@ -17,7 +17,7 @@ from risorius.geometry.normals import vertex_normals
 from ..model import FloatArray, Part
 from ..smooth import unit
 from ..topology import grid_faces
-from .hair import HAIR, MEAN, Fall, Scalp
+from .hair import HAIR, MEAN, Fall, Scalp, loose_hairs
 
 Strands = tuple[FloatArray, FloatArray, FloatArray]
 STRANDS, SAMPLES = 26, 14  # of one side, and over the head along each, and as many below
@@ -39,11 +39,9 @@ VOLUME = 9.0  # [mm] that it stands off the head
 LOW, RISES = 0.1, 0.35  # of all that at the roots, and of the way over the head until it is whole
 LIMP = 1.3  # steps along strands, over which they bend from the head
 THIN_ENDS, CURVED_IN = 0.7, 0.27  # of the volume and of the radius, that tips have less
-FRAMING = np.radians(9.0)  # that tips beside the face turn to it
 WAVE, SWING = 46.0, 0.02  # [mm] length of waves, and their swing aside [1/mm]
 LOCK = 0.31  # [1/mm] how soon they are others across
 SLEEK = 0.4  # how much it shines
-ROOTS, TIPS = 0.86, 1.1  # how light they are
 AT_A_POINT = 0.01  # share of the way out in normals: where strands meet there is no triangle
 
 
@@ -68,11 +66,11 @@ def falling_hair(
 
     end = ear[1] - cut.below * length
     sides = [(side, _strands(cut, side, head, middle, skin, end)) for side in (-1.0, 1.0)]
-    return tuple(
-        _surface(strands, side, colour, is_inside=is_inside)
+    inside, hair = (
+        [_surface(strands, side, colour, is_inside=is_inside) for side, strands in sides]
         for is_inside in (True, False)
-        for side, strands in sides
     )
+    return (*inside, loose_hairs(hair), *hair)
 
 
 def _strands(
@@ -107,6 +105,7 @@ def _strands(
     ends = end + cut.slant * np.cos(angle) + RAGGED * uneven
     # Beside the face the outer side comes round to the inner one.
     beside = np.clip((angle - edge) / ROUNDED, 0.0005, 1.0)[:, None]
+    ends += cut.layered * (1.0 - beside[:, 0]) ** 3
     risen = LOW + (1.0 - LOW) * np.sin(0.5 * np.pi * np.clip(over / RISES, 0.0, 1.0))
     thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)
     grids = []
@@ -119,7 +118,6 @@ def _strands(
         phase = 2.0 * np.pi * height / WAVE + 1.7 * np.sin(LOCK * across + 0.5 * side)[:, None]
         wide += cut.wave * np.sqrt(drop) * np.sin(phase)
         turned = angle[:, None] + SWING * cut.wave * drop * np.cos(phase)
-        turned -= FRAMING * np.outer((1.0 - share) ** 3, drop)
         fall = middle + wide[..., None] * _level(side, turned)
         fall[..., 1] = height
         bent = np.concatenate([grid, fall], axis=1)
@@ -155,7 +153,6 @@ def _surface(strands: Strands, side: float, colour: FloatArray, *, is_inside: bo
     normals = unit(vertex_normals(points, faces) + AT_A_POINT * unit((high - low).reshape(-1, 3)))
     if is_inside:
         normals = unit(normals - [0.0, 2.0, 0.0])  # turned from lamps, which do not get there
-    tones = ROOTS + (TIPS - ROOTS) * along / (along + left)
     beside = np.broadcast_to(across[:, None, None], (*along.shape, 1))
     rows = [beside, FINE * along[..., None], way, dense[..., None]]
     return Part(
@@ -163,7 +160,7 @@ def _surface(strands: Strands, side: float, colour: FloatArray, *, is_inside: bo
         vertices=points.astype(np.float32),
         normals=normals.astype(np.float32),
         faces=faces,
-        colours=(colour * tones.reshape(-1, 1)).clip(0.0, 1.0).astype(np.float32),
+        colours=np.tile(colour, (len(points), 1)).astype(np.float32),
         bone="cranium",
         shine=SLEEK,
         striation=np.concatenate(rows, axis=-1).reshape(-1, 6).astype(np.float32),

@@ -73,8 +73,7 @@ class Sex(Enum):
 CUT_SHARES: Mapping[Sex, Mapping[str, float]] = MappingProxyType(
     {
         Sex.WOMAN: {
-            "parted": 0.18, "tucked": 0.14, "centred": 0.16, "wavy": 0.12, "aside": 0.3,
-            "tied": 0.1,
+            "parted": 0.2, "tucked": 0.1, "centred": 0.18, "wavy": 0.12, "aside": 0.3, "tied": 0.1,
         },
         Sex.MAN: {
             "short": 0.35, "cropped": 0.25, "brushed": 0.12, "swept": 0.1, "fringed": 0.1,

@@ -123,7 +123,7 @@ def test_sparse_hair_is_called_what_is_behind_it() -> None:
     """Where fewer than half of its strands are, as at its tips."""
     long, few = haired("parted"), np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2])
     parts = [
-        replace(each, striation=each.striation * few) if each.name.startswith(HAIR) else each
+        each if each.striation is None else replace(each, striation=each.striation * few)
         for each in long.parts
     ]
     found = [label_of(each)[1] == Segment.HAIR for each in (long, replace(long, parts=parts))]
