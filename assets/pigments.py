@@ -13,7 +13,7 @@ import numpy as np
 
 MELANIN = np.array([0.64, 0.87, 1.13])
 BLOOD = np.array([0.07, 0.56, 0.47])
-SHADOW = np.array([0.50, 0.46, 0.38])  # shaved hair: grey, a little blue
+SHADOW = np.array([0.47, 0.47, 0.42])  # shaved hair: grey, a little blue
 
 
 @dataclass(frozen=True)

@@ -328,7 +328,7 @@ void main() {
     float shown_here = dot(front, lightness_weights);
     float around = texture(around_texture, surface.uv).r;
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
-    lit.specular *= relief * relief * relief * mix(0.45, 1.0, sqrt(min(around * 2.2, 1.0))) * ambient_occlusion;
+    lit.specular *= relief * relief * relief * mix(0.36, 1.0, sqrt(min(around * 2.2, 1.0))) * ambient_occlusion;
 #endif
 #if defined(BUMPS)
     front *= 1.0 - bump.depth * FURROW;
