@@ -22,8 +22,7 @@ def make_grid(columns: int, rows: int, cell: float) -> tuple[FloatArray, IndexAr
     """
     x = cell * (np.arange(columns + 1) - columns / 2)
     y = cell * (np.arange(rows + 1) - rows / 2)
-    grid_x, grid_y = np.meshgrid(x, y)
-    vertices = np.stack([grid_x, grid_y, np.zeros_like(grid_x)], axis=-1).reshape(-1, 3)
+    vertices = np.stack(np.meshgrid(x, y, [0.0]), axis=-1).reshape(-1, 3)
 
     by_column = grid_faces(np.arange(len(vertices)).reshape(rows + 1, columns + 1).T)
     faces = by_column.reshape(columns, rows, -1).swapaxes(0, 1).reshape(-1, 3)

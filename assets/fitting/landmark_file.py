@@ -223,15 +223,14 @@ class Group:
         )
 
 
-_OVER = "over the upper lid"
 GROUPS = (
     Group("jaw line", 0, 17, "from the subject's right ear over the chin to the left ear"),
     Group("right brow", 17, 5, "from outside in"),
     Group("left brow", 22, 5, "from inside out"),
     Group("bridge of the nose", 27, 4, "downward"),
     Group("base of the nose", 31, 5, "from right to left"),
-    Group("right eye", 36, 6, f"from its outer corner {_OVER}"),
-    Group("left eye", 42, 6, f"from its inner corner {_OVER}"),
+    Group("right eye", 36, 6, "from its outer corner over the upper lid"),
+    Group("left eye", 42, 6, "from its inner corner over the upper lid"),
     Group("outer border of the lips", 48, 12, "from the right corner over the upper lip"),
     Group("inner border of the lips", 60, 8, "from the right corner over the upper lip"),
     Group("two brows", 17, 10, "the right brow from outside in, then the left from inside out"),

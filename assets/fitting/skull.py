@@ -2,8 +2,8 @@
 
 They ship as data (`data/skull.npz`). Programs of revision f4bd608f (`assets/skull.py`,
 `assets/throat.py`) carved them from the skin that the built-in head then had, moved inward by the
-depth of its bone, by measures of an adult skull; they are a proxy. Landmarks carry them to another
-head, and its cranium is pushed in where it would come out of the skin.
+depth of its bone, by measures of an adult skull; they are a proxy. Landmarks and directions of the
+scalp carry them to another head, and the cranium is pushed in where it would leave the skin.
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ COLOURS = {
 }
 BROWS = slice(17, 27)  # landmarks
 CROWN, OCCIPUT, EARS = 55.0, -20.0, 65.0  # [mm] above and behind there are none; ears lie aside
+NAPE, WITHIN = -40.0, np.array([0.0, 40.0, 0.0])  # [mm] lowest bone; one looks from, over condyles
 BACK, COVERED, BESIDE = 28.0, 2.0, 40.0  # [mm] behind condyles; skin on bone; to skin that tells
+AROUND, SOFT, ASIDE = 6, 10.0, 0.01  # vertices near by; [mm] of a soft edge; 1 - cosine
 FAT, FLESH = np.array([0.82, 0.62, 0.42]), np.array([0.50, 0.17, 0.15])
 RINGS = (0.0, FLESH), (0.5, FLESH), (0.93, FLESH), (0.95, FAT), (1.0, FAT)  # how far out; colour
 
@@ -52,12 +54,18 @@ def build_skull(
     known = arrays["skin"]
     kept, own = load("head").landmarks, head.landmarks
     bare = np.arange(len(head.vertices))
+    is_far = (known[:, 1] > CROWN) | (known[:, 2] < OCCIPUT) & (abs(known[:, 0]) < EARS)
     if hasattr(head, "anatomy"):  # made of the built-in head's vertices
         ears = [row for name, row in load("head").rings.items() if "ear_" in name]
         bare = np.setdiff1d(bare, np.concatenate(ears))  # bone lies under no ear
-        is_far = (known[:, 1] > CROWN) | (known[:, 2] < OCCIPUT) & (abs(known[:, 0]) < EARS)
         named = [at for name, at in head.anatomy.items() if not name.startswith("tragion")]
         kept = own = np.concatenate([own, named, np.flatnonzero(is_far)])
+    else:  # what is seen of its cranium in the same directions, from within
+        far = np.flatnonzero(is_far & (known[:, 1] > NAPE))
+        ways, seen = known[far] - arrays["condyles"], head.vertices - pivots["mandible"]
+        apart = scipy.spatial.distance.cdist(ways - WITHIN, seen - WITHIN, "cosine")
+        is_seen = apart.min(axis=1) < ASIDE
+        kept, own = np.append(kept, far[is_seen]), np.append(own, apart.argmin(axis=1)[is_seen])
     warp = ThinPlateSpline(
         np.vstack([known[kept], arrays["condyles"]]),
         np.vstack([head.vertices[own], pivots["mandible"]]),
@@ -70,12 +78,14 @@ def build_skull(
         faces[:, 1:] += faces[:, :1]
         points = warp.points(STEP * arrays[f"{name}_vertices"].T)
         if name == "cranium":  # what is named says little of its top, back and sides
-            away, near = scipy.spatial.cKDTree(skin).query(points)
-            out = ((points - skin[near]) * normals[near]).sum(axis=1) + COVERED
-            is_free = points[:, 1] > head.vertices[head.landmarks[BROWS], 1].max()
-            is_free |= points[:, 2] < pivots["mandible"][2] - BACK
-            is_free &= away < BESIDE
-            points -= (np.maximum(out, 0.0) * is_free)[:, None] * normals[near]
+            away, near = scipy.spatial.cKDTree(skin).query(points, k=AROUND)
+            shares = 1.0 / np.maximum(away, 1.0) ** 2
+            above = points[:, 1] - head.vertices[head.landmarks[BROWS], 1].max()
+            behind = pivots["mandible"][2] - BACK - points[:, 2]
+            free = np.clip(np.maximum(above, behind) / SOFT, 0.0, 1.0) * (away[:, 0] < BESIDE)
+            shares *= (free / shares.sum(axis=1))[:, None]
+            out = ((points[:, None] - skin[near]) * normals[near]).sum(axis=2) + COVERED
+            points -= np.einsum("nk,nkc->nc", shares * np.maximum(out, 0.0), normals[near])
         dark, bright = COLOURS.get(name, BONE)
         light = arrays[f"{name}_light"][:, None] / 255.0
         title = name if name == "throat" else f"skull_{name}"

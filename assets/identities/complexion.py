@@ -54,9 +54,7 @@ BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin
 DETAIL = 9  # [texels] below which relief is told from colour
 GREY_LIGHT = to_linear(np.array(GREY_HAIR)).astype(np.float32)
 LEVELS = 4096  # of the table from light to bytes
-# CIE 1976 L*a*b* of linear sRGB, for the white of a screen (D65).
-TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
-WHITE = TO_XYZ.sum(axis=1)
+TO_YZ = np.array([[0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])  # CIE, of linear sRGB (D65)
 
 
 @dataclass(frozen=True)
@@ -107,10 +105,10 @@ class _Tints:
 
 
 def typology_angle(light: npt.ArrayLike) -> FloatArray:
-    """ITA [deg] of linear light 0..1, shape (..., 3), by its L* and b*."""
-    relative = np.asarray(light, dtype=np.float64) @ TO_XYZ.T / WHITE
+    """ITA [deg] of linear light 0..1, shape (..., 3), by L* and b* of CIE 1976."""
+    relative = np.asarray(light, dtype=np.float64) @ TO_YZ.T / TO_YZ.sum(axis=1)
     root = np.where(relative > 0.008856, np.cbrt(relative), 7.787 * relative + 16.0 / 116.0)
-    _, y, z = np.moveaxis(root, -1, 0)
+    y, z = np.moveaxis(root, -1, 0)
     return np.asarray(np.degrees(np.arctan2(116.0 * y - 66.0, 200.0 * (y - z))))
 
 

@@ -117,8 +117,10 @@ def test_muscles_swell_and_redden_as_they_contract() -> None:
 
 @pytest.mark.slow
 def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> None:
-    """They lie in it, and the mandible goes down with the jaw."""
-    scene = FaceScene(fit_head(*stranger().write(tmp_path)))
+    """They lie in it, a long head's skull is long, and the mandible goes down with the jaw."""
+    head = fit_head(*stranger().write(tmp_path))
+    longer = head.vertices * np.where(head.vertices[:, 2:] < 0.0, [1.0, 1.0, 1.25], 1.0)
+    scene = FaceScene(replace(head, vertices=longer))
     anatomy = Anatomy(scene)
     low, high = scene.rest_positions.min(axis=0), scene.rest_positions.max(axis=0)
     parts = {part.name: part for part in anatomy.draw_order(BOTH).parts}
@@ -126,6 +128,7 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
         points = parts[name].vertices
         assert np.isfinite(points).all() and len(points) > 300
         assert (points.max(axis=0) < high + 2.0).all() and (points.min(axis=0) > low - 12.0).all()
+    assert parts["skull_cranium"].vertices[:, 2].min() < low[2] + 8.0
     before = parts["muscles"].vertices
     posed(scene, jaw_open=1.0)
     anatomy.draw_order(BOTH)

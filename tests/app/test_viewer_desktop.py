@@ -25,7 +25,6 @@ from .driving import (
 
 pytestmark = NEEDS_A_SCREEN
 
-
 ROOT = Path(__file__).parents[2]
 
 
