@@ -28,7 +28,7 @@ LIFTED = np.radians(11.0)  # by how much higher strands leave the head that go b
 BOWED = 0.7  # how far those go around the temple
 ROUNDED = np.radians(50.0)  # beside that edge, as far as hair is thinner
 SHARP, HIGHEST = 120.0, 24.0  # of the mean over directions that tells how far the skin is
-CLEAR = 4.0  # [mm] of the inner side, off the skin
+CLEAR = 5.0  # [mm] of the inner side, off the skin
 SLIDE = 1.3  # of layers along strands, beside their distance
 OUTER = 0.4  # of the volume, that layers fill
 FINE = 0.22  # of the way along strands, in which they change less than short ones
@@ -135,17 +135,17 @@ def _surface(strands: Strands, side: float, colour: FloatArray, *, is_inside: bo
     """One of the two surfaces of a side."""
     low, high, across = strands
     along = np.cumsum(np.linalg.norm(np.diff(high, axis=1, prepend=high[:, :1]), axis=2), axis=1)
-    left = along[:, -1:] - along
+    left = (along[:, -1:] - along) / HEM
     ahead = unit(np.gradient(high, axis=1).reshape(-1, 3)).reshape(high.shape)
     thickness = np.linalg.norm(high - low, axis=-1, keepdims=True)
     way = OUTER * (high - low + SLIDE * thickness * ahead)
     places = high - OUTER * (1.0 - MEAN) * (high - low)
     beside = np.abs(across - across[0])[:, None]
-    dense = np.minimum(left / HEM, FULL)
-    if is_inside:  # nothing shines through at its front
+    if is_inside:  # nothing shines through at its front, and hardly anything at its tips
         way, places = -0.1 * (high - low) + 0.2 * thickness * ahead, 0.5 * (low + high)
+        dense = 4.0 * (left - 0.4)
     else:
-        dense = np.minimum(dense, np.minimum(0.6 + along / PARTED, 0.45 + beside / FRONT))
+        dense = np.minimum(left, np.minimum(0.6 + along / PARTED, 0.45 + beside / FRONT))
     points = places.reshape(-1, 3)
     faces = grid_faces(np.arange(len(points)).reshape(along.shape))
     if (side > 0.0) != is_inside:
@@ -154,7 +154,7 @@ def _surface(strands: Strands, side: float, colour: FloatArray, *, is_inside: bo
     if is_inside:
         normals = unit(normals - [0.0, 2.0, 0.0])  # turned from lamps, which do not get there
     beside = np.broadcast_to(across[:, None, None], (*along.shape, 1))
-    rows = [beside, FINE * along[..., None], way, dense[..., None]]
+    rows = [beside, FINE * along[..., None], way, np.minimum(dense, FULL)[..., None]]
     return Part(
         name=HAIR + "_inside" * is_inside + ("_left" if side > 0.0 else "_right"),
         vertices=points.astype(np.float32),
