@@ -11,7 +11,7 @@ uniform vec3 sky;
 uniform vec3 ground;
 const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
 // How far each colour of light travels in skin: red past the terminator, blue hardly.
-const vec3 SCATTER = vec3(0.235, 0.16, 0.122);
+const vec3 SCATTER = vec3(0.19, 0.13, 0.098);
 // The same within the edge of a cast shadow, and what comes back from lit skin nearby, of the key.
 const vec3 BLEED = vec3(0.30, 0.10, 0.04);
 const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);
@@ -48,7 +48,9 @@ Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float glo
     // out toward the terminator: so the errors of a shadow map, largest there, are never seen.
     float facing = dot(normal, to_key);
     lit.key = key_light / (1.0 + scatter) * max(facing, 0.0);
-    lit.rest = key_light * max((min(facing, 0.0) + scatter) / (1.0 + scatter), 0.0)
+    // It ends softly, or a contour would be seen where all colours of it are gone.
+    vec3 past = max(2.0 * scatter + min(facing, 0.0), 0.0);
+    lit.rest = key_light * past * past / (4.0 * scatter * (1.0 + scatter))
         + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)
         + rim_light * rim * rim + ambient * mix(vec3(1.0), WARMTH, subsurface);
     lit.specular = gloss * (key_light * highlight + (0.9 * ambient + rim_light * rim) * fresnel);
