@@ -14,15 +14,17 @@ start. So targets alone tell which, not the way that a finger took: what is seen
 what stays. Targets farther than the few strongest controls reach that way are brought in to there:
 prices are in proportion to d, and beyond that nothing would be worth them any more.
 
+Prices, and skin that is to stay, hold the skin back from under the mouse. So in each round what is
+left of the finger's middle's way is added to all targets, until muscles are there or at their ends.
+
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
 lag, so that takes six steps of 0.3 ms, and it knows what the tangent of the springs does not: lips
-that stick and part, lids on their eyeballs, muscles that stiffen the skin. Such slopes are off by
-2 %; those of the implicit function theorem were by 5 to 60 %, and no faster (60 ms to factorise).
+that stick and part, lids on their eyeballs, muscles that stiffen the skin.
 
-Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. The prices
-make it the elastic net of Zou and Hastie 2005, solved along one control after the other (Friedman
-et al. 2007).
+Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. Prices make it the
+elastic net (Zou, Hastie 2005), solved along one control after the other (Friedman et al. 2007);
+what is left is added back as by Bregman's iteration (Osher et al. 2005).
 """
 
 from __future__ import annotations
@@ -39,7 +41,7 @@ from .landmarks import Array
 STEP = 1.0 / 60.0  # [s] of a clone
 STEPS_TO_REST = 6  # of a clone after a small change; less than a twentieth of it is left
 MOST = 16  # controls that are looked at: those that move the finger's skin most
-MEANT = 0.15  # of how far a control moves any skin: one that moves the finger's less is not meant
+MEANT = 0.1  # of how far a control moves any skin: one that moves the finger's less is not meant
 PROBE = 0.25  # of a control's range, to measure its slope
 ALONG = 0.05  # what a distance along the line of sight counts
 REST = 0.0051  # what the rest of the face counts, against as large an area under the finger
@@ -47,7 +49,8 @@ PRICE = 0.0041  # of a control at its limit, against skin that does not come alo
 EFFORT = 0.034  # the same, as the square of its share: two that do the same share it
 FEW = 3  # controls at most are used; and so many strongest tell how far targets can be
 SWEEPS, STILL = 60, 1e-4  # through all controls at most, and a change that is none
-ROUNDS, NEAR = 6, 0.01  # of Gauss and Newton at most, and a change that is none
+MIDDLE = 6  # power of the firmness: what lies next to the mouse
+ROUNDS, NEAR = 12, 0.01  # of Gauss and Newton at most, and a change that is none
 WORTH = 0.015  # of the squared distances: what mends less beside others is left alone
 ALIKE = 0.2  # of that: whose worth differs by less come together, as both sides of a muscle
 MEAGRE = 0.25  # of the squared distances: who mends less does not pull that way at all
@@ -77,6 +80,7 @@ class Pull:
         self._vertices = np.asarray(vertices, np.int64)
         share = np.asarray(firmness, np.float64)
         self._share = share / share.sum()
+        self._middle = share**MIDDLE / (share**MIDDLE).sum()
         axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
         self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
         _rest(self._base, {})
@@ -86,6 +90,7 @@ class Pull:
         self._area[self._vertices] = 0.0
         self._given, self.candidates = candidates, list[Names]()
         self._value = self._start = np.zeros(0)
+        self._drawn = 0.0  # mean square of the way to the aims
 
     def _look(self) -> bool:
         """Before the first answer, find the controls that matter, and slopes; whether any does."""
@@ -120,9 +125,13 @@ class Pull:
 
     @property
     def short(self) -> float:
-        """How far the skin stays from its targets, as seen, on average [head units]."""
-        there = (self._base.positions if self.mends else self._from)[self._vertices]
-        return float(np.sqrt(self._square(self.targets - there)))
+        """How far the skin in the finger's middle stays from its target, as seen [head units]."""
+        there = self._base.positions if self.mends else self._from
+        return float(np.linalg.norm(self._left(self.targets, there)))
+
+    def _left(self, targets: Array, positions: Array) -> Array:
+        """From vertices (V, 3) to targets (n, 3), in the finger's middle, as seen, shape (3,)."""
+        return np.asarray(self._middle @ (targets - positions[self._vertices]) @ self._seen)
 
     def solve(self) -> None:
         """The answer for these targets, whatever the finger did on its way."""
@@ -131,13 +140,20 @@ class Pull:
         self._base.copy_from(self._home)
         self._slope[:], self._value = self._first, self._start
         self._aim()
-        needed = self._needed()
+        goal, needed = self._aims, self._more(np.zeros(len(self._start), np.bool_))
+        while (more := self._more(needed)).sum() > needed.sum():
+            needed = more
         for _ in range(ROUNDS):
             before = self._value
-            self._go(before + self._system().least(needed))
+            self._value = before + self._system().least(needed)
+            values = zip(self._value.tolist(), self.candidates, strict=True)
+            _rest(self._base, {name: each for each, names in values for name in names})
             if np.abs(self._value - before).max(initial=0.0) < NEAR:
                 break
+            self._aims = self._aims + self._left(goal, self._base.positions)
             self._measure(np.flatnonzero(self._value != self._start))
+            needed = self._more(needed)
+        self._aims = goal
 
     def _aim(self) -> None:
         """Where the finger draws to, no farther than the strongest controls together reach."""
@@ -148,6 +164,7 @@ class Pull:
         reach = float(np.sort(along * room)[-FEW:].sum())
         drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
         self._aims = self._from[self._vertices] + drawn
+        self._drawn = max(self._off(self._from), 1e-12)
 
     def _near(self, candidates: Sequence[Names]) -> list[Names]:
         """The candidates that move the finger's skin most within a step."""
@@ -168,11 +185,6 @@ class Pull:
         """Mean square of how far vertices (V, 3) under the finger are from their aims."""
         return self._square(self._aims - positions[self._vertices])
 
-    @property
-    def _drawn(self) -> float:
-        """The same for the skin as it was."""
-        return max(self._off(self._from), 1e-12)
-
     def _towards(self, names: Names, share: float) -> dict[str, float]:
         """Controls moved by a share of their range, the other way where there is no room."""
         low, high = self._base.controls.limits[names[0]]
@@ -190,25 +202,18 @@ class Pull:
             by = next(iter(moved.values())) - self._value[n]
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
-    def _go(self, value: Array) -> None:
-        self._value = value.copy()
-        values = zip(value.tolist(), self.candidates, strict=True)
-        _rest(self._base, {name: each for each, names in values for name in names})
-
-    def _needed(self) -> npt.NDArray[np.bool_]:
-        """The FEW that mend most, one after the other, by slopes at the start, (C,)."""
+    def _more(self, needed: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        """These controls and what mends most beside them, by slopes here; FEW at most, (C,)."""
+        if needed.sum() >= FEW:
+            return needed
         system, worth = self._system(), WORTH * self._drawn
-        each = np.eye(len(self._start), dtype=np.bool_)
-        needed, cost = np.zeros(len(each), np.bool_), 0.0
-        while True:
-            costs = np.array([system.cost(needed | one) for one in each])
-            best = needed | each[costs.argmin()]
-            alike = needed | (costs <= costs.min() + ALIKE * worth)
-            if alike.sum() > best.sum() and system.cost(alike) < costs.min() - worth:
-                best = alike
-            if best.sum() > FEW or costs.min() > cost - worth:
-                return needed
-            needed, cost = best, system.cost(best)
+        costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
+        best = needed | (np.arange(len(costs)) == costs.argmin())
+        alike = needed | (costs <= costs.min() + ALIKE * worth)
+        if alike.sum() > best.sum() and system.cost(alike) < costs.min() - worth:
+            best = alike
+        is_worth_it = best.sum() <= FEW and costs.min() < system.cost(needed) - worth
+        return best if is_worth_it else needed
 
     def _system(self) -> _Lasso:
         """The problem as it looks from here."""
