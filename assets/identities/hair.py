@@ -150,8 +150,7 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     whorl = unit(np.array([cut.whorl]))[0]
     beside = unit(np.cross([[0.0, 0.3, 1.0]], whorl))[0]
-    out = unit(points - middle)
-    away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
+    out = points - middle
     angle = np.arctan2(out @ np.cross(whorl, beside), out @ beside)
     faces = faces[(behind[faces] > PAINTED).any(axis=1)]
     # Where angles begin anew strands do not cross from one side to the other.
@@ -162,12 +161,10 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
     used, number = np.unique(faces, return_inverse=True)
     faces, angle = number.reshape(-1, 3).astype(np.int32), angle[used]
     rows = np.concatenate([np.arange(len(points)), again])[used]
-    points, normals, behind, away, out = (
-        each[rows] for each in (points, normals, behind, away, out)
-    )
+    points, normals, behind, out = points[rows], normals[rows], behind[rows], unit(out[rows])
+    away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(points - middle, axis=1).mean()
     comb = unit(np.cross(np.cross(whorl, out), normals))
-    comb *= np.sign((comb * (out * np.cos(away)[:, None] - whorl)).sum(axis=1))[:, None]
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long = length * long * smooth_step(0.0, cut.behind, behind)
     lift = cut.lift * smooth_step(*FLAT, behind)[:, None]

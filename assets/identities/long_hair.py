@@ -39,9 +39,8 @@ VOLUME = 9.0  # [mm] that it stands off the head
 LOW, RISES = 0.1, 0.35  # of all that at the roots, and of the way over the head until it is whole
 LIMP = 1.3  # steps along strands, over which they bend from the head
 THIN_ENDS, CURVED_IN = 0.7, 0.27  # of the volume and of the radius, that tips have less
-WAVE, SWING = 46.0, 0.02  # [mm] length of waves, and their swing aside [1/mm]
-LOCK = 0.31  # [1/mm] how soon they are others across
-SLEEK = 0.4  # how much it shines
+WAVE, SWING, LOCK = 46.0, 0.02, 0.31  # [mm] of waves; [1/mm] their swing and change aside
+SLEEK, SHADED = 0.4, 0.6  # how much it shines; how light it is inside, where lamps do not get
 AT_A_POINT = 0.01  # share of the way out in normals: where strands meet there is no triangle
 
 
@@ -102,12 +101,11 @@ def _strands(
     ways /= np.linalg.norm(ways, axis=-1, keepdims=True)
     across = side * 88.0 * angle
     uneven = 0.6 * np.sin(0.9 * across) + 0.4 * np.sin(0.37 * across + 1.0)
-    ends = end + cut.slant * np.cos(angle) + RAGGED * uneven
     # Beside the face the outer side comes round to the inner one.
-    beside = np.clip((angle - edge) / ROUNDED, 0.0005, 1.0)[:, None]
-    ends += cut.layered * (1.0 - beside[:, 0]) ** 3
+    beside = np.clip((angle - edge) / ROUNDED, 0.0005, 1.0)
+    ends = end + cut.slant * np.cos(angle) + cut.layered * (1.0 - beside) ** 3 + RAGGED * uneven
     risen = LOW + (1.0 - LOW) * np.sin(0.5 * np.pi * np.clip(over / RISES, 0.0, 1.0))
-    thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)
+    thick = VOLUME * risen * np.sin(0.5 * np.pi * beside)[:, None]
     grids = []
     for off in (np.zeros_like(thick), thick):
         grid = middle + (skin(ways) + CLEAR + off)[..., None] * ways
@@ -151,8 +149,6 @@ def _surface(strands: Strands, side: float, colour: FloatArray, *, is_inside: bo
     if (side > 0.0) != is_inside:
         faces = faces[:, ::-1]
     normals = unit(vertex_normals(points, faces) + AT_A_POINT * unit((high - low).reshape(-1, 3)))
-    if is_inside:
-        normals = unit(normals - [0.0, 2.0, 0.0])  # turned from lamps, which do not get there
     beside = np.broadcast_to(across[:, None, None], (*along.shape, 1))
     rows = [beside, FINE * along[..., None], way, np.minimum(dense, FULL)[..., None]]
     return Part(
@@ -160,7 +156,7 @@ def _surface(strands: Strands, side: float, colour: FloatArray, *, is_inside: bo
         vertices=points.astype(np.float32),
         normals=normals.astype(np.float32),
         faces=faces,
-        colours=np.tile(colour, (len(points), 1)).astype(np.float32),
+        colours=np.full(points.shape, colour * (SHADED if is_inside else 1.0), np.float32),
         bone="cranium",
         shine=SLEEK,
         striation=np.concatenate(rows, axis=-1).reshape(-1, 6).astype(np.float32),
