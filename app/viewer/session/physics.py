@@ -34,8 +34,6 @@ STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
 LEFT_ALONE = 0.5  # [s] after which a face that nobody moved any more only lives
 SEEN = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
 EYE_RADIUS = 12.0  # [mm] about: of how far a turning eye moves
-
-
 PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
 KEPT_FRAMES = 60  # of which the times are known
 SMOOTHING = 0.9  # of the frame rate, from frame to frame

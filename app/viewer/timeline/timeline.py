@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import partial
 
 from imgui_bundle import imgui
 
@@ -74,8 +73,10 @@ class Timeline:
         text, width = label_on if is_on else label, em(BUTTON_WIDTH)
         if label != "Play":
             stay_in_line(width)
-        draw = partial(command_button, self._gui, self._messages, command, text)
-        draw(name=label.lower(), width=width, meaning=meaning, is_wanted=is_wanted)
+        command_button(
+            self._gui, self._messages, command, text,
+            name=label.lower(), width=width, meaning=meaning, is_wanted=is_wanted,
+        )  # fmt: skip
 
     def _draw_speed(self) -> None:
         stay_in_line(em(SPEED_WIDTH))
