@@ -30,7 +30,7 @@ BALD = 40.0  # [mm] behind which the hairline lies where the top is bald
 LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
-LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 260, 5, 22.0, 0.045  # single hairs; the last two in [mm]
+LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 260, 5, 22.0, 0.045  # single hairs; longest, thick [mm]
 RISE, STRAY, DROOP = (0.05, 0.4), 0.2, 0.2  # how far off, aside and down they go, as shares of it
 CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
 FLAT = 0.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
@@ -185,11 +185,11 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
         shine=SHINE * (1.0 - DULL * cut.curl),
         striation=striation.astype(np.float32),
     )
-    return loose_hairs([hair]), hair
+    return loose_hairs([hair], min(0.5 * length * cut.top, LOOSE_LENGTH)), hair
 
 
-def loose_hairs(hair: Sequence[Part]) -> Part:
-    """Single hairs that stand off the outline of parts, which layers leave smooth."""
+def loose_hairs(hair: Sequence[Part], length: float) -> Part:
+    """Single hairs, `length` [mm] long, that stand off the smooth outline of parts."""
     random, t = np.random.default_rng(0), np.linspace(0.0, 1.0, LOOSE_STEPS)[:, None, None]
     names = "vertices", "normals", "colours", "striation"
     rows = [np.hstack([getattr(part, each) for each in names])[part.faces] for part in hair]
@@ -200,8 +200,8 @@ def loose_hairs(hair: Sequence[Part]) -> Part:
     normal = unit(normal)
     across = unit(np.cross(normal, way))
     off, aside = random.uniform(*RISE, (LOOSE, 1)), random.normal(0.0, STRAY, (LOOSE, 1))
-    along = LOOSE_LENGTH * (np.cross(across, normal) + off * normal + aside * across)
-    bent = LOOSE_LENGTH * DROOP * (normal + np.array([0.0, 1.0, 0.0]))
+    along = length * (np.cross(across, normal) + off * normal + aside * across)
+    bent = length * DROOP * (normal + np.array([0.0, 1.0, 0.0]))
     turn = np.radians([0.0, 120.0, 240.0])[:, None]
     ring = np.cos(turn) * normal[:, None] + np.sin(turn) * across[:, None]
     places = root[:, None, None] + t * along[:, None, None] - t * t * bent[:, None, None]

@@ -17,7 +17,7 @@ from risorius.geometry.normals import vertex_normals
 from ..model import FloatArray, Part
 from ..smooth import unit
 from ..topology import grid_faces
-from .hair import HAIR, MEAN, Fall, Scalp, loose_hairs
+from .hair import HAIR, LOOSE_LENGTH, MEAN, Fall, Scalp, loose_hairs
 
 Strands = tuple[FloatArray, FloatArray, FloatArray]
 STRANDS, SAMPLES = 26, 14  # of one side, and over the head along each, and as many below
@@ -69,7 +69,7 @@ def falling_hair(
         [_surface(strands, side, colour, is_inside=is_inside) for side, strands in sides]
         for is_inside in (True, False)
     )
-    return (*inside, loose_hairs(hair), *hair)
+    return (*inside, loose_hairs(hair, LOOSE_LENGTH), *hair)
 
 
 def _strands(
