@@ -11,8 +11,8 @@ so that at close = 1 the lids meet on every eye, however wide, and wherever the 
 lies between the front edges of the lids comes to lie in one line: a margin is as thick as skin,
 and lids that meet with a slanted margin leave a groove, out of which the cornea looks.
 The open lid takes the fold under the brow along, as levator palpebrae ends in both; the fold is
-held only while it is moved, so that the brow can come down on it. A shut lid is held twice as
-firmly, because its muscle presses it down, and a brow that rises does not draw it open.
+held only while it is moved, so that the brow can come down on it. A shut upper lid is held twice
+as firmly, because its muscle presses it down, and a brow that rises does not draw it open.
 A closing lid slides towards the nose, as the ring of fibres in it is fixed there; a raised one a
 little away from it; and both lids a little to where the eye looks, as the cornea draws them.
 The lids of each eye follow the gaze of that eye alone.

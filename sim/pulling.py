@@ -14,8 +14,8 @@ start. So targets alone tell which, not the way that a finger took: what is seen
 what stays. Targets farther than the few strongest controls reach that way are brought in to there:
 prices are in proportion to d, and beyond that nothing would be worth them any more.
 
-Prices, and skin that is to stay, hold the skin back from under the mouse. So in each round what is
-left of the finger's middle's way is added to all targets, until muscles are there or at their ends.
+Prices, and skin that is to stay, keep the skin from coming all the way to the mouse. So each round
+adds to all targets what is left in the finger's middle, until nothing is or muscles are at limits.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no

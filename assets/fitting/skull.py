@@ -35,7 +35,8 @@ COLOURS = {
 }
 BROWS = slice(17, 27)  # landmarks
 CROWN, OCCIPUT, EARS = 55.0, -20.0, 65.0  # [mm] above and behind there are none; ears lie aside
-NAPE, WITHIN = -40.0, np.array([0.0, 40.0, 0.0])  # [mm] lowest bone; one looks from, over condyles
+NAPE = -40.0  # [mm] below it lies no cranium
+WITHIN = np.array([0.0, 40.0, 0.0])  # [mm] over the condyles, from where directions are told
 BACK, COVERED, BESIDE = 28.0, 2.0, 40.0  # [mm] behind condyles; skin on bone; to skin that tells
 AROUND, SOFT, ASIDE = 6, 10.0, 0.01  # vertices near by; [mm] of a soft edge; 1 - cosine
 FAT, FLESH = np.array([0.82, 0.62, 0.42]), np.array([0.50, 0.17, 0.15])
@@ -60,7 +61,7 @@ def build_skull(
         bare = np.setdiff1d(bare, np.concatenate(ears))  # bone lies under no ear
         named = [at for name, at in head.anatomy.items() if not name.startswith("tragion")]
         kept = own = np.concatenate([own, named, np.flatnonzero(is_far)])
-    else:  # what is seen of its cranium in the same directions, from within
+    else:  # what lies in the same directions from within its cranium
         far = np.flatnonzero(is_far & (known[:, 1] > NAPE))
         ways, seen = known[far] - arrays["condyles"], head.vertices - pivots["mandible"]
         apart = scipy.spatial.distance.cdist(ways - WITHIN, seen - WITHIN, "cosine")

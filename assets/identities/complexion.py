@@ -47,7 +47,7 @@ DARK_SKIN, LATER_GREY = -30.0, 10.0  # ITA below which hair turns grey so much l
 LOCKS_LIGHTER = 1.2  # than painted hair, which no other hair shades
 BEARD_SHADOW = 0.12  # density of shaved hair in the shipped picture
 BEHIND, IN_FRONT = 30.0, 10.0  # [mm] of the scalp, in the map of it: from the hairline back
-GROWN, COVERED = 0.99, 22.0  # of a scalp, what hair covers [mm] behind the hairline, where dense
+GROWN, COVERED = 0.99, 22.0  # share that dense hair covers; [mm] behind the hairline it is dense
 ROOTS = 0.5  # of the light, between them where they are dense
 BEARD_BLUR = 14.0  # [texels]
 BROW_BLUR, BROW_COVER = 3.0, 0.2  # [texels] and share of hairs, from which skin is called brow
@@ -172,7 +172,7 @@ def _kept_hair(tints: _Tints, features: Features) -> SingleArray:
 
 
 def _grown_over(tints: _Tints, features: Features) -> SingleArray:
-    """How much of each texel of the scalp hair covers that stands on it."""
+    """The share of each texel that is covered by the hair standing on the scalp, (size, size)."""
     behind = _behind(tints, features).astype(np.float64)
     return np.asarray(GROWN * smooth_step(0.0, COVERED, behind), np.float32)
 
@@ -248,7 +248,7 @@ def built_in_hair(head: Head) -> tuple[Part, ...]:
 
 
 def _behind(tints: _Tints, features: Features) -> SingleArray:
-    """How far texels lie behind somebody's hairline [mm]; half as far where hair is thin."""
+    """How far texels lie behind somebody's hairline [mm]; half as far if the top is bald."""
     lies, line = BEHIND * tints.scalp - IN_FRONT, features.hairline
     moved = (lies - line.shift(len(tints.scalp))) / (1.0 + line.crown)
     return np.where(tints.scalp > 0.01, moved, lies).astype(np.float32)

@@ -30,8 +30,8 @@ BALD = 40.0  # [mm] behind which the hairline lies where the top is bald
 LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
-LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 260, 5, 22.0, 0.045  # single hairs; longest, thick [mm]
-RISE, STRAY, DROOP = (0.05, 0.4), 0.2, 0.2  # how far off, aside and down they go, as shares of it
+LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 260, 5, 22.0, 0.045  # single hairs; [mm] length, radius
+RISE, STRAY, DROOP = (0.05, 0.4), 0.2, 0.2  # how far off, aside and down, of their length
 CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
 FLAT = 0.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
 PAINTED, HEM = 1.0, 20.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
@@ -61,9 +61,9 @@ class Fall:
     """How hair falls that is long enough to, beside the face; chosen by eye, all in [mm].
 
     parting: from the middle of the face, to the subject's left, to where it parts.
-    below: how far below the ears it ends. slant: how much higher it does so in front than behind.
-    layered: and beside the face. wave: how far its waves swing. tucked: the side where it lies
-    behind the ear, 1 the subject's left; 0: none.
+    below: how far below the ears it ends. slant: how much higher it does so in front than at the
+    sides, and lower behind. layered: how much higher beside the face. wave: how far its
+    waves swing. tucked: the side where it lies behind the ear, 1 the subject's left; 0: none.
     """
 
     parting: float

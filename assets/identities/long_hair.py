@@ -19,7 +19,7 @@ from ..smooth import unit
 from ..topology import grid_faces
 from .hair import HAIR, LOOSE_LENGTH, MEAN, Fall, Scalp, loose_hairs
 
-Strands = tuple[FloatArray, FloatArray, FloatArray]
+Strands = tuple[FloatArray, FloatArray, FloatArray]  # inner and outer side, place around the head
 STRANDS, SAMPLES = 26, 14  # of one side, and over the head along each, and as many below
 ABOVE_EARS, BEHIND_EARS = 22.0, 8.0  # [mm] that the middle of the head lies so
 WIDEST = np.radians(-6.0)  # how far below it strands leave the head
@@ -39,7 +39,7 @@ VOLUME = 9.0  # [mm] that it stands off the head
 LOW, RISES = 0.1, 0.35  # of all that at the roots, and of the way over the head until it is whole
 LIMP = 1.3  # steps along strands, over which they bend from the head
 THIN_ENDS, CURVED_IN = 0.7, 0.27  # of the volume and of the radius, that tips have less
-WAVE, SWING, LOCK = 46.0, 0.02, 0.31  # [mm] of waves; [1/mm] their swing and change aside
+WAVE, SWING, LOCK = 46.0, 0.02, 0.31  # [mm] one wave; [1/mm] its turn aside; its change around
 SLEEK, SHADED = 0.4, 0.6  # how much it shines; how light it is inside, where lamps do not get
 AT_A_POINT = 0.01  # share of the way out in normals: where strands meet there is no triangle
 

@@ -41,7 +41,7 @@ uniform float first;  // number of the first triangle of this drawing call, coun
 layout(location = 0) out vec4 normal_and_depth;
 layout(location = 1) out vec4 number_side_uv;
 
-const float HALF = 0.5;  // of strands are there: where there are fewer, one sees what is behind them
+const float HALF = 0.5;  // of the strands: where fewer are there, a pixel shows what is behind
 
 void main() {
     if (surface.dense < HALF) discard;

@@ -30,8 +30,8 @@ vec3 hemisphere(vec3 normal) {
     return mix(ground, sky, 0.5 * normal.y + 0.5);
 }
 
-// `openness`: how much of the rim gets there. It comes from behind, so that what folds take of all
-// light they take of the rim first: it throws no shadows of its own.
+// `openness`: how much of the rim light arrives. It comes from behind and throws no shadows, so that
+// folds, which it hardly reaches, must take it away. `subsurface`: above 0.
 Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float gloss, float sharpness) {
     vec3 scatter = SCATTER * subsurface;
     float rim = max(dot(normal, TO_RIM), 0.0) * openness;
@@ -48,7 +48,7 @@ Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float glo
     // out toward the terminator: so the errors of a shadow map, largest there, are never seen.
     float facing = dot(normal, to_key);
     lit.key = key_light / (1.0 + scatter) * max(facing, 0.0);
-    // It ends softly, or a contour would be seen where all colours of it are gone.
+    // Scattered light ends with a slope of 0, or one would see a contour where the last of it ends.
     vec3 past = max(2.0 * scatter + min(facing, 0.0), 0.0);
     lit.rest = key_light * past * past / (4.0 * scatter * (1.0 + scatter))
         + fill_light * max(0.8 * dot(normal, to_fill) + 0.2, 0.0)

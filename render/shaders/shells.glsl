@@ -57,7 +57,7 @@ const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each othe
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const vec2 SIDEWAYS = vec2(0.45, 0.75);  // how far to the front single strands are told apart
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
-const vec2 CRISP = vec2(1.5, 3.0);       // of hems, where locks are seen, and single strands
+const vec2 CRISP = vec2(1.5, 3.0);       // how abruptly hems end: where locks are seen, and single strands
 const float LEAST_FACING = 0.4;         // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
