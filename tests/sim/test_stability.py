@@ -91,8 +91,8 @@ def test_frame_length_hardly_matters(simulation: sim.Simulation) -> None:
         for _ in range(rate // 4):
             simulation.step(1.0 / rate)
         poses.append(simulation.positions.copy())
-    assert np.abs(poses[0] - poses[2]).max() < 0.3
-    assert np.abs(poses[1] - poses[2]).max() < 0.3
+    apart = [np.abs(pose - poses[2]).max(axis=1) for pose in poses[:2]]
+    assert np.percentile(apart, 99) < 0.1 and np.max(apart) < 0.45  # where a lip slides over teeth
 
 
 def test_broken_state_is_reported(simulation: sim.Simulation) -> None:
