@@ -109,7 +109,7 @@ def test_a_transparent_picture_lies_over_any_colour(
     opaque, clear = pictures
     alpha = clear[..., 3:] / 255.0
     over = clear[..., :3] * alpha + np.array(colour) * (1.0 - alpha)
-    assert np.abs(over - opaque).max() <= 2.0
+    assert np.abs(over - opaque).max() <= 3.0  # each layer of hair rounds to a byte
     assert (clear[0, 0] == 0).all() and 0.2 < alpha.mean() < 0.8
     assert samples == 0 or ((alpha > 0.0) & (alpha < 1.0)).sum() > 50
 
