@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -24,8 +23,6 @@ FLAT = replace(CLAY, shading=render.Shading.FLAT)
 GOURAUD = replace(CLAY, shading=render.Shading.GOURAUD)
 POSITION_AND_NORMAL = 6  # columns of a vertex without texture coordinates
 
-RED = (0.85, 0.1, 0.1)
-
 
 @dataclass(frozen=True)
 class Drawing:
@@ -41,11 +38,15 @@ class Drawing:
 class _Shown(Scene):
     """What is before the camera just now; nothing moves it."""
 
-    bones: Transforms = MappingProxyType({})
+    drawing: Drawing
     positions = np.zeros((0, 3))
 
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        return self.drawing.parts
+
     def bone_transforms(self) -> Transforms:
-        return self.bones
+        return self.drawing.bones
 
 
 class Canvas:
@@ -77,8 +78,7 @@ class Canvas:
     ) -> None:
         """Refine, upload and draw, without reading back."""
         self.stream_for(refiner)
-        scene = self._scene
-        scene.positions, scene.parts, scene.bones = positions, drawing.parts, drawing.bones
+        self._scene.positions, self._scene.drawing = positions, drawing
         viewports = [Viewport(self._meshes[refiner][0], (0, 0, *self.surface.size))]
         overlays = [drawing.lines] if drawing.lines else []
         self.surface.begin()
@@ -119,12 +119,11 @@ def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Imag
     # Pages show it about 1000 pixels wide: then a caption is no smaller than about 12.
     size = max(16.0, min(width, height) / 17.0, columns * width / 72.0)
     title, caption_height = round(2.0 * size), round(1.7 * size)
-    page = PIL.Image.new(
-        "RGB", (columns * width, len(rows) * (title + height + caption_height)), SHADE
-    )
+    whole = title + height + caption_height
+    page = PIL.Image.new("RGB", (columns * width, len(rows) * whole), SHADE)
     draw = ImageDraw.Draw(page)
     for k, (heading, cells) in enumerate(rows):
-        top = k * (title + height + caption_height)
+        top = k * whole
         draw.text((0.6 * size, top + title / 2), heading, font=font(size), fill=INK, anchor="lm")
         for column, (caption, image) in enumerate(cells):
             left = column * width

@@ -48,7 +48,6 @@ class Scene:
     actions: Mapping[str, str] = MappingProxyType({})  # what controls do, where that is known
     called: str = ""  # whose head it is, if it is one
     expressions: tuple[str, ...] = ()  # whole faces, without those of a side
-    parts: tuple[Any, ...] = ()  # what moves with bones: eyes, teeth, ...
     uv: npt.NDArray[np.float32] | None = None  # texture coordinates (U, 2)
     face_uv: npt.NDArray[np.int32] | None = None  # which of them each corner has (F, 3)
     albedo: npt.NDArray[np.uint8] | None = None  # the texture (H, W, 3), sRGB
@@ -57,6 +56,11 @@ class Scene:
     in_tone: Callable[[float], npt.NDArray[np.uint8]] | None = None  # the texture by ITA [deg]
     ambient_occlusion: npt.NDArray[np.uint8] | None = None  # over the texture (H, W), or all open
     fine_shape: assets.FineShape | None = None  # what its triangles do not hold of the skin
+
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """What moves with bones or the skin, as it is now: eyes, teeth, lashes, ..."""
+        return ()
 
     def pose(self, channels: Mapping[str, float]) -> None:
         """Set controls, each cut off at its limits; what is not named becomes 0.
@@ -111,17 +115,15 @@ class FaceScene(Scene):
         self.expressions = tuple(
             name for name in expressions if parted(name)[0] not in {*expressions} - {name}
         )
-        self.parts = tuple(
-            part
-            if part.roots is None
-            else SurfaceAttachment.of(part, self.rest_positions, self.faces)
+        self._parts = tuple(
+            part if part.roots is None else SurfaceAttachment(part, self.rest_positions, self.faces)
             for part in shaded_mouth(head.parts)
         )
         self.uv, self.face_uv, self.albedo = head.uv, head.face_uv, head.albedo
         self.wrinkles, self.fine_shape = head.wrinkles, head.fine_shape
         self.ambient_occlusion = head.ambient_occlusion
         if is_known := isinstance(head, assets.Head):
-            self.parts = (*self.parts, *built_in_hair(head))
+            self._parts = (*self._parts, *built_in_hair(head))
         person = head if isinstance(head, Person) else None
         if isinstance(head, FittedHead) and person is None:  # others have a shirt
             self.fade = head.fade()
@@ -130,7 +132,8 @@ class FaceScene(Scene):
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
         self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
-        hair = [part.vertices for part in self.parts if part.striation is not None]
+        self._are_bent = False  # parts, as the face is now
+        hair = [part.vertices for part in self._parts if part.striation is not None]
         self.extent = np.vstack([self.rest_positions, *hair])
         lowest = float(landmarks[CHIN, 1]) - NECK  # what is below may lie beyond the frame
         self.framed = self.extent[self.extent[:, 1] > lowest]
@@ -151,20 +154,25 @@ class FaceScene(Scene):
         count = max(1, math.ceil(seconds / LONGEST_STEP - 1e-9))
         for _ in range(count):
             self.simulation.step(seconds / count)
-        self._bend_parts()
+        self._are_bent = False
 
     def reset(self) -> None:
         super().reset()
         self.simulation.reset()
-        self._bend_parts()
+        self._are_bent = False
 
-    def _bend_parts(self) -> None:
-        bent, bones = self.simulation.anatomy.tongue(), self.bone_transforms()
-        for part in self.parts:
-            if isinstance(part, SurfaceAttachment):
-                part.follow(self.positions, bones[part.bone])
-            elif isinstance(part, Tongue) and bent is not None:
-                part.bend(bent)
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """Bent when they are asked for: a picture may show several steps at once."""
+        if not self._are_bent:
+            self._are_bent = True
+            tongue, bones = self.simulation.anatomy.tongue(), self.bone_transforms()
+            for part in self._parts:
+                if isinstance(part, SurfaceAttachment):
+                    part.follow(self.positions, bones[part.bone])
+                elif isinstance(part, Tongue) and tongue is not None:
+                    part.bend(tongue)
+        return self._parts
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:
         return self.simulation.bones.transforms()

@@ -7,14 +7,13 @@ the triangle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius.assets.fitting.warp import nearest_on
-from risorius.geometry.closest import SurfacePoints
 from risorius.geometry.normals import vertex_normals
 
 Floats = npt.NDArray[np.float64]
@@ -22,67 +21,53 @@ Singles = npt.NDArray[np.float32]
 Indices = npt.NDArray[np.int32]
 
 
-@dataclass(eq=False)
 class SurfaceAttachment:
     """A part that changes its shape with the skin; drawn as any other (render/parts.py)."""
 
-    name: str
+    is_enclosed, striation = True, None
     vertices: Singles
     normals: Singles
-    faces: Indices
-    colours: Singles
-    bone: str
-    shine: float
-    strand_radius: float
-    near: npt.NDArray[np.int64]  # numbers of the skin's vertices around the roots, (P,)
-    around: Indices  # the triangles among them, (Q, 3)
-    feet: SurfacePoints  # of the roots, (R,)
-    row: npt.NDArray[np.int64]  # of each vertex, the number of its root among them, (n,)
-    across: Floats  # (R, 3) of a direction in the triangle: what each corner adds to it
-    local: Floats  # (n, 3) from the foot of the root, in its frame at rest
-    local_normals: Floats
-    is_enclosed: bool = True
-    striation: None = None
 
-    @classmethod
-    def of(cls, part: Any, skin: Floats, faces: Indices) -> SurfaceAttachment:
+    def __init__(self, part: Any, skin: Floats, faces: Indices) -> None:
         """A part with `roots`, as it stands on the skin at rest, (V, 3) with triangles (F, 3)."""
+        self.name, self.bone = part.name, part.bone
+        self.faces, self.colours = part.faces, part.colours
+        self.shine, self.strand_radius = part.shine, part.strand_radius
         rest, normals = part.vertices.astype(np.float64), part.normals.astype(np.float64)
-        roots, row = np.unique(part.roots, return_inverse=True)
+        roots, self._row = np.unique(part.roots, return_inverse=True)  # a vertex's among roots
         # What stands there points out of the skin; what lies there has the skin's normal.
         ahead = np.zeros((len(roots), 3))
-        np.add.at(ahead, row, rest - rest[roots][row] + 1e-3 * normals)
+        np.add.at(ahead, self._row, rest - rest[roots][self._row] + 1e-3 * normals)
         feet = nearest_on(rest[roots], _unit(ahead), skin, faces)
         is_around = np.isin(faces, feet.corners).any(axis=1)
-        near, around = np.unique(faces[is_around], return_inverse=True)
-        feet = replace(feet, corners=np.searchsorted(near, feet.corners).astype(np.int32))
-        attached = cls(
-            part.name, part.vertices, part.normals, part.faces, part.colours, part.bone,
-            part.shine, part.strand_radius, near.astype(np.int64),
-            around.reshape(-1, 3).astype(np.int32),
-            feet, row, _along_x(skin[near][feet.corners]), rest, normals,
-        )  # fmt: skip
-        places, frames = attached._frames(skin[near])
-        attached.local = np.einsum("nji,nj->ni", frames[row], rest - places[row])
-        attached.local_normals = np.einsum("nji,nj->ni", frames[row], normals)
-        return attached
+        self._near, around = np.unique(faces[is_around], return_inverse=True)  # vertices of skin
+        self._around = around.reshape(-1, 3).astype(np.int32)  # triangles among them
+        corners = np.searchsorted(self._near, feet.corners).astype(np.int32)
+        self._feet = replace(feet, corners=corners)
+        # (R, 3) of a direction in the triangle of each root: what each corner adds to it.
+        self._across = _along_x(skin[self._near][corners])
+        places, frames = self._frames(skin[self._near])
+        # (n, 3) from the foot of the root, in its frame at rest.
+        self._local = np.einsum("nji,nj->ni", frames[self._row], rest - places[self._row])
+        self._local_normals = np.einsum("nji,nj->ni", frames[self._row], normals)
+        self.vertices, self.normals = part.vertices, part.normals
 
     def follow(self, skin: Floats, bone: Floats) -> None:
         """Stand on the skin as it is now, (V, 3), told from the part's bone, a matrix (4, 4)."""
-        there = (skin[self.near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
+        there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
         places, frames = self._frames(there)
-        turned = np.einsum("nij,nj->ni", frames[self.row], self.local)
-        self.vertices = (places[self.row] + turned).astype(np.float32)
-        normals = np.einsum("nij,nj->ni", frames[self.row], self.local_normals)
+        turned = np.einsum("nij,nj->ni", frames[self._row], self._local)
+        self.vertices = (places[self._row] + turned).astype(np.float32)
+        normals = np.einsum("nij,nj->ni", frames[self._row], self._local_normals)
         self.normals = normals.astype(np.float32)
 
     def _frames(self, skin: Floats) -> tuple[Floats, Floats]:
         """Feet of the roots, (R, 3), and right-handed unit axes there, (R, 3, 3), in columns."""
-        normal = self.feet.interpolate(vertex_normals(skin, self.around))
-        along = np.einsum("rc,rci->ri", self.across, skin[self.feet.corners])
+        normal = self._feet.interpolate(vertex_normals(skin, self._around))
+        along = np.einsum("rc,rci->ri", self._across, skin[self._feet.corners])
         beside = _unit(np.cross(normal, along))
         axes = np.stack([np.cross(beside, _unit(normal)), beside, _unit(normal)], axis=2)
-        return self.feet.interpolate(skin), axes
+        return self._feet.interpolate(skin), axes
 
 
 def _along_x(corners: Floats) -> Floats:

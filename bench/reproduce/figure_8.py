@@ -21,7 +21,7 @@ from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
 from risorius.app.scenes import Scene, build_scene
 
-from ..canvas import FLAT, GOURAUD, RED, Canvas, Drawing, image_table
+from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
 from .experiments import Outcome
 
 Points = npt.NDArray[np.float64]
@@ -29,6 +29,7 @@ Faces = npt.NDArray[np.int32]
 
 BENT = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
 ALONG = 0.4  # of the curvature across: what bends along as well is a dome, not a fold
+RED = (0.85, 0.1, 0.1)
 WIRE = replace(FLAT, wireframe=True, wire_opacity=0.55)
 LIFT = 0.1  # mean edges that lines float over the surface
 LENGTH = 0.5  # mean edges, of a line along a fold
