@@ -41,13 +41,8 @@ class DrawnMesh:
     mesh: refine.RefinedMesh | None = None  # what was refined last, of:
     positions: npt.NDArray[np.float64] | None = None
 
-    def refine(
-        self,
-        positions: npt.NDArray[np.float64],
-        camera: render.OrbitCamera,
-        area: render.Rectangle,
-    ) -> None:
-        """Fill the lent buffers with refined triangles, for whoever looks through the area."""
+    def refine(self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera) -> None:
+        """Fill the lent buffers with refined triangles, for whoever looks through the camera."""
         view = refine.View(camera.eye)
         self.positions = positions
         if isinstance(self.stream, render.GpuStream):
@@ -146,8 +141,8 @@ class Pipeline:
     def refine(self, camera: render.OrbitCamera, viewports: Sequence[Viewport]) -> None:
         """Refine each mesh; a frame that nobody draws, too: the next one may remember it."""
         self.renderer.surface.make_current()  # where streams of the graphics card are
-        for drawn, area, _ in viewports:
-            drawn.refine(self.scene.positions, camera, area)
+        for viewport in viewports:
+            viewport.drawn.refine(self.scene.positions, camera)
 
     def draw(
         self,

@@ -42,7 +42,7 @@ class Anatomy:
     def fibres(self) -> dict[str, list[npt.NDArray[np.float64]]]:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         pull = self._drive.pull(self._drive.activation())
-        lines = self._model.muscles.lines(pull, self._bones.mandible, self._state.x)
+        lines = self._model.muscles.lines(pull, self._bones.mandible, self._state)
         space, head = self._model.space, self._bones.head
         return {
             name: [space.to_head(line + head.displacements(line)) for line in found]

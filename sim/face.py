@@ -55,7 +55,8 @@ class Simulation:
 
     def __init__(self, model: FaceModel) -> None:
         surface = model.surface
-        self._model, self._state, self._grip = model, State.at_rest(surface), SEALED
+        self._state = State.at_rest(surface, len(model.muscles.bundle.muscle))
+        self._model, self._grip = model, SEALED
         self._positions, self.rest_positions = model.vertices.copy(), model.vertices.copy()
         self.positions = self._positions.view()
         for array in (self.positions, self.rest_positions):

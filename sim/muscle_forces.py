@@ -25,16 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..jit import njit
-from .fibres import (
-    FIBRE_POINTS,
-    LEAST_ARC,
-    SAMPLES,
-    FibreBundle,
-    LineMotion,
-    Stack,
-    move_lines,
-    over_skin,
-)
+from .fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, FibreBundle, Stack, move_lines, over_skin
 from .landmarks import Array
 from .muscle_stack import bottom_up, points_along, stack_muscles
 from .muscles import Line, PlacedMuscle
@@ -79,7 +70,6 @@ class MuscleForces:
     bundle: FibreBundle
     stack: Stack
     skin: SkinAttachments
-    motion: LineMotion
     rings: tuple[tuple[int, Indices], ...]  # muscle, skin vertices along its ring
 
     def hold_of(self, share: Array, vertex_count: int) -> Array:
@@ -94,21 +84,23 @@ class MuscleForces:
 
         activation: of each muscle, shape (M,); weight: mandible's share of each vertex, shape (V,).
         """
-        move_lines(self.bundle, self.stack, activation, mandible, self.motion)
-        gather(state, activation, self.skin, self.motion, mandible.rotation, weight)
+        move_lines(self.bundle, self.stack, activation, mandible, state.lines)
+        gather(state, activation, self.skin, mandible.rotation, weight)
 
-    def lines(self, activation: Array, mandible: RigidMotion, x: Array) -> dict[str, list[Array]]:
+    def lines(
+        self, activation: Array, mandible: RigidMotion, state: State
+    ) -> dict[str, list[Array]]:
         """Polylines [mm] to draw: contracted fibres of linear muscles, skin rows of rings."""
         lines: dict[str, list[Array]] = {name: [] for name in self.names}
-        move_lines(self.bundle, self.stack, activation, mandible, self.motion)
+        move_lines(self.bundle, self.stack, activation, mandible, state.lines)
         rings = dict(self.rings)
         for b, muscle in enumerate(self.bundle.muscle):
             if muscle in rings:
                 continue
             points = self.bundle.points[b]
             moved = points + self.bundle.mandible[b][:, None] * mandible.displacements(points)
-            if self.motion.is_carried[b]:
-                moved += self.motion.carried[b]
+            if state.lines.is_carried[b]:
+                moved += state.lines.carried[b]
             arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))])
             remaining = max(1.0 - self.bundle.contraction[b] * activation[muscle], LEAST_ARC)
             fixed = self.bundle.fixed_at[b] * arc[-1]
@@ -117,7 +109,7 @@ class MuscleForces:
             ]
             lines[self.names[muscle]].append(np.stack(line, axis=1))
         for muscle, row in self.rings:
-            lines[self.names[muscle]].append(x[row])
+            lines[self.names[muscle]].append(state.x[row])
         return lines
 
 
@@ -155,7 +147,6 @@ def build_muscle_forces(
             pulls=_attachments(_pulls(placed, order, strength), least, np.zeros(0)),
             carries=_attachments(_carries(placed, order, strength, stack), least, np.zeros(0)),
         ),
-        motion=LineMotion.of(len(bundle.muscle)),
         rings=tuple((n, at.ring) for n, at in enumerate(placed) if at.ring is not None),
     )
 
@@ -245,14 +236,14 @@ def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -
 
 
 @njit
-def gather(state, activation, skin, motion, turn, weight):  # type: ignore[no-untyped-def]
+def gather(state, activation, skin, turn, weight):  # type: ignore[no-untyped-def]
     """Add what all active muscles do to `state.hold` and `state.pull`."""
     gather_holds(state, activation, skin, turn, weight)
-    gather_lines(state.pull, activation, skin, motion)
+    gather_lines(state.pull, activation, skin, state.lines)
 
 
 @njit(fastmath={"contract"})
-def gather_holds(state, activation, skin, turn, mandible):  # type: ignore[no-untyped-def]
+def gather_holds(state, activation, skin, turn, weight):  # type: ignore[no-untyped-def]
     """Sum what is linear in the activation into one stiffness and one force per vertex."""
     passive, holds = skin.passive, skin.holds
     hold, force, steady = state.hold, state.pull, state.work
@@ -273,7 +264,7 @@ def gather_holds(state, activation, skin, turn, mandible):  # type: ignore[no-un
         sx, sy, sz = steady[i, 0], steady[i, 1], steady[i, 2]
         for k in range(3):
             turned = turn[k, 0] * sx + turn[k, 1] * sy + turn[k, 2] * sz
-            force[i, k] += steady[i, k] + mandible[i] * (turned - steady[i, k])
+            force[i, k] += steady[i, k] + weight[i] * (turned - steady[i, k])
 
 
 @njit

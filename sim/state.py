@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .fibres import LineMotion
 from .landmarks import Array
 from .surface import Surface
 
@@ -31,10 +32,11 @@ class State(NamedTuple):
     gain: Array  # (V,) velocity gained per force in a substep
     work: Array  # (V, 3) work space: nobody finds there what another left
     tension: Array  # (E,) of each edge spring, per its length
+    lines: LineMotion  # of the muscles
 
     @classmethod
-    def at_rest(cls, surface: Surface) -> State:
-        """A face that lies still."""
+    def at_rest(cls, surface: Surface, line_count: int = 0) -> State:
+        """A face that lies still, and whose muscles have so many lines."""
         scalar, vector = surface.vertex_count, (surface.vertex_count, 3)
         return cls(
             x=surface.positions.copy(),
@@ -49,4 +51,5 @@ class State(NamedTuple):
             gain=np.zeros(scalar),
             work=np.zeros(vector),
             tension=np.zeros(len(surface.edges)),
+            lines=LineMotion.of(line_count),
         )

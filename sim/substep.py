@@ -206,7 +206,8 @@ def move(state, h):  # type: ignore[no-untyped-def]
 def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
     """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
     rest, mass, lips = skin.rest, skin.mass, skin.lips
-    x, v, move = state.x, state.v, state.work
+    x, v = state.x, state.v
+    change = state.work  # of each vertex, columns: height, speed upward
     crossed = False
     for p in range(len(lips.lower)):
         i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
@@ -221,23 +222,23 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
         if full == 0.0:
             continue
         if not crossed:
-            move[:] = 0.0
+            change[:] = 0.0
             crossed = True
         inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
         push = full * lips.averaging[p] * deep / inverse
         approach = v[i, 1] - w * v[a, 1] - (1.0 - w) * v[b, 1]
         stop = full * lips.averaging[p] * max(approach, 0.0) / inverse
-        move[i, 0] -= push / mass[i]
-        move[a, 0] += w * push / mass[a]
-        move[b, 0] += (1.0 - w) * push / mass[b]
-        move[i, 1] -= stop / mass[i]
-        move[a, 1] += w * stop / mass[a]
-        move[b, 1] += (1.0 - w) * stop / mass[b]
+        change[i, 0] -= push / mass[i]
+        change[a, 0] += w * push / mass[a]
+        change[b, 0] += (1.0 - w) * push / mass[b]
+        change[i, 1] -= stop / mass[i]
+        change[a, 1] += w * stop / mass[a]
+        change[b, 1] += (1.0 - w) * stop / mass[b]
     if crossed:
         for row in range(len(lips.members)):
             i = lips.members[row]
-            x[i, 1] += move[i, 0]
-            v[i, 1] += move[i, 1]
+            x[i, 1] += change[i, 0]
+            v[i, 1] += change[i, 1]
 
 
 @njit
@@ -247,19 +248,22 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
     The lower arch is where the mandible is.
     """
     x, v, turn, shift = state.x, state.v, mandible.rotation, mandible.shift
+    arch = teeth.arch
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
+        width, depth, axis = arch[c, 0], arch[c, 1], arch[c, 2]
+        low, high = arch[c, 3], arch[c, 4]
         px, py, pz = x[i, 0], x[i, 1], x[i, 2]
         if teeth.lower[c]:  # into the mandible's own space
             dx, dy, dz = px - shift[0], py - shift[1], pz - shift[2]
             px = turn[0, 0] * dx + turn[1, 0] * dy + turn[2, 0] * dz
             py = turn[0, 1] * dx + turn[1, 1] * dy + turn[2, 1] * dz
             pz = turn[0, 2] * dx + turn[1, 2] * dy + turn[2, 2] * dz
-        beyond = max(teeth.arch[c, 3] - py, py - teeth.arch[c, 4], 0.0)
-        ahead = pz - teeth.arch[c, 2]
+        beyond = max(low - py, py - high, 0.0)
+        ahead = pz - axis
         if beyond >= TOOTH_FADE or ahead <= 0.0:
             continue
-        share = np.sqrt((px / teeth.arch[c, 0]) ** 2 + (ahead / teeth.arch[c, 1]) ** 2)
+        share = np.sqrt((px / width) ** 2 + (ahead / depth) ** 2)
         sunk = (teeth.least[c] - share) * (1.0 - beyond / TOOTH_FADE)
         if sunk <= 0.0 or share < LEAST_SHARE:
             continue
@@ -273,8 +277,8 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
         x[i, 0] += dx
         x[i, 1] += dy
         x[i, 2] += dz
-        length = dx * dx + dy * dy + dz * dz
-        approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(length, 1e-18)
+        squared = dx * dx + dy * dy + dz * dz
+        approach = (v[i, 0] * dx + v[i, 1] * dy + v[i, 2] * dz) / max(squared, 1e-18)
         if approach < 0.0:
             v[i, 0] -= approach * dx
             v[i, 1] -= approach * dy

@@ -62,7 +62,7 @@ def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
     muscles, mandible = simulation._model.muscles, simulation._model.skull.mandible_motion
     pose = mandible(0.5, 0.3, 0.2)
     activation = np.linspace(-0.2, 1.0, len(muscles.names))
-    stack, bundle, motion = muscles.stack, muscles.bundle, muscles.motion
+    stack, bundle, motion = muscles.stack, muscles.bundle, simulation._state.lines
     move_lines(bundle, stack, activation, pose, motion)
     active = np.maximum(activation, 0.0)[bundle.muscle]
     carried = np.zeros_like(motion.carried)

@@ -1,5 +1,7 @@
 """Rest stays at rest, energy dies away, and no input breaks the face."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,22 @@ def test_energy_only_falls_without_input(
         energies.append(_energy(simulation))
     assert np.all(np.diff(energies) <= 1e-9 * energies[0])
     assert energies[-1] < 1e-6 * energies[0]
+
+
+def test_clones_do_not_disturb_each_other(simulation: sim.Simulation) -> None:
+    """In two threads at once each moves, to the bit, as it does alone."""
+
+    def film(name: str) -> list[np.ndarray]:
+        clone, frames = simulation.clone(), []
+        for frame in range(240):
+            clone.controls.set(name, float(frame // 20 % 2))
+            clone.step(FRAME)
+            frames.append(clone.positions.copy())
+        return frames
+
+    names = "joy", "surprise"
+    with ThreadPoolExecutor(2) as threads:
+        assert np.array_equal(list(threads.map(film, names)), [film(name) for name in names])
 
 
 @pytest.mark.slow

@@ -119,7 +119,7 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
     muscles, mandible = stirred._model.muscles, stirred.bones.mandible
     bundle = muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
-    table = np.zeros_like(muscles.motion.contracted)
+    table = np.zeros_like(stirred._state.lines.contracted)
     assert bundle.fixed_at.max() > 0.0
     t = np.linspace(0.0, 1.0, SAMPLES)
     for b in range(1, len(bundle.muscle)):
@@ -142,7 +142,7 @@ def test_muscle_pull(stirred: sim.Simulation) -> None:
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
     hold, force = np.zeros(len(weight)), np.zeros((len(weight), 3))
     muscles.add(activation, mandible, weight, stirred._state._replace(hold=hold, pull=force))
-    a, skin, motion = np.maximum(activation, 0.0), muscles.skin, muscles.motion
+    a, skin, motion = np.maximum(activation, 0.0), muscles.skin, stirred._state.lines
     assert 0.0 in skin.passive
     tight = skin.passive + (1.0 - skin.passive) * a
     owner = np.repeat(np.arange(len(a)), np.diff(skin.holds.rows))
