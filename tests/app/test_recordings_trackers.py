@@ -115,9 +115,6 @@ def test_several_faces(tmp_path: Path) -> None:
         read_take(path, face="0")
 
 
-# py-feat
-
-
 def test_pyfeat_1(tmp_path: Path) -> None:
     """Frames are the times; the head's angles are degrees, + up, right, left shoulder."""
     take = read_take(written(tmp_path / "take.csv", pyfeat()))

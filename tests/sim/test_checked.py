@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from risorius import sim
+from risorius.sim.layers import read_layers
 from tests.meshes import open_grid
 
 HUGE = 10**400
@@ -132,7 +133,6 @@ HEADS: list[tuple[str, str, tuple[Any, ...]]] = [
     ("rig", "rig, 'tissue'", under("tissue", "shear")(*NO_NUMBER)),
     ("rig", "rig, 'jaw'", under("jaw", "opening_glide")(*ARRAYS, [HUGE] * 3)),
     ("rig", "rig, 'jaw'", under("jaw", "seeds")(3, [], {"²": 1.0}, {"9" * 5000: 1.0}, {"1": HUGE})),
-    ("layers", "head.layers", LISTS),
     ("eyes", "head.eyes", (*LISTS, *with_(EYE, "name", *NAMES))),
     ("eyes", "head.eyes", with_(EYE, "centre", *NONSENSE, 3, POINTS, [NAN] * 3, [HUGE] * 3)),
     ("eyes", "head.eyes", with_(EYE, "radius", *NO_NUMBER, 0, -1)),
@@ -147,6 +147,12 @@ def test_wrong_heads_are_told(attribute: str, begins: str, values: tuple[Any, ..
         head = grid()
         setattr(head, attribute, value)
         refused(lambda head=head: sim.create(head), begins)  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("given", LISTS)
+def test_what_is_no_layer_is_told(given: Any) -> None:
+    """A head's layers are a list of objects with titles and rows."""
+    refused(lambda: read_layers(given, ["a"]), "head.layers")
 
 
 @pytest.mark.parametrize("head", [None, 3, "head", [], {}, object(), SimpleNamespace(vertices=1)])
