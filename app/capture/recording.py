@@ -55,7 +55,7 @@ def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: 
             most = max(most, frame.triangle_count)
             while wanted and wanted[0].time <= now + half:
                 named.append((wanted.pop(0).name or "", frame.image))
-    save_png(sheet, contact_sheet(named, columns=2 if options.beside else 3))
+    save_png(sheet, contact_sheet(named, columns=min(len(named), 2 if options.beside else 3)))
     return most
 
 
@@ -127,7 +127,8 @@ def _check(
             raise UserError("--range is for a film or a folder of frames")
         if not 0.0 <= begin < end <= script.duration:
             raise UserError(
-                f"--range {begin:g} {end:g}: take two times from 0 to {script.duration:g} s"
+                f"--range {begin:g} {end:g}: take two times from 0 to {script.duration:g} s, "
+                "the earlier one first"
             )
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")

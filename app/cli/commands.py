@@ -156,9 +156,12 @@ def replay(
 @click.command()
 @click.argument("recording", type=PATH)
 @click.option("-o", "--output", type=PATH, required=True, help="script.toml")
+@click.option("--overwrite", is_flag=True, help="Replace a script that is there.")
 @QUIET
 @with_playback
-def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> None:
+def convert(
+    recording: Path, output: Path, overwrite: bool, quiet: bool, playback: Playback
+) -> None:
     """Turn the RECORDING of a face into a script.
 
     Live Link Face, OpenFace, py-feat, MediaPipe and others write recordings.
@@ -170,6 +173,8 @@ def convert(recording: Path, output: Path, quiet: bool, playback: Playback) -> N
     check_file(output)
     if output.suffix.lower() != ".toml":
         raise UserError(f"{output}: scripts are written as .toml; choose a name that ends so")
+    if output.exists() and not overwrite:  # somebody may have worked on it
+        raise UserError(f"{output}: is there already; choose another name, or add --overwrite")
     script = played(recording, None, playback, quiet=quiet)
     if not script.is_converted:
         raise UserError(f"{recording}: is a script already")

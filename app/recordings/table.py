@@ -63,12 +63,12 @@ class Table:
             values = np.loadtxt(self.lines, ndmin=2, **told)
         except ValueError:  # not all are numbers
             values = np.genfromtxt(self.lines, **told).reshape(len(self.lines), len(columns))
-            none = np.argwhere(np.isnan(values))
-            for row, place in none[:1]:
-                self.notes.append(
-                    f"{len(none)} cells hold no number, the first in line "
-                    f"{self.line_numbers[row]}, column '{self.names[columns[place]]}'."
-                )
+        none = np.argwhere(~(np.abs(values) < LARGEST))
+        for row, place in none[:1]:
+            self.notes.append(
+                f"{len(none)} cells hold no usable number, the first in line "
+                f"{self.line_numbers[row]}, column '{self.names[columns[place]]}'."
+            )
         return np.where(np.abs(values) < LARGEST, values, np.nan)
 
 

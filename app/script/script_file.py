@@ -36,7 +36,7 @@ from . import (
     POSE_SECONDS,
     Channel,
     Key,
-    Number,
+    Moment,
     Pose,
     Script,
     rounded,
@@ -107,7 +107,7 @@ class _File(Record):
     scene: str = "face"
     camera: str | None = None
     sound: str | None = None
-    duration: Number | None = None
+    duration: Moment | None = None
     pose: Annotated[tuple[Pose, ...], MadeFrom(list[Pose], _poses)] = ()
     tracks: dict[str, Annotated[Channel, MadeFrom(Any, _channel)]] = field(default_factory=dict)
 
@@ -126,6 +126,8 @@ def parse_script(text: str, *, source: str) -> Script:
         document = parsed_toml(text)
     except ValueError as error:
         raise UserError(f"{source}: {error}") from None
+    if isinstance(document.get("pose"), dict):
+        raise UserError(f"{source}: [pose] is one table; write [[pose]], in two brackets, for each")
     file = read(_File, document, source, error=UserError)
     ends = [float(channel.times[-1]) for channel in file.tracks.values()]
     ends += [pose.time for pose in file.pose[-1:]]

@@ -63,7 +63,7 @@ def read_landmarks(path: Path, mesh: Mesh) -> tuple[IndexArray, FloatArray | Non
         if None in found:
             raise UnfinishedError(
                 f"landmark {found.index(None)} is null: not marked yet, as {found.count(None)} of "
-                f"{COUNT}; go on with it in the window, with the mesh alone: risorius view --head"
+                f"{COUNT}; go on in the window, with the mesh alone: risorius view --head MESH"
             )
         if _are_numbers(found):
             numbers = _numbers(found, len(mesh.vertices))

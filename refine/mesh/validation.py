@@ -74,7 +74,7 @@ def as_indices(
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
         raise ValueError(
             f"{name} must be integers of shape (F, 3), got {array.dtype} of shape {array.shape}; "
-            "cut polygons into triangles first"
+            "cast numbers to int, cut polygons into triangles"
         )
     if not (array.min() >= 0 and array.max() < limit):
         bad = np.flatnonzero(((array < 0) | (array >= limit)).any(axis=1))

@@ -42,7 +42,7 @@ def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> Non
     assert "triangles at most" in result.output
     count, _ = imageio_ffmpeg.count_frames_and_secs(str(film))
     assert count == 13
-    assert Image.open(sheet).size == (1280, 400)
+    assert Image.open(sheet).size == (640, 400)
 
 
 def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:

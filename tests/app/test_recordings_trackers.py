@@ -89,13 +89,13 @@ def test_rows_of_nan(tmp_path: Path) -> None:
     """Cells without a number are gaps, whatever stands there."""
     columns = openface()
     cells: list[object] = list(np.full(60, 2.0))
-    cells[10:14] = ["nan", "", "NaN", "N/A"]
+    cells[10:14] = ["nan", "inf", "NaN", "1e99"]
+    take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
+    assert told(take.notes, "4 cells hold no usable number")
+    cells[11], cells[20] = "", "two"
     take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
     assert take.channels["AU12"] == pytest.approx(0.4)
-    cells[20] = "two"
-    take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
-    assert take.channels["AU12"] == pytest.approx(0.4)
-    assert told(take.notes, "5 cells hold no number, the first in line 12, column 'AU12_r'")
+    assert told(take.notes, "5 cells hold no usable number, the first in line 12, column 'AU12_r'")
 
 
 def test_several_faces(tmp_path: Path) -> None:
