@@ -127,9 +127,10 @@ $(READY): pyproject.toml constraints.txt
 		{ echo "Risorius needs Python 3.11 or newer; name one: make PYTHON=python3.12 $(MAKECMDGOALS)"; exit 2; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { $(call debian_packages,Python's venv,python3-venv); }
 	@[ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
-	@echo "Installing Risorius and what it needs into .venv"
+	@echo "Installing Risorius and what it needs into .venv, which takes minutes"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --constraint constraints.txt --editable ".[dev]"
 	@touch $(READY)
+	@echo "Installed; .venv/bin/risorius doctor says what works here"
 
 opengl: setup
 	@$(BIN)/risorius doctor --offscreen --quiet || { $(call debian_packages,OpenGL without a screen (EGL),$(OPENGL_PACKAGES)); }
