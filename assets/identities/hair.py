@@ -78,11 +78,11 @@ OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 21.0, 0.5, behind=50.0)  # of the built-in
 CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
-        "parted": Fall(26.0, 84.0, slant=-8.0),
-        "tucked": Fall(24.0, 100.0, slant=8.0, tucked=1.0),
-        "centred": Fall(0.0, 130.0, slant=12.0, layered=30.0),
-        "wavy": Fall(-6.0, 112.0, slant=10.0, layered=24.0, wave=4.5),
-        "aside": Fall(-22.0, 104.0, slant=6.0, layered=36.0, wave=1.6),
+        "parted": Fall(26.0, 77.0, slant=-8.0),
+        "tucked": Fall(24.0, 93.0, slant=8.0, tucked=1.0),
+        "centred": Fall(0.0, 123.0, slant=12.0, layered=30.0),
+        "wavy": Fall(-6.0, 105.0, slant=10.0, layered=24.0, wave=4.5),
+        "aside": Fall(-22.0, 97.0, slant=6.0, layered=36.0, wave=1.6),
         "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
         "short": OWN_CUT,
         "fringed": Cut((0.35, 0.75, -0.4), 16.0, 24.0, 0.24, behind=34.0),

@@ -21,7 +21,7 @@ from .hair import HAIR, LOOSE_LENGTH, MEAN, Fall, Scalp, loose_hairs
 
 Strands = tuple[FloatArray, FloatArray, FloatArray]  # inner and outer side, place around the head
 STRANDS, SAMPLES = 26, 14  # of one side, and over the head along each, and as many below
-ABOVE_EARS, BEHIND_EARS = 22.0, 8.0  # [mm] that the middle of the head lies so
+ABOVE_EARS, BEHIND_EARS = 29.0, 8.0  # [mm] that the middle of the head lies so
 WIDEST = np.radians(-6.0)  # how far below it strands leave the head
 EDGE, TUCKED = np.radians(62.0), np.radians(113.0)  # from the face's middle, where hair begins
 LIFTED = np.radians(11.0)  # by how much higher strands leave the head that go behind the ear
@@ -54,7 +54,7 @@ def falling_hair(
     vertices, at = head.vertices, head.anatomy
     ear = 0.5 * (vertices[at["tragion_left"]] + vertices[at["tragion_right"]])
     middle = np.array([0.0, ear[1] + ABOVE_EARS, ear[2] - BEHIND_EARS])
-    solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 60.0]]) - middle
+    solid = np.vstack([scalp.points, vertices[vertices[:, 1] > ear[1] - 53.0]]) - middle
     far = np.linalg.norm(solid, axis=1)
 
     def skin(ways: FloatArray) -> FloatArray:
