@@ -75,7 +75,7 @@ class Anatomy:
         scene = self._scene
         if not isinstance(scene, FaceScene) or not view.structures or view.opacity >= 1.0:
             parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]
-            return DrawOrder([p for p in parts if p.name.startswith(HAIR)], over=parts)
+            return DrawOrder([p for p in parts if p.name in (HAIR, HAIR + "_tied")], over=parts)
         structures = self._structures(scene, view)
         stay = [part for part in scene.parts if not part.name.startswith((*SOFT, HAIR))]
         others = stay + self._soft(scene, view)
@@ -123,13 +123,13 @@ class Anatomy:
 
     def _whole(self, scene: FaceScene, view: AnatomyView, names: tuple[str, ...]) -> list[Any]:
         """Parts, by how their names begin, on the side that is not opened; none if both are."""
-        side = SIDES[view.side]  # a part of long hair may lie on one side alone
+        side = SIDES[view.side]
         parts = [part for part in scene.parts if side and part.name.startswith(names)]
         for part in parts:
             if (side, part.name) not in self._halves:
                 aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(scene)[0]
                 self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
-        return [half for part in parts if len((half := self._halves[side, part.name]).faces)]
+        return [self._halves[side, part.name] for part in parts]
 
 
 def _middle(scene: FaceScene) -> Any:

@@ -6,7 +6,6 @@
 Any of them goes where the built-in head goes: `sim.create(person)`, `FaceScene(person)`.
 """
 
-from .brows import Brows
 from .complexion import (
     DARKEST,
     LIGHTEST,
@@ -18,23 +17,19 @@ from .complexion import (
     in_own_colours,
     recoloured,
 )
-from .hair import CUTS, HAIR, Hairline
+from .hair import HAIR
 from .named import NAMED, person_called, person_in_words
 from .person import Person, make_person
-from .space import Identity, PersonSpace, Sex, person_space, sample_identity
+from .space import Identity, Sex, sample_identity
 
 __all__ = [
-    "CUTS",
     "DARKEST",
     "HAIR",
     "LIGHTEST",
     "NAMED",
-    "Brows",
     "Features",
-    "Hairline",
     "Identity",
     "Person",
-    "PersonSpace",
     "Sex",
     "built_in_hair",
     "coloured",
@@ -44,7 +39,6 @@ __all__ = [
     "make_person",
     "person_called",
     "person_in_words",
-    "person_space",
     "recoloured",
     "sample_identity",
 ]

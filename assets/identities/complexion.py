@@ -31,7 +31,7 @@ from ..pigments import BLOOD, COMPLEXIONS, MELANIN, OWN, SHADOW
 from ..smooth import smooth_step
 from .brows import Brows, drawn_brows, painted, stubble
 from .hair import CUTS, HAIR, OWN_CUT, Fall, Hairline, drawn_hairline, hair_of, scalp_of
-from .long_hair import falling_hair
+from .long_hair import falling_hair, tied_hair
 from .person import Person
 from .space import Identity, Sex
 
@@ -237,7 +237,7 @@ def _with_hair(
     colour = to_screen(LOCKS_LIGHTER * (light + features.grey * (GREY_LIGHT - light)))
     if isinstance(cut, Fall):
         return (*others, *falling_hair(cut, scalp, person, colour, length))
-    return (*others, *hair_of(cut, scalp, colour, length))
+    return (*others, *(tied_hair if cut.knot else hair_of)(cut, scalp, colour, length))
 
 
 def built_in_hair(head: Head) -> tuple[Part, ...]:

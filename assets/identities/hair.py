@@ -1,7 +1,5 @@
 """Hair that stands off the head: short, shells over the scalp (render/shaders/shells.glsl).
 
-part = hair_of("short", head.vertices, head.faces, behind, colour)
-
 One surface tells the renderer where hair grows, how dense it is, and how far and which way each
 strand goes; it moves with the skin. Strands run away from a whorl: one at the crown combs hair
 forward and down, one in front brushes it back, one at a temple sweeps it aside.
@@ -10,7 +8,7 @@ After Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary sur
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import NamedTuple
@@ -25,16 +23,19 @@ from ..smooth import Points, Values, smooth_step, unit
 from ..topology import grid_faces, quarter
 
 HAIR = "hair"  # the name of the part
-SHINE, DULL = 0.13, 0.6  # and how much of it curls have not
+SHINE, SLEEK = 0.13, 0.4  # of short and of long hair
+FINE = 0.22  # of the way along long strands, in which they change less than short ones
+SHADED = 0.6  # how light hair is inside, where lamps do not get
 BALD = 40.0  # [mm] behind which the hairline lies where the top is bald
 LEVELS = 2  # how often triangles of the scalp are cut into four
 BULGE = 0.75  # of what the planes of an edge's ends would make of it
 MEAN = 0.6  # of the strands' way, where the part's own vertices lie
-LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 260, 5, 22.0, 0.045  # single hairs; [mm] length, radius
+LOOSE, LOOSE_STEPS, LOOSE_LENGTH, THIN = 160, 5, 22.0, 0.045  # single hairs; [mm] length, radius
 RISE, STRAY, DROOP = (0.05, 0.4), 0.2, 0.2  # how far off, aside and down, of their length
 CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
 FLAT = 0.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
 PAINTED, HEM = 1.0, 20.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
+BARE = 5.0  # [mm] behind it the same where hair is drawn back: none lies before the ear
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,8 @@ class Cut:
     sides, top: how long strands are [mm], on both sides and behind, and on top of the head.
     lift: the sine of the angle at which they stand off the head.
     behind: how far behind the hairline they are as long as that [mm].
-    curl: how far strands are no lines but curls, 0 to 1.
+    knot: half the width of what they are tied to where they come together [mm]; 0: nothing.
+    tail: how long that hangs down [mm]; 0: it is wound to a knot.
     """
 
     whorl: tuple[float, float, float]
@@ -53,7 +55,8 @@ class Cut:
     top: float
     lift: float
     behind: float = 25.0
-    curl: float = 0.0
+    knot: float = 0.0
+    tail: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -61,34 +64,26 @@ class Fall:
     """How hair falls that is long enough to, beside the face; chosen by eye, all in [mm].
 
     parting: from the middle of the face, to the subject's left, to where it parts.
-    below: how far below the ears it ends. slant: how much higher it does so in front than at the
-    sides, and lower behind. layered: how much higher beside the face. wave: how far its
-    waves swing. tucked: the side where it lies behind the ear, 1 the subject's left; 0: none.
+    below: how far below the ears it ends.
     """
 
     parting: float
     below: float
-    slant: float = 0.0
-    layered: float = 8.0
-    wave: float = 0.6
-    tucked: float = 0.0
 
 
 OWN_CUT = Cut((0.1, 0.75, -0.6), 6.0, 21.0, 0.5, behind=50.0)  # of the built-in head
 CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
     {
         "cropped": Cut((0.1, 0.75, -0.6), 2.5, 4.5, 0.6, behind=20.0),
-        "parted": Fall(26.0, 77.0, slant=-8.0),
-        "tucked": Fall(24.0, 93.0, slant=8.0, tucked=1.0),
-        "centred": Fall(0.0, 123.0, slant=12.0, layered=30.0),
-        "wavy": Fall(-6.0, 105.0, slant=10.0, layered=24.0, wave=4.5),
-        "aside": Fall(-22.0, 97.0, slant=6.0, layered=36.0, wave=1.6),
-        "tied": Cut((0.0, 0.3, 0.95), 16.0, 18.0, 0.14, behind=9.0),
+        "parted": Fall(26.0, 77.0),
+        "centred": Fall(0.0, 123.0),
+        "aside": Fall(-22.0, 97.0),
+        "knotted": Cut((0.0, 0.05, 1.0), 18.0, 32.0, 0.45, behind=34.0, knot=32.0),
+        "topknot": Cut((0.0, -0.95, 0.32), 18.0, 26.0, 0.45, behind=34.0, knot=33.0),
+        "tailed": Cut((0.0, -0.45, 0.9), 18.0, 32.0, 0.45, behind=34.0, knot=25.0, tail=230.0),
         "short": OWN_CUT,
-        "fringed": Cut((0.35, 0.75, -0.4), 16.0, 24.0, 0.24, behind=34.0),
         "swept": Cut((0.85, 0.1, 0.55), 9.0, 28.0, 0.35, behind=18.0),
         "brushed": Cut((0.15, 0.4, 0.9), 9.0, 28.0, 0.35, behind=18.0),
-        "curly": Cut((0.1, 0.75, -0.6), 9.0, 20.0, 0.8, behind=18.0, curl=1.0),
     }
 )
 
@@ -158,12 +153,10 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
     again, number = np.unique(faces[crosses], return_inverse=True)
     faces[crosses] = len(points) + number.reshape(-1, 3)
     angle = np.concatenate([angle, angle[again] + 2.0 * np.pi * (angle[again] < 0.0)])
-    used, number = np.unique(faces, return_inverse=True)
-    faces, angle = number.reshape(-1, 3).astype(np.int32), angle[used]
-    rows = np.concatenate([np.arange(len(points)), again])[used]
+    rows = np.concatenate([np.arange(len(points)), again])
     points, normals, behind, out = points[rows], normals[rows], behind[rows], unit(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
-    radius = np.linalg.norm(points - middle, axis=1).mean()
+    radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
     comb = unit(np.cross(np.cross(whorl, out), normals))
     long = cut.sides + (cut.top - cut.sides) * smooth_step(0.1, 0.7, normals[:, 1])
     long = length * long * smooth_step(0.0, cut.behind, behind)
@@ -171,10 +164,10 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
     way = long[:, None] * (lift * normals + np.sqrt(1.0 - lift**2) * comb)
     off = CLEAR * smooth_step(-2.0, 8.0, behind) + SUNK * np.minimum(behind + 4.0, 0.0)
     points = points + off[:, None] * normals
-    curled = 1.0 + 2.0 * cut.curl, 1.0 - 0.45 * cut.curl  # soon another strand, and wider
     uneven = 2.0 * np.sin(0.22 * radius * angle) + 1.5 * np.sin(0.57 * radius * angle + 1.0)
-    dense = np.minimum((behind - PAINTED + uneven) / HEM, 2.0)
-    striation = np.column_stack([curled[1] * radius * angle, curled[0] * radius * away, way, dense])
+    dense = np.minimum((behind - (BARE if cut.knot else PAINTED) + uneven) / HEM, 2.0)
+    along = (FINE if cut.knot else 1.0) * radius * away
+    striation = np.column_stack([radius * angle, along, way, dense])
     hair = Part(
         name=HAIR,
         vertices=(points + MEAN * way).astype(np.float32),
@@ -182,33 +175,41 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
         faces=faces,
         colours=np.tile(colour, (len(points), 1)).astype(np.float32),
         bone="cranium",
-        shine=SHINE * (1.0 - DULL * cut.curl),
+        shine=SLEEK if cut.knot else SHINE,
         striation=striation.astype(np.float32),
     )
-    return loose_hairs([hair], min(0.5 * length * cut.top, LOOSE_LENGTH)), hair
+    loose = loose_hairs(hair, min(0.5 * length * cut.top, LOOSE_LENGTH))
+    is_before = (points[faces, 2] > middle[2]).all(axis=1)  # there it hangs over the skin
+    return from_within(hair, faces[is_before]), loose, hair
 
 
-def loose_hairs(hair: Sequence[Part], length: float) -> Part:
-    """Single hairs, `length` [mm] long, that stand off the smooth outline of parts."""
+def from_within(hair: Part, faces: IndexArray) -> Part:
+    """Some faces of hair as they are seen from the head: below what hangs over, and at tips."""
+    name, turned = HAIR + "_inside" + hair.name.removeprefix(HAIR), faces[:, ::-1].copy()
+    return replace(hair, name=name, faces=turned, colours=SHADED * hair.colours)
+
+
+def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:
+    """Single hairs, as long [mm], that stand off the smooth outline of a part."""
+    assert hair.striation is not None
     random, t = np.random.default_rng(0), np.linspace(0.0, 1.0, LOOSE_STEPS)[:, None, None]
-    names = "vertices", "normals", "colours", "striation"
-    rows = [np.hstack([getattr(part, each) for each in names])[part.faces] for part in hair]
-    corners = np.concatenate(rows).astype(np.float64)
-    corners = random.choice(corners[corners[:, :, 14].min(axis=1) > 0.5], LOOSE)
-    found = np.einsum("nij,ni->nj", corners, random.dirichlet((1.0, 1.0, 1.0), LOOSE))
-    root, normal, colour, _, way, _ = np.split(found, [3, 6, 9, 11, 14], axis=1)
+    is_dense = (hair.striation[hair.faces, 5] > 0.5).all(axis=1)
+    corners = random.choice(hair.faces[is_dense], LOOSE)
+    shares = random.dirichlet((1.0, 1.0, 1.0), LOOSE)[:, :, None]
+    columns = hair.vertices, hair.normals, hair.colours, hair.striation[:, 2:5]
+    root, normal, colour, way = ((shares * each[corners]).sum(axis=1) for each in columns)
     normal = unit(normal)
     across = unit(np.cross(normal, way))
     off, aside = random.uniform(*RISE, (LOOSE, 1)), random.normal(0.0, STRAY, (LOOSE, 1))
-    along = length * (np.cross(across, normal) + off * normal + aside * across)
-    bent = length * DROOP * (normal + np.array([0.0, 1.0, 0.0]))
+    along = longest * (np.cross(across, normal) + off * normal + aside * across)
+    bent = longest * DROOP * (normal + np.array([0.0, 1.0, 0.0]))
     turn = np.radians([0.0, 120.0, 240.0])[:, None]
     ring = np.cos(turn) * normal[:, None] + np.sin(turn) * across[:, None]
     places = root[:, None, None] + t * along[:, None, None] - t * t * bent[:, None, None]
     places = places + THIN * ring[:, None]
     numbers = np.arange(places.size // 3).reshape(places.shape[:3])
     return replace(
-        hair[0],
+        hair,
         name=HAIR + "_loose",
         vertices=places.reshape(-1, 3).astype(np.float32),
         normals=np.broadcast_to(ring[:, None], places.shape).reshape(-1, 3).astype(np.float32),

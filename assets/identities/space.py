@@ -73,11 +73,12 @@ class Sex(Enum):
 CUT_SHARES: Mapping[Sex, Mapping[str, float]] = MappingProxyType(
     {
         Sex.WOMAN: {
-            "parted": 0.2, "tucked": 0.1, "centred": 0.18, "wavy": 0.12, "aside": 0.3, "tied": 0.1,
+            "parted": 0.2, "centred": 0.2, "aside": 0.22, "knotted": 0.14, "topknot": 0.08,
+            "tailed": 0.16,
         },
         Sex.MAN: {
-            "short": 0.35, "cropped": 0.25, "brushed": 0.12, "swept": 0.1, "fringed": 0.1,
-            "curly": 0.08,
+            "short": 0.38, "cropped": 0.3, "brushed": 0.14, "swept": 0.12, "knotted": 0.03,
+            "tailed": 0.03,
         },
     }
 )  # fmt: skip

@@ -42,7 +42,7 @@ void main() {
     surface.layer = layer, surface.dense = in_dense;
     // Of the strands to the middle between eye and light.
     surface.cosine = dot(along / max(length(along), 1e-6), normalize(to_key + normalize(-position.xyz)));
-    surface.facing = dot(normal, -normalize(position.xyz));
+    surface.facing = abs(dot(normal, normalize(position.xyz)));
     gl_Position = projection * position;
 }
 
@@ -58,7 +58,7 @@ const float SHARPNESS = 70.0, SOFTNESS = 14.0;
 const vec2 SIDEWAYS = vec2(0.45, 0.75);  // how far to the front single strands are told apart
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
 const vec2 CRISP = vec2(1.5, 3.0);       // how abruptly hems end: where locks are seen, and single strands
-const float LEAST_FACING = 0.4;         // from which on all of a layer is passed
+const float LEAST_FACING = 0.05;        // from which on all of a layer is passed
 const float DARK = 0.45;                 // of the light, at roots
 const float SOFT = 0.22;                 // of the strands' way, over which their tips fade
 const float SHARP = 0.01;                // that of outlines: layers are there or not, and no veil
@@ -97,7 +97,7 @@ void main() {
     // Tilted toward the root and toward the tip.
     float first = surface.cosine + UNEVEN * uneven - TILT, second = first + 2.0 * TILT;
     float bright = exp2(-SHARPNESS * first * first), glow = exp2(-SOFTNESS * second * second);
-    float open = mix(DARK, 1.0, surface.layer);
+    float open = mix(DARK, 1.0, max(surface.layer, 1.0 - surface.dense));
     vec3 front = surface.colour * (1.0 + 0.6 * uneven) * open;
     vec3 shine = surface.shine * open * max(1.0 + 2.0 * uneven, 0.0) * (bright * (0.06 + 0.4 * front) + 0.3 * glow * front);
     pixel_colour = vec4(display(front * surface.diffuse + shine), cover);

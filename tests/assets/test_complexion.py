@@ -13,9 +13,7 @@ from risorius import assets
 from risorius.assets.identities import (
     DARKEST,
     LIGHTEST,
-    Brows,
     Features,
-    Hairline,
     coloured,
     drawn_irises,
     features_of,
@@ -24,7 +22,9 @@ from risorius.assets.identities import (
     recoloured,
     sample_identity,
 )
+from risorius.assets.identities.brows import Brows
 from risorius.assets.identities.complexion import IRIS_SHARES, _tints, typology_angle
+from risorius.assets.identities.hair import Hairline
 from risorius.assets.model import Head, Segment
 from risorius.assets.pigments import OWN
 from risorius.geometry.colour import to_linear

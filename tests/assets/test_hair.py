@@ -5,7 +5,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.spatial import cKDTree
 
@@ -15,21 +14,16 @@ from risorius.app.passes.passes import Passes
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 from risorius.assets.identities import (
-    CUTS,
     HAIR,
     Features,
-    Hairline,
     Person,
     coloured,
     make_person,
     person_called,
     sample_identity,
 )
-from risorius.assets.identities.hair import Fall
+from risorius.assets.identities.hair import CUTS, Fall, Hairline
 from risorius.assets.model import Part
-
-FIRST = "cropped", "parted", "tied", "fringed"  # of each kind one; the others pass later
-EVERY_CUT = [pytest.param(cut, marks=[pytest.mark.slow] * (cut not in FIRST)) for cut in CUTS]
 
 
 @cache
@@ -41,28 +35,27 @@ def haired(cut: str, *, number: int = 0, receded: float = 0.0, length: float = 1
     )
 
 
-def hair_of(person: Person) -> Part:
-    """Its hair; of that which hangs beside the face, the outer side on the left."""
-    return [part for part in person.parts if part.name.startswith(HAIR)][-1]
+def hair_of(person: Person, name: str = HAIR) -> Part:
+    """Its hair, seen from outside: what grows on the scalp, or what is tied."""
+    return next(part for part in person.parts if part.name == name)
 
 
-@pytest.mark.parametrize("cut", EVERY_CUT)
+@pytest.mark.parametrize("cut", CUTS)
 def test_hair_is_a_sound_part(cut: str) -> None:
     """Arrays fit each other, and triangles are seen from the side to which normals point."""
-    part = hair_of(haired(cut))
-    count = len(part.vertices)
-    assert part.bone == "cranium" and part.normals.shape == part.colours.shape == (count, 3)
-    assert part.striation is not None and part.striation.shape == (count, 6)
-    assert 0 <= part.faces.min() and part.faces.max() < count
-    assert all(np.isfinite(each).all() for each in (part.vertices, part.colours, part.striation))
-    assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0, atol=1e-5)
-    corners = part.vertices[part.faces].astype(np.float64)
-    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    agreeing = (facing * part.normals[part.faces].sum(axis=1)).sum(axis=1)
-    assert (agreeing > 0.0).mean() > 0.9  # a fringe hangs over its hairline: its lower side turns
+    for part in [each for each in haired(cut).parts if each.name in (HAIR, HAIR + "_tied")]:
+        assert part.striation is not None and part.bone == "cranium"
+        rows = np.hstack([part.vertices, part.normals, part.colours, part.striation])
+        assert rows.shape == (len(part.vertices), 15) and np.isfinite(rows).all()
+        assert 0 <= part.faces.min() and part.faces.max() < len(rows)
+        assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0, atol=1e-5)
+        corners = part.vertices[part.faces].astype(np.float64)
+        facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        agreeing = (facing * part.normals[part.faces].sum(axis=1)).sum(axis=1)
+        assert (agreeing > 0.0).mean() > 0.9  # hair hangs over its hairline: its lower side turns
 
 
-@pytest.mark.parametrize("cut", EVERY_CUT)
+@pytest.mark.parametrize("cut", CUTS)
 def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut: str) -> None:
     """Where it is dense it is over the skin; none hangs before brows, eyes, nose and mouth."""
     person = haired(cut)
@@ -93,9 +86,15 @@ def test_hair_is_as_long_and_begins_where_it_is_told() -> None:
     assert longer.vertices[:, 1].max() > usual.vertices[:, 1].max() + 0.5
     dense = [part.striation[:, 5] > 0.3 for part in (usual, receded)]
     assert receded.vertices[dense[1], 2].max() < usual.vertices[dense[0], 2].max() - 5.0
-    sides = [part.vertices[:, [1, 2]] for part in haired("tucked").parts[-2:]]
-    right, left = (side[side[:, 0] < -40.0, 1].max() for side in sides)
-    assert left < right - 20.0  # behind the ear
+
+
+def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below() -> None:
+    """It hangs, clear of neck and shoulders."""
+    person = haired("tailed")
+    tail, ear = hair_of(person, HAIR + "_tied").vertices, person.anatomy["tragion_left"]
+    low = tail[tail[:, 1] < person.vertices[ear, 1] - 50.0]
+    assert tail[:, 2].max() < person.vertices[ear, 2] - 50.0
+    assert len(low) and cKDTree(person.vertices).query(low)[0].min() > 8.0
 
 
 def test_hair_keeps_its_colour_in_other_tones_of_skin() -> None:
@@ -111,7 +110,7 @@ def test_hair_keeps_its_colour_in_other_tones_of_skin() -> None:
     assert darker.colours.mean() < 0.8 * mine.colours.mean()
 
 
-def label_of(person: Person, size: int = 200) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+def label_of(person: Person, size: int = 200) -> tuple[Any, Any]:
     """A picture and its classes."""
     options = CaptureOptions(size=(size, size), passes=("segmentation",))
     with Capture(FaceScene(person), options) as capture:
@@ -135,7 +134,7 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     scene = FaceScene(person_called("ada"))
     assert scene.fade is None  # the shirt covers the end of the neck
     assert scene.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
-    image, classes = label_of(haired("fringed"))
+    image, classes = label_of(haired("short"))
     is_hair = classes == Segment.HAIR
     assert is_hair.mean() > 0.04 and (classes[0] == Segment.BACKGROUND).all()
     assert image[is_hair].mean() < 0.75 * image[classes == Segment.SKIN].mean()
