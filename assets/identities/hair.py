@@ -35,7 +35,7 @@ RISE, STRAY, DROOP = (0.05, 0.4), 0.2, 0.2  # how far off, aside and down, of th
 CLEAR, SUNK = 0.7, 0.3  # [mm] over the skin, and down for each from 4 before the hairline on
 FLAT = 0.0, 45.0  # [mm] behind the hairline hair lies flat, and stands as its cut says
 PAINTED, HEM = 1.0, 20.0  # [mm] behind the hairline only hairs on the skin; until hair is dense
-BARE = 5.0  # [mm] behind it the same where hair is drawn back: none lies before the ear
+BARE, FLAT_TOP = 5.0, 0.8  # [mm] the same where hair is drawn back; of normals up: none sees below
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ CUTS: Mapping[str, Cut | Fall] = MappingProxyType(
         "parted": Fall(26.0, 77.0),
         "centred": Fall(0.0, 123.0),
         "aside": Fall(-22.0, 97.0),
-        "knotted": Cut((0.0, 0.05, 1.0), 18.0, 32.0, 0.45, behind=34.0, knot=32.0),
+        "knotted": Cut((0.0, 0.3, 0.95), 18.0, 32.0, 0.45, behind=34.0, knot=32.0),
         "topknot": Cut((0.0, -0.95, 0.32), 18.0, 26.0, 0.45, behind=34.0, knot=33.0),
         "tailed": Cut((0.0, -0.45, 0.9), 18.0, 32.0, 0.45, behind=34.0, knot=25.0, tail=230.0),
         "short": OWN_CUT,
@@ -179,8 +179,8 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
         striation=striation.astype(np.float32),
     )
     loose = loose_hairs(hair, min(0.5 * length * cut.top, LOOSE_LENGTH))
-    is_before = (points[faces, 2] > middle[2]).all(axis=1)  # there it hangs over the skin
-    return from_within(hair, faces[is_before]), loose, hair
+    hangs = (points[:, 2] > middle[2]) & (normals[:, 1] < FLAT_TOP)  # over the skin
+    return from_within(hair, faces[hangs[faces].all(axis=1)]), loose, hair
 
 
 def from_within(hair: Part, faces: IndexArray) -> Part:
