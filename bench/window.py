@@ -28,8 +28,6 @@ PROMISED = 20.0  # frames a second at 1280x720 with software OpenGL on 2 cores
 WARM_UP = 1.0  # [s]
 ROUNDS = 3
 IDLE_SECONDS = 8.0
-
-
 CASES = {
     "smile": Display(),
     "smile, unrefined": Display(is_refined=False),

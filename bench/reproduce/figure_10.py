@@ -36,6 +36,7 @@ SKIN, MOUTH, BACKGROUND = range(3)  # channels of a picture of kinds
 BLUE = render.Background((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 GREEN = np.array([0.0, 1.0, 0.0], np.float32)
 KINDS = replace(FLAT, albedo=(1.0, 0.0, 0.0), gloss=0.0, background=BLUE)
+AT_LIDS = "lashes", "wet_edges"  # not near lips
 OPENING = np.array([(233, 222, 214), (52, 40, 42), (255, 255, 255)], np.uint8)  # by kind
 WRONG = (225, 30, 30)
 
@@ -148,7 +149,8 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
             camera = camera_for(scene, viewpoint.view)
             camera.target = 0.5 * (lips.min(axis=0) + lips.max(axis=0))
             camera.pan(*viewpoint.aside)
-            parts, bones = tuple(scene.parts), simulation.bones.transforms()
+            parts = tuple(part for part in scene.parts if part.name not in AT_LIDS)
+            bones = simulation.bones.transforms()
             green = tuple(
                 replace(part, colours=np.tile(GREEN, (len(part.colours), 1)), shine=0.0)
                 for part in parts
