@@ -153,7 +153,9 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
     again, number = np.unique(faces[crosses], return_inverse=True)
     faces[crosses] = len(points) + number.reshape(-1, 3)
     angle = np.concatenate([angle, angle[again] + 2.0 * np.pi * (angle[again] < 0.0)])
-    rows = np.concatenate([np.arange(len(points)), again])
+    used, number = np.unique(faces, return_inverse=True)
+    faces, angle = number.reshape(-1, 3).astype(np.int32), angle[used]
+    rows = np.concatenate([np.arange(len(points)), again])[used]
     points, normals, behind, out = points[rows], normals[rows], behind[rows], unit(out[rows])
     away = np.arccos(np.clip(out @ whorl, -1.0, 1.0))
     radius = np.linalg.norm(scalp.points - middle, axis=1).mean()
@@ -185,8 +187,10 @@ def hair_of(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tuple[
 
 def from_within(hair: Part, faces: IndexArray) -> Part:
     """Some faces of hair as they are seen from the head: below what hangs over, and at tips."""
-    name, turned = HAIR + "_inside" + hair.name.removeprefix(HAIR), faces[:, ::-1].copy()
-    return replace(hair, name=name, faces=turned, colours=SHADED * hair.colours)
+    used, number = np.unique(faces[:, ::-1], return_inverse=True)
+    rows = {n: getattr(hair, n)[used] for n in ("vertices", "normals", "colours", "striation")}
+    rows |= {"faces": number.reshape(-1, 3).astype(np.int32), "colours": SHADED * rows["colours"]}
+    return replace(hair, name=HAIR + "_inside" + hair.name.removeprefix(HAIR), **rows)
 
 
 def loose_hairs(hair: Part, longest: float = LOOSE_LENGTH) -> Part:

@@ -42,6 +42,7 @@ STEEP, DIMPLE = 0.8, 0.12  # of a knot's width: its height, and how deep its mid
 # Locks of a tail and of a knot, how wide they are [mm], how deep it is between, turns they make.
 TAIL, KNOT = (6, 24.0, 0.04, 0.1), (3, 13.0, 0.1, 1.8)
 BETWEEN = 0.5  # of the light is lost there, below a knot and where a tail is tied
+Even = FloatArray | float  # a number may stand for all
 
 
 def falling_hair(
@@ -127,12 +128,7 @@ def tied_hair(cut: Cut, scalp: Scalp, colour: FloatArray, length: float) -> tupl
 
 
 def _layers(
-    name: str,
-    places: FloatArray,
-    across: FloatArray,
-    thick: FloatArray | float,
-    dense: FloatArray | float,
-    colour: FloatArray,
+    name: str, places: FloatArray, across: FloatArray, thick: Even, dense: Even, colour: FloatArray
 ) -> Part:
     """Strands side by side, in layers.
 
