@@ -1,0 +1,88 @@
+"""Numbers that pages print are those that today's commands give, within the tolerance of a page."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.bench.reproduce import table1
+
+from .app.command_line import risorius
+from .app.glb_player import Player
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+
+
+def run(*arguments: object) -> None:
+    """Run the command, which must succeed."""
+    result = risorius(*arguments)
+    assert result.exit_code == 0, result.output
+
+
+def numbers_of(page: Path, pattern: str) -> list[float]:
+    """The numbers that a pattern finds on a page, where it stands once; a blank in it stands for
+    the end of a line, too.
+    """
+    text = " ".join(page.read_text("utf-8").split())
+    found = re.findall(pattern, text)
+    assert len(found) == 1, f"{page.name} has {len(found)} places like {pattern!r}"
+    groups = [found[0]] if isinstance(found[0], str) else found[0]
+    return [float(group) for group in groups]
+
+
+def test_triangles_of_table_1() -> None:
+    """Two pages have the most triangles of face and plane that `reproduce table1` counts."""
+    values = table1.outcome(rounds=1).values
+    ours = [values["face, most triangles"], values["plane, most triangles"]]
+    on_index = numbers_of(DOCS / "index.md", r"ours (\d+) and (\d+) \(`risorius reproduce table1`")
+    assert on_index == pytest.approx(ours, rel=0.01)
+    on_refinement = numbers_of(DOCS / "refinement.md", r"today's makes (\d+) triangles")
+    assert on_refinement == pytest.approx(ours[:1], rel=0.01)
+
+
+@pytest.mark.parametrize("script", ["face", "speech"])
+def test_table_of_exported_files(script: str, tmp_path: Path) -> None:
+    """The page on export has frames, targets and size of the built-in scripts as they are."""
+    row = rf"\| `{script}\.toml`, built in \| (\d+) \| (\d+) \| ([\d.]+) MB \| ([\d.]+) mm"
+    frames, targets, size, _ = numbers_of(DOCS / "export.md", row)
+    path = tmp_path / "exported.glb"
+    run("export", str(ROOT / f"assets/scripts/{script}.toml"), "-o", str(path), "--quiet")
+    player = Player(path)
+    assert len(player.times) == frames
+    assert len(player.primitive("skin").targets) == pytest.approx(targets, abs=2)
+    assert path.stat().st_size / 1e6 == pytest.approx(size, rel=0.1)
+
+
+def test_size_of_a_sample(tmp_path: Path) -> None:
+    """The page on data sets has the mean size of a sample, with and without floats."""
+    plain, floats = numbers_of(
+        DOCS / "dataset.md", r"A sample has ([\d.]+) kB; floats add ([\d.]+) MB"
+    )
+    faces = tmp_path / "faces"
+    command = ["dataset", "--count", "6", "--passes", "segmentation,depth,normal", "-o", str(faces)]
+    run(*command, "--size", "512x512", "--quiet")
+    files = [path for path in faces.rglob("*") if path.stem[0].isdigit()]
+    exr = sum(path.stat().st_size for path in files if path.suffix == ".exr")
+    everything = sum(path.stat().st_size for path in files)
+    assert (everything - exr) / 6e3 == pytest.approx(plain, rel=0.2)
+    assert exr / 6e6 == pytest.approx(floats, rel=0.2)
+
+
+def test_code_that_reads_a_set(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page's lines that read a set run in a checkout as they stand."""
+    page = (DOCS / "dataset.md").read_text("utf-8")
+    code = re.search(r"(?:^    .*\n|^\n)*^    sample = faces.*$", page, re.MULTILINE)
+    assert code is not None
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(ROOT))
+    run("dataset", "--count", "4", "-o", "faces", "--size", "64x64", "--quiet")
+    names: dict[str, object] = {}
+    exec(compile("\n".join(line[4:] for line in code[0].splitlines()), "page", "exec"), names)
+    sample = names["sample"]
+    assert isinstance(sample, dict)
+    assert sample["image"].shape == (3, 64, 64)
+    assert np.isfinite(sample["units"]).all()
