@@ -16,12 +16,14 @@ import numpy.typing as npt
 
 from ..schema import quoted
 from . import checked
-from .contact import EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
+from .contact import PAIR_GAP, EyeContact, Grip, LipPairs, pair_lips, watch_eyeballs
 from .controls import GAZE_RATE, Control
 from .coordinates import FaceSpace
 from .landmarks import (
     INNER_CORNERS,
     LANDMARK_COUNT,
+    LOWER_INNER,
+    UPPER_INNER,
     Array,
     Side,
     mouth_line,
@@ -153,7 +155,7 @@ def build_face_model(head: Any) -> FaceModel:
     muscles = build_muscle_forces(
         placed, rig, surface, skull.mandible_weight, lips.members, known, side
     )
-    controls = _controls(rig, skull, lips, landmarks is not None)
+    controls = _controls(rig, skull, landmarks is not None)
     lids = None
     if landmarks is not None and skull.eyeballs:
         names = [control.name for control in controls]
@@ -176,7 +178,7 @@ def build_face_model(head: Any) -> FaceModel:
         skull=skull, muscles=muscles, lids=lids, skin=skin,
         tongue=place_tongue(given.parts, space, numbers),
         passive_hold=passive, turns=_turning_share(surface, landmarks),
-        closed_weight=_closed_weight(surface, known, skull.mandible_weight, lips),
+        closed_weight=_closed_weight(surface, landmarks, skull.mandible_weight),
         controls=controls, layers=_layers(given.layers, rig, controls),
     )  # fmt: skip
 
@@ -282,23 +284,27 @@ def _turning_share(surface: Surface, landmarks: Array | None) -> Array:
     return share
 
 
-def _closed_weight(surface: Surface, landmarks: Array, weight: Array, lips: LipPairs) -> Array:
-    """The mandible's weight where both lips meet although the jaw is open, shape (V,)."""
-    if not len(lips.lower):
+def _closed_weight(surface: Surface, landmarks: Array | None, weight: Array) -> Array:
+    """The mandible's weight where lips stay as at rest although the jaw is open, shape (V,)."""
+    if landmarks is None:
         return weight.copy()
     distance = polyline_distance(surface.positions, mouth_line(landmarks))
+    upper, lower = (landmarks[list(lip)] for lip in (UPPER_INNER, LOWER_INNER))
+    if np.linalg.norm(upper - lower, axis=1).max() > PAIR_GAP:  # open at rest
+        lips = [polyline_distance(surface.positions, lip) for lip in (upper, lower)]
+        distance = np.minimum(*lips)
     reach = (LIPS_END - distance) / (LIPS_END - LIPS_WHOLE)
     return weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
 
 
-def _controls(rig: Rig, skull: Skull, lips: LipPairs, is_face: bool) -> tuple[Control, ...]:
+def _controls(rig: Rig, skull: Skull, is_face: bool) -> tuple[Control, ...]:
     """All controls of a face: its muscles in rig order, the lips, the jaw, the gaze, the head."""
     controls = []
     for muscle in rig.muscles:
         both = [muscle.name] if muscle.halves else []
         names = [*both, *(name for name, _ in sides_of(muscle))]
         controls += [Control(name, muscle.group, action=muscle.action) for name in names]
-    if skull.mandible_weight.any() and len(lips.lower):
+    if skull.mandible_weight.any() and is_face:  # lips that are apart at rest stay so far apart
         controls.append(Control("lips_closed", "Lips"))
     if skull.mandible_weight.any():
         controls.append(Control("jaw_open", "Jaw"))

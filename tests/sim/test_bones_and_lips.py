@@ -7,7 +7,7 @@ import pytest
 
 from risorius import sim
 from risorius.assets.model import Head
-from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement
+from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement, without
 
 NOSE_TIP, CHIN, INNER_LIPS = 30, 8, (62, 66)
 
@@ -37,6 +37,25 @@ def test_lips_stay_closed_over_an_open_jaw(simulation: sim.Simulation, head: Hea
         assert lip_gap(simulation, head) < 0.5
     settled_displacement(simulation, {"jaw_open": 1.0})
     assert lip_gap(simulation, head) > 20.0
+
+
+@pytest.mark.parametrize("opening", [0.3, pytest.param(1.0, marks=pytest.mark.slow)])
+def test_mouths_that_are_open_at_rest_play(
+    simulation: sim.Simulation, head: Head, opening: float
+) -> None:
+    """A mesh may come with its lips apart: all controls are there, and lips stay so far apart."""
+    opened = head.vertices + settled_displacement(simulation, {"jaw_open": opening})
+    parts = without(head)
+    parts.vertices, parts.layers = opened, head.layers
+    other = sim.create(parts)
+    assert set(other.controls.names) == set(simulation.controls.names)
+    apart = lip_gap(other, head)
+    assert apart > 2.0
+    moved = settled_displacement(other, {"jawOpen": 1.0, "mouthClose": 1.0})
+    assert moved_landmarks(head, moved, CHIN)[1] < -10.0
+    assert abs(lip_gap(other, head) - apart) < 0.25 * apart + 1.0
+    settled_displacement(other, {"joy": 1.0})
+    assert np.isfinite(other.positions).all()
 
 
 @pytest.mark.parametrize("muscle", ["procerus", "orbicularis_oris_peripheral_upper"])
