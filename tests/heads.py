@@ -75,3 +75,12 @@ def closed(mesh: Mesh, vertices: npt.NDArray[np.int32]) -> Mesh:
     middle = len(mesh.vertices)
     fan = [[following[a], a, middle] for a in loop]
     return Mesh(np.vstack([mesh.vertices, centre]), np.vstack([faces, fan]).astype(np.int32))
+
+
+def with_card(mesh: Mesh) -> Mesh:
+    """The mesh with a card of hair behind it, seen from both sides: four triangles at its edge."""
+    count = len(mesh.vertices)
+    card = mesh.vertices.mean(axis=0) + np.ptp(mesh.vertices) * np.eye(4, 3)
+    sides = count + np.array([[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]])
+    faces = np.vstack([sides, mesh.faces]).astype(np.int32)
+    return Mesh(np.vstack([mesh.vertices, card]), faces)

@@ -130,7 +130,7 @@ def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) 
     known = load("head")
     points = mesh.vertices[landmarks] if points is None else points
     skin = skin_of(mesh.vertices, mesh.faces, landmarks)
-    check_manifold(mesh.faces)
+    check_manifold(mesh.faces[skin.file_faces], skin.file_faces)
     similarity = _placed(points, known)
     skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
     target = similarity.points(points)

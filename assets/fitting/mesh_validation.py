@@ -84,14 +84,19 @@ def pieces_of(faces: IndexArray, count: int) -> IndexArray:
     return np.asarray(csgraph.connected_components(graph, directed=False)[1], np.int32)
 
 
-def check_manifold(faces: IndexArray) -> None:
-    """Raise AssetError unless each edge has one or two triangles, which agree on the outside."""
+def check_manifold(faces: IndexArray, numbers: npt.NDArray[np.int64] | None = None) -> None:
+    """Raise AssetError unless each edge has one or two triangles, which agree on the outside.
+
+    numbers: of the triangles in their file, for messages, shape (F,); None: these are all of it.
+    """
     names_twice = (faces == np.roll(faces, 1, axis=1)).any(axis=1)
     if names_twice.any():
         where = int(names_twice.argmax())
+        number = where if numbers is None else numbers[where]
+        corners = faces[where].tolist()
         raise AssetError(
-            f"the mesh is not manifold: triangle {where} has the vertices {faces[where].tolist()}, "
-            "one of them twice; remove triangles without area"
+            f"the mesh is not manifold: triangle {number} has the vertices {corners}, one of them "
+            "twice; remove triangles without area"
         )
     directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     edges, uses = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
@@ -108,6 +113,28 @@ def check_manifold(faces: IndexArray) -> None:
             f"the mesh is not oriented: both triangles at the edge of its vertices {a} and {b} run "
             "along it the same way; make its normals agree"
         )
+
+
+def check_pieces(faces: IndexArray, count: int) -> None:
+    """Raise AssetError where no piece of a mesh with `count` vertices could be a skin.
+
+    The error is that of the largest piece.
+    """
+    piece = pieces_of(faces, count)[faces[:, 0]]
+    triangles = np.bincount(piece)
+    enough = min(FEWEST_TRIANGLES, triangles.max())
+    complaint = None
+    for each in np.argsort(-triangles, kind="stable"):
+        if triangles[each] < enough:
+            break
+        numbers = np.flatnonzero(piece == each)
+        try:
+            check_manifold(faces[numbers], numbers)
+            return
+        except AssetError as error:
+            complaint = complaint or error
+    if complaint is not None:
+        raise complaint
 
 
 def check_openings(skin: SkinPiece) -> None:

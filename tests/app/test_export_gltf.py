@@ -11,11 +11,13 @@ import PIL.Image
 import pytest
 import trimesh
 
+from risorius import assets
 from risorius.app.export import gltf
 from risorius.app.export.clip import Clip, record
 from risorius.app.export.formats import Request, format_for, write
 from risorius.app.export.morphs import decompose
 from risorius.app.script.script_file import parse_script
+from risorius.assets.fitting import fit_head
 from risorius.geometry.normals import vertex_normals
 
 from .command_line import positions_in_blender
@@ -251,3 +253,14 @@ def test_what_targets_cannot_follow_is_told(
     player = Player(tmp_path / "rough.glb")
     error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))
     assert remark is not None and f"{error:.2f} mm" in remark and error > 1.0
+
+
+@pytest.mark.slow
+def test_our_own_file_is_a_head_to_fit(glb: Path, tmp_path: Path) -> None:
+    """Its hair is cards that are no surface; the skin is fitted, and stands as it was."""
+    head = assets.load("head")
+    marks = tmp_path / "own.json"
+    marks.write_text(json.dumps((head.vertices[head.landmarks] / 1000.0).tolist()))
+    fitted = fit_head(glb, marks)
+    assert fitted.faces.shape == head.faces.shape
+    assert np.abs(fitted.vertices[fitted.landmarks] - head.vertices[head.landmarks]).max() < 0.1

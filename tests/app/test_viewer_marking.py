@@ -21,7 +21,7 @@ from risorius.app.viewer.marking.room import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks
-from tests.heads import METRES, Array, stranger
+from tests.heads import METRES, Array, stranger, with_card
 
 from .driving import NEEDS_A_SCREEN, click, drop, on_screen, settle, until, write, xdotool
 
@@ -112,6 +112,14 @@ def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path: Path) -> None:
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n")
     with pytest.raises(UserError, match=r"fan\.obj: the mesh is not manifold"):
         Marking(mesh, FileDialogs())
+
+
+def test_pieces_beside_the_skin_may_be_anything(tmp_path: Path) -> None:
+    """A card of hair that is no surface keeps nobody from marking the skin."""
+    other = stranger()
+    mesh = with_card(other.mesh)
+    path, _ = other.write(tmp_path, vertices=mesh.vertices, faces=mesh.faces)
+    assert len(Marking(path, FileDialogs()).faces) == len(mesh.faces)
 
 
 class TestInTheWindow:

@@ -18,7 +18,7 @@ from risorius.assets.topology import boundary_loops
 from risorius.bench.gaps import eyeballs_of, lid_gaps
 from risorius.sim.landmarks import MIRRORED
 from tests.assets.checks import edge_faces
-from tests.heads import Stranger, closed, stranger
+from tests.heads import Stranger, closed, stranger, with_card
 from tests.sim.poses import inverted_triangles, lip_gap, moved_landmarks, settled_displacement
 
 
@@ -250,6 +250,16 @@ def test_meshes_that_are_no_surface_are_named(other: Stranger, change: Any, mess
     faces = np.ascontiguousarray(change(other.mesh.faces))
     with pytest.raises(AssetError, match=message):
         fit(Mesh(other.mesh.vertices, faces), other.landmarks)
+
+
+def test_pieces_that_are_left_away_may_be_anything(other: Stranger) -> None:
+    """A card of hair that is no surface harms nobody; triangles of the skin keep their numbers."""
+    mesh = with_card(other.mesh)
+    head = fit(mesh, other.landmarks)
+    assert np.array_equal(head.file_vertices, np.arange(len(other.mesh.vertices)))
+    doubled = Mesh(mesh.vertices, np.vstack([mesh.faces, [[5, 6, 5]]]).astype(np.int32))
+    with pytest.raises(AssetError, match=rf"triangle {len(mesh.faces)} has the vertices"):
+        fit(doubled, other.landmarks)
 
 
 def test_landmarks_on_two_pieces_are_named(other: Stranger) -> None:

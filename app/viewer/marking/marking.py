@@ -19,7 +19,7 @@ import scipy
 from risorius.assets.errors import AssetError
 from risorius.assets.fitting.guess import FIRST, centred, guess, placing
 from risorius.assets.fitting.landmark_file import landmarks_text, read_marks
-from risorius.assets.fitting.mesh_validation import check_manifold
+from risorius.assets.fitting.mesh_validation import check_pieces
 from risorius.assets.fitting.warp import Similarity
 from risorius.assets.meshes import read_mesh
 from risorius.geometry.normals import vertex_normals
@@ -117,7 +117,7 @@ class Marking:
         with _for_users():
             self.mesh = mesh = read_mesh(path)
         with _for_users(f"{path.name}: "):
-            check_manifold(mesh.faces)
+            check_pieces(mesh.faces, len(mesh.vertices))
         self.file: Path | None = None  # in which the marks are kept
         self.marks = self._saved = Marks({})
         self.current = FIRST[0]
