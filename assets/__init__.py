@@ -2,7 +2,7 @@
 
     head = assets.load("head")
     plane = assets.load("plane")
-    mesh = assets.read_mesh("sheet.ply")  # or OBJ, STL, OFF, GLB
+    mesh = assets.read_mesh("sheet.ply")  # or OBJ, STL, OFF, GLB, glTF
     head = fitting.fit_head("anna.obj", "anna.json")  # from risorius.assets import fitting
 
 The built-in head ships as data; docs/head.md says what it was fitted to.

@@ -1,14 +1,16 @@
-"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF or GLB, and what paints it.
+"""Read a triangle mesh that somebody brings: OBJ, PLY, STL, OFF, glTF or GLB, and what paints it.
 
-trimesh reads all but OBJ. It likes to merge and reorder vertices on loading, and to open the
-pictures and materials that a file names; here every vertex and triangle stays where the file has
-it, because landmarks and animation caches count on their numbers. What paints OBJ: pictures.py.
+Every vertex and triangle stays where the file has it, because landmarks and animation caches count
+on their numbers. trimesh reads STL and OFF; it likes to merge and reorder vertices, and of the
+others it leaves away or misreads what heads have. What paints OBJ: pictures.py.
 """
 
+import contextlib
 import io
 import logging
 import re
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,17 +19,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import AssetError
-from .pictures import Texture, shrunk, texture_of
+from .gltf import read_gltf
+from .pictures import Texture, texture_of
+from .ply import read_ply
 from .topology import unique_points
 from .user_files import MOST_VERTICES, named, plain_text, read_file
 from .wavefront import read_obj
 
-FORMATS = ("obj", "ply", "stl", "off", "glb")  # ends of names
+FORMATS = ("obj", "ply", "stl", "off", "glb", "gltf")  # ends of names
 MOST_MEGABYTES = 100
 FARTHEST = 1e9  # of a coordinate, in any unit: far beyond all, and its cube is still a number
-PACKED = re.compile(  # in which ways trimesh reads no positions
-    rb'"extensionsRequired"[^]]*"(KHR_draco_mesh_compression|EXT_meshopt_compression)"'
-)
 _BLANK_LINES = re.compile(rb"\n\s*\n")
 
 
@@ -39,7 +40,10 @@ class Mesh:
     faces: vertex numbers, shape (F, 3), int32.
     texture: how the file itself paints it, where it does.
     colours: of its vertices, sRGB, shape (V, 3), uint8, where the file has such.
+    has_colour: which vertices have one, shape (V,); None: all.
     same: of vertices that the file doubles, the one that `faces` name, shape (V,).
+    corners: the vertices of triangles as the file numbers them, shape (F, 3), where some are
+        doubled; None: those of `faces`.
     notes: what its bringer should know, a line each.
     """
 
@@ -47,7 +51,9 @@ class Mesh:
     faces: npt.NDArray[np.int32]
     texture: Texture | None = None
     colours: npt.NDArray[np.uint8] | None = None
+    has_colour: npt.NDArray[np.bool_] | None = None
     same: npt.NDArray[np.integer[Any]] | None = None
+    corners: npt.NDArray[np.int32] | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -66,26 +72,65 @@ def read_mesh(path: str | Path) -> Mesh:
             cure = "unpack it" if suffix in ("gz", "zip") else "save the mesh as one of these"
             raise AssetError(f"its name must end in {known}: {cure}")
         content = read_file(path, kind="mesh", most=MOST_MEGABYTES)
-        same, colours, notes = None, None, tuple[str, ...]()
-        if suffix == "obj":
-            surface = read_obj(content, most=MOST_VERTICES)
-            vertices, faces = surface.vertices, surface.faces
-            texture, notes = texture_of(surface, Path(path).parent)
-        else:
-            vertices, faces, texture, colours = _read(content, suffix)
-        if suffix == "stl":
-            vertices = vertices + 0.0  # no zero with a sign
-            first, number = unique_points(vertices)
-            vertices, faces = vertices[first], number[faces]
-        _check(vertices, faces)
-        if suffix == "glb" and texture is not None:  # its vertices are doubled along seams
-            first, number = unique_points(vertices + 0.0)
-            same = first[number]
-            faces = same[faces]
+        with _broken_files_named():
+            mesh = _read(content, suffix, Path(path).parent)
+        _check(mesh.vertices, mesh.faces)
     except AssetError as error:
         raise AssetError(f"{named(path)}: {error}") from None
-    numbers = faces.astype(np.int32)
-    return Mesh(vertices.astype(np.float64), numbers, texture, colours, same, notes)
+    return mesh
+
+
+def _read(content: bytes, suffix: str, folder: Path) -> Mesh:
+    """The mesh in a file of a format. folder: in which other files of it may lie."""
+    if suffix == "obj":
+        surface = read_obj(content, most=MOST_VERTICES)
+        texture, notes = texture_of(surface, folder)
+        return Mesh(surface.vertices, _numbers(surface.faces), texture, notes=notes)
+    if suffix == "ply":
+        points = read_ply(content)
+        return Mesh(points.vertices, _numbers(points.faces), colours=points.colours)
+    if suffix in ("glb", "gltf"):
+        shown = read_gltf(content, folder)
+        return Mesh(
+            shown.vertices,
+            _numbers(shown.faces),
+            shown.texture,
+            shown.colours,
+            shown.has_colour,
+            shown.same,
+            _numbers(shown.corners),
+        )
+    vertices, faces = _read_by_trimesh(content, suffix)
+    if suffix == "stl":
+        vertices = vertices + 0.0  # no zero with a sign
+        first, number = unique_points(vertices)
+        vertices = vertices[first]
+        faces = number[faces]
+    return Mesh(vertices, _numbers(faces))
+
+
+def _numbers(faces: npt.NDArray[Any]) -> npt.NDArray[np.int32]:
+    """Vertex numbers as 32 bits hold them; those beyond are beyond any mesh."""
+    return faces.clip(-1, np.iinfo(np.int32).max).astype(np.int32)
+
+
+@contextlib.contextmanager
+def _broken_files_named() -> Iterator[None]:
+    """What a reader stumbles over becomes an AssetError: every one has its own kinds."""
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            # numpy's way to say that a number is none, after which it would read no further
+            warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
+            yield
+    except AssetError:
+        raise
+    except Exception as error:
+        reason = " ".join(f"{type(error).__name__}: {error}".split())[-200:]
+        raise AssetError(
+            f"broken, or not what its name says ({reason}); open it in a modelling program, "
+            "triangulate it and save it anew"
+        ) from None
 
 
 def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
@@ -113,79 +158,17 @@ def _check(vertices: npt.NDArray[Any], faces: npt.NDArray[Any]) -> None:
         )
 
 
-def _read(content: bytes, suffix: str) -> tuple[Any, Any, Texture | None, Any]:
-    """Vertices, triangles and what paints them of a file for trimesh; AssetError where it fails.
-
-    suffix: the end of its name, "ply", "stl", "off" or "glb".
-    """
+def _read_by_trimesh(content: bytes, suffix: str) -> tuple[Any, Any]:
+    """Vertices and triangles of a file whose name ends in "stl" or "off"."""
     import trimesh  # which to load a head takes no time for
 
-    if packed := PACKED.search(content) if suffix == "glb" else None:
-        raise AssetError(f"is compressed ({packed[1].decode()}); export it without compression")
     logging.getLogger("trimesh").disabled = True
-    try:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")
-            # numpy's way to say that a number is none, after which it would read no further
-            warnings.filterwarnings("error", category=DeprecationWarning, message="string or file")
-            scene: Any = trimesh.load_scene(
-                io.BytesIO(_plain(content, suffix)),
-                file_type=suffix,
-                process=False,
-                maintain_order=True,
-                skip_materials=suffix != "glb",
-                fix_texture=False,
-            )
-            pieces: list[Any] = [each for each in scene.dump() if hasattr(each, "faces")]
-            starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
-            faces = [each.faces.reshape(-1, 3) + n for each, n in zip(pieces, starts, strict=False)]
-            joined = np.vstack([np.zeros((0, 3), np.int64), *faces])
-            texture, colours = _texture_of(pieces, joined) if suffix == "glb" else None, None
-            if pieces and all(each.visual.kind == "vertex" for each in pieces):
-                every = [np.asarray(each.visual.vertex_colors)[:, :3] for each in pieces]
-                colours = np.vstack(every).astype(np.uint8)
-    except Exception as error:  # every reader of trimesh has its own kinds
-        reason = " ".join(f"{type(error).__name__}: {error}".split())[-200:]
-        raise AssetError(
-            f"broken, or not what its name says ({reason}); open it in a modelling program, "
-            "triangulate it and save it anew"
-        ) from None
-    vertices = np.vstack([np.zeros((0, 3)), *(each.vertices for each in pieces)])
-    return vertices, joined, texture, colours
-
-
-def _texture_of(pieces: list[Any], faces: npt.NDArray[np.int64]) -> Texture | None:
-    """How the pieces of a GLB file are painted, `faces` those of all; None where they are not."""
-    uv, pictures, number = list[Any](), dict[int, npt.NDArray[np.uint8]](), list[Any]()
-    for each in pieces:
-        found = getattr(each.visual, "uv", None)
-        picture = getattr(getattr(each.visual, "material", None), "baseColorTexture", None)
-        at, places = -1, np.zeros((len(each.vertices), 2))
-        if picture is not None and found is not None and len(found) == len(each.vertices):
-            image = shrunk(picture)
-            key = hash(image.tobytes())  # each piece has a copy of its own
-            pictures.setdefault(key, image)
-            at, places = [*pictures].index(key), found[:, :2]
-        uv.append(places)
-        number.append(np.full(len(each.faces), at))
-    if not pictures:
-        return None
-    return Texture(
-        np.vstack(uv).astype(np.float32),
-        faces.astype(np.int32),
-        np.concatenate(number),
-        tuple(pictures.values()),
+    text = _BLANK_LINES.sub(b"\n", plain_text(content)) if b"\0" not in content else content
+    scene: Any = trimesh.load_scene(
+        io.BytesIO(text), file_type=suffix, process=False, maintain_order=True
     )
-
-
-def _plain(content: bytes, suffix: str) -> bytes:
-    """The same with its text as ASCII and without blank lines, over which trimesh would stumble."""
-    if suffix == "ply":
-        head, mark, body = content.partition(b"end_header")
-        return plain_text(head) + mark + (body if b"binary" in head else _lines(body))
-    is_text = suffix != "glb" and b"\0" not in content  # else STL of bytes
-    return _lines(content) if is_text else content
-
-
-def _lines(text: bytes) -> bytes:
-    return _BLANK_LINES.sub(b"\n", plain_text(text))
+    pieces: list[Any] = [each for each in scene.dump() if hasattr(each, "faces")]
+    starts = np.cumsum([0, *(len(each.vertices) for each in pieces)])
+    faces = [each.faces.reshape(-1, 3) + n for each, n in zip(pieces, starts, strict=False)]
+    vertices = np.vstack([np.zeros((0, 3)), *(each.vertices for each in pieces)])
+    return vertices, np.vstack([np.zeros((0, 3), np.int64), *faces])

@@ -1,26 +1,31 @@
 """The pictures with which a mesh file is painted: where they lie, and how much of them is taken.
 
 A file of somebody else's may name any path, and a picture of a few bytes may unfold to gigabytes.
-So only pictures in the mesh's own folder are opened, and only as large as is of use.
+So only pictures in the mesh's own folder are opened, only as large as is of use, and only those of
+triangles that are drawn.
 """
 
 from __future__ import annotations
 
 import io
 import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path, PureWindowsPath
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.colour import to_linear, to_screen
+
 from .data_files import Image
 from .errors import AssetError
-from .user_files import named, read_file
-from .wavefront import ObjSurface, pictures_of
+from .user_files import beside, named, read_file
+from .wavefront import MaterialPicture, ObjSurface, pictures_of
 
-FORMATS = ("PNG", "JPEG")
+FORMATS = ("PNG", "JPEG", "WEBP")
 MOST_MEGABYTES = 100
 LARGEST = 4096  # [pixels] each way: larger ones are shrunk; every graphics card takes them
 
@@ -32,13 +37,13 @@ class Texture:
     uv: texture coordinates, v up, shape (U, 2), float32. face_uv: their numbers for each corner,
         shape (F, 3), int32.
     picture: which of `pictures` each triangle has, -1 for none, shape (F,).
-    pictures: shape (H, W, 3) each.
+    pictures: functions that read one each, shape (H, W, 3), and raise AssetError if they cannot.
     """
 
     uv: npt.NDArray[np.float32]
     face_uv: npt.NDArray[np.int32]
     picture: npt.NDArray[np.int64]
-    pictures: tuple[Image, ...]
+    pictures: tuple[Callable[[], Image], ...]
 
 
 def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple[str, ...]]:
@@ -46,9 +51,9 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
 
     Beside it a line for each library that was never sent along, as with many files.
     """
-    by_material: dict[str, str] = {}
+    by_material: dict[str, MaterialPicture] = {}
     missing = []
-    for name in surface.libraries:
+    for name in _libraries(surface.libraries, folder):
         library = beside(folder, name)
         if library.exists():
             by_material.update(pictures_of(read_file(library, kind="material", most=1)))
@@ -56,54 +61,92 @@ def texture_of(surface: ObjSurface, folder: Path) -> tuple[Texture | None, tuple
             missing.append(
                 f"its material library {named(name)} is missing: painted without what it names"
             )
-    names = sorted({by_material[each] for each in surface.materials if each in by_material})
-    if not names or not len(surface.uv):
+    of_materials = [_picture_of(each, by_material) for each in surface.materials]
+    used = sorted({each for each in of_materials if each is not None})
+    if not used or not len(surface.uv):
         return None, tuple(missing)
     if surface.face_uv.max(initial=-1) >= len(surface.uv):
         raise AssetError(f"a face has a vt beyond the last, {len(surface.uv)}; save it anew")
-    numbers = [names.index(by_material[m]) if m in by_material else -1 for m in surface.materials]
+    numbers = [-1 if each is None else used.index(each) for each in of_materials]
     picture = np.array([*numbers, -1])[surface.material]
     picture[(surface.face_uv < 0).any(axis=1)] = -1
+    placings = sorted({each.placing for each in used})
+    uv = np.vstack([placing.placed(surface.uv) for placing in placings])
+    rows = np.array([placings.index(each.placing) for each in used])[np.maximum(picture, 0)]
     texture = Texture(
-        surface.uv.astype(np.float32),
-        np.maximum(surface.face_uv, 0).astype(np.int32),
+        uv.astype(np.float32),
+        (np.maximum(surface.face_uv, 0) + len(surface.uv) * rows[:, None]).astype(np.int32),
         picture,
-        tuple(_read_picture(beside(folder, name)) for name in names),
+        tuple(partial(_read_picture, folder, each.name) for each in used),
     )
     return texture, tuple(missing)
 
 
-def beside(folder: Path, name: str) -> Path:
-    """The path of a file in a folder; AssetError for a name that leads out of it."""
-    path = folder / PureWindowsPath(name).as_posix()
-    is_inside = path.resolve().is_relative_to(folder.resolve())
-    if not is_inside or PureWindowsPath(name).is_absolute():
-        raise AssetError(f"names the file '{named(name)}'; it must lie in the mesh's folder")
-    return path
+def _picture_of(
+    material: str, by_material: Mapping[str, MaterialPicture]
+) -> MaterialPicture | None:
+    """The picture of a material; behind its name may stand a remark."""
+    name = material if material in by_material else material.rpartition(" #")[0].rstrip()
+    return by_material.get(name)
 
 
-def _read_picture(path: Path) -> Image:
+def _libraries(lines: Sequence[str], folder: Path) -> list[str]:
+    """The libraries of `mtllib` lines: one name with blanks in it, or several names."""
+    found = []
+    for line in lines:
+        names = line.partition(" #")[0].split()
+        are_there = not beside(folder, line).exists() and any(
+            beside(folder, name).exists() for name in names
+        )
+        found += names if are_there else [line]
+    return found
+
+
+def _read_picture(folder: Path, name: str) -> Image:
+    path = beside(folder, name)
+    try:
+        content = read_file(path, kind="picture", most=MOST_MEGABYTES)
+    except AssetError as error:
+        raise AssetError(f"its picture {named(path.name)}: {error}") from None
+    return decoded(content, path.name)
+
+
+def decoded(content: bytes, name: str) -> Image:
+    """A picture of a file's content, sRGB, shape (H, W, 3), at most LARGEST each way.
+
+    name: for messages. Raises AssetError for what is broken, too large, or of another format.
+    """
     import PIL.Image  # which to load a head takes no time for
 
     try:
-        content = read_file(path, kind="picture", most=MOST_MEGABYTES)
         with warnings.catch_warnings():  # of what unfolds to gigabytes
             warnings.simplefilter("error", PIL.Image.DecompressionBombWarning)
             with PIL.Image.open(io.BytesIO(content), formats=FORMATS) as picture:
-                return shrunk(picture)
-    except AssetError as error:
-        raise AssetError(f"its picture {named(path.name)}: {error}") from None
+                return _shrunk(picture)
     except Exception as error:  # every format of Pillow has its own kinds
         reason = " ".join(str(error).split())[:200]
         raise AssetError(
-            f"its picture {named(path.name)}: is broken, too large, or neither PNG nor JPEG "
+            f"its picture {named(name)}: is broken, too large, or neither PNG, JPEG nor WebP "
             f"({reason}); save it anew"
         ) from None
 
 
-def shrunk(picture: Any) -> Image:
-    """A picture that Pillow has opened, sRGB, shape (H, W, 3), at most LARGEST each way."""
+def tinted(picture: Image, factor: Sequence[float]) -> Image:
+    """A picture times a factor of linear light for each of red, green and blue."""
+    shades = to_linear(np.arange(256) / 255.0)
+    table = np.rint(255.0 * to_screen(shades[:, None] * np.asarray(factor))).astype(np.uint8)
+    channels = [table[picture[..., channel], channel] for channel in range(3)]
+    return np.stack(channels, axis=-1)
+
+
+def _shrunk(picture: Any) -> Image:
+    """A picture that Pillow has opened, as `decoded` returns it."""
+    import PIL.Image
+
     picture.draft("RGB", (LARGEST, LARGEST))
+    if picture.mode.startswith("I"):  # grey of 16 bits, of which Pillow would cut off the brighter
+        levels = np.asarray(picture).astype(np.uint32)
+        picture = PIL.Image.fromarray(((levels + 128) // 257).astype(np.uint8))
     colours = picture.convert("RGB")
     colours.thumbnail((LARGEST, LARGEST))
     return np.asarray(colours)

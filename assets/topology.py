@@ -46,6 +46,18 @@ def unique_points(points: FloatArray) -> tuple[npt.NDArray[np.int64], npt.NDArra
     return first[order], np.argsort(order)[number.reshape(-1)]
 
 
+def strip_triangles(corners: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.int64]:
+    """The triangles of a strip (n,), shape (F, 3); those without area join parts of it, and go."""
+    if len(corners) < 3:
+        return np.zeros((0, 3), np.int64)
+    windows = np.lib.stride_tricks.sliding_window_view(corners.astype(np.int64), 3)
+    triangles: npt.NDArray[np.int64] = windows.copy()
+    triangles[1::2, :2] = windows[1::2, 1::-1]  # each other one runs the other way
+    has_area = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    triangles = triangles[has_area]
+    return triangles
+
+
 def grid_faces(rows: npt.NDArray[np.integer[Any]], *, closed: bool = False) -> Faces:
     """Triangles between neighbouring rows of vertex numbers (r, n); closed: a row ends in itself.
 

@@ -7,7 +7,7 @@ encoding. Nothing of that may reach a reader that trusts its file.
 import codecs
 import os
 import stat
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
 from .errors import AssetError
 
@@ -25,6 +25,15 @@ def named(path: str | Path) -> str:
     """The path as one line that any screen can show."""
     text = str(path)
     return text if text.isprintable() else ascii(text)[1:-1]
+
+
+def beside(folder: Path, name: str) -> Path:
+    """The path of a file in a folder; AssetError for a name that leads out of it."""
+    path = folder / PureWindowsPath(name).as_posix()
+    is_inside = path.resolve().is_relative_to(folder.resolve())
+    if not is_inside or PureWindowsPath(name).is_absolute():
+        raise AssetError(f"names the file '{named(name)}'; it must lie in the mesh's folder")
+    return path
 
 
 def read_file(path: str | Path, *, kind: str, most: int) -> bytes:

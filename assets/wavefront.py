@@ -11,6 +11,8 @@ Differs from it: free-form surfaces are left away, as is the weight w of a verte
 from __future__ import annotations
 
 import io
+import math
+import re
 from array import array
 from dataclasses import dataclass
 from itertools import pairwise
@@ -21,7 +23,16 @@ import numpy.typing as npt
 from .errors import AssetError
 from .user_files import plain_text
 
+PLACING = ("-o", "-s", "-t")  # options of maps in a material library with up to three numbers
+OPTIONS = {  # and how many words follow each, those included
+    **dict.fromkeys(PLACING, 3),
+    "-mm": 2,
+    **dict.fromkeys(("-blendu", "-blendv", "-cc", "-clamp", "-texres", "-bm", "-boost"), 1),
+    **dict.fromkeys(("-imfchan", "-type", "-colorspace"), 1),
+}
 EXCERPT = 30  # bytes of what is wrong in a line, at most
+_REMARKS = re.compile(rb"(?m)^[ \t]*#[^\n]*")
+_CONTINUED = re.compile(rb"\\[ \t]*\n")
 
 
 @dataclass(frozen=True)
@@ -51,8 +62,7 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
     coordinates, places, corners, corner_places = array("d"), array("d"), array("q"), array("q")
     material, materials, libraries = array("q"), dict[str, int](), list[str]()
     current = -1
-    text = plain_text(content).replace(b"\\\n", b" ")  # a backslash joins lines
-    for number, line in enumerate(io.BytesIO(text), start=1):
+    for number, line in enumerate(io.BytesIO(_joined(content)), start=1):
         word, *fields = line.split(b"#", 1)[0].split() or [b""]
         try:
             if word == b"v":
@@ -67,10 +77,10 @@ def read_obj(content: bytes, *, most: int) -> ObjSurface:
                         corners.append(vertex)
                         corner_places.append(place)
                     material.append(current)
-            elif word == b"usemtl":
-                current = materials.setdefault(b" ".join(fields).decode(), len(materials))
+            elif word == b"usemtl":  # names may hold blanks and number signs
+                current = materials.setdefault(_parted(line.decode())[1], len(materials))
             elif word == b"mtllib":
-                libraries.append(b" ".join(fields).decode())
+                libraries.append(_parted(line.decode())[1])
         except (ValueError, IndexError, OverflowError):
             shown = line[:EXCERPT].decode().strip()
             raise AssetError(
@@ -111,13 +121,91 @@ def _polygon(fields: list[bytes], vertices: int, places: int) -> list[tuple[int,
     return polygon
 
 
-def pictures_of(content: bytes) -> dict[str, str]:
-    """The names of pictures of colour in a material library (MTL), by material."""
+@dataclass(frozen=True, order=True)
+class Placing:
+    """How a picture lies in texture coordinates.
+
+    scale, offset: of coordinates along u and v, in this order. is_clamped: whether the picture's
+    edge goes on beyond it; else it repeats.
+    """
+
+    scale: tuple[float, float] = (1.0, 1.0)
+    offset: tuple[float, float] = (0.0, 0.0)
+    is_clamped: bool = False
+
+    def placed(self, uv: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Texture coordinates (U, 2) of the file in this picture."""
+        placed = uv * self.scale + self.offset
+        return placed.clip(0.0, 1.0) if self.is_clamped else placed
+
+
+@dataclass(frozen=True, order=True)
+class MaterialPicture:
+    """The picture of a material's colour: the name of its file, and how it lies."""
+
+    name: str
+    placing: Placing
+
+
+def pictures_of(content: bytes) -> dict[str, MaterialPicture]:
+    """The pictures of colour in a material library (MTL), by material."""
     pictures, material = {}, ""
-    for line in plain_text(content).decode().split("\n"):
-        word, _, rest = line.strip().partition(" ")
+    for line in _joined(content).decode().split("\n"):
+        word, rest = _parted(line)
         if word == "newmtl":
-            material = rest.strip()
-        elif word == "map_Kd":  # options begin with -; then nothing tells where they end
-            pictures[material] = rest.split()[-1] if rest.startswith("-") else rest.strip()
+            material = rest
+        elif word.lower() == "map_kd" and rest:
+            pictures[material] = _picture_of(rest)
     return pictures
+
+
+def _picture_of(rest: str) -> MaterialPicture:
+    """The picture of a map: options, and then a name, which may hold blanks and be quoted."""
+    values: dict[str, list[str]] = {}
+    option, after = _parted(rest)
+    while option in OPTIONS and after:
+        rest = after
+        values[option] = []
+        for _ in range(OPTIONS[option]):
+            value, after = _parted(rest)
+            if not after or (option in PLACING and not _is_number(value)):
+                break  # of three numbers two may be missing, and the last word is the name
+            values[option].append(value)
+            rest = after
+        option, after = _parted(rest)
+    is_quoted = len(rest) > 2 and rest[0] == rest[-1] == '"'
+    placing = Placing(
+        _along_u_and_v(values.get("-s", []), 1.0),
+        _along_u_and_v(values.get("-o", []), 0.0),
+        values.get("-clamp") == ["on"],
+    )
+    return MaterialPicture(rest[1:-1] if is_quoted else rest, placing)
+
+
+def _along_u_and_v(values: list[str], default: float) -> tuple[float, float]:
+    """The first two of some numbers."""
+    u = float(values[0]) if values else default
+    v = float(values[1]) if len(values) > 1 else default
+    return u, v
+
+
+def _is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False
+
+
+def _parted(line: str) -> tuple[str, str]:
+    """The first word of a line and the rest of it, without blanks and tabs around."""
+    words = [*line.split(maxsplit=1), "", ""]
+    return words[0], words[1].strip()
+
+
+def _joined(content: bytes) -> bytes:
+    """Plain text in which a backslash at the end of a line joins it with the next.
+
+    A remark ends with its line: a path in it may end in a backslash.
+    """
+    text = _REMARKS.sub(b"", plain_text(content))
+    return _CONTINUED.sub(b" ", text)

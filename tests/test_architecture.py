@@ -44,7 +44,7 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
         ("refine_gl", {"moderngl", "numpy"}),
         ("sim", {"numpy", "scipy"}),
         ("render", {"glfw", "moderngl", "numpy", "pyrr"}),
-        ("assets", {"PIL", "fast_simplification", "numpy", "scipy", "trimesh"}),
+        ("assets", {"PIL", "fast_simplification", "numpy", "pygltflib", "scipy", "trimesh"}),
     ],
 )
 def test_packages_import_only_what_they_may(folder: str, allowed: set[str]) -> None:

@@ -212,7 +212,7 @@ def own_picture(
     used = np.unique(numbers)
     if used.max() < 0:
         return None
-    pictures = [texture.pictures[each] for each in used if each >= 0]
+    pictures = [texture.pictures[each]() for each in used if each >= 0]
     if used[0] < 0:
         mean = np.mean([each.mean(axis=(0, 1)) for each in pictures], axis=0)
         pictures.insert(0, np.full((1, 1, 3), mean.round(), np.uint8))

@@ -1,6 +1,9 @@
 """Meshes that somebody brings: order kept, mistakes told."""
 
+import struct
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -88,3 +91,114 @@ def test_corners_of_stl_become_vertices(tmp_path: Path) -> None:
     assert len(mesh.vertices) == len(ball.vertices)
     assert np.abs(mesh.vertices[mesh.faces] - ball.triangles).max() < 1e-6
     assert mesh.faces[0].tolist() == [0, 1, 2]
+
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 1.5, 0)]
+HOUSE = [[0, 1, 2], [0, 2, 3], [2, 4, 3]]
+
+
+def ply(form: str, lists: Sequence[Sequence[int]], element: str = "face", **more: Any) -> bytes:
+    """A PLY file of five points and lists of their numbers.
+
+    more: "kind", that of the lists' numbers; "colours", a row for each point; "names" and
+    "colour_kind" of these.
+    """
+    kind = more.get("kind", "int")
+    colours = more.get("colours")
+    colour_kind = more.get("colour_kind", "uchar")
+    names = more.get("names", "red green blue").split() if colours is not None else []
+    lines = ["ply", f"format {form} 1.0", "comment made by hand", f"element vertex {len(CORNERS)}"]
+    lines += [f"property double {axis}" for axis in "xyz"]
+    lines += [f"property {colour_kind} {name}" for name in names]
+    lines += [f"element {element} {len(lists)}", "property uchar flags"]
+    lines += [f"property list uchar {kind} vertex_index", "end_header\n"]
+    header = "\n".join(lines).encode()
+    rows = [] if colours is None else [[*row] for row in colours]
+    if form == "ascii":
+        points = [[*xyz, *row] for xyz, row in zip(CORNERS, rows or [[]] * 5, strict=True)]
+        body = [*points, *([7, len(each), *each] for each in lists)]
+        return header + "".join(" ".join(map(str, row)) + "\n" for row in body).encode()
+    order = ">" if "big" in form else "<"
+    letters = {"uchar": "B", "ushort": "H", "float": "f", "int": "i", "uint": "I"}
+    body = b""
+    for place, xyz in enumerate(CORNERS):
+        body += struct.pack(f"{order}3d", *xyz)
+        if rows:
+            body += struct.pack(f"{order}{len(names)}{letters[colour_kind]}", *rows[place])
+    for each in lists:
+        body += struct.pack(f"{order}BB{len(each)}{letters[kind]}", 7, len(each), *each)
+    return header + body
+
+
+FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("lists", [HOUSE, [[0, 1, 2, 3], [2, 4, 3]], [[0, 1, 2, 4, 3]]])
+def test_polygons_of_ply_may_be_of_any_sizes(
+    tmp_path: Path, form: str, lists: list[list[int]]
+) -> None:
+    """Each becomes a fan, in the order of the file."""
+    path = tmp_path / "house.ply"
+    path.write_bytes(ply(form, lists))
+    mesh = assets.read_mesh(path)
+    assert mesh.vertices.tolist() == [list(map(float, each)) for each in CORNERS]
+    fans = [[a[0], a[k], a[k + 1]] for a in lists for k in range(1, len(a) - 1)]
+    assert mesh.faces.tolist() == fans and mesh.colours is None
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_ply_files_may_hold_strips(tmp_path: Path, form: str) -> None:
+    """Strips of triangles end at -1; each other triangle of one runs the other way."""
+    path = tmp_path / "strips.ply"
+    path.write_bytes(ply(form, [[1, 2, 0, 3, -1, 2, 4, 3], [3, 3, 0, 1]], "tristrips"))
+    mesh = assets.read_mesh(path)
+    assert mesh.faces.tolist() == [[1, 2, 0], [0, 2, 3], [2, 4, 3], [0, 3, 1]]
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(
+    ("colour_kind", "row", "names"),
+    [
+        ("uchar", (250, 125, 1), "red green blue"),
+        ("uchar", (250, 125, 1, 9), "r g b a"),
+        ("uchar", (250, 125, 1), "diffuse_red diffuse_green diffuse_blue"),
+        ("uchar", (1, 1, 1), "red green blue"),
+        ("float", (250 / 255, 125 / 255, 1 / 255), "red green blue"),
+        ("ushort", (250 * 257, 125 * 257, 257), "red green blue"),
+        ("int", (250, 125, 1), "red green blue"),
+    ],
+)
+def test_colours_of_ply_may_be_of_any_kind(
+    tmp_path: Path, form: str, colour_kind: str, row: tuple[float, ...], names: str
+) -> None:
+    """Integers of 8 or 16 bits, or shares; by the names that programs write."""
+    path = tmp_path / "house.ply"
+    colours = {"colours": [row] * 5, "colour_kind": colour_kind, "names": names}
+    path.write_bytes(ply(form, HOUSE, **colours))
+    mesh = assets.read_mesh(path)
+    wanted = [1, 1, 1] if row == (1, 1, 1) else [250, 125, 1]
+    assert mesh.colours is not None and mesh.colours.tolist() == [wanted] * 5
+    assert mesh.faces.tolist() == HOUSE
+
+
+@pytest.mark.parametrize("end", ["\r\n", " \r\n", "\n"])
+def test_lines_may_end_anyhow(tmp_path: Path, end: str) -> None:
+    """Of PLY as text, of the header of PLY in bytes, and of OBJ, joined by a backslash or not."""
+    text = ply("ascii", HOUSE)
+    head, body = ply("binary_little_endian", HOUSE).split(b"end_header\n")
+    files = {
+        "text.ply": text.replace(b"\n", end.encode()),
+        "bytes.ply": head.replace(b"\n", end.encode()) + b"end_header" + end.encode() + body,
+        "tabs.obj": (
+            "# in C:\\models\\\nv\t0 0 0\t\nv 1 0 0 \nv 1 \\\n 1 0\n  v 0 1 0\nv .5 1.5 0\n"
+            "f\t1 2 \\\n\t3\nf 1//\t3// 4//  # roof\nf 3 5 4\n"
+        )
+        .replace("\n", end)
+        .encode(),
+    }
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+        mesh = assets.read_mesh(tmp_path / name)
+        assert mesh.faces.tolist() == HOUSE
+        assert mesh.vertices.tolist() == [list(map(float, each)) for each in CORNERS]

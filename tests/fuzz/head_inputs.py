@@ -190,7 +190,7 @@ def head_inputs() -> list[OddHead]:
         ),
         *(
             OddHead(f"called {n}", partial(_mesh, n, TRIANGLE), r"its name must end in \.obj, \.p")
-            for n in ("head", "head.obj.gz", "head.gltf", ".obj")
+            for n in ("head", "head.obj.gz", "head.fbx", ".obj")
         ),
         *(
             OddHead(f"called {name!r}", partial(_mesh, name, TRIANGLE), Kind.MESH)

@@ -1,0 +1,290 @@
+"""The surface that a glTF or GLB file shows: its triangles at rest, and what paints them.
+
+Nodes place meshes, bones bend them, shapes are added as the file weighs them. All becomes one list
+of triangles in the coordinates of the scene, node by node and part by part.
+
+A vertex at a seam of the texture comes twice. Vertices of one node in one place are one, unless the
+file moves them apart by a shape or a bone: then they are of two lips that touch.
+
+Source: Khronos Group, "glTF 2.0 Specification", section 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .gltf_file import DRACO, GltfFile, entry, packed
+from .gltf_painter import GltfPainter
+from .pictures import Texture
+from .topology import strip_triangles, unique_points
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+TRIANGLES, STRIP, FAN = 4, 5, 6  # modes of a primitive that is a surface
+APART = 1e-3  # of the farthest way of any vertex: so far apart two move that are not the same
+MOST_IN_ONE_PLACE = 16  # vertices that move each in its own way; others there stay as they are
+
+
+@dataclass(frozen=True)
+class GltfSurface:
+    """What a glTF file shows.
+
+    vertices: in the coordinates of the scene, shape (V, 3). faces: shape (F, 3).
+    same: of vertices that the file doubles, the one that `faces` name, shape (V,).
+    corners: the same triangles with the numbers of the file, shape (F, 3).
+    texture: how pictures paint it; None where none does.
+    colours: of vertices, sRGB, shape (V, 3), uint8; None where there are none.
+    has_colour: which vertices have one, shape (V,).
+    """
+
+    vertices: Floats
+    faces: Integers
+    same: Integers
+    corners: Integers
+    texture: Texture | None
+    colours: npt.NDArray[np.uint8] | None
+    has_colour: npt.NDArray[np.bool_]
+
+
+class _Piece(NamedTuple):
+    """One primitive of a mesh, as one node shows it."""
+
+    node: int
+    stored: Floats  # (V, 3) positions as in the file
+    seen: Floats  # (V, 3) in the scene
+    motion: Floats  # (V, 4) of shapes and bones, mixed: alike where vertices move alike
+    faces: Integers  # (F, 3)
+    picture: int  # its number, -1 for none
+    uv: Floats  # (V, 2), v up
+    colours: npt.NDArray[np.uint8] | None  # (V, 3)
+
+
+def read_gltf(content: bytes, folder: Path) -> GltfSurface:
+    """The surface in a file. folder: its own, in which other files of it may lie.
+
+    Raises AssetError for what cannot be read, and any other error for what is broken.
+    """
+    reader = _Reader(GltfFile(content, folder))
+    pieces = [*reader.pieces()]
+    starts = np.cumsum([0, *(len(piece.seen) for piece in pieces)])
+    shifted = [piece.faces + start for piece, start in zip(pieces, starts, strict=False)]
+    corners = np.vstack([np.zeros((0, 3), np.int64), *shifted])
+    picture = np.repeat([piece.picture for piece in pieces], [len(piece.faces) for piece in pieces])
+    same = np.concatenate([np.zeros(0, np.int64), *_same_vertices(pieces, starts)])
+    faces = same[corners]
+    has_area = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    faces = faces[has_area]
+    corners = corners[has_area]
+    picture = picture[has_area]
+    texture = None
+    if reader.painter.pictures:
+        uv = np.vstack([piece.uv for piece in pieces])
+        texture = Texture(
+            np.nan_to_num(uv).astype(np.float32),
+            corners.astype(np.int32),
+            picture.astype(np.int64),
+            tuple(reader.painter.pictures.values()),
+        )
+    has_colour = [np.full(len(piece.seen), piece.colours is not None) for piece in pieces]
+    colours = [np.zeros(piece.seen.shape, np.uint8) for piece in pieces]
+    for place, piece in enumerate(pieces):
+        if piece.colours is not None:
+            colours[place] = piece.colours
+    is_coloured = any(piece.colours is not None for piece in pieces)
+    return GltfSurface(
+        np.vstack([np.zeros((0, 3)), *(piece.seen for piece in pieces)]),
+        faces,
+        same,
+        corners,
+        texture,
+        np.vstack(colours) if is_coloured else None,
+        np.concatenate([np.zeros(0, np.bool_), *has_colour]),
+    )
+
+
+class _Reader:
+    """Reads pieces; the painter knows their pictures."""
+
+    def __init__(self, file: GltfFile) -> None:
+        self.painter = GltfPainter(file)
+        self._file = file
+        self._document = file.document
+        self._worlds = _places(self._document.nodes or [])
+
+    def pieces(self) -> Iterator[_Piece]:
+        """The surfaces of all nodes that the scene shows."""
+        for number in self._shown():
+            node = self._document.nodes[number]
+            if node.mesh is None:
+                continue
+            mesh = self._document.meshes[node.mesh]
+            weights = (node.extras or {}).get("weights") or mesh.weights or []
+            for primitive in mesh.primitives:
+                has_surface = primitive.mode is None or primitive.mode in (TRIANGLES, STRIP, FAN)
+                if has_surface and primitive.attributes.POSITION is not None:
+                    yield self._piece(number, primitive, weights)
+
+    def _shown(self) -> list[int]:
+        """The nodes of the scene, from its last root down: so vertices have always been counted."""
+        document = self._document
+        if document.scenes:
+            waiting = [*(document.scenes[document.scene or 0].nodes or [])]
+        else:
+            children = {child for node in document.nodes for child in node.children or []}
+            waiting = [number for number in range(len(document.nodes)) if number not in children]
+        found: dict[int, None] = {}
+        while waiting:
+            number = waiting.pop()
+            if number not in found:
+                found[number] = None
+                waiting += document.nodes[number].children or []
+        return [*found]
+
+    def _piece(self, number: int, primitive: Any, weights: list[float]) -> _Piece:
+        """One primitive. weights: of its shapes."""
+        attributes = vars(primitive.attributes)
+        accessor = self._document.accessors[attributes["POSITION"]]
+        if DRACO in (primitive.extensions or {}) and accessor.bufferView is None:
+            raise packed(DRACO)
+        stored = self._file.values(attributes["POSITION"]).astype(np.float64)
+        points = stored
+        motion = np.zeros((len(stored), 4))
+        mixture = np.random.default_rng(0)  # of shapes, and of bones: nothing cancels out
+        targets = [entry(target, "POSITION") for target in primitive.targets or []]
+        for place, target in enumerate(targets):
+            share = mixture.uniform(0.5, 1.5)
+            if target is None:
+                continue
+            added = self._file.values(target).astype(np.float64)
+            motion[:, :3] += share * added
+            if place < len(weights) and weights[place]:
+                points = points + weights[place] * added
+        node = self._document.nodes[number]
+        world = self._worlds[number]
+        seen = _moved(points, world)
+        is_turned = np.linalg.det(world[:3, :3]) < 0.0
+        if node.skin is not None and attributes.get("JOINTS_0") is not None:
+            is_turned = False
+            seen, motion[:, 3] = self._bent(points, seen, attributes, node.skin, mixture)
+        faces = self._faces(primitive, len(stored))
+        picture, uv, factor = self.painter.painted(primitive, len(stored))
+        colours = self.painter.colours(attributes, factor)
+        turned = np.ascontiguousarray(faces[:, ::-1]) if is_turned else faces
+        return _Piece(number, stored, seen, motion, turned, picture, uv, colours)
+
+    def _bent(
+        self,
+        points: Floats,
+        unbent: Floats,
+        attributes: Mapping[str, Any],
+        skin: int,
+        mixture: np.random.Generator,
+    ) -> tuple[Floats, Floats]:
+        """Where bones bring points (V, 3), and a mixture of these bones for each, shape (V,).
+
+        unbent: where the node alone has them, for points that no bone holds.
+        """
+        bones = self._document.skins[skin]
+        motions = np.array([self._worlds[joint] for joint in bones.joints])
+        if bones.inverseBindMatrices is not None:
+            columns = self._file.values(bones.inverseBindMatrices)
+            motions = motions @ columns.reshape(-1, 4, 4).swapaxes(1, 2)[: len(motions)]
+        sets = [n for n in range(8) if attributes.get(f"JOINTS_{n}") is not None]
+        joints = np.hstack([self._file.values(attributes[f"JOINTS_{n}"]) for n in sets])
+        weights = np.hstack([self._file.values(attributes[f"WEIGHTS_{n}"]) for n in sets])
+        names = mixture.uniform(0.5, 1.5, len(motions))
+        total = weights.sum(axis=1)
+        is_held = total > 0.0
+        weights = weights / np.where(is_held, total, 1.0)[:, None]
+        bent = np.zeros_like(points)
+        for slot in range(weights.shape[1]):
+            bent += weights[:, slot, None] * _moved(points, motions[joints[:, slot].astype(int)])
+        bent[~is_held] = unbent[~is_held]
+        return bent, (weights * names[joints.astype(int)]).sum(axis=1)
+
+    def _faces(self, primitive: Any, count: int) -> Integers:
+        """The triangles of a primitive with so many vertices."""
+        numbers = np.arange(count)
+        if primitive.indices is not None:
+            numbers = self._file.values(primitive.indices)[:, 0].astype(np.int64)
+        if len(numbers) and numbers.max() >= count:
+            raise IndexError(f"a triangle names vertex {numbers.max()} of {count}")
+        if primitive.mode == STRIP:
+            return strip_triangles(numbers)
+        if primitive.mode == FAN:
+            first = np.full(max(len(numbers) - 2, 0), numbers[0] if len(numbers) else 0)
+            return np.stack([first, numbers[1:-1], numbers[2:]], axis=1)
+        return numbers[: len(numbers) // 3 * 3].reshape(-1, 3)
+
+
+def _moved(points: Floats, matrices: Floats) -> Floats:
+    """Points (V, 3) moved by a matrix (4, 4), or by one each, (V, 4, 4)."""
+    rows = matrices[..., :3, :]
+    # Written out: equal points come out equal to the last bit, wherever they stand in the list.
+    along = [rows[..., axis] * points[:, axis, None] for axis in range(3)]
+    moved: Floats = along[0] + along[1] + along[2] + rows[..., 3]
+    return moved
+
+
+def _places(nodes: list[Any]) -> list[Floats]:
+    """The matrix of each node to the scene, (4, 4)."""
+    parents = {child: number for number, node in enumerate(nodes) for child in node.children or []}
+    local = [_local(node) for node in nodes]
+    found = []
+    for number in range(len(nodes)):
+        matrix = local[number]
+        above = parents.get(number)
+        steps = 0
+        while above is not None:
+            matrix = local[above] @ matrix
+            above = parents.get(above)
+            steps += 1
+            if steps > len(nodes):
+                raise ValueError(f"node {number} hangs on itself")
+        found.append(matrix)
+    return found
+
+
+def _local(node: Any) -> Floats:
+    """The matrix of a node to its parent, (4, 4)."""
+    from scipy.spatial.transform import Rotation  # which to load a head takes no time for
+
+    if node.matrix:
+        return np.array(node.matrix, np.float64).reshape(4, 4).T
+    matrix = np.eye(4)
+    if node.rotation:
+        matrix[:3, :3] = Rotation.from_quat(node.rotation).as_matrix()
+    matrix[:3, :3] *= np.array(node.scale or (1.0, 1.0, 1.0))
+    matrix[:3, 3] = node.translation or (0.0, 0.0, 0.0)
+    return matrix
+
+
+def _same_vertices(pieces: list[_Piece], starts: Integers) -> Iterator[Integers]:
+    """For each node in turn, which of its vertices is the first of those that are one."""
+    for node in dict.fromkeys(piece.node for piece in pieces):
+        own = [piece for piece in pieces if piece.node == node]
+        start = starts[next(n for n, piece in enumerate(pieces) if piece.node == node)]
+        motion = np.vstack([piece.motion for piece in own])
+        motion[:, :3] /= max(abs(motion[:, :3]).max(initial=0.0), 1e-300)
+        yield start + _first_of_same(np.vstack([piece.stored for piece in own]), motion)
+
+
+def _first_of_same(stored: Floats, motion: Floats) -> Integers:
+    """The first of the vertices that lie in one place and move alike, shape (V,)."""
+    same = np.arange(len(stored))
+    left = np.arange(len(stored))
+    for _ in range(MOST_IN_ONE_PLACE):
+        first, number = unique_points(stored[left] + 0.0)  # no zero with a sign
+        same[left] = left[first[number]]
+        left = left[abs(motion[left] - motion[same[left]]).max(axis=1) > APART]
+        if not len(left):
+            return same
+    same[left] = left
+    return same

@@ -1,0 +1,207 @@
+"""A glTF file taken apart: its document, the numbers of its accessors, the files of its pictures.
+
+pygltflib reads the document. The data lie in the GLB file itself, in text within the document, or
+in files beside it. Numbers come out as the specification means them: integers that are normalized
+become shares, sparse ones are filled in, and rows may lie interleaved.
+
+Source: Khronos Group, "glTF 2.0 Specification", sections 3.6 and 4, and its registry of extensions.
+Differs from it: an accessor of matrices holds matrices of 4 x 4 floats alone.
+"""
+
+from __future__ import annotations
+
+import base64
+import struct
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote_to_bytes
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import AssetError
+from .user_files import MOST_VERTICES, beside, named, read_file
+
+MAGIC = b"glTF"  # how a GLB file begins
+MOST_NUMBERS = 3 * MOST_VERTICES  # rows of one accessor: the corners of so many triangles
+MOST_MEGABYTES = 100  # of a file of data
+COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+# What a file may require: its numbers, and all that changes looks alone, by how the names begin.
+READ = (
+    *("KHR_mesh_quantization", "KHR_texture_", "EXT_texture_", "MSFT_texture_"),
+    *("KHR_materials_", "KHR_lights_", "EXT_lights_", "KHR_xmp"),
+)
+DRACO = "KHR_draco_mesh_compression"
+MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
+PACKED = (DRACO, *MESHOPT)
+
+
+class GltfFile:
+    """One file. Of a broken one, each question may raise any error beside AssetError.
+
+    document: that of pygltflib, without animations and extras.
+    """
+
+    def __init__(self, content: bytes, folder: Path) -> None:
+        """content: of the file. folder: its own, in which other files of it may lie.
+
+        Raises AssetError, which names them, for extensions that it needs and nobody reads here.
+        """
+        import pygltflib  # which to load the built-in head takes no time for
+
+        text, self._data = _chunks(content) if content.startswith(MAGIC) else (content, None)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of pygltflib, which would print them
+            self.document = pygltflib.GLTF2.from_json(
+                text.decode("utf-8-sig"), infer_missing=True, object_hook=_tidied
+            )
+        self._folder = folder
+        self._buffers: dict[int, bytes] = {}
+        version = str(self.document.asset.version)
+        if not version.startswith("2."):
+            raise AssetError(f"is glTF {named(version)}; export it as glTF 2.0")
+        for name in self.document.extensionsRequired or []:
+            if name in PACKED:
+                raise packed(name)
+            if not str(name).startswith(READ):
+                raise AssetError(
+                    f"needs the extension {named(name)}, which is not read here; export it without"
+                )
+
+    def values(self, number: int) -> npt.NDArray[Any]:
+        """The rows of an accessor, shape (count, width); shares and floats as float64."""
+        accessor = self.document.accessors[number]
+        kind = np.dtype(COMPONENTS[accessor.componentType])
+        width = WIDTHS[accessor.type]
+        if not 0 <= accessor.count <= MOST_NUMBERS:
+            raise AssetError(
+                f"has an accessor of {accessor.count} rows; allowed are {MOST_NUMBERS}: reduce the "
+                "mesh in a modelling program"
+            )
+        shape = (accessor.count, width)
+        if accessor.bufferView is None:
+            rows = np.zeros(shape, kind)
+        else:
+            rows = self._rows(accessor.bufferView, accessor.byteOffset, kind, shape)
+        if accessor.sparse is not None:
+            rows = self._filled_in(rows, accessor.sparse)
+        if kind.kind == "f":
+            return rows.astype(np.float64)
+        return shares(rows) if accessor.normalized else rows
+
+    def picture(self, number: int) -> tuple[bytes, str]:
+        """The content of a picture's file, and what it is called."""
+        image = self.document.images[number]
+        if image.uri is None:
+            return bytes(self._view(image.bufferView)), str(image.name or number)
+        is_inside = image.uri.startswith("data:")
+        name = image.name or (number if is_inside else image.uri)
+        return self._content(image.uri, "picture"), str(name)
+
+    def _filled_in(self, rows: npt.NDArray[Any], sparse: Any) -> npt.NDArray[Any]:
+        """Rows with those in place of which a sparse accessor has others."""
+        places = sparse.indices
+        kind = np.dtype(COMPONENTS[places.componentType])
+        where = self._rows(places.bufferView, places.byteOffset, kind, (sparse.count, 1))[:, 0]
+        shape = (sparse.count, rows.shape[1])
+        filled = rows.copy()
+        filled[where] = self._rows(
+            sparse.values.bufferView, sparse.values.byteOffset, rows.dtype, shape
+        )
+        return filled
+
+    def _rows(
+        self, view: int, offset: int | None, kind: np.dtype[Any], shape: tuple[int, int]
+    ) -> npt.NDArray[Any]:
+        """Rows that lie in a part of a buffer, one behind the other or with other data between."""
+        count, width = shape
+        stride = self.document.bufferViews[view].byteStride or width * kind.itemsize
+        if not count:
+            return np.zeros(shape, kind)
+        strides = (stride, kind.itemsize)
+        return np.ndarray(shape, kind, self._view(view), offset or 0, strides)
+
+    def _view(self, number: int) -> memoryview:
+        """A part of a buffer."""
+        view = self.document.bufferViews[number]
+        compressed = [name for name in MESHOPT if name in (view.extensions or {})]
+        start = view.byteOffset or 0
+        data = self._buffer(view.buffer, compressed)
+        if start < 0 or start + view.byteLength > len(data):
+            raise ValueError(f"buffer {view.buffer} ends before its data do")
+        return memoryview(data)[start : start + view.byteLength]
+
+    def _buffer(self, number: int, compressed: list[str]) -> bytes:
+        """The bytes of a buffer; compressed: by which extensions alone they may be there."""
+        if number not in self._buffers:
+            uri = self.document.buffers[number].uri
+            if uri is not None:
+                self._buffers[number] = self._content(uri, "buffer")
+            elif number == 0 and self._data is not None:
+                self._buffers[number] = self._data
+            elif compressed:
+                raise packed(compressed[0])
+            else:
+                raise AssetError(f"its buffer {number} is missing; export it as one file, GLB")
+        return self._buffers[number]
+
+    def _content(self, uri: str, kind: str) -> bytes:
+        """What a URI names: data in itself, or a file beside this one."""
+        if uri.startswith("data:"):
+            head, _, data = uri.partition(",")
+            plain = unquote_to_bytes(data)
+            return base64.b64decode(plain) if head.endswith(";base64") else plain
+        name = unquote_to_bytes(uri).decode()
+        path = beside(self._folder, name)
+        try:
+            return read_file(path, kind=kind, most=MOST_MEGABYTES)
+        except AssetError as error:
+            raise AssetError(f"its {kind} {named(name)}: {error}") from None
+
+
+def entry(part: Any, name: str) -> Any:
+    """A part of the document's, which is an object of pygltflib or, in extensions, a mapping."""
+    return part.get(name) if isinstance(part, Mapping) else getattr(part, name, None)
+
+
+def shares(rows: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """Integers as shares of the greatest: 0 to 1, those with a sign -1 to 1."""
+    greatest = np.iinfo(rows.dtype).max
+    return np.maximum(rows.astype(np.float64) / greatest, -1.0)
+
+
+def packed(name: str) -> AssetError:
+    """The refusal of a mesh that an extension compresses."""
+    return AssetError(f"is compressed ({name}); export it without compression")
+
+
+def _chunks(content: bytes) -> tuple[bytes, bytes | None]:
+    """The document of a GLB file and its binary data, None where it has none."""
+    version, length = struct.unpack_from("<II", content, 4)
+    if version != 2:
+        raise AssetError(f"is glTF {version}; export it as glTF 2.0")
+    found: dict[bytes, bytes] = {}
+    place = 12
+    while place + 8 <= min(length, len(content)):
+        size, kind = struct.unpack_from("<I4s", content, place)
+        place += 8
+        if place + size > len(content):
+            raise ValueError("it ends too early")
+        found.setdefault(kind, content[place : place + size])  # a second one of a kind is ignored
+        place += size
+    return found[b"JSON"], found.get(b"BIN\0")
+
+
+def _tidied(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """An object of the document as pygltflib can hold it.
+
+    It knows extras only as objects, and no weights of nodes, which are put among these. Animations
+    are not read: there may be thousands.
+    """
+    kept = {key: value for key, value in entries.items() if key not in ("extras", "animations")}
+    if "mesh" in entries and "weights" in entries:
+        kept["extras"] = {"weights": entries["weights"]}
+    return kept

@@ -1,0 +1,132 @@
+"""What paints the primitives of a glTF file: pictures, where they lie, tints, colours of vertices.
+
+Source: Khronos Group, "glTF 2.0 Specification", sections 3.8 and 3.9; KHR_texture_transform,
+KHR_materials_pbrSpecularGlossiness, EXT_texture_webp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius.geometry.colour import to_screen
+
+from .data_files import Image
+from .errors import AssetError
+from .gltf_file import GltfFile, entry, shares
+from .pictures import decoded, tinted
+
+Floats = npt.NDArray[np.float64]
+
+CLAMPED, MIRRORED = 33071, 33648  # ways in which a picture goes on beyond its edge; or it repeats
+WHITE = (1.0, 1.0, 1.0)
+SPECULAR = "KHR_materials_pbrSpecularGlossiness"
+UNREAD = ("KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds")  # formats of pictures
+
+
+class GltfPainter:
+    """Finds what paints a primitive. `pictures` are all so far, by image and tint, unread."""
+
+    def __init__(self, file: GltfFile) -> None:
+        self.pictures: dict[tuple[int, tuple[float, ...]], Callable[[], Image]] = {}
+        self._file = file
+        self._document = file.document
+
+    def painted(self, primitive: Any, count: int) -> tuple[int, Floats, tuple[float, ...]]:
+        """The number of its picture, texture coordinates (V, 2), and the tint of its material."""
+        attributes = vars(primitive.attributes)
+        nowhere = np.zeros((count, 2))
+        if primitive.material is None:
+            return -1, nowhere, WHITE
+        info, factor = _base_colour(self._document.materials[primitive.material])
+        if info is None:
+            return -1, nowhere, factor
+        placing = (entry(info, "extensions") or {}).get("KHR_texture_transform", {})
+        channel = placing.get("texCoord", entry(info, "texCoord") or 0)
+        coordinates = attributes.get(f"TEXCOORD_{channel}")
+        if coordinates is None:
+            return -1, nowhere, factor
+        texture = self._document.textures[entry(info, "index")]
+        uv = _placed(self._file.values(coordinates).astype(np.float64), placing)
+        if texture.sampler is not None:
+            sampler = self._document.samplers[texture.sampler]
+            for axis, way in enumerate((sampler.wrapS, sampler.wrapT)):
+                uv[:, axis] = _within_picture(uv[:, axis], way)
+        key = (self._image(texture), factor)
+        self.pictures.setdefault(key, partial(self._picture, *key))
+        return [*self.pictures].index(key), uv * [1.0, -1.0] + [0.0, 1.0], factor
+
+    def _image(self, texture: Any) -> int:
+        """The number of a texture's image, below 0 for one of a format that is not read."""
+        if texture.source is not None:
+            return int(texture.source)
+        extensions = texture.extensions or {}
+        if "EXT_texture_webp" in extensions:
+            return int(extensions["EXT_texture_webp"]["source"])
+        found = [place for place, name in enumerate(UNREAD) if name in extensions]
+        return -1 - found[0] if found else -1 - len(UNREAD)
+
+    def _picture(self, number: int, factor: tuple[float, ...]) -> Image:
+        """Read an image, when it is drawn; AssetError where it cannot be."""
+        if number < 0:
+            name = [*UNREAD, "no source"][-1 - number]
+            raise AssetError(f"its picture is of a kind that is not read ({name}); save it as PNG")
+        try:
+            content, title = self._file.picture(number)
+        except (LookupError, TypeError, ValueError) as error:
+            raise AssetError(
+                f"its picture {number} is not in it ({error}); export it anew"
+            ) from None
+        picture = decoded(content, title)
+        return picture if factor == WHITE else tinted(picture, factor)
+
+    def colours(
+        self, attributes: Mapping[str, Any], factor: tuple[float, ...]
+    ) -> npt.NDArray[np.uint8] | None:
+        """The colours of vertices, which are linear light in the file, shape (V, 3)."""
+        if attributes.get("COLOR_0") is None:
+            return None
+        light = self._file.values(attributes["COLOR_0"])[:, :3]
+        if light.dtype.kind != "f":  # whether it says so or not, integers are shares
+            light = shares(light)
+        screen = np.rint(255.0 * to_screen(np.nan_to_num(light) * factor))
+        return screen.astype(np.uint8)
+
+
+def _base_colour(material: Any) -> tuple[Any, tuple[float, ...]]:
+    """What names the picture of a material, None for none, and its tint in linear light."""
+    older = (material.extensions or {}).get(SPECULAR)
+    if older is not None:
+        info = older.get("diffuseTexture")
+        factor = older.get("diffuseFactor")
+    else:
+        metallic = material.pbrMetallicRoughness
+        info = entry(metallic, "baseColorTexture")
+        factor = entry(metallic, "baseColorFactor")
+    tint = tuple(float(each) for each in (factor or WHITE)[:3])
+    is_there = info is not None and entry(info, "index") is not None
+    return (info if is_there else None), tint
+
+
+def _placed(uv: Floats, placing: Mapping[str, Any]) -> Floats:
+    """Texture coordinates, v down, where KHR_texture_transform moves them.
+
+    They are scaled, then turned counter-clockwise as seen with v down, then shifted.
+    """
+    scaled = uv[:, :2] * placing.get("scale", (1.0, 1.0))
+    angle = float(placing.get("rotation", 0.0))
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return np.asarray(scaled @ turn.T + placing.get("offset", (0.0, 0.0)))
+
+
+def _within_picture(values: Floats, way: int | None) -> Floats:
+    """Coordinates along one axis of a picture that goes on beyond its edge in some way."""
+    if way == CLAMPED:
+        return values.clip(0.0, 1.0)
+    if way == MIRRORED:
+        return np.asarray(1.0 - abs(np.mod(values, 2.0) - 1.0))
+    return values

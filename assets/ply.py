@@ -1,0 +1,253 @@
+"""Read the surface of a PLY file: points with their colours, polygons, and strips of triangles.
+
+trimesh passes over strips, reads no binary polygons of several sizes, and knows colours by one name
+and in one size.
+
+Source: Turk 1994, "The PLY polygon file format"; names of colours and strips as programs write
+them.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .topology import strip_triangles
+from .user_files import MOST_VERTICES, plain_text
+
+KINDS = {
+    **dict.fromkeys(("char", "int8"), "i1"),
+    **dict.fromkeys(("uchar", "uint8"), "u1"),
+    **dict.fromkeys(("short", "int16"), "i2"),
+    **dict.fromkeys(("ushort", "uint16"), "u2"),
+    **dict.fromkeys(("int", "int32"), "i4"),
+    **dict.fromkeys(("uint", "uint32"), "u4"),
+    **dict.fromkeys(("float", "float32"), "f4"),
+    **dict.fromkeys(("double", "float64"), "f8"),
+}
+COLOURS = (
+    ("red", "green", "blue"),
+    ("r", "g", "b"),
+    ("diffuse_red", "diffuse_green", "diffuse_blue"),
+)
+CORNERS = 16  # of a polygon: lists of one length are read at once, but no strips
+_END = re.compile(rb"\bend_header[ \t]*(\r\n|\n|\r)")
+
+
+@dataclass(frozen=True)
+class PlySurface:
+    """What a PLY file says of a surface.
+
+    vertices: shape (V, 3), in the order of the file. faces: shape (F, 3); polygons become fans.
+    colours: of vertices, shape (V, 3), uint8; None where there are none.
+    """
+
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.int64]
+    colours: npt.NDArray[np.uint8] | None
+
+
+class _Lists(NamedTuple):
+    """Lists of numbers, one a row, one behind the other."""
+
+    lengths: npt.NDArray[np.int64]  # (n,)
+    values: npt.NDArray[Any]  # all of them
+
+
+class _Property(NamedTuple):
+    name: str
+    kind: str
+    length: str | None  # the kind of a list's length; None: it is no list
+
+
+@dataclass
+class _Element:
+    name: str
+    count: int
+    properties: list[_Property] = field(default_factory=list)
+
+
+def read_ply(content: bytes) -> PlySurface:
+    """The surface in a file. Raises AssetError or any other error for what is broken."""
+    end = _END.search(content)
+    if end is None:
+        raise ValueError("its header has no end")
+    elements, form = _header(plain_text(content[: end.start()]))
+    data = content[end.end() :]
+    is_text = form == "ascii"
+    body = _Numbers(data) if is_text else _Bytes(data, ">" if "big" in form else "<")
+    read = {element.name: _rows(element, body) for element in elements}
+    points = read["vertex"]
+    vertices = np.column_stack([points[axis] for axis in "xyz"]).astype(np.float64)
+    faces = [np.zeros((0, 3), np.int64)]
+    if "face" in read:
+        faces.append(_fans(_corners(read["face"])))
+    if "tristrips" in read:
+        faces += _strips(_corners(read["tristrips"]))
+    return PlySurface(vertices, np.vstack(faces), _colours(points))
+
+
+def _header(text: bytes) -> tuple[list[_Element], str]:
+    """What the file holds, in its order, and the form of its numbers."""
+    first, *lines = text.decode().split("\n")
+    if first.strip() != "ply":
+        raise ValueError("it does not begin with ply")
+    elements: list[_Element] = []
+    form = "ascii"
+    for line in lines:
+        match line.split():
+            case ["format", name, *_]:
+                form = name
+            case ["element", name, count]:
+                elements.append(_Element(name, int(count)))
+            case ["property", "list", length, kind, name]:
+                elements[-1].properties.append(_Property(name, KINDS[kind], KINDS[length]))
+            case ["property", kind, name]:
+                elements[-1].properties.append(_Property(name, KINDS[kind], None))
+    return elements, form
+
+
+class _Numbers:
+    """Numbers in text, taken one behind the other."""
+
+    def __init__(self, text: bytes) -> None:
+        self._numbers = np.fromstring(plain_text(text), np.float64, sep=" ")
+        self.place = 0
+
+    def take(self, kind: str, count: int) -> npt.NDArray[Any]:
+        """So many numbers of a kind."""
+        found = self._numbers[self.place : self.place + count]
+        if not 0 <= count == len(found):
+            raise ValueError("it ends too early")
+        self.place += count
+        return found.astype(kind)
+
+    def table(self, kinds: list[str], count: int) -> list[npt.NDArray[Any]]:
+        """So many rows of numbers of some kinds, column by column."""
+        columns = self.take("f8", len(kinds) * count).reshape(count, len(kinds)).T
+        return [column.astype(kind) for column, kind in zip(columns, kinds, strict=True)]
+
+
+class _Bytes:
+    """Numbers in bytes, taken one behind the other."""
+
+    def __init__(self, data: bytes, order: str) -> None:
+        self._data = data
+        self._order = order
+        self.place = 0
+
+    def take(self, kind: str, count: int) -> npt.NDArray[Any]:
+        """So many numbers of a kind."""
+        return self._rows(np.dtype(self._order + kind), count)
+
+    def table(self, kinds: list[str], count: int) -> list[npt.NDArray[Any]]:
+        """So many rows of numbers of some kinds, column by column."""
+        rows = np.dtype([(str(place), self._order + kind) for place, kind in enumerate(kinds)])
+        found = self._rows(rows, count)
+        return [found[name] for name in rows.names or ()]
+
+    def _rows(self, kind: np.dtype[Any], count: int) -> npt.NDArray[Any]:
+        if count < 0 or self.place + count * kind.itemsize > len(self._data):
+            raise ValueError("it ends too early")
+        found = np.frombuffer(self._data, kind, count, self.place)
+        self.place += found.nbytes
+        return found
+
+
+def _rows(element: _Element, body: _Numbers | _Bytes) -> dict[str, Any]:
+    """The columns of an element by name: arrays (n,), or lists."""
+    if not 0 <= element.count <= 3 * MOST_VERTICES:
+        raise ValueError(f"{element.count} times '{element.name}' are too many")
+    if element.count:
+        start = body.place
+        lengths = [len(each) for each in _row(element, body)]
+        body.place = start
+        columns = _table(element, lengths, body) if max(lengths, default=0) <= CORNERS else None
+        if columns is not None:
+            return columns
+        body.place = start
+    rows = [_row(element, body) for _ in range(element.count)]
+    columns = {}
+    for place, each in enumerate(element.properties):
+        found = [row[place] for row in rows]
+        values = np.concatenate([np.zeros(0, each.kind), *found])
+        sizes = np.array([len(row) for row in found], np.int64)
+        columns[each.name] = values if each.length is None else _Lists(sizes, values)
+    return columns
+
+
+def _row(element: _Element, body: _Numbers | _Bytes) -> list[npt.NDArray[Any]]:
+    """One row: the numbers of each list, and one for each property that is none."""
+    row = []
+    for each in element.properties:
+        length = 1 if each.length is None else int(body.take(each.length, 1)[0])
+        row.append(body.take(each.kind, length))
+    return row
+
+
+def _table(element: _Element, lengths: list[int], body: _Numbers | _Bytes) -> dict[str, Any] | None:
+    """All rows at once, if their lists have these lengths throughout; else None."""
+    kinds = []
+    for each, length in zip(element.properties, lengths, strict=True):
+        kinds += [*([] if each.length is None else [each.length]), *[each.kind] * length]
+    try:
+        found = body.table(kinds, element.count)
+    except ValueError:  # other lists are shorter
+        return None
+    columns: dict[str, Any] = {}
+    for each, length in zip(element.properties, lengths, strict=True):
+        if each.length is None:
+            columns[each.name] = found.pop(0)
+            continue
+        sizes = found.pop(0).astype(np.int64)
+        if (sizes != length).any():
+            return None
+        values = [found.pop(0) for _ in range(length)]
+        columns[each.name] = _Lists(sizes, np.column_stack([sizes, *values])[:, 1:].ravel())
+    return columns
+
+
+def _corners(columns: dict[str, Any]) -> _Lists:
+    """The lists of vertex numbers among the columns of polygons or strips."""
+    lists = {name: each for name, each in columns.items() if isinstance(each, _Lists)}
+    named = [each for name, each in lists.items() if name in ("vertex_indices", "vertex_index")]
+    found = [*named, *lists.values()][0]
+    return _Lists(found.lengths, found.values.astype(np.int64))
+
+
+def _fans(polygons: _Lists) -> npt.NDArray[np.int64]:
+    """Triangles around the first corner of each polygon, shape (F, 3)."""
+    starts = np.cumsum(polygons.lengths) - polygons.lengths
+    counts = np.maximum(polygons.lengths - 2, 0)
+    first = np.repeat(starts, counts)
+    second = first + np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+    corners = np.stack([first, second, second + 1], axis=1)
+    triangles: npt.NDArray[np.int64] = polygons.values[corners]
+    return triangles
+
+
+def _strips(strips: _Lists) -> list[npt.NDArray[np.int64]]:
+    """The triangles of each strip; a number below 0 ends one within a list."""
+    ends = np.cumsum(strips.lengths)
+    parts = np.split(strips.values, ends[:-1])
+    pieces = [piece for part in parts for piece in np.split(part, np.flatnonzero(part < 0))]
+    return [strip_triangles(piece[piece >= 0]) for piece in pieces]
+
+
+def _colours(points: dict[str, Any]) -> npt.NDArray[np.uint8] | None:
+    """The colours of vertices, shape (V, 3): shares, or integers of 8 or 16 bits."""
+    for names in COLOURS:
+        if all(name in points for name in names):
+            found = np.nan_to_num(np.column_stack([points[name] for name in names]))
+            greatest = found.max(initial=0)
+            if found.dtype.kind == "f" and greatest <= 1.0:
+                found = 255.0 * found
+            elif greatest > 255:
+                found = found / 257.0
+            colours: npt.NDArray[np.uint8] = np.rint(found).clip(0, 255).astype(np.uint8)
+            return colours
+    return None

@@ -1,0 +1,500 @@
+"""glTF is read as its specification has it: every kind of numbers, places, pictures and colours."""
+
+import base64
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+import pytest
+
+from risorius import assets
+from risorius.assets import AssetError, Mesh
+from tests.assets.gltf_files import GltfMaker
+
+SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float64)
+FACES = np.array([[0, 1, 2], [0, 2, 3]])
+UV = np.array([[0.125, 0.75], [0.5, 0.75], [0.5, 0.25], [0.125, 0.25]])  # v down
+UP = UV * [1, -1] + [0, 1]
+RED, GREEN = (250, 10, 20), (10, 240, 30)
+
+
+@pytest.fixture
+def maker() -> GltfMaker:
+    """An empty file."""
+    return GltfMaker()
+
+
+def png(colour: tuple[int, ...] = RED, form: str = "PNG") -> bytes:
+    """A picture of one colour."""
+    content = io.BytesIO()
+    PIL.Image.new("RGBA" if len(colour) == 4 else "RGB", (4, 4), colour).save(content, form)
+    return content.getvalue()
+
+
+def material(maker: GltfMaker, texture: dict[str, Any], **more: Any) -> int:
+    """Add a material of a picture."""
+    pbr = {"baseColorTexture": texture, **more}
+    return maker.add("materials", {"pbrMetallicRoughness": pbr})
+
+
+def read(maker: GltfMaker, folder: Path) -> Mesh:
+    """What is read of the file."""
+    return assets.read_mesh(maker.write(folder / "a.glb"))
+
+
+def shape_of(mesh: Mesh) -> np.ndarray:
+    """The corners of its triangles, (F, 3, 3)."""
+    return mesh.vertices[mesh.faces]
+
+
+def uv_of(mesh: Mesh) -> np.ndarray:
+    """Texture coordinates of the corners, (F, 3, 2)."""
+    assert mesh.texture is not None
+    return mesh.texture.uv[mesh.texture.face_uv]
+
+
+def painted(maker: GltfMaker, uv: int, texture: dict[str, Any] | None = None, **more: Any) -> None:
+    """A square with a picture."""
+    number = material(maker, {"index": maker.picture(png()), **(texture or {})})
+    square = maker.primitive(SQUARE, FACES, attributes={"TEXCOORD_0": uv, **more}, material=number)
+    maker.shown({"mesh": maker.mesh(square)})
+
+
+@pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
+def test_texture_coordinates_may_be_shares(
+    maker: GltfMaker, tmp_path: Path, kind: str, greatest: int
+) -> None:
+    """Bytes and shorts that are normalized are shares of the greatest."""
+    rows = np.rint(UV * greatest) if greatest > 1 else UV
+    painted(maker, maker.accessor(rows, kind, normalized=greatest > 1, gap=2))
+    found = read(maker, tmp_path)
+    assert np.abs(uv_of(found) - UP[FACES]).max() < 0.6 / greatest + 1e-6
+
+
+def test_a_picture_may_have_the_second_coordinates(maker: GltfMaker, tmp_path: Path) -> None:
+    """The material says which set; any number."""
+    first, third = maker.accessor(np.zeros((4, 2))), maker.accessor(UV)
+    painted(maker, first, {"texCoord": 2}, TEXCOORD_1=first, TEXCOORD_2=third)
+    assert np.allclose(uv_of(read(maker, tmp_path)), UP[FACES])
+
+
+@pytest.mark.parametrize(
+    ("placing", "wanted"),
+    [
+        ({"offset": [0.25, 0.5]}, UV + np.array([0.25, 0.5])),
+        ({"scale": [0.5, 2.0], "offset": [0.25, 0.0]}, UV * [0.5, 2.0] + [0.25, 0.0]),
+        # Counter-clockwise where v runs down: what lies along u comes to lie along -v.
+        ({"rotation": np.pi / 2}, np.column_stack([UV[:, 1], -UV[:, 0]])),
+        ({"rotation": np.pi / 2, "scale": [2.0, 1.0]}, np.column_stack([UV[:, 1], -2 * UV[:, 0]])),
+        ({"texCoord": 1}, UV[::-1]),
+    ],
+)
+def test_texture_coordinates_are_transformed(
+    maker: GltfMaker, tmp_path: Path, placing: dict[str, Any], wanted: np.ndarray
+) -> None:
+    """KHR_texture_transform scales, turns and shifts them, and may name another set."""
+    maker.parts["extensionsRequired"] = ["KHR_texture_transform"]
+    info = {"extensions": {"KHR_texture_transform": placing}}
+    painted(maker, maker.accessor(UV), info, TEXCOORD_1=maker.accessor(UV[::-1]))
+    found = uv_of(read(maker, tmp_path))
+    assert np.allclose(found, (wanted * [1, -1] + [0, 1])[FACES], atol=1e-6)
+
+
+def test_pictures_go_on_beyond_their_edge_as_the_file_says(
+    maker: GltfMaker, tmp_path: Path
+) -> None:
+    """Clamped along u, mirrored along v."""
+    sampler = maker.add("samplers", {"wrapS": 33071, "wrapT": 33648})
+    texture = maker.picture(png(), sampler=sampler)
+    uv = maker.accessor(np.array([[-0.5, 1.25], [1.75, 1.25], [1.75, -0.25], [0.5, -0.25]]))
+    number = material(maker, {"index": texture})
+    square = maker.primitive(SQUARE, FACES, attributes={"TEXCOORD_0": uv}, material=number)
+    maker.shown({"mesh": maker.mesh(square)})
+    wanted = np.array([[0.0, 0.25], [1.0, 0.25], [1.0, 0.75], [0.5, 0.75]])
+    assert np.allclose(uv_of(read(maker, tmp_path)), wanted[FACES])
+
+
+@pytest.mark.parametrize(
+    ("kind", "normalized", "scale"),
+    [("i1", True, 127), ("i2", True, 32767), ("u2", False, 1), ("i2", False, 1), ("u1", False, 1)],
+)
+def test_positions_may_be_integers(
+    maker: GltfMaker, tmp_path: Path, kind: str, normalized: bool, scale: int
+) -> None:
+    """KHR_mesh_quantization: a node brings them to their size; rows are padded to four bytes."""
+    maker.parts["extensionsRequired"] = ["KHR_mesh_quantization"]
+    width = int(kind[1])
+    rows = maker.accessor(SQUARE * 100, kind, gap=-3 * width % 4, normalized=normalized)
+    square = {"attributes": {"POSITION": rows}, "indices": maker.accessor(FACES.ravel(), "u1")}
+    maker.shown({"mesh": maker.mesh(square), "scale": [scale / 100] * 3, "translation": [5, 0, 0]})
+    assert np.allclose(shape_of(read(maker, tmp_path)), (SQUARE + np.array([5, 0, 0]))[FACES])
+
+
+@pytest.mark.parametrize("width", [3, 4])
+@pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
+def test_colours_of_vertices_are_linear_light(
+    maker: GltfMaker, tmp_path: Path, kind: str, greatest: int, width: int
+) -> None:
+    """0.2 0.5 0.9 of light are 124 188 243 on a screen, in any kind of numbers."""
+    rows = np.tile(np.array([0.2, 0.5, 0.9, 0.3])[:width] * greatest, (4, 1))
+    rows = rows if greatest == 1 else np.rint(rows)
+    colours = maker.accessor(rows, kind, normalized=greatest > 1, gap=-width * int(kind[1]) % 4)
+    square = maker.primitive(SQUARE, FACES, attributes={"COLOR_0": colours})
+    maker.shown({"mesh": maker.mesh(square)})
+    found = read(maker, tmp_path).colours
+    assert found is not None and np.abs(found.astype(int) - (124, 188, 243)).max() <= 1
+
+
+def test_materials_tint(maker: GltfMaker, tmp_path: Path) -> None:
+    """Factors of light multiply colours and pictures; a picture without one is taken as it is."""
+    texture = maker.picture(png((200, 200, 200)))
+    half = material(maker, {"index": texture}, baseColorFactor=[0.5, 1.0, 0.0, 1.0])
+    plain = material(maker, {"index": texture})
+    attributes = {"TEXCOORD_0": maker.accessor(UV), "COLOR_0": maker.accessor(np.ones((4, 3)))}
+    squares = [
+        maker.primitive(SQUARE + shift, FACES, attributes=attributes, material=number)
+        for shift, number in ((0, half), (5, plain))
+    ]
+    maker.shown({"mesh": maker.mesh(*squares)})
+    found = read(maker, tmp_path)
+    assert found.texture is not None and found.colours is not None
+    assert found.texture.picture.tolist() == [0, 0, 1, 1]
+    tinted, whole = (picture() for picture in found.texture.pictures)
+    assert np.abs(tinted[0, 0].astype(int) - (147, 200, 0)).max() <= 1
+    assert whole[0, 0].tolist() == [200, 200, 200]
+    assert found.colours[0].tolist() == [188, 255, 0] and found.colours[4].tolist() == [255] * 3
+
+
+def test_older_materials_have_a_picture(maker: GltfMaker, tmp_path: Path) -> None:
+    """KHR_materials_pbrSpecularGlossiness calls it diffuse."""
+    info = {"diffuseTexture": {"index": maker.picture(png(GREEN)), "texCoord": 1}}
+    number = maker.add("materials", {"extensions": {"KHR_materials_pbrSpecularGlossiness": info}})
+    attributes = {"TEXCOORD_1": maker.accessor(UV)}
+    square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
+    maker.shown({"mesh": maker.mesh(square)})
+    found = read(maker, tmp_path)
+    assert found.texture is not None and np.allclose(uv_of(found), UP[FACES])
+    assert found.texture.pictures[0]()[0, 0].tolist() == list(GREEN)
+
+
+def test_webp_and_transparent_pictures_are_read(maker: GltfMaker, tmp_path: Path) -> None:
+    """A texture may have its picture by EXT_texture_webp alone; how transparent it is is left."""
+    image = maker.add("images", {"bufferView": maker.view(png((*RED, 9), "WEBP"))})
+    texture = maker.add("textures", {"extensions": {"EXT_texture_webp": {"source": image}}})
+    number = material(maker, {"index": texture})
+    attributes = {"TEXCOORD_0": maker.accessor(UV)}
+    square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
+    maker.shown({"mesh": maker.mesh(square)})
+    found = read(maker, tmp_path)
+    assert found.texture is not None and found.texture.pictures[0]().shape == (4, 4, 3)
+
+
+def test_nodes_place_meshes(maker: GltfMaker, tmp_path: Path) -> None:
+    """Turned, scaled, shifted, by a matrix, one on the other; a mirrored one keeps its outside."""
+    half = np.sqrt(0.5)
+    square = maker.mesh(maker.primitive(SQUARE, FACES))
+    matrix = np.array([[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 7], [0, 0, 0, 1.0]])
+    child = maker.add("nodes", {"mesh": square, "matrix": matrix.T.ravel().tolist()})
+    maker.add("nodes", {"mesh": square})  # which is in no scene
+    turned = {"rotation": [0, 0, half, half], "scale": [2, 2, 2], "translation": [0, 0, 1]}
+    maker.shown({"children": [child], **turned}, {"mesh": square})
+    found = read(maker, tmp_path)
+    mirrored = np.column_stack([-2 * SQUARE[:, 1], -2 * SQUARE[:, 0], SQUARE[:, 2] + 15])
+    assert np.allclose(shape_of(found)[:2], SQUARE[FACES])
+    assert np.allclose(shape_of(found)[2:], mirrored[FACES[:, ::-1]])
+
+
+@pytest.mark.parametrize(
+    ("mode", "corners", "wanted"),
+    [
+        (None, [0, 1, 2, 0, 2, 3], FACES),
+        (5, [1, 2, 0, 3], [[1, 2, 0], [0, 2, 3]]),
+        (5, [0, 0, 1, 2, 2, 3, 3], [[1, 0, 2]]),
+        (6, [0, 1, 2, 3], FACES),
+    ],
+)
+def test_triangles_may_be_strips_and_fans(
+    maker: GltfMaker, tmp_path: Path, mode: int | None, corners: list[int], wanted: Any
+) -> None:
+    """In any kind of indices; lines and points are left away."""
+    square = maker.primitive(SQUARE, None, **({} if mode is None else {"mode": mode}))
+    square["indices"] = maker.accessor(corners, "u2")
+    line = maker.primitive(SQUARE, [0, 1, 2, 3], mode=1)
+    maker.shown({"mesh": maker.mesh(line, square)})
+    assert read(maker, tmp_path).faces.tolist() == np.asarray(wanted).tolist()
+
+
+def test_triangles_need_no_indices(maker: GltfMaker, tmp_path: Path) -> None:
+    """Three vertices each; those in one place are one."""
+    maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE[FACES].reshape(-1, 3), None))})
+    assert read(maker, tmp_path).faces.tolist() == [[0, 1, 2], [0, 2, 5]]
+
+
+@pytest.mark.parametrize("has_rows", [True, False])
+def test_sparse_rows_are_filled_in(maker: GltfMaker, tmp_path: Path, has_rows: bool) -> None:
+    """In place of some rows there are others; where there are none at all, of zeros."""
+    filled = (
+        SQUARE + np.array([0, 0, 3]) if has_rows else np.where([[0], [1], [0], [1]], SQUARE, 0.0)
+    )
+    sparse = {
+        "count": 2,
+        "indices": {"bufferView": maker.view(bytes([1, 3])), "componentType": 5121},
+        "values": {"bufferView": maker.view(filled[[1, 3]].astype("<f4").tobytes())},
+    }
+    plain = (SQUARE + np.array([0, 0, 3])) * [[1], [9], [1], [9]]
+    more = {"bufferView": maker.view(plain.astype("<f4").tobytes())} if has_rows else {}
+    rows = maker.described((4, 3), "f4", sparse=sparse, **more)
+    square = {"attributes": {"POSITION": rows}, "indices": maker.accessor([0, 1, 3], "u1")}
+    maker.shown({"mesh": maker.mesh(square)})
+    assert np.allclose(shape_of(read(maker, tmp_path)), filled[[[0, 1, 3]]])
+
+
+def halves(shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """The square as two triangles of their own vertices."""
+    return SQUARE[[0, 1, 2]], SQUARE[[0, 2, 3]] + [0, 0, shift]
+
+
+@pytest.mark.parametrize("is_one_mesh", [True, False])
+def test_parts_of_a_mesh_hang_together(maker: GltfMaker, tmp_path: Path, is_one_mesh: bool) -> None:
+    """Materials and seams double vertices of a mesh; lashes are a mesh of their own."""
+    parts = [maker.primitive(half, [0, 1, 2]) for half in halves()]
+    meshes = [maker.mesh(*parts)] if is_one_mesh else [maker.mesh(part) for part in parts]
+    maker.shown(*({"mesh": number} for number in meshes))
+    found = read(maker, tmp_path)
+    assert len(found.vertices) == 6 and len(np.unique(found.faces)) == (4 if is_one_mesh else 6)
+
+
+@pytest.mark.parametrize("moved", ["shape", "bone", "nothing"])
+def test_vertices_that_move_apart_are_two(maker: GltfMaker, tmp_path: Path, moved: str) -> None:
+    """Lips that touch lie in one place; a shape or a bone of the file parts them."""
+    first, second = halves()
+    joints = np.zeros((3, 4))
+    attributes = [{}, {}]
+    if moved == "bone":
+        weights = maker.accessor(np.tile([1.0, 0, 0, 0], (3, 1)))
+        attributes = [
+            {"JOINTS_0": maker.accessor(joints + bone, "u1"), "WEIGHTS_0": weights}
+            for bone in (0, 1)
+        ]
+    shapes = [np.zeros((3, 3)), np.tile([0, 0.1, 0] if moved == "shape" else [0, 0, 0.0], (3, 1))]
+    parts = [
+        maker.primitive(
+            half, [0, 1, 2], attributes=own, targets=[{"POSITION": maker.accessor(added)}]
+        )
+        for half, own, added in zip((first, second), attributes, shapes, strict=True)
+    ]
+    bones = [maker.add("nodes", {}), maker.add("nodes", {})]
+    maker.add("skins", {"joints": bones})
+    node = {"mesh": maker.mesh(*parts), **({"skin": 0} if moved == "bone" else {})}
+    maker.shown(node)
+    found = read(maker, tmp_path)
+    assert len(np.unique(found.faces)) == (4 if moved == "nothing" else 6)
+    assert found.same is not None and found.corners is not None
+    assert np.array_equal(found.same[found.corners], found.faces)
+
+
+@pytest.mark.parametrize("where", ["mesh", "node"])
+def test_shapes_are_added_as_the_file_weighs_them(
+    maker: GltfMaker, tmp_path: Path, where: str
+) -> None:
+    """A file may show a shape at rest."""
+    target = {"POSITION": maker.accessor(np.tile([0.0, 0.0, 2.0], (4, 1)))}
+    square = maker.primitive(SQUARE, FACES, targets=[target])
+    weights = {"weights": [0.5]}
+    number = maker.mesh(square, **(weights if where == "mesh" else {"weights": [0.0]}))
+    maker.shown({"mesh": number, **(weights if where == "node" else {})})
+    assert np.allclose(shape_of(read(maker, tmp_path)), (SQUARE + np.array([0, 0, 1]))[FACES])
+
+
+def test_bones_bend_meshes(maker: GltfMaker, tmp_path: Path) -> None:
+    """They, and not the node, bring its vertices to where the file shows them; with many bones."""
+    bind = np.stack([np.eye(4), np.eye(4)])
+    bind[1, :3, 3] = [-1, 0, 0]
+    joints = np.array([[0, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0], [0, 1, 0, 0]])
+    attributes = {
+        "JOINTS_0": maker.accessor(joints, "u2"),
+        "WEIGHTS_0": maker.accessor(np.tile([51, 0, 0, 0], (4, 1)), "u1", normalized=True),
+        "JOINTS_1": maker.accessor(np.zeros((4, 4)), "u1"),
+        "WEIGHTS_1": maker.accessor([[0] * 4] * 3 + [[0.2, 0, 0, 0]]),
+    }
+    square = maker.primitive(SQUARE, FACES, attributes=attributes)
+    second = maker.add("nodes", {"translation": [1, 0, 5]})
+    first = maker.add("nodes", {"translation": [0, 0, 3], "children": [second]})
+    matrices = maker.accessor(bind.swapaxes(1, 2).reshape(2, 16))
+    maker.add("skins", {"joints": [first, second], "inverseBindMatrices": matrices})
+    node = maker.add("nodes", {"mesh": maker.mesh(square), "skin": 0, "scale": [9, 9, 9]})
+    maker.add("scenes", {"nodes": [first, node]})
+    wanted = SQUARE + np.array([[0, 0, 3], [0, 0, 8], [0, 0, 8], [0, 0, 3.0]])
+    assert np.allclose(shape_of(read(maker, tmp_path)), wanted[FACES], atol=1e-6)
+
+
+def _extras(maker: GltfMaker) -> None:
+    maker.parts["extras"] = "any"
+    maker.parts["nodes"][0]["extras"] = [1, 2]
+    maker.parts["meshes"][0]["extras"] = 5
+
+
+def _unknown(maker: GltfMaker) -> None:
+    maker.parts["extensionsUsed"] = ["ACME_wind"]
+    maker.parts["extensions"] = {"ACME_wind": {"from": "east"}}
+    maker.parts["cameras"] = [{"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1}}]
+    maker.parts["animations"] = [{"channels": [], "samplers": []}]
+
+
+def _draco_beside(maker: GltfMaker) -> None:
+    """Compressed, but with plain numbers for those who cannot read that."""
+    maker.parts["extensionsUsed"] = ["KHR_draco_mesh_compression"]
+    primitive = maker.parts["meshes"][0]["primitives"][0]
+    primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}}
+
+
+@pytest.mark.parametrize("change", [_extras, _unknown, _draco_beside])
+def test_what_is_not_needed_is_left_alone(
+    maker: GltfMaker, tmp_path: Path, change: Callable[[GltfMaker], None]
+) -> None:
+    """Extras of any kind, extensions that are not required, cameras."""
+    maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE, FACES))})
+    change(maker)
+    assert np.allclose(shape_of(read(maker, tmp_path)), SQUARE[FACES])
+
+
+def _required(name: str) -> Callable[[GltfMaker], None]:
+    def change(maker: GltfMaker) -> None:
+        maker.parts["extensionsRequired"] = [name]
+
+    return change
+
+
+def _draco_alone(maker: GltfMaker) -> None:
+    _draco_beside(maker)
+    del maker.parts["accessors"][0]["bufferView"]
+
+
+def _meshopt(maker: GltfMaker) -> None:
+    view = maker.parts["bufferViews"][0]
+    view["buffer"] = 1
+    view["extensions"] = {"EXT_meshopt_compression": {"buffer": 0, "byteLength": 4}}
+    own = {"byteLength": len(maker.data)}
+    maker.parts["buffers"] = [own, {"byteLength": 48, "extensions": {}}]
+
+
+def _no_data(maker: GltfMaker) -> None:
+    maker.parts["bufferViews"][0]["buffer"] = 1
+    maker.parts["buffers"] = [{"byteLength": len(maker.data)}, {"byteLength": 48}]
+
+
+def _elsewhere(maker: GltfMaker) -> None:
+    _no_data(maker)
+    maker.parts["buffers"][1]["uri"] = "../../etc/passwd"
+
+
+def _lost(maker: GltfMaker) -> None:
+    _no_data(maker)
+    maker.parts["buffers"][1]["uri"] = "head%20data.bin"
+
+
+def _old(maker: GltfMaker) -> None:
+    maker.parts["asset"]["version"] = "1.0"
+
+
+def _huge(maker: GltfMaker) -> None:
+    maker.parts["accessors"][0] = {"componentType": 5126, "count": 10**10, "type": "VEC3"}
+
+
+def _beyond(maker: GltfMaker) -> None:
+    maker.parts["accessors"][0]["count"] = 5000
+
+
+def _circle(maker: GltfMaker) -> None:
+    maker.parts["nodes"][0]["children"] = [0]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (_required("KHR_draco_mesh_compression"), r"is compressed \(KHR_draco_mesh_compression\)"),
+        (
+            _required("EXT_meshopt_compression"),
+            r"is compressed \(EXT_meshopt_compression\); export",
+        ),
+        (_required("ACME_wind"), "needs the extension ACME_wind, which is not read here; export"),
+        (_draco_alone, r"is compressed \(KHR_draco_mesh_compression\); export"),
+        (_meshopt, r"is compressed \(EXT_meshopt_compression\); export"),
+        (_no_data, "its buffer 1 is missing; export it as one file"),
+        (_elsewhere, "names the file '../../etc/passwd'; it must lie in the mesh's folder"),
+        (_lost, "its buffer head data.bin: no such buffer file"),
+        (_old, "is glTF 1.0; export it as glTF 2.0"),
+        (_huge, "an accessor of 10000000000 rows; allowed are"),
+        (_beyond, "broken, or not what its name says"),
+        (_circle, "broken, or not what its name says"),
+    ],
+)
+def test_what_cannot_be_read_is_named(
+    maker: GltfMaker, tmp_path: Path, change: Callable[[GltfMaker], None], message: str
+) -> None:
+    """One clear line each."""
+    maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE, FACES))})
+    change(maker)
+    with pytest.raises(AssetError, match=message) as refusal:
+        read(maker, tmp_path)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("is_beside", [True, False])
+def test_a_document_may_have_its_data_beside_it(
+    maker: GltfMaker, tmp_path: Path, is_beside: bool
+) -> None:
+    """A file .gltf with data and picture in files, or in text within it."""
+    painted(maker, maker.accessor(UV))
+    image = maker.parts["images"][0]
+    del image["bufferView"]
+    inline = "data:application/octet-stream;base64," + base64.b64encode(maker.data).decode()
+    image["uri"] = (
+        "my skin.png" if is_beside else f"data:;base64,{base64.b64encode(png()).decode()}"
+    )
+    (tmp_path / "my skin.png").write_bytes(png())
+    (tmp_path / "head data.bin").write_bytes(maker.data)
+    path = tmp_path / "head.gltf"
+    path.write_bytes(maker.document(uri="head%20data.bin" if is_beside else inline))
+    found = assets.read_mesh(path)
+    assert np.allclose(shape_of(found), SQUARE[FACES]) and np.allclose(uv_of(found), UP[FACES])
+    assert found.texture is not None
+    assert found.texture.pictures[0]()[0, 0].tolist() == list(RED)
+
+
+def test_pictures_of_a_kind_that_is_not_read_are_named(maker: GltfMaker, tmp_path: Path) -> None:
+    """And only when they are drawn: hair may have what the skin has not."""
+    texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
+    number = material(maker, {"index": texture})
+    attributes = {"TEXCOORD_0": maker.accessor(UV)}
+    square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
+    maker.shown({"mesh": maker.mesh(square)})
+    maker.parts["extensionsRequired"] = ["KHR_texture_basisu"]
+    found = read(maker, tmp_path)
+    assert found.texture is not None
+    with pytest.raises(AssetError, match="not read \\(KHR_texture_basisu\\); save it as PNG"):
+        found.texture.pictures[0]()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"bufferView": 99}, "its picture 0 is not in it"),
+        ({"bufferView": 0}, "its picture face: is broken, too large, or neither PNG, JPEG nor"),
+        ({"bufferView": None, "uri": "lost.png"}, r"its picture lost\.png: no such picture file"),
+        ({"bufferView": None, "uri": "../a.png"}, r"names the file '\.\./a\.png'; it must lie in"),
+    ],
+)
+def test_pictures_that_cannot_be_read_are_named(
+    maker: GltfMaker, tmp_path: Path, change: dict[str, Any], message: str
+) -> None:
+    """When they are drawn, in one line."""
+    painted(maker, maker.accessor(UV))
+    maker.parts["images"][0].update({"name": "face", **change})
+    found = read(maker, tmp_path)
+    assert found.texture is not None
+    with pytest.raises(AssetError, match=message):
+        found.texture.pictures[0]()
