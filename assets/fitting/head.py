@@ -32,7 +32,15 @@ from ..model import Eye, FineShape, FloatArray, Head, IndexArray, Layer, Part, S
 from ..topology import boundary_loops, decimated
 from ..user_files import named
 from .landmark_file import COUNT, check_lips, groups_in_disorder, nearest_vertices, read_landmarks
-from .mesh_validation import SkinPiece, check_manifold, check_openings, skin_of, without_bag
+from .mesh_validation import (
+    ShutMouthError,
+    SkinPiece,
+    check_manifold,
+    check_openings,
+    skin_of,
+    with_seams_joined,
+    without_bag,
+)
 from .organs import FittedSkin, place_eyes, place_parts, with_eyelid_rims
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
 from .warp import Similarity, ThinPlateSpline, nearest_on
@@ -48,6 +56,9 @@ SIMPLIFIED = 25_000  # triangles are left: these play at 20 frames a second on t
 ATTEMPTS = 8  # to simplify a mesh and keep it a surface
 MOST_DISORDERED = 3  # groups of landmarks: where more are so, none of them is meant as it stands
 NECK = "neck"  # what hangs there, a shirt, is the built-in head's: another may have its shoulders
+UPPER_LIP, LOWER_LIP = (60, 61, 62, 63, 64), (60, 67, 66, 65, 64)  # from corner to corner
+TOUCHING = 0.01  # of the way between the outer eye corners: lips that touch lie so near their line
+STEPS = 33  # places on each part of that line
 CHIN, FADE = 8, 25.0  # landmark, and [mm] above a neck's edge, half the way to the chin at most
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
@@ -113,12 +124,41 @@ def fit_head(mesh: str | Path, landmarks: str | Path) -> FittedHead:
     found = read_mesh(mesh)
     numbers, points = read_landmarks(Path(landmarks), found)
     try:
-        return fit(found, numbers, points=points)
+        try:
+            return fit(found, numbers, points=points)
+        except ShutMouthError:
+            parted = lips_parted(found, found.vertices[numbers] if points is None else points)
+            if parted is None:
+                raise
+            numbers, points = read_landmarks(Path(landmarks), parted)
+            return fit(parted, numbers, points=points)
     except AssetError as error:
         told, is_face = error, [_is_face(found.vertices[numbers - first]) for first in (0, 1)]
         if points is None and is_face == [False, True]:
             told = AssetError("landmarks count vertices from 1; count from 0: take 1 off each")
         raise AssetError(f"{named(mesh)}: {told}") from None
+
+
+def lips_parted(mesh: Mesh, landmarks: FloatArray) -> Mesh | None:
+    """The mesh with those vertices apart that its file doubles where the lips touch.
+
+    A file doubles vertices along seams of its texture, and the reader makes them one; between lips
+    they are not. landmarks: where they lie [unit of the mesh], shape (68, 3). None where no vertex
+    is doubled there.
+    """
+    if mesh.corners is None or mesh.same is None:
+        return None
+    line = (landmarks[list(UPPER_LIP)] + landmarks[list(LOWER_LIP)]) / 2.0
+    near = TOUCHING * float(np.linalg.norm(np.diff(landmarks[[36, 45]], axis=0)))
+    steps = np.linspace(0.0, 1.0, STEPS)[:, None, None]
+    places = (line[:-1] + steps * np.diff(line, axis=0)).reshape(-1, 3)
+    off = scipy.spatial.cKDTree(places).query(mesh.vertices)[0]
+    at_corner = scipy.spatial.cKDTree(line[[0, -1]]).query(mesh.vertices)[0] < near
+    is_lip = (off < near) & ~at_corner
+    same = np.where(is_lip, np.arange(len(mesh.vertices)), mesh.same)
+    if np.array_equal(same, mesh.same):
+        return None
+    return replace(mesh, faces=same[mesh.corners].astype(np.int32), same=same)
 
 
 def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) -> FittedHead:
@@ -129,10 +169,14 @@ def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) 
     """
     known = load("head")
     points = mesh.vertices[landmarks] if points is None else points
-    skin = skin_of(mesh.vertices, mesh.faces, landmarks)
-    check_manifold(mesh.faces[skin.file_faces], skin.file_faces)
+    faces, landmarks = with_seams_joined(mesh.vertices, mesh.faces, landmarks)
+    skin = skin_of(mesh.vertices, faces, landmarks)
+    check_manifold(faces[skin.file_faces], skin.file_faces)
     similarity = _placed(points, known)
     skin = _sound(replace(skin, vertices=similarity.points(skin.vertices)))
+    own = None
+    if mesh.texture is not None:
+        own = own_picture(mesh.texture, skin.file_faces, skin.is_turned)
     target = similarity.points(points)
     notes, whole = mesh.notes, skin
     if len(skin.faces) > MOST_SIMULATED:
@@ -150,7 +194,7 @@ def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) 
     parts = tuple(part for part in parts if part.bone != NECK and part.roots is None)
     uv = spread_uv(known, warped, nearest, (skin.vertices, normals, skin.faces))
     across = nearest.interpolate(known.wrinkles.across).astype(np.float32)
-    layout, albedo, maps = _painted(mesh, whole, skin, Layout(uv, skin.faces), known)
+    layout, albedo, maps = _painted(mesh, own, (whole, skin), Layout(uv, skin.faces))
     wrinkles, segments, light = maps
     return FittedHead(
         vertices=skin.vertices,
@@ -183,28 +227,33 @@ def _sound(skin: SkinPiece) -> SkinPiece:
 
 
 def _painted(
-    mesh: Mesh, whole: SkinPiece, skin: SkinPiece, built_in: Layout, known: Head
+    mesh: Mesh,
+    own: tuple[Image, Layout] | None,
+    skins: tuple[SkinPiece, SkinPiece],
+    built_in: Layout,
 ) -> tuple[Layout, Image, tuple[Wrinkles, Image, Image]]:
     """Where the skin lies in what picture, and maps over that (see `maps_in`).
 
-    The picture is what the file paints it with, or the built-in one; built_in: where the skin's
-    triangles lie in that. A skin that was simplified has no other layout, and what the whole one is
-    painted with is drawn there.
+    own: what the file paints the skin with, where it does. skins: the whole one of the file, and
+    what is left of it. built_in: where the triangles of that lie in the built-in picture. A skin
+    that was simplified has no other layout, and what the whole one is painted with is drawn there.
     """
-    own = None
-    if mesh.texture is not None:
-        own = own_picture(mesh.texture, whole.file_faces, whole.is_turned)
+    known = load("head")
+    whole, skin = skins
     if own is not None and skin is whole:
         height, width = own[0].shape[:2]
         return own[1], own[0], maps_in(known, built_in, own[1], (height, width))
     (picture, light), layout = plain_skin(known), built_in
-    if skin is not whole and (own is not None or mesh.colours is not None):
+    has_colours = mesh.colours is not None
+    if mesh.has_colour is not None:
+        has_colours = bool(mesh.has_colour[whole.file_vertices].all())
+    if skin is not whole and (own is not None or has_colours):
         normals = vertex_normals(whole.vertices, whole.faces)
         nearest = nearest_on(whole.vertices, normals, skin.vertices, skin.faces)
         layout = Layout(nearest.interpolate(built_in.uv).astype(np.float32), whole.faces)
     if own is not None:
         picture = drawn_over(picture, layout, own)
-    elif mesh.colours is not None:
+    elif has_colours and mesh.colours is not None:
         colours = mesh.colours[whole.file_vertices].astype(np.float64)
         picture = drawn_over(picture, layout, colours[whole.faces])
     return built_in, picture, (known.wrinkles, known.segments, light)

@@ -35,7 +35,7 @@ from ..errors import AssetError
 from ..meshes import FARTHEST, Mesh
 from ..model import FloatArray, IndexArray
 from ..user_files import named, read_file
-from .mesh_validation import SkinPiece, path_lengths, pieces_of
+from .mesh_validation import SkinPiece, path_lengths, pieces_of, with_seams_joined
 from .warp import nearest_on
 
 COUNT = 68
@@ -174,7 +174,11 @@ def _nearest(points: FloatArray, mesh: Mesh) -> IndexArray:
     skin = mesh.faces[piece == np.bincount(piece[triangles]).argmax()]
     if _triangles_at(points, mesh, skin)[1].max() > allowed:
         skin = mesh.faces
-    return nearest_vertices(points, mesh.vertices, skin)
+    numbers = nearest_vertices(points, mesh.vertices, skin)
+    joined, _ = with_seams_joined(mesh.vertices, skin, numbers)
+    if joined is skin:
+        return numbers
+    return nearest_vertices(points, mesh.vertices, joined)  # along the skin, across seams
 
 
 def _triangles_at(points: FloatArray, mesh: Mesh, faces: IndexArray) -> tuple[Any, FloatArray]:

@@ -19,6 +19,7 @@ from scipy.sparse import csgraph
 
 from ..errors import AssetError
 from ..model import FloatArray, IndexArray
+from ..topology import unique_points
 
 MOST_TRIANGLES = 250_000
 FEWEST_TRIANGLES = 300  # below it eyes and mouth have no shape (chosen)
@@ -31,6 +32,10 @@ LIP_RIM, BAG = 4.0, 15.0  # [mm] that lips keep of a bag behind them, and how de
 WELDED = 0.6
 LIDS = {"right": ((37, 41), (38, 40)), "left": ((43, 47), (44, 46))}  # above and below
 COVERED = 6.0  # [mm] behind the lids' edges in which skin covers the eye: no socket is so shallow
+
+
+class ShutMouthError(AssetError):
+    """Lips that are joined by skin."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,35 @@ def skin_of(vertices: FloatArray, faces: IndexArray, landmarks: IndexArray) -> S
     skin = number[faces[file_faces]]
     _check_count(skin, FEWEST_TRIANGLES, MOST_TRIANGLES)
     return SkinPiece(vertices[used], skin, number[landmarks], used, file_faces)
+
+
+def with_seams_joined(
+    vertices: FloatArray, faces: IndexArray, landmarks: IndexArray
+) -> tuple[IndexArray, IndexArray]:
+    """Triangles and landmarks of one piece, where a file has cut it along seams.
+
+    Programs double vertices where texture or material change, or give each triangle its own. Where
+    landmarks lie on several pieces, vertices on their edges that lie in one place are made one, if
+    a surface comes of it. Else all is returned as it was.
+    """
+    piece = pieces_of(faces, len(vertices))
+    if (piece[landmarks] == piece[landmarks[0]]).all():
+        return faces, landmarks
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    edges, uses = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+    border = np.unique(edges[uses == 1])
+    first, number = unique_points(vertices[border] + 0.0)  # no zero with a sign
+    same = np.arange(len(vertices), dtype=np.int32)
+    same[border] = border[first[number]]
+    joined = same[faces]
+    marked = same[landmarks]
+    piece = pieces_of(joined, len(vertices))
+    is_skin = piece[joined[:, 0]] == piece[marked[0]]
+    try:
+        check_manifold(joined[is_skin])
+    except AssetError:
+        return faces, landmarks
+    return (joined, marked) if (piece[marked] == piece[marked[0]]).all() else (faces, landmarks)
 
 
 def _check_count(faces: IndexArray, fewest: float, most: float) -> None:
@@ -144,7 +178,7 @@ def check_openings(skin: SkinPiece) -> None:
     ends = skin.landmarks[list(LIP_CORNERS)]
     across, around = from_above[under], (from_above[ends] + from_below[ends]).min()
     if over == under or across < WELDED * around:
-        raise AssetError(
+        raise ShutMouthError(
             f"the mouth is shut: skin joins landmarks {LIPS[0]} and {LIPS[1]} on a way of "
             f"{across:.0f} mm; cut the mesh open between the lips"
         )

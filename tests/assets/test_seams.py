@@ -1,0 +1,130 @@
+"""Vertices that files double: where a texture has seams, and where lips touch."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius import assets
+from risorius.assets import AssetError, Mesh
+from risorius.assets.fitting import FittedHead, fit, fit_head
+from risorius.assets.model import Head
+from tests.assets.gltf_files import GltfMaker
+from tests.assets.test_gltf import material, png
+
+UPPER, LOWER = [61, 62, 63], [67, 66, 65]  # landmarks in the middle of the inner lips
+
+
+@pytest.fixture(scope="module")
+def head() -> Head:
+    """The built-in one."""
+    return assets.load("head")
+
+
+@pytest.fixture(scope="module")
+def plain(head: Head) -> FittedHead:
+    """What is fitted to it."""
+    return fit(Mesh(head.vertices, head.faces), head.landmarks)
+
+
+def assert_same(found: FittedHead, plain: FittedHead) -> None:
+    """The same triangles in the same places."""
+    assert found.faces.shape == plain.faces.shape and len(found.vertices) == len(plain.vertices)
+    assert np.abs(found.vertices[found.faces] - plain.vertices[plain.faces]).max() < 1e-2
+
+
+def test_a_skin_that_is_cut_along_seams_hangs_together(head: Head, plain: FittedHead) -> None:
+    """The left half has its own vertices along the middle, as where a texture is mirrored."""
+    is_left = head.vertices[head.faces][:, :, 0].mean(axis=1) > 0.0
+    count = len(head.vertices)
+    faces = head.faces + count * is_left[:, None].astype(np.int32)
+    is_used = np.isin(head.landmarks, faces)
+    landmarks = np.where(is_used, head.landmarks, head.landmarks + count)
+    found = fit(Mesh(np.vstack([head.vertices] * 2), faces), landmarks.astype(np.int32))
+    assert_same(found, plain)
+
+
+def test_triangles_of_their_own_vertices_hang_together(
+    head: Head, plain: FittedHead, tmp_path: Path
+) -> None:
+    """As some programs write OBJ and PLY; landmarks are points."""
+    corners = head.vertices[head.faces].reshape(-1, 3)
+    lines = [f"v {x} {y} {z}" for x, y, z in corners.tolist()]
+    lines += [f"f {3 * face + 1} {3 * face + 2} {3 * face + 3}" for face in range(len(head.faces))]
+    (tmp_path / "soup.obj").write_text("\n".join(lines))
+    (tmp_path / "soup.json").write_text(json.dumps(head.vertices[head.landmarks].tolist()))
+    assert_same(fit_head(tmp_path / "soup.obj", tmp_path / "soup.json"), plain)
+
+
+@pytest.mark.parametrize("way", ["bare", "pictured", "moved apart"])
+def test_lips_that_touch_exactly_are_two(head: Head, tmp_path: Path, way: str) -> None:
+    """Without a picture, with one, and where a shape of the file parts them."""
+    upper, lower = (head.landmarks[lip] for lip in (UPPER, LOWER))
+    vertices = head.vertices.copy()
+    vertices[lower] = vertices[upper]
+    maker = GltfMaker()
+    more = {}
+    apart = np.zeros_like(vertices)
+    if way == "pictured":
+        uv = vertices[:, :2] / 500 + 0.5
+        more["attributes"] = {"TEXCOORD_0": maker.accessor(uv)}
+        more["material"] = material(maker, {"index": maker.picture(png())})
+    if way == "moved apart":
+        apart[lower] = [0, -20, 0]
+        more["targets"] = [{"POSITION": maker.accessor(apart)}]
+    maker.shown({"mesh": maker.mesh(maker.primitive(vertices, head.faces, **more))})
+    mesh, marks = maker.write(tmp_path / "head.glb"), tmp_path / "head.json"
+    marks.write_text(json.dumps(head.landmarks.tolist()))
+    found = fit_head(mesh, marks)
+    assert len(found.vertices) == len(head.vertices)
+    assert np.array_equal(found.file_vertices[found.landmarks], head.landmarks)
+
+
+def test_lips_that_are_one_are_shut(head: Head, tmp_path: Path) -> None:
+    """Where a file doubles nothing between them, nothing parts them."""
+    number = np.arange(len(head.vertices))
+    number[head.landmarks[LOWER]] = head.landmarks[UPPER]
+    maker = GltfMaker()
+    maker.shown({"mesh": maker.mesh(maker.primitive(head.vertices, number[head.faces]))})
+    marks = tmp_path / "head.json"
+    marks.write_text(json.dumps(number[head.landmarks].tolist()))
+    with pytest.raises(AssetError, match="the mouth is shut"):
+        fit_head(maker.write(tmp_path / "head.glb"), marks)
+
+
+def test_pieces_that_are_left_away_may_be_painted_with_anything(head: Head, tmp_path: Path) -> None:
+    """Hair whose picture nobody can read keeps no skin from its own; eyes need no colours."""
+    maker = GltfMaker()
+    broken = material(maker, {"index": maker.picture(b"no picture")})
+    own = material(maker, {"index": maker.picture(png())})
+    uv = {"TEXCOORD_0": maker.accessor(head.vertices[:, :2] / 500 + 0.5)}
+    hair = maker.primitive(
+        [[0, 200, 0], [9, 200, 0], [0, 209, 0]],
+        [0, 1, 2],
+        attributes={"TEXCOORD_0": maker.accessor(np.zeros((3, 2)))},
+        material=broken,
+    )
+    skin = maker.primitive(head.vertices, head.faces, attributes=uv, material=own)
+    maker.shown({"mesh": maker.mesh(hair)}, {"mesh": maker.mesh(skin)})
+    mesh = assets.read_mesh(maker.write(tmp_path / "head.glb"))
+    found = fit(mesh, head.landmarks)
+    assert found.albedo.shape == (4, 4, 3) and found.albedo[0, 0].tolist() == [250, 10, 20]
+
+
+def test_colours_of_the_skin_count_alone(head: Head) -> None:
+    """Eyes or hair may have none; and where only these have some, the skin keeps its picture."""
+    count = len(head.vertices)
+    vertices = np.vstack([head.vertices, head.vertices[:3] + 500.0])
+    faces = np.vstack([head.faces, [[count, count + 1, count + 2]]]).astype(np.int32)
+    blue = np.tile(np.array([[10, 20, 250]], np.uint8), (len(vertices), 1))
+    is_skin = np.arange(len(vertices)) < count
+    mesh = Mesh(vertices, faces, colours=blue, has_colour=is_skin)
+    painted, plain = (
+        fit(each, head.landmarks).albedo for each in (mesh, replace(mesh, has_colour=~is_skin))
+    )
+    blue_share = [
+        (abs(each.astype(int) - blue[0]).max(axis=2) < 3).mean() for each in (painted, plain)
+    ]
+    assert blue_share[0] > 0.4 and blue_share[1] < 0.01
