@@ -73,7 +73,7 @@ class GeometryBuffer:
             write_uniform(program, "model_view", transform.T @ view.world_to_view)
             program["first"] = float(first)
             buffers.draw(program)
-            first += len(buffers.part.faces)
+            first += len(buffers.faces)
         return self._read()
 
     def _program_of(self, maps: Mapping[BumpMap, float]) -> moderngl.Program:

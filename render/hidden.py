@@ -80,7 +80,7 @@ class Occluder:
         for buffers, transform in placed:
             for side in buffers.sides():
                 vertices.append(side @ transform[:3, :3].T + transform[:3, 3])
-                faces.append(buffers.part.faces + first)
+                faces.append(buffers.faces + first)
                 first += len(side)
         if not placed:
             return

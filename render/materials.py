@@ -9,7 +9,7 @@ import numpy.typing as npt
 from risorius.geometry.colour import to_linear
 
 from .camera import CameraView
-from .parts import Part
+from .parts import PartBuffers
 from .programs import write_uniform
 from .style import SPLIT_PALETTE, ColourBy, Light, Style
 from .texture import BumpMap
@@ -61,13 +61,12 @@ def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_sca
         write_uniform(program, "split_palette", _PALETTE)
 
 
-def set_part(
-    program: moderngl.Program, kind: str, part: Part, light: Light, view: CameraView
-) -> None:
+def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: CameraView) -> None:
     """From dull (broad and faint) to wet (small and bright) highlights.
 
     `set_light` comes first; of it, light from behind does not reach what is enclosed, or fibres.
     """
+    kind = part.kind
     shine = part.shine
     if kind == "SHELLS":
         program["gloss"] = 2.0 * shine

@@ -1,6 +1,7 @@
 """Coloured parts, moved by bones: uploaded once, or again where one changes its shape."""
 
-from collections.abc import Iterable, Mapping
+import weakref
+from collections.abc import Callable, Iterable, Mapping
 from typing import Protocol
 
 import moderngl
@@ -57,11 +58,17 @@ class Part(Protocol):
 
 
 class PartBuffers:
-    """A part on the graphics card; keeps the part alive, and so its id."""
+    """A part on the graphics card, and the arrays that were read of it.
+
+    It keeps no part alive: `PartStore` gives it up with its part.
+    """
 
     def __init__(self, gl: moderngl.Context, part: Part) -> None:
-        self.part = part
         self._gl = gl
+        self.faces = part.faces
+        self.shine = part.shine
+        self.is_enclosed = part.is_enclosed
+        self.strand_radius = part.strand_radius
         # What it is drawn with: a define of surface.glsl, or SHELLS for shells.glsl.
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
@@ -75,15 +82,15 @@ class PartBuffers:
         self.is_mixed = self.kind in ("STRANDS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
-        self.upload()
+        self.upload(part)
         self._indices = gl.buffer(np.ascontiguousarray(part.faces, np.uint32).tobytes())
         self._chosen = gl.buffer(reserve=self._indices.size, dynamic=True)
         self._chosen_count = 0
         self._arrays: dict[tuple[moderngl.Program, moderngl.Buffer], moderngl.VertexArray] = {}
 
-    def upload(self) -> None:
+    def upload(self, part: Part) -> None:
         """Upload the part's vertices, unless they are those that were uploaded last."""
-        part, vertices = self.part, self.part.vertices
+        vertices = part.vertices
         if vertices is self._uploaded:
             return
         self.corners = box_corners(vertices)
@@ -94,7 +101,7 @@ class PartBuffers:
 
     def choose(self, is_chosen: npt.NDArray[np.bool_]) -> None:
         """Choose among its faces, (m,), for `draw` of the chosen."""
-        chosen = np.ascontiguousarray(np.asarray(self.part.faces)[is_chosen], np.uint32)
+        chosen = np.ascontiguousarray(np.asarray(self.faces)[is_chosen], np.uint32)
         self._chosen_count = len(chosen)
         self._chosen.orphan()
         if len(chosen):
@@ -102,8 +109,10 @@ class PartBuffers:
 
     def sides(self) -> list[npt.NDArray[np.float32]]:
         """Its vertices; of shells those of the innermost and of the outermost."""
-        part, way = self.part, self._way
-        return [part.vertices] if way is None else [part.vertices + at * way for at in (ROOT, TIP)]
+        assert self._uploaded is not None
+        if self._way is None:
+            return [self._uploaded]
+        return [self._uploaded + at * self._way for at in (ROOT, TIP)]
 
     def draw(self, program: moderngl.Program, *, chosen: bool = False, layers: int = 1) -> None:
         """Draw it; the program has in_position, and in_normal and in_colour if it wants them.
@@ -121,7 +130,7 @@ class PartBuffers:
                 index_element_size=4,
                 skip_errors=True,  # not every program has a use for colours
             )
-        count = self._chosen_count if chosen else len(self.part.faces)
+        count = self._chosen_count if chosen else len(self.faces)
         self._gl.enable(moderngl.CULL_FACE)
         self._arrays[program, indices].render(vertices=3 * count, instances=layers)
         self._gl.disable(moderngl.CULL_FACE)
@@ -143,11 +152,16 @@ PlacedPart = tuple[PartBuffers, npt.NDArray[np.float64]]  # and the matrix of it
 
 
 class PartStore:
-    """The buffers of all parts that were ever drawn."""
+    """The buffers of the parts that were drawn and still exist.
+
+    A renderer may draw one person after the other: what a part had on the graphics card goes
+    when nobody holds that part any more.
+    """
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._gl = gl
-        self.known: dict[int, PartBuffers] = {}
+        # By the id of the part, which another part may have as soon as this one is gone.
+        self._known: dict[int, tuple[Callable[[], Part | None], PartBuffers]] = {}
 
     def placed(
         self, parts: Iterable[Part], transforms: Mapping[str, npt.NDArray[np.float64]]
@@ -156,15 +170,36 @@ class PartStore:
 
         Raises ValueError for a bone without one.
         """
+        self._forget_lost()
         placed = []
         for part in parts:
-            if id(part) not in self.known:
-                self.known[id(part)] = PartBuffers(self._gl, part)
             if part.bone not in transforms:
                 raise ValueError(
                     f"part '{part.name}' moves with bone '{part.bone}'; transforms has only "
                     f"{', '.join(sorted(transforms)) or 'none'}"
                 )
-            self.known[id(part)].upload()
-            placed.append((self.known[id(part)], transforms[part.bone]))
+            placed.append((self._buffers_of(part), transforms[part.bone]))
         return placed
+
+    def _buffers_of(self, part: Part) -> PartBuffers:
+        """The buffers of a part, which hold its shape as it is now."""
+        get_known, buffers = self._known.get(id(part), (None, None))
+        if get_known is None or buffers is None or get_known() is not part:
+            buffers = PartBuffers(self._gl, part)
+            self._known[id(part)] = _reference_to(part), buffers
+        buffers.upload(part)
+        return buffers
+
+    def _forget_lost(self) -> None:
+        """Give up the buffers of parts that nobody holds any more."""
+        lost = [key for key, (get_part, _) in self._known.items() if get_part() is None]
+        for key in lost:
+            del self._known[key]
+
+
+def _reference_to(part: Part) -> Callable[[], Part | None]:
+    """Returns the part while somebody holds it; a part without weak references is kept."""
+    try:
+        return weakref.ref(part)
+    except TypeError:  # a named tuple, say
+        return lambda: part

@@ -52,6 +52,19 @@ class RenderTarget:
         self._average_program["layer"] = _UNIT
         self._average = gl.vertex_array(self._average_program, [])
 
+    def release(self) -> None:
+        """Give back everything to OpenGL; nothing can be drawn here any more."""
+        # moderngl binds what was bound last again whenever it makes a framebuffer.
+        self._gl.detect_framebuffer(0).use()
+        self.frame.release()
+        self.colour.release()
+        if self.samples:
+            self._layer.release()
+            self._layer_colour.release()
+            self.layer_depth.release()
+            self._average.release()
+            self._average_program.release()
+
     def start(self) -> None:
         """Empty both; the frame is bound."""
         self.frame_number += 1

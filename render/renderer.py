@@ -248,7 +248,7 @@ class Renderer:
         for buffers, bone in sorted(placed, key=lambda each: each[0].is_mixed):
             program = programs[buffers.kind]
             write_uniform(program, "model_view", bone.T @ view.world_to_view)
-            set_part(program, buffers.kind, buffers.part, style.light, view)
+            set_part(program, buffers, style.light, view)
             if buffers.kind == "SHELLS":
                 buffers.draw_shells(program, view, chosen=is_chosen)
                 continue

@@ -7,6 +7,7 @@ hidden or covered, and a panel that is drawn after `resolve` is part of it.
 """
 
 import contextlib
+import os
 import sys
 from typing import Any, ClassVar, Self
 
@@ -127,7 +128,15 @@ class Surface:
 
 
 class OffscreenSurface(Surface):
-    """A frame without a window; needs no screen."""
+    """A frame without a window; needs no screen.
+
+    The next frame that is opened takes over the context of one that was closed: moderngl keeps
+    50 kB of every context that it made, and a driver takes milliseconds for a new one.
+    """
+
+    _is_reusable = True  # its context, as far as this surface knows
+    _spare: ClassVar[tuple[moderngl.Context, dict[str, str]] | None] = None
+    """A context that no surface uses, and the environment that chose its device."""
 
     def _bind(self) -> None:
         self.gl.__enter__()  # type: ignore[no-untyped-call]
@@ -135,9 +144,20 @@ class OffscreenSurface(Surface):
     def _unbind(self) -> None:
         self.gl.__exit__(None, None, None)  # type: ignore[no-untyped-call]
 
+    def __exit__(self, *error: object) -> None:
+        if error[0] is not None:  # the state of its context is not known
+            self._is_reusable = False
+        self.close()
+
     def _close_context(self) -> None:
+        self.target.release()
+        self._collect()
+        is_reusable = self._is_reusable and self.gl.error == "GL_NO_ERROR"
         self._unbind()  # a released context would stay current, and keep a window from its own
-        self.gl.release()
+        if is_reusable and OffscreenSurface._spare is None:
+            OffscreenSurface._spare = self.gl, _environment()
+        else:
+            self.gl.release()
 
 
 def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurface:
@@ -167,7 +187,22 @@ def open_offscreen(size: tuple[int, int], *, samples: int = 4) -> OffscreenSurfa
     return surface
 
 
+def _environment() -> dict[str, str]:
+    """The variables by which glcontext chooses device and libraries."""
+    return {name: value for name, value in os.environ.items() if name.startswith("GLCONTEXT_")}
+
+
 def _offscreen_context() -> moderngl.Context:
+    """The context of a frame that was closed, or else a new one; it is current then."""
+    spare = OffscreenSurface._spare
+    if spare is not None and spare[1] == _environment():
+        OffscreenSurface._spare = None
+        spare[0].__enter__()  # type: ignore[no-untyped-call]
+        return spare[0]
+    return _new_context()
+
+
+def _new_context() -> moderngl.Context:
     """One of the newest OpenGL that we have a use for, else of the oldest that will do.
 
     By EGL on Linux, elsewhere the native way. Some drivers give what they are asked for and no

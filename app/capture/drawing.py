@@ -136,8 +136,8 @@ class Capture:
     def __enter__(self) -> Capture:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.surface.close()
+    def __exit__(self, *error: object) -> None:
+        self.surface.__exit__(*error)
 
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
