@@ -1,7 +1,9 @@
 """The folder of a data set: samples whole or not at all, and how it was begun.
 
 The files of a sample are written in `.unfinished` and renamed, its .json last, so that each is
-whole under its final name, whenever the process is killed. What has its .json is made.
+whole under its final name, whenever the process is killed. A disk that was full, a copy that was
+cut short or a file that was deleted is found by the lengths in the .json: a sample counts as made
+when all of its files are there and as long as they were written.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from ..files import cannot_be_written, real_path, save_text
 
 BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"
+LENGTHS = "files"  # the label that holds the length of each other file of a sample [bytes]
 _SAMPLE = re.compile(r"(\d{6})\.json")
 
 
@@ -105,9 +108,18 @@ class SetFolder:
             found = (_SAMPLE.fullmatch(item.name) for item in items)
             return {int(match[1]) for match in found if match}
 
-    def labels(self, index: int) -> Path:
-        """The .json of a sample."""
-        return self.path / f"{name_of(index)}.json"
+    def has(self, index: int) -> bool:
+        """Whether all files of a sample are there and whole, by the lengths in its .json."""
+        try:
+            labels = self.sample(index)
+        except (OSError, ValueError, RecursionError):  # none, a torn one, or anything else
+            return False
+        if not isinstance(labels, dict) or labels.get("index") != index:
+            return False
+        lengths = labels.get(LENGTHS)
+        if not isinstance(lengths, dict) or f"{name_of(index)}.png" not in lengths:
+            return False
+        return all(_length(self.path / name) == length for name, length in lengths.items())
 
     def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
         """Put the files of a sample in place, .json last; how many bytes they have.
@@ -119,6 +131,7 @@ class SetFolder:
             part = Path(tempfile.mkdtemp(prefix=name, dir=self.path / UNFINISHED))
             try:
                 write(part / f"{name}.png")
+                _add_lengths(part / f"{name}.json")
                 made = sorted(part.iterdir(), key=lambda path: (path.suffix == ".json", path))
                 size = sum(path.stat().st_size for path in made)
                 for path in made:
@@ -129,8 +142,25 @@ class SetFolder:
 
     def sample(self, index: int) -> dict[str, Any]:
         """What is in the .json of a sample."""
-        labels: dict[str, Any] = json.loads(self.labels(index).read_bytes())
+        content = (self.path / f"{name_of(index)}.json").read_bytes()
+        labels: dict[str, Any] = json.loads(content)
         return labels
+
+
+def _add_lengths(file: Path) -> None:
+    """Add the lengths of the files that lie beside the .json of a sample to its labels."""
+    labels = json.loads(file.read_bytes())
+    beside = sorted(path for path in file.parent.iterdir() if path != file)
+    labels[LENGTHS] = {path.name: path.stat().st_size for path in beside}
+    file.write_text(json.dumps(labels, separators=(",", ":")) + "\n", encoding="utf-8")
+
+
+def _length(file: Path) -> int | None:
+    """How many bytes a plain file has; None where there is none."""
+    try:
+        return file.stat().st_size if file.is_file() else None
+    except (OSError, ValueError):  # a name that no file can have is a ValueError
+        return None
 
 
 def _short(value: object) -> str:

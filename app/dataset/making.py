@@ -43,24 +43,24 @@ def make_set(
     resume: bool = False,
     progress: bool = True,
 ) -> Made:
-    """Make the samples 0 to count - 1 of a set, as far as they are not there, and its card.
+    """Make the samples 0 to count - 1 of a set, as far as they are not whole, and its card.
 
     Raises UserError where the set cannot be made, or was begun otherwise; samples that were made
     until then stay.
     """
     folder = SetFolder(request.output)
     with folder.held(request.options(), resume=resume):
-        there = folder.there()
-        if there and max(there) >= count:
+        last = max(folder.there(), default=-1)
+        if last >= count:
             raise UserError(
-                f"{request.output}: has sample {max(there)} already; give --count {max(there) + 1} "
-                "or more"
+                f"{request.output}: has sample {last} already; give --count {last + 1} or more"
             )
-        missing = [index for index in range(count) if index not in there]
+        missing = [index for index in range(count) if not folder.has(index)]
+        made = count - len(missing)
         shares = _shares(request, missing, jobs)
         is_silent = not progress or None
         size = 0
-        bar = tqdm(total=count, initial=len(there), unit="sample", disable=is_silent, leave=False)
+        bar = tqdm(total=count, initial=made, unit="sample", disable=is_silent, leave=False)
         with cleaned_up_if_stopped(bar.close), bar:
             try:
                 for bytes_of_sample in run_all(make_samples, shares, log=folder.log):
@@ -69,14 +69,14 @@ def make_set(
             except UserError as error:
                 raise UserError(f"{error} (with --resume the set goes on)") from None
         _finish(folder, request, count)
-    return Made(count, count - len(there), size)
+    return Made(count, len(missing), size)
 
 
 def make_samples(share: Share, send: Send) -> None:
     """Make the samples of a share that are not there, and tell how many bytes each has."""
     studio, folder = Studio(share.request), SetFolder(share.request.output)
     for index in share.indices:
-        if not folder.labels(index).exists():  # a process before may have died behind it
+        if not folder.has(index):  # a process before may have died behind it
             send(folder.write_sample(index, studio.shoot(index).save))
 
 

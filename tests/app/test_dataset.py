@@ -78,18 +78,54 @@ def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path)
             json.loads((folder / f"{index:06d}.json").read_text("utf-8"))
             for folder in (tmp_path, made)
         )
-        assert labels == alone
+        assert labels == alone | {"files": labels["files"]}
 
 
-def test_a_sample_without_labels_is_made_anew(made: Path, tmp_path: Path) -> None:
-    """They come last, so that it is not whole without; the set is then as it was."""
+def test_a_damaged_sample_is_made_anew(made: Path, tmp_path: Path) -> None:
+    """Labels that are empty, or a picture that is missing: the set is then as it was."""
     folder = tmp_path / "damaged"
     shutil.copytree(made, folder)
-    (folder / "000003.json").unlink()
-    (folder / "000003_seg.png").write_bytes(b"")
+    (folder / "000000.json").write_bytes(b"")
+    (folder / "000002.png").unlink()
     (folder / UNFINISHED / "0000034711").mkdir(parents=True)
-    assert "1 of them new" in run(folder, "--resume").output
+    assert "2 of them new" in run(folder, "--resume").output
     assert content(folder) == content(made)
+    assert "0 of them new" in run(folder, "--resume").output
+
+
+def test_a_sample_counts_when_all_of_its_files_are_whole(made: Path, tmp_path: Path) -> None:
+    """Whatever stands in the place of one of them, the sample is not there."""
+    labels = (made / "000001.json").read_bytes()
+    picture = (made / "000001.png").read_bytes()
+    instead: list[tuple[str, bytes | None]] = [
+        *((f"000001{end}", None) for end in ENDS),
+        *((f"000001{end}", b"") for end in ENDS),
+        ("000001.json", labels[:-1][: len(labels) // 2]),
+        ("000001.json", labels[:-2]),
+        ("000001.json", b"\xff\xfe\x00"),
+        ("000001.json", b"{}"),
+        ("000001.json", b"[1]"),
+        ("000001.json", b"[" * 100_000),
+        ("000001.json", b'{"index": 1, "files": {}}'),
+        ("000001.json", b'{"index": 1, "files": {"000001.png": 3, "\\u0000": 1}}'),
+        ("000001.json", (made / "000002.json").read_bytes()),
+        ("000001.png", picture[:-1]),
+        ("000001.png", picture[: len(picture) // 2]),
+        ("000001.png", picture + b"more"),
+    ]
+    folder = tmp_path / "damaged"
+    shutil.copytree(made, folder)
+    held = SetFolder(folder)
+    assert all(held.has(index) for index in range(COUNT))
+    for name, damaged in instead:
+        (folder / name).unlink()
+        if damaged is not None:
+            (folder / name).write_bytes(damaged)
+        assert [held.has(index) for index in range(COUNT)] == [k != 1 for k in range(COUNT)], name
+        shutil.copyfile(made / name, folder / name)
+    (folder / "000001_seg.png").unlink()
+    (folder / "000001_seg.png").mkdir()
+    assert not held.has(1)
 
 
 @pytest.mark.slow
