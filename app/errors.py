@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import re
 import sys
 from collections.abc import Iterator
 from importlib import import_module
@@ -11,6 +12,7 @@ from typing import Any
 
 import click
 
+_RAW_BYTE = re.compile("[\udc80-\udcff]")  # of a name that is no UTF-8, as Python reads it
 LONGEST_LINE = 2000  # [characters] of a message; the middle of a longer one is left out
 
 
@@ -20,10 +22,20 @@ def in_one_line(message: object) -> str:
     Names come from files and command lines: a line end in one must not begin a line of ours, nor
     may it steer the terminal.
     """
-    text = str(message)
+    text = as_text(message)
     if len(text) > LONGEST_LINE:
         text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
+
+
+def as_text(name: object) -> str:
+    """A name as it can be printed, and written into a file of UTF-8.
+
+    Names of files are bytes: one that is no UTF-8, from an old archive say, is read as characters
+    that no encoding has. Such bytes become \\xe4.
+    """
+    text = _RAW_BYTE.sub(lambda found: f"\\x{ord(found[0]) - 0xDC00:02x}", str(name))
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def counted(number: int, noun: str) -> str:

@@ -10,7 +10,9 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shutil
 import stat
+import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -20,7 +22,7 @@ import PIL.Image
 
 from risorius.assets.staging import StagingFolder, is_staging_folder
 
-from .errors import UserError
+from .errors import UserError, as_text
 from .stopping import cleaned_up_if_stopped, done_whole
 
 Image = npt.NDArray[np.uint8]  # (H, W, 3), top row first
@@ -69,18 +71,37 @@ def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None)
 def written_atomically(target: Path) -> Iterator[Path]:
     """Yield a path beside `target`, renamed to it if the block ends without an error.
 
-    Files that the block puts beside that one go along, and lie beside the target then. A link stays
-    one: what it points to is written. UserError where that cannot be, in the block or after it.
+    Files that the block puts beside that one go along, and lie beside the target then. Where the
+    target is a symbolic link, the file takes the place of the link, as with `mv`: somebody else
+    may have put it into a folder that others may write. UserError where that cannot be, in the
+    block or after it.
     """
-    whole = real_path(target)
+    check_links(target)
+    parent = Path(os.path.realpath(target.parent))
     with cannot_be_written(target):
-        whole.parent.mkdir(parents=True, exist_ok=True)
-    with temporary_folder(target, whole.parent) as folder, cannot_be_written(target):
-        part = folder / whole.name
+        parent.mkdir(parents=True, exist_ok=True)
+    with temporary_folder(target, parent) as folder, cannot_be_written(target):
+        part = folder / target.name
         yield part
         with done_whole():
             for each in (*(item for item in folder.iterdir() if item != part), part):
-                os.replace(each, whole.parent / each.name)
+                os.replace(each, parent / each.name)
+
+
+@contextlib.contextmanager
+def named_in_text(target: Path) -> Iterator[Path]:
+    """Yield a path to write `target` by, for libraries that take names in UTF-8 alone.
+
+    It is `target` itself, unless its name or a folder's is no UTF-8: then the file is written in
+    the system's folder for temporary files, and moved after the block.
+    """
+    if as_text(target) == str(target):
+        yield target
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        part = Path(folder) / f"part{as_text(target.suffix)}"
+        yield part
+        shutil.move(part, target)
 
 
 @contextlib.contextmanager
@@ -114,8 +135,11 @@ def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) ->
 
 
 def check_folder(target: Path, *, overwrite: bool) -> None:
-    """Raise UserError where a folder of many files cannot be written, or holds something."""
-    real_path(target)
+    """Raise UserError where a folder of many files cannot be written, or holds something.
+
+    A link to a folder stands for that folder.
+    """
+    check_links(target)
     with cannot_be_written(target):
         is_empty = not target.exists() or all(map(is_staging_folder, target.iterdir()))
     if not is_empty and not overwrite:
@@ -143,26 +167,32 @@ def cannot_be_written(target: Path) -> Iterator[None]:
         raise UserError(f"{target}: cannot be written: {error.strerror or error}") from None
 
 
-def real_path(target: Path) -> Path:
-    """The file that `target` stands for; UserError where its links go round in a circle."""
-    whole = Path(os.path.realpath(target))
+def check_links(target: Path) -> None:
+    """Raise UserError where the links of a path go round in a circle."""
     with cannot_be_written(target):
-        if whole.is_symlink():
+        if os.path.islink(os.path.realpath(target)):
             raise UserError(f"{target}: is a link that leads back to itself; choose another name")
-    return whole
+
+
+def entry_of(path: Path) -> str:
+    """Which name in which folder a path is: of a link its own, unless that leads to a folder."""
+    if path.is_dir():
+        return os.path.realpath(path)
+    return os.path.join(os.path.realpath(path.parent), path.name)
 
 
 def check_file(target: Path) -> None:
     """Raise UserError, before any work is done, where no file of this name can be written."""
-    whole = real_path(target)
+    check_links(target)
     with cannot_be_written(target):
-        if whole.is_dir():
+        if target.is_dir():
             raise UserError(f"{target}: is a folder; choose another name for the file")
-        if whole.exists() and not whole.is_file():
+        if target.exists() and not target.is_file() and not target.is_symlink():
             raise UserError(f"{target}: is a device, not a file; choose another name")
-        parent = next(parent for parent in whole.parents if os.path.lexists(parent))
+        parents = Path(entry_of(target)).parents
+        parent = next(parent for parent in parents if os.path.lexists(parent))
         with temporary_folder(target, parent) as folder:
-            (folder / whole.name).touch()
+            (folder / target.name).touch()
 
 
 def check_png(target: Path) -> None:
@@ -189,13 +219,16 @@ def save_png(target: Path, image: Image) -> None:
 def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:
     """UserError where two outputs are one file, or one would take the place of an input."""
     written: set[str] = set()
-    read = {os.path.realpath(path) for path in inputs if path is not None}
+    read: set[str] = set()
+    for path in inputs:
+        if path is not None:  # `realpath`, unlike `resolve`, bears links that lead to themselves
+            read |= {entry_of(path), os.path.realpath(path)}
     for path in outputs:
         if path is None:
             continue
-        real = os.path.realpath(path)  # unlike `resolve` it bears links that lead to themselves
-        if real in read:
+        entry = entry_of(path)
+        if entry in read:
             raise UserError(f"{path}: is read and would be written; choose another name")
-        if real in written:
+        if entry in written:
             raise UserError(f"{path}: is to be two outputs at once; choose another name for one")
-        written.add(real)
+        written.add(entry)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UserError
-from ..files import read_text
+from ..files import entry_of, read_text
 
 LONGEST = 64 << 20  # [bytes] of a list
 
@@ -65,15 +65,17 @@ def clashes(jobs: Sequence[Job]) -> Iterator[tuple[int, str]]:
     writer_of: dict[str, Job] = {}
     for job in jobs:
         for output in job.outputs:
-            other = writer_of.setdefault(os.path.realpath(output), job)
+            other = writer_of.setdefault(entry_of(output), job)
             if other is not job:
                 yield job.number, f"{output}: is written by line {other.number} already"
     for job in jobs:
         for file in job.inputs:
-            other = writer_of.get(os.path.realpath(file), job)
-            if other is not job:
+            names = (entry_of(file), os.path.realpath(file))
+            others = [writer_of[name] for name in names if writer_of.get(name, job) is not job]
+            if others:
                 yield (
                     job.number,
-                    f"{file}: is written by line {other.number}, and lines are done in no order; "
+                    f"{file}: is written by line {others[0].number}, and lines are done in no "
+                    "order; "
                     "make two lists",
                 )

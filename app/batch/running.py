@@ -14,7 +14,7 @@ from pathlib import Path
 
 import click
 
-from ..errors import UserError, counted
+from ..errors import UserError, as_text, counted
 from ..files import written_atomically
 from ..motion import tally
 from ..stopping import cleaned_up_if_stopped
@@ -110,9 +110,9 @@ def save_summary(target: Path, results: Sequence[Result]) -> None:
             "status": each.status,
             "seconds": f"{each.seconds:.3f}",
             "frames": each.frames,
-            "outputs": " ".join(map(str, each.job.outputs)),
+            "outputs": as_text(" ".join(map(str, each.job.outputs))),
             "error": each.error,
-            "log": each.job.log,
+            "log": as_text(each.job.log),
             "command": each.job.text,
         }
         for each in sorted(results, key=lambda each: each.job.number)

@@ -21,7 +21,7 @@ from typing import Any
 from risorius.assets.staging import is_staging_folder, locked
 
 from ..errors import UserError
-from ..files import cannot_be_written, real_path, save_text
+from ..files import cannot_be_written, check_links, save_text
 
 BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"
@@ -52,12 +52,15 @@ class SetFolder:
         options: all that decides what samples are, as JSON has it. Raises UserError where the
         folder holds something else, or a set that was begun with other options.
         """
-        if real_path(self.path).is_file():
+        check_links(self.path)
+        if self.path.is_file():
             raise UserError(f"{self.path}: is a file; name a folder")
         with cannot_be_written(self.path):
             self.path.mkdir(parents=True, exist_ok=True)
             self._check(options, resume=resume)
             unfinished = self.path / UNFINISHED
+            if unfinished.is_symlink():  # what is in the folder behind it is not ours to remove
+                raise UserError(f"{unfinished}: is a link; remove it")
             unfinished.mkdir(exist_ok=True)
             lock = locked(unfinished / "lock")
         if lock is None:
@@ -66,6 +69,7 @@ class SetFolder:
             with cannot_be_written(self.path):
                 for left in unfinished.glob("[0-9]*"):
                     shutil.rmtree(left)
+                self.log.unlink(missing_ok=True)
             if not self.there():
                 save_text(self.path / BEGUN, json.dumps(options, indent=1) + "\n")
             yield

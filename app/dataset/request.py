@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from ..errors import as_text
 from ..passes.labels import check_wanted
 from ..passes.passes import IMAGES
 from ..refining.refiners import parse_options
@@ -73,7 +74,7 @@ def request_of(
         "background": background,
         "refiner": refiner,
     }
-    words = [(f"--{name}", str(value)) for name, value in told.items() if value is not None]
+    words = [(f"--{name}", as_text(value)) for name, value in told.items() if value is not None]
     return Request(
         output.absolute(),
         seed,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import colorsys
 import contextlib
 import hashlib
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,7 +18,7 @@ import PIL.ImageOps
 
 from risorius.render import LIGHTS, Background, Light
 
-from ..errors import UserError
+from ..errors import UserError, as_text
 from ..files import Image
 
 TURN = 18.0  # [degrees] that the key light is moved, standard deviation
@@ -39,7 +40,7 @@ class Backgrounds:
         if not self.pictures:
             return self.colour if self.colour is None else list(self.colour)
         told = "".join(f"{path.name} {path.stat().st_size}\n" for path in self.pictures)
-        content = hashlib.sha256(told.encode()).hexdigest()[:16]  # tells files from others
+        content = hashlib.sha256(os.fsencode(told)).hexdigest()[:16]  # tells files from others
         return {"pictures": len(self.pictures), "content": content}
 
     def colours(self, random: np.random.Generator) -> Background:
@@ -66,7 +67,7 @@ class Backgrounds:
         part = whole.resize(
             size, PIL.Image.Resampling.LANCZOS, (left, top, left + width, top + height)
         )
-        return path.name, np.asarray(part)
+        return as_text(path.name), np.asarray(part)
 
 
 def light_of(name: str, random: np.random.Generator) -> Light:

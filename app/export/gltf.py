@@ -27,6 +27,7 @@ from risorius.geometry.colour import to_linear
 from risorius.geometry.normals import vertex_normals
 from risorius.geometry.texels import Texels, rates
 
+from ..errors import as_text
 from ..scenes import FaceScene
 from .clip import METRES, Clip, Surface
 from .formats import Request
@@ -119,7 +120,7 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
             skeleton.hang(number, piece.bone)
         if len(piece.targets):
             glb.animate(number, "weights", piece.weights)
-    return glb.to_bytes(clip.script.title or "motion", roots)
+    return glb.to_bytes(as_text(clip.script.title) or "motion", roots)
 
 
 def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats | None) -> int:

@@ -30,7 +30,7 @@ def write_obj(clip: Clip, folder: Path, request: Request) -> None:
     frames = request.counted(frame_surfaces(clip, request.refinement), clip.frame_count)
     for number, frame in enumerate(frames):
         path = folder / f"{FRAME.format(number)}.obj"
-        path.write_text(_obj_text(clip, frame, material))
+        _write(path, _obj_text(clip, frame, material))
 
 
 def write_pc2(clip: Clip, part: Path, request: Request) -> None:
@@ -39,7 +39,7 @@ def write_pc2(clip: Clip, part: Path, request: Request) -> None:
     for number, frame in enumerate(request.counted(frame_surfaces(clip), clip.frame_count)):
         if number == 0:
             material = _write_material(clip, part.with_suffix(".mtl"))
-            part.with_suffix(".obj").write_text(_obj_text(clip, frame, material))
+            _write(part.with_suffix(".obj"), _obj_text(clip, frame, material))
         points.append(METRES * np.concatenate([surface.points for surface in frame]))
     vertices = len(points[0])
     with part.open("wb") as file:
@@ -53,9 +53,14 @@ def _write_material(clip: Clip, path: Path) -> str:
     if clip.scene.albedo is None:
         return ""
     picture = path.with_name(f"{path.stem}_skin.png")
-    path.write_text(f"newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\nnewmtl parts\nKd 1 1 1\n")
+    _write(path, f"newmtl skin\nKd 1 1 1\nmap_Kd {picture.name}\nnewmtl parts\nKd 1 1 1\n")
     PIL.Image.fromarray(clip.scene.albedo).save(picture)
     return path.name
+
+
+def _write(path: Path, text: str) -> None:
+    """Write a text that names files: names keep their bytes, also where they are no UTF-8."""
+    path.write_text(text, encoding="utf-8", errors="surrogateescape")
 
 
 def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:

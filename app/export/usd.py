@@ -7,6 +7,7 @@ Source: Pixar, OpenUSD's schemas UsdGeomMesh (points, normals, primvars) and Usd
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ import PIL.Image
 from risorius.geometry.colour import to_linear
 from risorius.geometry.normals import vertex_normals
 
-from ..errors import needed
+from ..errors import as_text, needed
 from .clip import METRES, Clip, Surface
 from .formats import Request
 
@@ -34,15 +35,20 @@ ALWAYS = Usd.TimeCode.Default()
 
 def write_usd(clip: Clip, part: Path, request: Request) -> None:
     """Write the package; OSError where the disk is full."""
-    with tempfile.TemporaryDirectory(dir=part.parent) as folder:
-        layer, picture = Path(folder) / f"{part.stem}.usdc", Path(folder) / PICTURE
+    is_text = as_text(part) == str(part)  # USD takes names in UTF-8 alone
+    with tempfile.TemporaryDirectory(dir=part.parent if is_text else None) as folder:
+        layer = Path(folder) / (f"{part.stem}.usdc" if is_text else "motion.usdc")
+        picture = Path(folder) / PICTURE
+        package = Path(folder) / "package.usdz"
         if clip.scene.albedo is not None:
             PIL.Image.fromarray(clip.scene.albedo).save(picture)
         try:
             stage = Usd.Stage.CreateNew(str(layer))
             _fill(stage, clip, request)
             stage.Save()
-            is_made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(part))
+            is_made = UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(package))
+            if is_made:
+                shutil.move(package, part)
         except Tf.ErrorException:
             is_made = False
     if not is_made:

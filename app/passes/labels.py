@@ -26,7 +26,7 @@ import PIL.Image
 from risorius import render
 
 from ..errors import UserError, needed
-from ..files import Image, written_atomically
+from ..files import Image, named_in_text, written_atomically
 from ..scenes import FaceScene, Scene
 from .passes import NAMES, OF_FACES, Passes
 
@@ -270,7 +270,7 @@ def write_exr(path: Path, passes: Mapping[str, npt.NDArray[Any]]) -> None:
             channels[channel] = np.ascontiguousarray(layers[..., k])
     header = {"compression": module.ZIP_COMPRESSION, "type": module.scanlineimage}
     try:
-        with module.File(header, channels) as file:
-            file.write(str(path))
+        with named_in_text(path) as named, module.File(header, channels) as file:
+            file.write(str(named))
     except RuntimeError as error:  # ... image file "...". No space left on device.
         raise OSError(str(error).rpartition('". ')[2].rstrip(".")) from None

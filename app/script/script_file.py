@@ -26,7 +26,7 @@ import numpy.typing as npt
 
 from risorius.schema import MadeFrom, Record, parsed_toml, quoted, read
 
-from ..errors import UserError, in_one_line
+from ..errors import UserError, as_text, in_one_line
 from ..files import read_text, save_text
 from . import (
     ALLOWED,
@@ -183,15 +183,24 @@ def save_script(target: Path, script: Script) -> None:
 
 
 def script_text(script: Script, folder: Path | None = None) -> str:
-    """The TOML text of a script; folder: where it will be, for what it names beside it."""
-    head = [script.preface] if script.preface else []
+    """The TOML text of a script; folder: where it will be, for what it names beside it.
+
+    Raises UserError for a sound whose name is no UTF-8, as TOML is.
+    """
+    head = [as_text(script.preface)] if script.preface else []
     if script.title:  # else it is called as its file is
         head.append(f"title = {_quoted(script.title)}")
     head.append(f"scene = {_quoted(script.scene)}")
     if script.camera is not None:
         head.append(f"camera = {_quoted(script.camera)}")
     if script.sound is not None:
-        head.append(f"sound = {_quoted(_as_seen_from(folder, script.sound))}")
+        sound = _as_seen_from(folder, script.sound)
+        if as_text(sound) != sound:
+            raise UserError(
+                f"{script.sound}: a script cannot name this sound, because its path is no UTF-8; "
+                "rename it"
+            )
+        head.append(f"sound = {_quoted(sound)}")
     head.append(f"duration = {_number(script.duration)}")
     blocks = ["\n".join(head), *map(_pose, script.poses)]
     if script.tracks:
@@ -254,7 +263,7 @@ def _number(value: float) -> str:
 
 
 def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(as_text(text), ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _key(name: str) -> str:

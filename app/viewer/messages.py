@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..control_names import sentence
-from ..errors import UserError
+from ..errors import UserError, as_text
 
 SECONDS = 6.0  # for which a message stays
 LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
@@ -29,7 +29,9 @@ class Messages:
 
     def say(self, text: str, *, error: bool = False, stays: bool = False) -> None:
         """Show a line in place of the one before; an error stays."""
-        self.text, self.is_error, self.stays = sentence(text), error, error or stays
+        self.text = sentence(as_text(text))
+        self.is_error = error
+        self.stays = error or stays
         self.seconds_left = SECONDS
 
     def attempt(self, task: Task, *, stays: bool = False) -> None:

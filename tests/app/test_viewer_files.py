@@ -1,5 +1,6 @@
 """Files that come into the window and leave it, and sounds."""
 
+import os
 import subprocess
 from collections.abc import Iterator
 from importlib import resources
@@ -350,3 +351,27 @@ def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_devi
     viewer.messages.text = ""
     xdotool(viewer, "key", "space")
     assert until(viewer, lambda: viewer.session.time > 0.2) and not viewer.messages.text
+
+
+def test_a_name_that_is_no_utf8(viewer: Viewer, tmp_path: Path) -> None:
+    """Dropped, saved, chosen and opened again: shown with its bytes escaped, never changed."""
+    script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/l\xe4cheln.toml"))
+    script.write_text(SCRIPT)
+    drop(viewer, script)
+    assert viewer.session.file.path == script and not viewer.messages.is_error
+    assert viewer.messages.text == r"l\xe4cheln.toml: opened"
+    assert title_of(viewer) == r"Risorius: l\xe4cheln.toml"
+    viewer.session.set("jaw_open", 0.4)
+    viewer.session.note()
+    xdotool(viewer, "key", "k")
+    xdotool(viewer, "key", "ctrl+s")
+    assert "jaw_open" in script.read_text("utf-8")
+    put(viewer, tmp_path / "none.toml")
+    xdotool(viewer, "key", "ctrl+o")
+    click(viewer, r"file l\xe4cheln.toml", times=2)
+    assert viewer.session.file.path == script and not viewer.files.is_waiting
+    xdotool(viewer, "key", "ctrl+shift+s")
+    assert viewer.files.request is not None and viewer.files.request.target == script
+    xdotool(viewer, "key", "Escape")
+    xdotool(viewer, "key", "F12")
+    assert not viewer.messages.is_error

@@ -11,6 +11,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from ...control_names import sentence
+from ...errors import as_text
 from ..interface.gui import Gui, colour
 from ..interface.widgets import button, dialog, muted, shortened
 from ..messages import Message
@@ -29,7 +30,7 @@ class Request:
     suffixes: tuple[str, ...]  # how the names of such files end
     then: Callable[[Path], Message]
     folder: Path
-    name: str = ""  # in the line
+    name: str = ""  # in the line, as text
     complaint: str = ""
     warned: Path | None = None  # what is there already, as was said
     wants_focus: bool = True  # of the line: on opening, and after each answer that was none
@@ -41,7 +42,7 @@ class Request:
             with os.scandir(folder) as entries:
                 visible = [entry for entry in entries if not entry.name.startswith(".")]
         except OSError as error:
-            self.complaint = f"{folder.name}: {error.strerror}"
+            self.complaint = as_text(f"{folder.name}: {error.strerror}")
             return
         folders = [f"{entry.name}/" for entry in visible if entry.is_dir()]
         fitting = [each.name for each in visible if each.name.lower().endswith(self.suffixes)]
@@ -53,7 +54,9 @@ class Request:
     @property
     def target(self) -> Path:
         """What the line stands for."""
-        target = self.folder / Path(self.name.strip().strip("'\"")).expanduser()
+        written = self.name.strip().strip("'\"")
+        is_written = (name for name in self.found if as_text(name) == written)
+        target = self.folder / Path(next(is_written, written)).expanduser()
         if self.is_saving and not target.suffix and not target.is_dir():
             target = target.with_suffix(self.suffixes[0])
         return target
@@ -64,9 +67,10 @@ class Request:
         if target.is_dir():
             self.enter(target)
         elif not self.is_saving and not target.is_file():
-            self.complaint = f"there is no {target.name}"
+            self.complaint = as_text(f"there is no {target.name}")
         elif self.is_saving and target.exists() and target != self.warned:
-            self.warned, self.complaint = target, f"{target.name} is there already"
+            self.warned = target
+            self.complaint = as_text(f"{target.name} is there already")
         else:
             return target
         self.wants_focus = True
@@ -99,7 +103,7 @@ class FileDialogs:
         folder = target.parent if proposed else target
         self.request = Request(title, saving, suffixes, then, folder)
         self.request.enter(folder)
-        self.request.name = target.name if proposed else ""
+        self.request.name = as_text(target.name) if proposed else ""
 
     def draw(self, gui: Gui) -> Message:
         """Draw the dialog while it is needed, and go on with the file that it gives."""
@@ -149,15 +153,17 @@ def _draw_listing(gui: Gui, request: Request) -> Path | None:
     imgui.begin_child("listing", (0.0, -room), borders)
     for name in request.found:
         what = "folder" if name.endswith("/") else "file"
-        label = name.replace("##", "# #")  # of which imgui would hide the rest
+        text = as_text(name)
+        label = text.replace("##", "# #")  # of which imgui would hide the rest
         twice = imgui.SelectableFlags_.allow_double_click
-        is_clicked, _ = imgui.selectable(f"{label}###{what} {name}", name == request.name, twice)
-        gui.remember(f"{what} {name.removesuffix('/')}")
+        is_clicked, _ = imgui.selectable(f"{label}###{what} {text}", text == request.name, twice)
+        gui.remember(f"{what} {text.removesuffix('/')}")
         if is_clicked and what == "folder":
             request.enter(request.folder / name)
             break
         if is_clicked:
-            request.name, request.complaint = name, ""
+            request.name = text
+            request.complaint = ""
             if imgui.is_mouse_double_clicked(0) and not request.is_saving:
                 chosen = request.folder / name
     if not request.found:

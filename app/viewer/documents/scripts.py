@@ -10,7 +10,7 @@ from typing import Protocol
 
 from imgui_bundle import imgui
 
-from ...errors import UserError
+from ...errors import UserError, as_text
 from ...performances import read_performance
 from ...script import Script
 from ...script.script_file import is_pose
@@ -142,7 +142,9 @@ class ScriptCommands:
     def save_as(self, then: Task = lambda: None) -> None:
         """Ask for a name, and write the script."""
         path, script = self._session.file.path, self._session.script
-        name = f"{Path(script.source).stem}{SUFFIX}" if script.is_converted else "script.toml"
+        name = "script.toml"
+        if script.is_converted:
+            name = f"{Path(script.source).stem}{SUFFIX}"
         self._files.ask(
             "Save script",
             lambda chosen: self._write(chosen, then),
@@ -224,7 +226,7 @@ def draw_question(
     with dialog(UNSAVED) as is_open:
         if not is_open:
             return None
-        imgui.text(f"Not saved: {question.unsaved or 'nothing any more'}.")
+        imgui.text(as_text(f"Not saved: {question.unsaved or 'nothing any more'}."))
         for label, run in choices.items():
             is_clicked = button(gui, label, name=f"question: {label}")
             imgui.same_line()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import os
 import re
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -22,6 +23,8 @@ import imgui_bundle
 from imgui_bundle import imgui
 
 from risorius import render
+
+from ...errors import as_text
 
 import glfw  # isort: skip - after imgui_bundle, see above
 
@@ -37,6 +40,8 @@ NOTE_FLAGS = (
     | imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_focus_on_appearing
 )
+
+_drop_callbacks: list[Any] = []  # to which GLFW holds no reference
 
 
 @dataclass(frozen=True)
@@ -135,7 +140,7 @@ class Gui:
         """Give the window a title, if it has another one."""
         if title != self._title:
             self._title = title
-            glfw.set_window_title(self._window, title)
+            glfw.set_window_title(self._window, as_text(title))
 
     @property
     def window_size(self) -> tuple[int, int]:
@@ -257,8 +262,15 @@ def wake_up() -> None:
 
 def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
     """Call `open_files` with the paths of files that are dropped onto the window."""
-    callback: Any = lambda _, paths: open_files(paths)  # noqa: E731 - the stubs are wrong
-    glfw.set_drop_callback(window, callback)
+
+    def call(_: Any, count: int, names: Any) -> None:
+        """What GLFW calls; its own wrapper knows no names but those in UTF-8."""
+        open_files([os.fsdecode(names[number]) for number in range(count)])
+
+    library: Any = glfw  # its stubs leave out what its wrapper calls
+    callback = library._GLFWdropfun(call)
+    _drop_callbacks.append(callback)
+    library._glfw.glfwSetDropCallback(window, callback)
 
 
 @contextlib.contextmanager

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from imgui_bundle import imgui
 
 from ...control_names import readable, sentence
+from ...errors import as_text
 from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
 
 # Knob and number of imgui's own sliders; bars have others.
@@ -222,19 +223,19 @@ def hint(text: str) -> None:
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
         imgui.begin_tooltip()
         imgui.push_text_wrap_pos(em(24))
-        imgui.text_unformatted(sentence(text))
+        imgui.text_unformatted(sentence(as_text(text)))
         imgui.pop_text_wrap_pos()
         imgui.end_tooltip()
 
 
 def muted(gui: Gui, text: str) -> None:
     """Text of less weight."""
-    imgui.text_colored(colour(gui.theme.muted), text)
+    imgui.text_colored(colour(gui.theme.muted), as_text(text))
 
 
 def shortened(text: str, room: float, *, keeps_end: bool = False) -> str:
     """The text, or as much of its beginning (or end) as fits into the room [window units]."""
-    cut = text
+    cut = text = as_text(text)
     for lost in range(1, len(text) + 1):
         if imgui.calc_text_size(cut).x <= room:
             return cut

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ...control_names import copied, mirrored, readable, twin_of
 from ...control_names.limits import ControlValues
-from ...errors import UserError, counted
+from ...errors import UserError, as_text, counted
 from ...motion import SETTLING
 from ...scenes import Scene
 from ...script import Pose, Script, keyframes, rounded
@@ -341,7 +341,7 @@ class Work:
     def name(self) -> str:
         """What the script is called: by its file, if there is one, else by its title."""
         path = self._session.file.path
-        return path.name if path else self._session.script.title or "Untitled"
+        return as_text(path.name if path else self._session.script.title or "Untitled")
 
     @property
     def has_unsaved_pose(self) -> bool:

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from ...control_names import readable
+from ...errors import as_text
 from ...refining.presets import FIRST_PRESET, PAPERS_PRESET
 from ...scenes import BUILT_IN
 from ...script import EASINGS
@@ -50,7 +51,7 @@ def file_menu(
         """What was opened or saved lately, and can be opened again."""
         for paths in (each.split("\n") for each in settings.recent):
             names = " + ".join(Path(path).name for path in paths)
-            label = f"{names}   {Path(paths[0]).parent}".replace("##", "# #")
+            label = as_text(f"{names}   {Path(paths[0]).parent}").replace("##", "# #")
             yield command(label, "", partial(file_drop.open, paths))
 
     other = partial(command, can_run=lambda: exporter.session.scene.called not in ("", BUILT_IN))

@@ -1,0 +1,259 @@
+"""Names of files: those that are no UTF-8, and outputs in whose place a symbolic link lies."""
+
+import csv
+import json
+import os
+import shutil
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+import pytest
+
+from risorius.app.errors import UserError, as_text, in_one_line
+from risorius.app.files import check_apart, check_file, save_png, save_text
+from risorius.app.script import Pose, Script
+from risorius.app.script.script_file import load_script, save_script, script_text
+
+from .command_line import refusal, risorius
+from .recording_files import timecodes, written
+
+RAW = "l\udce4cheln"  # "lächeln" in Latin-1, as an old archive has it
+SHOWN = r"l\xe4cheln"
+SMALL = ("--size", "64x64")
+needs_bytes = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="names are bytes on Linux alone"
+)
+
+
+def take(path: Path) -> Path:
+    """A short recording."""
+    times = timecodes(range(12))
+    return written(path, {"Timecode": times, "jawOpen": np.linspace(0.0, 0.8, 12)})
+
+
+def pose(path: Path, *more: str) -> Path:
+    """A pose that holds for a fifth of a second; more: lines at the head of its file."""
+    lines = (*more, "duration = 0.2", "[[pose]]", "time = 0.0", "jaw_open = 0.5")
+    path.write_text("\n".join(lines), "utf-8")
+    return path
+
+
+def test_names_as_text() -> None:
+    """Bytes that are no UTF-8 are escaped, and all else stays."""
+    assert as_text(Path(f"/a/{RAW}.csv")) == f"/a/{SHOWN}.csv" == in_one_line(f"/a/{RAW}.csv")
+    assert as_text("schöner & größer \\ 笑") == "schöner & größer \\ 笑"
+    as_text("\ud800 alone").encode()
+
+
+@needs_bytes
+def test_a_recording_with_such_a_name_becomes_a_script(tmp_path: Path) -> None:
+    """Its title and preface are text; it is written under such a name as well, and read again."""
+    recording, script = take(tmp_path / f"{RAW}.csv"), tmp_path / f"{RAW}.toml"
+    result = risorius("convert", recording, "-o", script)
+    assert result.exit_code == 0 and f"{SHOWN}.toml: " in result.output
+    text = script.read_text("utf-8")
+    assert tomllib.loads(text)["title"] == SHOWN
+    assert text.startswith(f"# Made of {SHOWN}.csv")
+    assert load_script(script).title == SHOWN
+    again = risorius("convert", recording, "-o", tmp_path / "plain.toml")
+    assert again.exit_code == 0
+    assert (tmp_path / "plain.toml").read_text("utf-8") == text
+
+
+@needs_bytes
+def test_a_script_names_no_such_sound(tmp_path: Path) -> None:
+    """TOML is UTF-8, so one line says which file is to be renamed."""
+    script = Script("a", 1.0, source="a", poses=(Pose(0.0),), sound=tmp_path / f"{RAW}.wav")
+    with pytest.raises(UserError, match=r"l\\xe4cheln.wav: a script cannot name .* rename it"):
+        save_script(tmp_path / "a.toml", script)
+    assert list(tmp_path.iterdir()) == []
+    untitled = Script(RAW, 1.0, source="a", camera=RAW, poses=(Pose(0.0),), preface=f"# {RAW}")
+    assert tomllib.loads(script_text(untitled))["camera"] == SHOWN
+
+
+@needs_bytes
+@pytest.mark.parametrize("end", [".pc2", ".usdz", ".glb", ".vtkhdf", ".npz", ".csv"])
+@pytest.mark.parametrize("where", ["name", pytest.param("folder", marks=pytest.mark.slow)])
+def test_motion_with_such_a_name_is_exported(where: str, end: str, tmp_path: Path) -> None:
+    """The file, its folder, or what it was made of may be called so."""
+    script = pose(tmp_path / f"{RAW}.toml")
+    folder = tmp_path / (RAW if where == "folder" else "folder")
+    target = folder / f"{'plain' if where == 'folder' else RAW}{end}"
+    result = risorius("export", script, "-o", target, "--fps", "10", "--quiet")
+    assert result.exit_code == 0, result.output
+    beside = {item.suffix for item in folder.iterdir()}
+    assert target.stat().st_size > 1000
+    if end == ".pc2":
+        assert beside == {".pc2", ".obj", ".mtl", ".png"}
+        content = target.with_suffix(".obj").read_bytes().splitlines()
+        assert content[0] == b"mtllib " + os.fsencode(target.with_suffix(".mtl").name)
+        picture = os.fsencode(target.with_name(f"{target.stem}_skin.png").name)
+        assert b"map_Kd " + picture in target.with_suffix(".mtl").read_bytes().splitlines()
+    else:
+        assert beside == {end}
+    if end == ".usdz":
+        assert zipfile.ZipFile(target).testzip() is None
+    if end == ".glb":
+        assert b"\\udc" not in target.read_bytes()
+
+
+@needs_bytes
+def test_pictures_with_such_a_name_have_their_passes(tmp_path: Path) -> None:
+    """EXR files, too, whose library takes no such name."""
+    OpenEXR = pytest.importorskip("OpenEXR")  # noqa: N806 - a module
+    script = pose(tmp_path / "pose.toml")
+    picture = tmp_path / RAW / f"{RAW}.png"
+    result = risorius(
+        "capture", script, "-o", picture, "--passes", "depth,segmentation,landmarks", *SMALL
+    )
+    assert result.exit_code == 0, result.output
+    ends = (".exr", ".json", ".png", "_ldmks.txt", "_seg.png")
+    assert sorted(item.name for item in picture.parent.iterdir()) == [f"{RAW}{e}" for e in ends]
+    shutil.copy(picture.with_suffix(".exr"), tmp_path / "plain.exr")
+    with OpenEXR.File(str(tmp_path / "plain.exr")) as file:
+        assert file.channels()["depth.Z"].pixels.max() > 100.0
+
+
+@pytest.mark.slow
+@needs_bytes
+def test_sets_and_lists_with_such_names(tmp_path: Path) -> None:
+    """What they write of themselves is UTF-8: card, labels, the table of what became of lines."""
+    backgrounds = tmp_path / f"{RAW}_pictures"
+    backgrounds.mkdir()
+    PIL.Image.new("RGB", (80, 64), (20, 90, 60)).save(backgrounds / f"{RAW}.png")
+    folder = tmp_path / f"{RAW}_set"
+    words = ("--background", backgrounds, *SMALL, "--refiner", "none", "--quiet")
+    for count, more in ((1, ()), (2, ("--resume",))):
+        result = risorius("dataset", "--count", count, "-o", folder, *words, *more)
+        assert result.exit_code == 0, result.output
+    assert json.loads((folder / "000000.json").read_text("utf-8"))["background"] == f"{SHOWN}.png"
+    assert f"{SHOWN}_pictures" in (folder / "README.md").read_text("utf-8")
+    listing = tmp_path / f"{RAW}.txt"
+    script, target = pose(tmp_path / "pose.toml"), tmp_path / "out.npz"
+    listing.write_text(f"export '{script}' -o '{target}' --fps 5\n", "utf-8")
+    result = risorius("batch", listing, "--jobs", 1, "--quiet")
+    assert result.exit_code == 0, result.output
+    with (tmp_path / f"{RAW}_logs" / "summary.csv").open(encoding="utf-8", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert f"{SHOWN}_logs" in row["log"]
+
+
+@needs_bytes
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("capture", "NAME.toml", "-o", "face.png"),
+        ("capture", "--set", "joy", "-o", "NAME.bmp"),
+        ("capture", "--set", "NAME=1", "-o", "face.png"),
+        ("capture", "--set", "joy", "-o", "face.png", "--refiner", "NAME"),
+        ("capture", "--head", "NAME.obj", "--landmarks", "NAME.json", "-o", "face.png"),
+        ("convert", "NAME.csv", "-o", "face.toml"),
+        ("export", "NAME.toml", "-o", "NAME.glb"),
+        ("dataset", "--count", "1", "-o", "set", "--sample", "NAME.toml"),
+        ("batch", "NAME.txt"),
+        ("reproduce", "NAME"),
+        ("NAME",),
+    ],
+)
+def test_such_a_name_is_told_in_one_line(
+    words: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where nothing is, or where it means nothing."""
+    monkeypatch.chdir(tmp_path)
+    line = refusal(risorius(*(word.replace("NAME", RAW) for word in words)))
+    assert "cheln" in line and line.isprintable()
+
+
+@pytest.fixture
+def secret(tmp_path: Path) -> Path:
+    """A file of the user's own, and the folder `shared`, where others have put links to it."""
+    kept = tmp_path / "mine" / "secret"
+    kept.parent.mkdir()
+    kept.write_text("mine")
+    shared = tmp_path / "shared"
+    shared.mkdir()
+    shared.chmod(0o1777)  # as /tmp is
+    names = ("face.png", "face.json", "face.toml", "face.csv", "face.npz", "face.obj", "face.pc2")
+    for name in (*names, "face.mtl", "face_skin.png", "face.mp4"):
+        (shared / name).symlink_to(kept)
+    (shared / "nowhere.png").symlink_to(tmp_path / "mine" / "none.png")
+    (shared / "loop.png").symlink_to("loop.png")
+    return kept
+
+
+def test_an_output_takes_the_place_of_a_link(secret: Path, tmp_path: Path) -> None:
+    """And what the link leads to stays as it is, whether it is there or not."""
+    shared = tmp_path / "shared"
+    grey = np.full((8, 8, 3), 128, np.uint8)
+    for name in ("face.png", "nowhere.png"):
+        check_file(shared / name)
+        save_png(shared / name, grey)
+        assert not (shared / name).is_symlink() and PIL.Image.open(shared / name).size == (8, 8)
+    save_text(shared / "face.toml", "text")
+    assert not (shared / "face.toml").is_symlink() and (shared / "face.toml").read_text() == "text"
+    with pytest.raises(UserError, match=r"loop.png: is a link that leads back to itself"):
+        save_png(shared / "loop.png", grey)
+    assert secret.read_text() == "mine" and [*secret.parent.iterdir()] == [secret]
+    assert not [item for item in shared.iterdir() if item.name.startswith(".risorius")]
+
+
+@pytest.mark.slow
+def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(
+    secret: Path, tmp_path: Path
+) -> None:
+    """In a folder that others may write: pictures and their labels, scripts, motion, films."""
+    shared, script = tmp_path / "shared", pose(tmp_path / "pose.toml")
+    recording = take(tmp_path / "take.csv")
+    for words in (
+        ("capture", script, "-o", shared / "face.png", "--passes", "landmarks", *SMALL),
+        ("capture", script, "-o", shared / "face.mp4", "--fps", "5", *SMALL),
+        ("convert", recording, "-o", shared / "face.toml", "--overwrite"),
+        ("export", script, "-o", shared / "face.npz"),
+        ("export", script, "-o", shared / "face.csv"),
+        ("export", script, "-o", shared / "face.pc2"),
+    ):
+        result = risorius(*words)
+        assert result.exit_code == 0, result.output
+    left = [item.name for item in shared.iterdir() if item.is_symlink()]
+    assert sorted(left) == ["loop.png", "nowhere.png"]
+    assert secret.read_text() == "mine" and [*secret.parent.iterdir()] == [secret]
+
+
+@pytest.mark.slow
+def test_frames_and_samples_follow_no_link(secret: Path, tmp_path: Path) -> None:
+    """Nor do pictures in folders that are there already, or what a set has not finished."""
+    shared, script = tmp_path / "shared", pose(tmp_path / "pose.toml")
+    frames = shared / "frames"
+    frames.mkdir()
+    (frames / "frame_00001.png").symlink_to(secret)
+    words = ("capture", script, "-o", frames, "--fps", "5", "--overwrite", *SMALL)
+    assert risorius(*words).exit_code == 0
+    made = shared / "set"
+    words = ("dataset", "--count", "1", "-o", made, *SMALL, "--refiner", "none", "--quiet")
+    assert risorius(*words).exit_code == 0
+    for name in ("000000.png", "000000.json", "index.csv", "README.md"):
+        (made / name).unlink()
+        (made / name).symlink_to(secret)
+    assert risorius(*words, "--resume").exit_code == 0
+    assert not any(path.is_symlink() for path in (*frames.iterdir(), *made.iterdir()))
+    (made / ".unfinished").symlink_to(secret.parent)
+    assert ".unfinished: is a link; remove it" in refusal(risorius(*words, "--resume"))
+    assert secret.read_text() == "mine" and [*secret.parent.iterdir()] == [secret]
+
+
+def test_a_link_is_no_way_around_what_is_read(tmp_path: Path) -> None:
+    """An output that would take the place of an input is refused, by whatever name."""
+    real, link, other = (tmp_path / name for name in ("real.toml", "link.toml", "other.toml"))
+    real.write_text("mine")
+    link.symlink_to(real)
+    (tmp_path / "here").symlink_to(tmp_path)
+    for output, read in ((real, link), (link, link), (tmp_path / "here" / "real.toml", real)):
+        with pytest.raises(UserError, match="is read and would be written"):
+            check_apart((output,), (read,))
+    with pytest.raises(UserError, match="two outputs at once"):
+        check_apart((other, tmp_path / "here" / "other.toml"), ())
+    check_apart((link, other), (real,))  # the link gives way, and what it leads to is left
