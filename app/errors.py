@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import os
 import re
 import sys
+import traceback
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -44,10 +46,26 @@ def counted(number: int, noun: str) -> str:
 
 
 class UserError(Exception):
-    """Something the user gave cannot be used; the text says what, where, what is allowed."""
+    """Something the user gave cannot be used; the text says what, where, what is allowed.
 
-    def __init__(self, text: str) -> None:
+    trace: the traceback of the process in which it was raised, if that was another one.
+    """
+
+    def __init__(self, text: str, trace: str = "") -> None:
         super().__init__(in_one_line(text))
+        self.trace = trace
+
+
+def traceback_of(error: BaseException) -> str:
+    """The traceback of an error and of all that led to it, if RISORIUS_DEBUG asks for it; or ""."""
+    if os.environ.get("RISORIUS_DEBUG", "0") in ("", "0"):
+        return ""
+    one: BaseException | None = error
+    while one is not None:
+        one.__suppress_context__ = False  # which shows `raise ... from None`, too
+        one = one.__cause__ or one.__context__
+    there = error.trace if isinstance(error, UserError) else ""
+    return there + "".join(traceback.format_exception(error))
 
 
 def needed(module: str, what: str, extra: str, *, package: str | None = None) -> Any:
@@ -87,6 +105,7 @@ def report_user_errors() -> Iterator[None]:
         line = line_for(error)
         if line is None:
             raise
+        click.echo(traceback_of(error), err=True, nl=False)
         click.echo(f"risorius: {line}", err=True)
         sys.exit(2)
 

@@ -20,6 +20,7 @@ import numpy.typing as npt
 from risorius import refine, render
 
 from .anatomy import SKIN_ALONE, Anatomy, AnatomyView, DrawOrder
+from .refining.plug_ins import PlugIn, plug_ins_of, reported
 from .refining.presets import ON_CARD, Refinement
 from .refining.refiners import refiner_for
 from .refining.wrinkling import Amounts, Compression, on_rows
@@ -40,27 +41,39 @@ class DrawnMesh:
     style: render.Style = render.Style()  # noqa: RUF009 - frozen; in which it was drawn last
     mesh: refine.RefinedMesh | None = None  # what was refined last, of:
     positions: npt.NDArray[np.float64] | None = None
+    plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
 
     def refine(self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera) -> None:
-        """Fill the lent buffers with refined triangles, for whoever looks through the camera."""
+        """Fill the lent buffers with refined triangles, for whoever looks through the camera.
+
+        Raises PlugInError where somebody else's code fails.
+        """
         view = refine.View(camera.eye)
         self.positions = positions
-        if isinstance(self.stream, render.GpuStream):
-            assert isinstance(self.refiner, refine.GpuRefiner)  # see `Pipeline.bind`
-            self.mesh = self.refiner.refine_on_card(positions, self.stream, view)
-        else:
-            self.mesh = self.refiner.refine(positions, self.stream, view)
+        with reported(self.plug_ins):
+            if isinstance(self.stream, render.GpuStream):
+                assert isinstance(self.refiner, refine.GpuRefiner)  # see `Pipeline.bind`
+                self.mesh = self.refiner.refine_on_card(positions, self.stream, view)
+            else:
+                self.mesh = self.refiner.refine(positions, self.stream, view)
 
     def upload(self, style: render.Style, wrinkling: Amounts | None = None) -> None:
         """Hand over what was refined last, and how far the scene's vertices wrinkle."""
         assert self.mesh is not None and self.positions is not None
         self.style = style
-        rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
-        if isinstance(self.stream, render.GpuStream):
-            frame: Any = self.mesh  # of a refiner that fetches rows on demand
-            self.stream.show(frame, self.positions, rows)
-        else:
-            self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
+        with reported(self.plug_ins):
+            rows = None if wrinkling is None else on_rows(wrinkling, self.refiner)
+            if isinstance(self.stream, render.GpuStream):
+                frame: Any = self.mesh  # of a refiner that fetches rows on demand
+                self.stream.show(frame, self.positions, rows)
+            else:
+                self.stream.upload(self.mesh.vertex_count, self.mesh.triangle_count, rows)
+
+    def splits(self) -> npt.NDArray[np.uint8]:
+        """For each triangle drawn, how many splits its source triangle's edges have."""
+        assert self.mesh is not None
+        with reported(self.plug_ins):
+            return splits_of_source(self.refiner, self.mesh)
 
     @property
     def has_uv(self) -> bool:
@@ -116,15 +129,17 @@ class Pipeline:
         suits_card = has_card and is_open and len(self.scene.faces) >= LARGE
         asked = replace(refinement, refiner=ON_CARD) if suits_card else refinement
         refiner = refiner_for(self.scene, asked)
-        room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+        plug_ins = plug_ins_of(*asked.on(self.scene.name))
         stream: render.Stream | render.GpuStream
-        if self.renderer.lends_gpu_streams and isinstance(refiner, refine.GpuRefiner):
-            ends = self.scene.rest_positions[refiner.edges]
-            longest = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0)
-            stream = self.renderer.lend_gpu_stream(*room, margin=float(longest))
-        else:
-            stream = self.renderer.lend_stream(*room)
-        return DrawnMesh(refinement.label, refiner, stream)
+        with reported(plug_ins):
+            room = refiner.vertex_capacity, refiner.triangle_capacity, refiner.vertex_columns
+            if self.renderer.lends_gpu_streams and isinstance(refiner, refine.GpuRefiner):
+                ends = self.scene.rest_positions[refiner.edges]
+                longest = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max(initial=0.0)
+                stream = self.renderer.lend_gpu_stream(*room, margin=float(longest))
+            else:
+                stream = self.renderer.lend_stream(*room)
+        return DrawnMesh(refinement.label, refiner, stream, plug_ins=plug_ins)
 
     def set_tone(self, tone: float | None) -> None:
         """Hand the scene's albedo to the renderer, in a tone [deg] where it has any."""
@@ -183,7 +198,7 @@ class Pipeline:
         texture = self.texture if drawn.has_uv else None
         values = None
         if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:
-            values = splits_of_source(drawn.refiner, drawn.mesh)
+            values = drawn.splits()
         if style.shadows:
             skin = None if order.is_opened else stream
             renderer.cast_shadows(order.shadow_casters, bones, view, style, stream=skin)

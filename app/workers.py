@@ -23,7 +23,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from .errors import UserError, in_one_line, line_for
+from .errors import UserError, as_text, in_one_line, line_for, traceback_of
 from .motion import tally
 from .stopping import cleaned_up_if_stopped, handle_signals
 
@@ -87,7 +87,7 @@ class Worker:
                 continue
             self.close()
             if kind == FAILED:
-                raise UserError(content)
+                raise UserError(*content)
             return
 
     def close(self) -> None:
@@ -135,8 +135,10 @@ def serve() -> None:
     writer.join()
 
 
-def _done(work: Callable[..., object], arguments: Sequence[Any], *, send: Send) -> tuple[str, str]:
-    """Do the work, and return what became of it, with a line that says why it failed."""
+def _done(
+    work: Callable[..., object], arguments: Sequence[Any], *, send: Send
+) -> tuple[str, tuple[str, str]]:
+    """Do the work, and return what became of it: why it failed in a line, and the traceback."""
     try:
         work(*arguments, send)
     except Exception as error:
@@ -144,8 +146,8 @@ def _done(work: Callable[..., object], arguments: Sequence[Any], *, send: Send) 
         if line is None:  # a defect
             traceback.print_exc()
             line = in_one_line(f"{type(error).__name__}: {error}")
-        return FAILED, line
-    return DONE, ""
+        return FAILED, (line, traceback_of(error))
+    return DONE, ("", "")
 
 
 class WorkerPool:
@@ -181,13 +183,13 @@ class WorkerPool:
                 for message in worker.messages():
                     tell(message)
                 return
+            except UserError as error:
+                if error.trace:
+                    _note(log, error.trace)
+                raise
             except DiedError as end:
                 why = str(end)
-                if log is not None:
-                    with contextlib.suppress(OSError), log.open("a", encoding="utf-8") as file:
-                        file.write(
-                            f"risorius: the process of attempt {attempt + 1} died of {why}\n"
-                        )
+                _note(log, f"risorius: the process of attempt {attempt + 1} died of {why}\n")
             finally:
                 self._workers.remove(worker)
         if self._is_over:
@@ -203,6 +205,13 @@ class WorkerPool:
             worker.process.terminate()
         for worker in workers:
             worker.close()
+
+
+def _note(log: Path | None, text: str) -> None:
+    """Add a text to what a process printed, as far as that is kept."""
+    if log is not None:
+        with contextlib.suppress(OSError), log.open("a", encoding="utf-8") as file:
+            file.write(as_text(text))
 
 
 def run_all(

@@ -67,7 +67,8 @@ def make_set(
                     size += bytes_of_sample
                     bar.update()
             except UserError as error:
-                raise UserError(f"{error} (with --resume the set goes on)") from None
+                text = f"{error} (with --resume the set goes on)"
+                raise UserError(text, error.trace) from None
         _finish(folder, request, count)
     return Made(count, len(missing), size)
 

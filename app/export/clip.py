@@ -18,6 +18,7 @@ from risorius.geometry.normals import vertex_normals
 
 from ..errors import UserError
 from ..motion import play, scene_of
+from ..refining.plug_ins import plug_ins_of, reported
 from ..refining.presets import Refinement
 from ..refining.refiners import refiner_for
 from ..scenes import FaceScene, Scene
@@ -100,12 +101,15 @@ class Clip:
     def refined(self, refinement: Refinement) -> Iterator[refine.RefinedMesh]:
         """The skin of each frame, in order, as a refiner has it; read it before the next one.
 
-        Raises UserError for a refiner that has to know where somebody looks from.
+        Raises UserError for a refiner that has to know where somebody looks from, and PlugInError
+        where somebody else's code fails.
         """
         refiner = refiner_for(self.scene, refinement)
+        plug_ins = plug_ins_of(*refinement.on(self.scene.name))
         for frame in range(self.frame_count):
             try:
-                mesh = refiner.refine(self.skin.at(frame))
+                with reported(plug_ins):
+                    mesh = refiner.refine(self.skin.at(frame))
             except ValueError as error:
                 raise UserError(f"refiner {refinement.on(self.scene.name)[0]}: {error}") from None
             yield mesh

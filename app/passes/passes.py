@@ -22,7 +22,7 @@ from risorius import render
 from risorius.assets import Segment
 from risorius.assets.identities import HAIR
 
-from ..pipeline import DrawnMesh, Pipeline, splits_of_source
+from ..pipeline import DrawnMesh, Pipeline
 from ..scenes import FaceScene
 
 IMAGES = ("depth", "normal", "triangle", "splits", "segmentation")
@@ -80,7 +80,7 @@ class Passes:
             table = np.concatenate([drawn.mesh.source, np.full(parts + 1, -1, np.int32)])
             found["triangle"] = table[geometry.triangle]
         if "splits" in wanted:
-            splits = splits_of_source(drawn.refiner, drawn.mesh)
+            splits = drawn.splits()
             found["splits"] = np.append(splits, np.zeros(parts + 1, np.uint8))[geometry.triangle]
         if "segmentation" in wanted:
             found["segmentation"] = self._segmentation(geometry, drawn.triangle_count)

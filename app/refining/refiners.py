@@ -13,6 +13,7 @@ from risorius import assets, refine
 
 from ..errors import UserError
 from ..scenes import FaceScene, Scene
+from .plug_ins import culprit_of, error_in, plug_ins_of
 from .presets import PRESETS, STATIC, Refinement, named
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
@@ -22,8 +23,12 @@ SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
 def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
-    """Bind the refiner that is asked for to the scene's mesh; UserError if it refuses an option."""
+    """Bind the refiner that is asked for to the scene's mesh.
+
+    Raises UserError if it refuses an option, and PlugInError if somebody else's code fails.
+    """
     name, options = refinement.on(scene.name)
+    plug_ins = plug_ins_of(name, options)
     try:
         if refinement.options:
             _check(name, refinement.options)
@@ -35,8 +40,17 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
         return refine.create(
             name, scene.faces, scene.rest_positions, scene.uv, scene.face_uv, **options
         )
-    except (ValueError, TypeError) as error:
-        raise UserError(f"refiner {name}: {error}{_of_preset(refinement, options)}") from None
+    except UserError:
+        raise
+    except (Exception, SystemExit) as error:
+        plug_in = culprit_of(error, plug_ins)
+        is_refusal = isinstance(error, ValueError | TypeError)
+        if plug_in is not None and not (is_refusal and plug_in.kind == "refiner"):
+            raise error_in(plug_in, error) from error
+        if not is_refusal:
+            raise
+        told = _of_preset(refinement, options)
+        raise UserError(f"refiner {name}: {error}{told}") from error
 
 
 def _of_preset(refinement: Refinement, options: Mapping[str, Any]) -> str:

@@ -1,15 +1,20 @@
 """A package of somebody else, installed beside the application, brings refinement of its own."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from click.testing import Result
 
+from risorius.app.capture import processes
+from risorius.app.performances import script_for
+from risorius.app.viewer import Viewer
 from risorius.app.viewer.panels import mechanism
 from risorius.refine.border import registry
 
 from .command_line import refusal, risorius
+from .driving import until
 
 pytestmark = pytest.mark.usefixtures("shared_scenes")
 
@@ -52,16 +57,100 @@ class Half(refine.PassThrough):
         vertex_count, triangle_count = super().fill(stream, view)
         return vertex_count, int(self.share * triangle_count)
 '''
+BROKEN_MODULE = '''
+import sys
+
+import numpy as np
+
+from risorius import refine
+
+
+class Unborn(refine.Criterion):
+    def __init__(self):
+        self.least = 1 / 0
+
+    def mark(self, positions, normals, splits):
+        pass
+
+
+class NeedsWords(Unborn):
+    def __init__(self, words):
+        pass
+
+
+class Unbound(refine.Criterion):
+    def bind(self, connectivity, rest_positions, rest_normals):
+        raise KeyError("no such edge")
+
+    def mark(self, positions, normals, splits):
+        pass
+
+
+class Moody(refine.Criterion):
+    """Bears the mesh at rest, and nothing else."""
+
+    def bind(self, connectivity, rest_positions, rest_normals):
+        self.rest = rest_positions
+
+    def mark(self, positions, normals, splits):
+        if np.abs(positions - self.rest).max() > 0.5:
+            raise RuntimeError("two\\nlines")
+
+
+class Shapeless(refine.Criterion):
+    def measure(self, positions, normals, metric):
+        metric[:] = np.zeros(3)
+
+
+class Quitter(refine.Scheme):
+    def bind(self, connectivity, rest_positions, rest_normals):
+        pass
+
+    def place(self, frame):
+        sys.exit(7)
+
+
+class Silent(refine.PassThrough):
+    def fill(self, stream, view):
+        return None
+
+
+class Empty(refine.PassThrough):
+    @property
+    def vertex_capacity(self):
+        return -1
+
+
+class Picky(refine.PassThrough):
+    def __init__(self, faces, rest_positions, *, share: float = 2.0, **values):
+        raise ValueError(f"share must be below 1, got {share}")
+
+
+class Lost(refine.PassThrough):
+    def fill(self, stream, view):
+        return undefined_name
+'''
 ENTRY_POINTS = """
 [risorius.refiners]
+silent = broken_for_a_test:Silent
+empty = broken_for_a_test:Empty
+picky = broken_for_a_test:Picky
+lost = broken_for_a_test:Lost
+leaves = leaves_for_a_test:Leaves
 half = theirs_for_a_test:Half
 gone = nowhere_at_all:Gone
 three = theirs_for_a_test:THREE
 
 [risorius.schemes]
+quitter = broken_for_a_test:Quitter
 straight = theirs_for_a_test:Straight
 
 [risorius.criteria]
+unborn = broken_for_a_test:Unborn
+words = broken_for_a_test:NeedsWords
+unbound = broken_for_a_test:Unbound
+moody = broken_for_a_test:Moody
+shapeless = broken_for_a_test:Shapeless
 everywhere = theirs_for_a_test:Everywhere
 """
 
@@ -73,6 +162,8 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     notes = site / "theirs-1.0.dist-info"
     notes.mkdir(parents=True)
     (site / "theirs_for_a_test.py").write_text(MODULE, encoding="utf-8")
+    (site / "broken_for_a_test.py").write_text(BROKEN_MODULE, encoding="utf-8")
+    (site / "leaves_for_a_test.py").write_text("raise SystemExit(5)", encoding="utf-8")
     (notes / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
     (notes / "entry_points.txt").write_text(ENTRY_POINTS, encoding="utf-8")
     monkeypatch.syspath_prepend(site)
@@ -128,3 +219,97 @@ def test_they_are_offered() -> None:
     named = {line.partition(": ")[0]: line.split(", ") for line in lines}
     assert {"half", "gone"} <= set(named["refiners"])
     assert named["schemes"][-1] == "straight" and named["criteria"][-1] == "everywhere"
+
+
+BROKEN = {
+    "criterion=unborn": "criterion 'unborn' (broken_for_a_test:Unborn) raised ZeroDivisionError: ",
+    "criterion=words": "missing 1 required positional argument: 'words'",
+    "criterion=unbound": "criterion 'unbound' (broken_for_a_test:Unbound) raised KeyError: ",
+    "criterion=rest+moody": r"(broken_for_a_test:Moody) raised RuntimeError: two\nlines, in broken",
+    "criterion=shapeless": "(broken_for_a_test:Shapeless) raised ValueError: could not broadcast",
+    "scheme=quitter": "scheme 'quitter' (broken_for_a_test:Quitter) raised SystemExit: 7, in ",
+    "silent": "refiner 'silent' (broken_for_a_test:Silent): what it makes cannot be used: Type",
+    "empty": "refiner 'empty' (broken_for_a_test:Empty): what it makes cannot be used: Value",
+    "picky": "refiner picky: share must be below 1, got 2.0",
+    "lost": "(broken_for_a_test:Lost) raised NameError: name 'undefined_name' is not defined, in ",
+    "leaves": "refiner 'leaves': its module ends the program when imported",
+}
+
+
+def chosen(name: str) -> tuple[str, ...]:
+    """Options that choose one of the broken ones."""
+    if "scheme" in name:
+        return ("--option", name, "--option", "criterion=normal")
+    return ("--option", name) if "=" in name else ("--refiner", name)
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_an_error_in_one_is_told_with_its_name(tmp_path: Path, name: str) -> None:
+    """Whatever it raises, and whenever: one line, in pictures and in motion."""
+    draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
+    move = ("export", "-o", tmp_path / "face.vtkhdf", "--refined", "--fps", "5")
+    for words in (draw, move):
+        if name == "empty" and words is move:  # which asks for no room
+            continue
+        assert BROKEN[name] in refusal(risorius(*words, "--set", "joy", *chosen(name)))
+    assert not [item for item in tmp_path.iterdir() if item.name.startswith("face")]
+
+
+def test_the_traceback_is_there_for_whoever_asks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """RISORIUS_DEBUG=1 prints it before the line, and the exit code stays."""
+    monkeypatch.setenv("RISORIUS_DEBUG", "1")
+    for name in ("criterion=unborn", "lost", "gone"):
+        result = capture(tmp_path, *chosen(name))
+        lines = result.output.splitlines()
+        assert result.exit_code == 2 and lines[-1].startswith("risorius: ")
+        assert "Traceback (most recent call last):" in lines
+    assert "ModuleNotFoundError: No module named 'nowhere_at_all'" in lines
+
+
+@pytest.mark.slow
+def test_one_in_other_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Samples of a set, frames of a film and lines of a list are made there: the same line."""
+    sample = ("dataset", "--count", "1", "-o", tmp_path / "set", "--size", "64x64", "--quiet")
+    assert BROKEN["lost"] in refusal(risorius(*sample, "--refiner", "lost"))
+    still = ("--set", "joy", "--size", "64x48", *chosen("criterion=moody"))
+    listing = tmp_path / "list.txt"
+    words = " ".join(map(str, ("capture", "-o", tmp_path / "face.png", *still)))
+    listing.write_text(f"{words}\n", encoding="utf-8")
+    result = risorius("batch", listing, "--jobs", "1", "--quiet")
+    assert (
+        result.exit_code == 1 and "(broken_for_a_test:Moody) raised RuntimeError" in result.output
+    )
+    monkeypatch.setattr(processes, "worthwhile", lambda *_: 2)
+    monkeypatch.setenv("RISORIUS_DEBUG", "1")
+    result = risorius("capture", "-o", tmp_path / "face.mp4", "--fps", "5", *still)
+    assert result.exit_code == 2 and "Traceback (most recent call last):" in result.output
+    assert "criterion 'moody'" in result.output.splitlines()[-1]
+    assert not (tmp_path / "face.mp4").exists()
+
+
+@pytest.mark.window
+@pytest.mark.skipif("DISPLAY" not in os.environ, reason="needs a display; `make test` brings one")
+def test_a_window_that_is_opened_with_a_broken_one_says_so(tmp_path: Path) -> None:
+    """And does not stay; what fails as soon as the face moves ends no window that is open."""
+    view = ("view", "--size", "300x200")
+    assert BROKEN["criterion=unborn"] in refusal(risorius(*view, *chosen("criterion=unborn")))
+    assert BROKEN["lost"] in refusal(risorius(*view, *chosen("lost")))
+    script = script_for(None, "face")
+    with Viewer(script, (300, 200)) as viewer:
+        display = viewer.settings.display
+        display.options["kahler"] = {"criterion": "moody"}
+        viewer.frame()
+        assert not viewer.messages.is_error
+        viewer.session.set("jaw_open", 0.9)
+        assert until(viewer, lambda: viewer.messages.is_error)
+        assert "(broken_for_a_test:Moody) raised RuntimeError" in viewer.messages.text
+        assert viewer.stage.refined is viewer.stage.static
+        for refiner in ("gone", "picky"):
+            viewer.messages.text = ""
+            display.refiner = refiner
+            assert until(viewer, lambda: "efiner" in viewer.messages.text)
+        display.choose_preset("smooth")
+        assert until(viewer, lambda: viewer.stage.refined is not viewer.stage.static)
+        viewer.session.work.begin_script()

@@ -111,7 +111,7 @@ class MechanismPanel:
         put = partial(display.choose_refiner, stage.scene)
         self._choose("Refiner", display.refiner_on(stage.scene), names, put)
         has_thresholds = display.refinement_on(stage.scene).has_thresholds(stage.scene.name)
-        for name, default in options_of(display.refiner_on(stage.scene)).items():
+        for name, default in self._options().items():
             if name not in THRESHOLDS or has_thresholds:
                 self._draw_option(name, default)
         self._pick("Compare", COMPARISONS)
@@ -121,6 +121,13 @@ class MechanismPanel:
             imgui.text(f"{drawn.label}: {count} triangles")
             imgui.same_line()
             muted(self._gui, f"({count / base:.2f} x)")
+
+    def _options(self) -> dict[str, Any]:
+        """What can be set of the refiner; nothing of one that cannot be loaded, as was reported."""
+        try:
+            return options_of(self._display.refiner_on(self._stage.scene))
+        except (ValueError, TypeError):
+            return {}
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""

@@ -21,6 +21,7 @@ from ...capture.captions import Label, captioned, labels
 from ...capture.drawing import whole_scene
 from ...files import Image
 from ...pipeline import Pipeline, Viewport
+from ...refining.plug_ins import PlugInError
 from ...refining.presets import STATIC, Refinement
 from ...scenes import FaceScene, Scene
 from ..interface.gui import THEMES, em
@@ -145,6 +146,10 @@ class Stage:
         self._asked = chosen  # refused options are refused once, not in every frame
         is_static = chosen.refiner == STATIC
         self.refined = self.static if is_static else self.pipeline.bind(chosen)
+
+    def give_up_refinement(self) -> None:
+        """Draw the mesh as it is until another refinement is asked for."""
+        self.refined = self.static
 
     def viewports(self, display: Display, area: render.Rectangle) -> list[Viewport]:
         """What is drawn where in an area of the frame."""
@@ -325,5 +330,10 @@ class Painter:
     def _draw(self, detail: render.Detail, state: object) -> None:
         self._messages.attempt(lambda: self._stage.bind(self._view.display))
         self._stage.surface.detail, self._stage.surface.labels = detail, ()
-        self._stage.draw(self._view)
+        try:
+            self._stage.draw(self._view)
+        except PlugInError as error:  # work goes on, and the mesh is drawn as it is
+            self._messages.say(str(error), error=True)
+            self._stage.give_up_refinement()
+            self._stage.draw(self._view)
         self._painted = state, detail

@@ -12,6 +12,7 @@ from risorius.assets.fitting import FittedHead
 
 from ...control_names import readable
 from ...errors import UserError
+from ...refining.plug_ins import plug_ins_of, reported
 from ...refining.refiners import refiner_for
 from ...scenes import Scene, build_scene
 from ...script import Script
@@ -70,6 +71,7 @@ class Application(ApplicationContext):
         scene = splash.during(partial(_ready_scene, script, head, display or settings.display))
         if display is not None:
             settings.display = display
+            _refine_once(scene, display)
         else:
             complaint = complaint or _without_refused_options(settings.display, scene)
         settings.display.remove_missing_overlays(scene)
@@ -222,7 +224,7 @@ class Application(ApplicationContext):
 def _without_refused_options(display: Display, scene: Scene) -> str:
     """Refine by the look alone where a refiner refuses the scene; a line says why, "" for none."""
     try:
-        refiner_for(scene, display.refinement_on(scene))
+        _refine_once(scene, display)
     except UserError as error:
         display.choose_preset(display.look)
         return f"{error}; as at first"
@@ -235,7 +237,14 @@ def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> S
     script.check(scene.limits)
     scene.step(1.0 / 60.0)
     scene.reset()
-    with contextlib.suppress(UserError, TypeError):  # a stage tells what it refuses
-        refiner = refiner_for(scene, display.refinement_on(scene))
-        refiner.refine(scene.positions, view=refine.View(scene.focus + 400.0))
+    with contextlib.suppress(UserError):  # which is reported when the window is there
+        _refine_once(scene, display)
     return scene
+
+
+def _refine_once(scene: Scene, display: Display) -> None:
+    """Refine a scene as it is; UserError for a refiner that refuses it, or fails."""
+    refinement = display.refinement_on(scene)
+    refiner = refiner_for(scene, refinement)
+    with reported(plug_ins_of(*refinement.on(scene.name))):
+        refiner.refine(scene.positions, view=refine.View(scene.focus + 400.0))
