@@ -48,6 +48,28 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
     view = view or DEFAULT_VIEW
     if view in render.VIEWS:
         return _framing(scene, view)
+    yaw, pitch, zoom = _turn(view)
+    camera = _framing(scene, "front")
+    camera.orbit(yaw, pitch)
+    camera.target = scene.focus.copy()
+    _, high, near = np.stack(camera.axes()) @ (scene.framed - camera.target).T
+    half = (1.0 - MARGIN) * math.tan(math.radians(0.5 * camera.field_of_view))
+    camera.distance = max(camera.distance, float((near + np.abs(high) / half).max()))
+    camera.zoom(zoom)
+    return camera
+
+
+def check_camera(view: str | None, source: str = "") -> None:
+    """Raise UserError for a camera that `camera_for` does not know; source: where it is named."""
+    if view and view not in render.VIEWS:
+        try:
+            _turn(view)
+        except UserError as error:
+            raise UserError(f"{source}: {error}" if source else str(error)) from None
+
+
+def _turn(view: str) -> tuple[float, float, float]:
+    """Yaw and pitch [degrees] and zoom of a camera; UserError for what is none."""
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
         if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
@@ -57,14 +79,7 @@ def camera_for(scene: Scene, view: str | None) -> render.OrbitCamera:
             f"camera '{view}': allowed are {', '.join(render.VIEWS)}, "
             "or yaw,pitch[,zoom] in degrees, zoom above 0"
         ) from None
-    camera = _framing(scene, "front")
-    camera.orbit(yaw, pitch)
-    camera.target = scene.focus.copy()
-    _, high, near = np.stack(camera.axes()) @ (scene.framed - camera.target).T
-    half = (1.0 - MARGIN) * math.tan(math.radians(0.5 * camera.field_of_view))
-    camera.distance = max(camera.distance, float((near + np.abs(high) / half).max()))
-    camera.zoom(zoom)
-    return camera
+    return yaw, pitch, zoom
 
 
 def _framing(scene: Scene, view: str) -> render.OrbitCamera:

@@ -14,7 +14,7 @@ from ..script import Script
 from ..sound import load_sound
 from . import outputs, processes
 from .captions import contact_sheet
-from .drawing import Capture, CaptureOptions, Frame
+from .drawing import Capture, CaptureOptions, Frame, check_camera
 from .outputs import HEARD, Soundtrack, check_name, format_of
 
 
@@ -130,6 +130,8 @@ def _check(
                 f"--range {begin:g} {end:g}: take two times from 0 to {script.duration:g} s, "
                 "the earlier one first"
             )
+    if isinstance(options.camera, str):
+        check_camera(options.camera, script.source if options.camera == script.camera else "")
     if output is None and sheet is None:
         raise UserError("nothing to write: give -o OUTPUT, --sheet PICTURE, or both")
     if sheet and not script.key_poses:
@@ -145,7 +147,10 @@ def _check(
             f"{output}: a film has a background; take a folder of pictures, or another --background"
         )
     elif output is not None and script.sound is not None and output.suffix.lower() in HEARD:
-        load_sound(script.sound)
+        try:
+            load_sound(script.sound)
+        except UserError as error:
+            raise UserError(f"{script.source}, 'sound': {error}") from None
 
 
 def _check_passes(script: Script, output: Path | None, options: CaptureOptions) -> None:

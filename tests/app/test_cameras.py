@@ -1,11 +1,15 @@
 """Where a camera stands, from a name or from numbers."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from risorius.app.capture.drawing import DEFAULT_VIEW, camera_for, whole_scene
 from risorius.app.errors import UserError
 from risorius.app.scenes import FaceScene
+
+from .command_line import refusal, risorius
 
 
 def test_numbers_stand_around_the_middle_of_the_face(scene: FaceScene) -> None:
@@ -41,3 +45,18 @@ def test_what_no_camera_is(scene: FaceScene, text: str) -> None:
         return
     with pytest.raises(UserError, match=r"allowed are front, .* zoom above 0"):
         camera_for(scene, text)
+
+
+def test_a_wrong_camera_or_sound_of_a_script_is_told_with_its_name(tmp_path: Path) -> None:
+    """Of many scripts one knows which to mend; what the command line says needs no name."""
+    script, target = tmp_path / "mine.toml", tmp_path / "film.mp4"
+    key = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
+    script.write_text(f'camera = "behind"\n{key}')
+    words = ("capture", script, "-o", target, "--size", "64x64")
+    assert f"{script}: camera 'behind': allowed are front, " in refusal(risorius(*words))
+    told = refusal(risorius(*words, "--camera", "above"))
+    assert told.startswith("risorius: camera 'above': allowed are front, ")
+    script.write_text(f'sound = "none.wav"\n{key}')
+    wanted = f"{script}, 'sound': {tmp_path / 'none.wav'}: no such sound file"
+    assert wanted in refusal(risorius(*words))
+    assert list(tmp_path.iterdir()) == [script]

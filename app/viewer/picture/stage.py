@@ -18,7 +18,7 @@ from imgui_bundle import imgui
 from risorius import render
 
 from ...capture.captions import Label, captioned, labels
-from ...capture.drawing import whole_scene
+from ...capture.drawing import check_camera, whole_scene
 from ...files import Image
 from ...pipeline import Pipeline, Viewport
 from ...refining.plug_ins import PlugInError
@@ -51,8 +51,10 @@ class View:
         self.fit_scene()
 
     def fit_scene(self) -> None:
-        """The camera as at first: all of the scene."""
-        self.camera = whole_scene(self._session.scene, self._session.script.camera)
+        """The camera as at first: all of the scene; UserError if the script names none."""
+        script = self._session.script
+        check_camera(script.camera, script.source)
+        self.camera = whole_scene(self._session.scene, script.camera)
 
     def look_from(self, label: str) -> None:
         """Turn the camera to one of `render.VIEWS`, about what it looks at."""

@@ -48,7 +48,8 @@ class Soundtrack:
         except NoDeviceError:
             pass
         except UserError as error:
-            raise UserError(f"{error}; the script plays without") from None
+            source = self._session.script.source
+            raise UserError(f"{source}, 'sound': {error}; the script plays without") from None
 
     @property
     def is_heard(self) -> bool:
