@@ -78,7 +78,7 @@ def needed(module: str, what: str, extra: str, *, package: str | None = None) ->
     try:
         return import_module(module)
     except ModuleNotFoundError:
-        raise UserError(f"{name}; install it: pip install 'risorius[{extra}]'") from None
+        raise UserError(f"{name}; install it in the checkout: pip install '.[{extra}]'") from None
     except ImportError as error:  # a library of the system that it stands on, say
         raise UserError(f"{name}, which is installed but does not load: {error}") from None
 

@@ -13,7 +13,7 @@ OFFSCREEN = "offscreen OpenGL"
 # raw text -> (why, cure); the first pattern found wins.
 _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
     (r"invalid literal", "a GLCONTEXT_ variable is not a whole number", "unset it"),
-    (r"glfw'|GLFW3", "GLFW is not installed, or broken", "pip install 'risorius[window]'"),
+    (r"glfw'|GLFW3", "GLFW is not installed, or broken", "pip install '.[window]' in the checkout"),
     (
         r"(?i)display|platform",
         "there is no screen to open a window on",

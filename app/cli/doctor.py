@@ -24,7 +24,7 @@ EXTRAS = {
     "passes": ("OpenEXR",),
     "cluster": ("distributed",),
 }
-"""What `pip install 'risorius[EXTRA]'` brings, as modules."""
+"""What `pip install '.[EXTRA]'` brings, as modules."""
 
 
 class Health(enum.IntEnum):
@@ -89,7 +89,11 @@ def _extras() -> str:
     """Which extras are installed, and what installs the others."""
     missing = [name for name, modules in EXTRAS.items() if not all(map(_is_there, modules))]
     there = ", ".join(name for name in EXTRAS if name not in missing) or "none"
-    cure = f"; for the others: pip install 'risorius[{','.join(missing)}]'" if missing else ""
+    cure = (
+        f"; for the others, in the checkout: pip install '.[{','.join(missing)}]'"
+        if missing
+        else ""
+    )
     return f"extras: {there}{cure}"
 
 

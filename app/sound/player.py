@@ -139,7 +139,7 @@ class Player:
 def open_device(rate: int, channels: int) -> Any:
     """The device that the system prefers, stopped; NoDeviceError where there is none."""
     if miniaudio is None:
-        raise NoDeviceError("miniaudio is not installed (pip install 'risorius[window]')")
+        raise NoDeviceError("miniaudio is not installed (in the checkout: pip install '.[window]')")
     try:
         return miniaudio.PlaybackDevice(
             output_format=miniaudio.SampleFormat.SIGNED16,

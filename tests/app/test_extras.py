@@ -84,7 +84,10 @@ def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
     ended = plain("doctor", folder=tmp_path)
     assert ended.returncode == 1, ended.stderr
     lines = dict(line.split(": ", 1) for line in ended.stdout.splitlines() if ": " in line)
-    assert lines["extras"] == f"none; for the others: pip install 'risorius[{','.join(EXTRAS)}]'"
+    assert (
+        lines["extras"]
+        == f"none; for the others, in the checkout: pip install '.[{','.join(EXTRAS)}]'"
+    )
     assert lines["window"].startswith("no. the window needs imgui-bundle; install it")
     assert lines["Missing"].startswith("window, films;")
 
@@ -106,7 +109,7 @@ def test_what_is_missing_is_named(tmp_path: Path) -> None:
     ended = each_of(*missing, folder=tmp_path)
     for (command, extra), (code, lines) in zip(missing.items(), ended, strict=True):
         assert code == 2 and len(lines) == 1, (command, code, lines)
-        assert lines[0].endswith(f"; install it: pip install 'risorius[{extra}]'"), command
+        assert lines[0].endswith(f"; install it in the checkout: pip install '.[{extra}]'"), command
     assert {path.name for path in tmp_path.iterdir()} - {"list_logs"} == {"take.csv", "list.txt"}
 
 

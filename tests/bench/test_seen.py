@@ -56,8 +56,8 @@ def test_without_mediapipe_one_line_says_so(
     result = risorius("bench", "seen", "--model", tmp_path / "model.task")
     assert result.exit_code == 2
     assert result.stderr == (
-        "risorius: the face tracker needs MediaPipe; install it: "
-        "pip install 'risorius[mediapipe]'\n"
+        "risorius: the face tracker needs MediaPipe; install it in the checkout: "
+        "pip install '.[mediapipe]'\n"
     )
 
 
