@@ -78,7 +78,8 @@ class Canvas:
     ) -> None:
         """Refine, upload and draw, without reading back."""
         self.stream_for(refiner)
-        self._scene.positions, self._scene.drawing = positions, drawing
+        self._scene.positions = positions
+        self._scene.drawing = drawing
         viewports = [Viewport(self._meshes[refiner][0], (0, 0, *self.surface.size))]
         overlays = [drawing.lines] if drawing.lines else []
         self.surface.begin()
@@ -118,7 +119,8 @@ def image_table(rows: Sequence[tuple[str, Sequence[tuple[str, Image]]]]) -> Imag
     columns = max(len(cells) for _, cells in rows)
     # Pages show it about 1000 pixels wide: then a caption is no smaller than about 12.
     size = max(16.0, min(width, height) / 17.0, columns * width / 72.0)
-    title, caption_height = round(2.0 * size), round(1.7 * size)
+    title = round(2.0 * size)
+    caption_height = round(1.7 * size)
     whole = title + height + caption_height
     page = PIL.Image.new("RGB", (columns * width, len(rows) * whole), SHADE)
     draw = ImageDraw.Draw(page)

@@ -59,6 +59,7 @@ def _timed(script: Script, options: CaptureOptions, film: Path) -> tuple[float, 
         times = os.times()
         return times.user + times.system + times.children_user + times.children_system
 
-    begin, before = time.perf_counter(), used()
+    begin = time.perf_counter()
+    before = used()
     capture(script, options, output=film, progress=False)
     return time.perf_counter() - begin, used() - before

@@ -52,13 +52,15 @@ VIEWS = tuple(  # the whole front, as far as cameras go round it
 )
 MOUTH = 60.0  # mm around the mouth's middle in which skin may cover it
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
-LID_COLUMNS, LID_END = 23, 1.5  # planes across an eye; mm beside its corners not looked at
+LID_COLUMNS = 23  # planes across an eye
+LID_END = 1.5  # [mm] beside the corners of an eye, which are not looked at
 LID_STEP = 0.05  # mm between lines of sight in a plane
 LID_WINDOW = 12.0  # mm above and below the eye's middle
 EYE = 100.0  # mm around the eye's middle in which skin may cover it
 SEED = 2001
 MOST_CONTROLS = 8  # in a mixture
-MOST_TORN, MOST_IN_A_POSE = 2.0, 3  # [% of poses]; triangles
+MOST_TORN = 2.0  # [% of poses]
+MOST_IN_A_POSE = 3  # triangles
 AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
@@ -102,7 +104,8 @@ def _gaps(
     is_shut = name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING + EYES_SHUT
     landmarks = simulation.positions[head.landmarks]
     shut = [side for side in ("right", "left") if sums[f"{CLOSER}_{side}"] >= SHUT]
-    slits, eyes = [], []
+    slits = []
+    eyes = []
     for positions, triangles in meshes_of(simulation, refiner).values():
         if is_shut:
             slits.append(widest_slit(positions, triangles, landmarks))
@@ -162,7 +165,8 @@ def _turned_by(yaw: float, pitch: float) -> Array:
 
 def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Array]:
     """Triangles (n, 3, 3) of the eyeballs that the head brings, turned as they are now, by side."""
-    bones, found = simulation.bones.transforms(), {}
+    bones = simulation.bones.transforms()
+    found = {}
     for part in head.parts:
         if part.name.startswith("eyeball_"):
             turn = np.asarray(bones[part.bone], dtype=np.float64)
@@ -183,7 +187,8 @@ def lid_gaps(
     turns = [_turned_by(*view) for view in VIEWS]
     gaps = {}
     for side, numbers in EYE_CORNERS.items():
-        ends, ball = landmarks[list(numbers)], eyeballs[side]
+        ends = landmarks[list(numbers)]
+        ball = eyeballs[side]
         near = around(positions[triangles], ends.mean(axis=0), EYE)
         gaps[side] = max(_lid_gap(near @ turn.T, ends @ turn.T, ball @ turn.T) for turn in turns)
     return gaps
@@ -196,7 +201,8 @@ def _lid_gap(near: Array, ends: Array, ball: Array) -> float:
     """
     near = near[to_viewer(near)]
     left, right = np.sort(ends[:, 0])
-    middle, deepest = ends[:, 1].mean(), ball[:, :, 2].min()
+    middle = ends[:, 1].mean()
+    deepest = ball[:, :, 2].min()
     heights = np.arange(middle - LID_WINDOW, middle + LID_WINDOW, LID_STEP)
     widest = 0
     for x in np.linspace(left + LID_END, right - LID_END, LID_COLUMNS):
@@ -216,7 +222,8 @@ def _front(triangles: Array, x: float, heights: Array) -> Array:
     cut, meets = cut_by(triangles[is_crossed], x)
     y = np.where(meets, cut[:, :, 1], np.inf)
     ends = np.take_along_axis(cut, np.argsort(y, axis=1)[:, :2, None], axis=1)  # lower, upper
-    low, high = ends[:, 0, 1:, None], ends[:, 1, 1:, None]
+    low = ends[:, 0, 1:, None]
+    high = ends[:, 1, 1:, None]
     share = (heights - low[:, 0]) / np.maximum(high[:, 0] - low[:, 0], 1e-9)
     depth = low[:, 1] + share * (high[:, 1] - low[:, 1])
     inside = (share >= 0.0) & (share <= 1.0)
@@ -226,12 +233,14 @@ def _front(triangles: Array, x: float, heights: Array) -> Array:
 
 def _inverted(rest: Array, now: Array, faces: Triangles) -> int:
     """How many triangles turned by more than a right angle against the skin around them."""
-    before, after = cross_products(rest, faces), cross_products(now, faces)
+    before = cross_products(rest, faces)
+    after = cross_products(now, faces)
     count = 0
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
         away = np.linalg.norm(rest - rest[faces[face]].mean(axis=0), axis=1)
         near = away < max(AROUND, 2.0 * away[faces[face]].max())  # never the triangle alone
-        a, b = rest[near] - rest[near].mean(axis=0), now[near] - now[near].mean(axis=0)
+        a = rest[near] - rest[near].mean(axis=0)
+        b = now[near] - now[near].mean(axis=0)
         left, _, right = np.linalg.svd(a.T @ b)
         turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(right.T @ left.T)]) @ left.T
         count += int((turn @ before[face]) @ after[face] < 0.0)

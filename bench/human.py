@@ -35,8 +35,10 @@ Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
 
 MOST = {"all": 0.50, "nose": 0.60, "mouth": 0.60}  # [mm] RMS that may be left of the finer mesh
-MOST_ANGLE, MOST_COARSE = 5.0, 0.80  # [deg] of the finer mesh; [mm] of the coarse one
-ROUNDS, WITH_LANDMARKS = 18, 6  # of nearest points; the first of them are led by landmarks, too
+MOST_ANGLE = 5.0  # [deg] of the finer mesh
+MOST_COARSE = 0.80  # [mm] of the coarse mesh
+ROUNDS = 18  # of nearest points
+WITH_LANDMARKS = 6  # of the first rounds, which landmarks lead, too
 LANDMARKS = slice(17, 68)  # without the outline of the face, which slides
 LANDMARK_WEIGHT = 0.3  # of 1/mm^2
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
@@ -84,8 +86,11 @@ class IdentitySpace:
     def regions(self) -> Labels:
         """The name of the region that each vertex is in, "" for what is hidden or no face, (V,)."""
         x, y, z = self.mean.T
-        marks, aside = self.mean[self.landmarks], np.abs(x)
-        eyes, below_nose, below_mouth = marks[36:48, 1].mean(), marks[33, 1] - 6.0, marks[57, 1] - 4
+        marks = self.mean[self.landmarks]
+        aside = np.abs(x)
+        eyes = marks[36:48, 1].mean()
+        below_nose = marks[33, 1] - 6.0
+        below_mouth = marks[57, 1] - 4
         is_high = y > marks[17:27, 1].mean() + 8.0
         rules = {
             "forehead": is_high & (y < eyes + 75.0),
@@ -147,7 +152,8 @@ def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
     """
     space = IdentitySpace.read(folder)
     head = assets.load("head") if head_file is None else load_head(head_file)
-    fine, marks = head.finer(2), head.vertices[head.landmarks]
+    fine = head.finer(2)
+    marks = head.vertices[head.landmarks]
     normals = vertex_normals(head.vertices, head.faces)
     labels = space.regions()
     surfaces = {
@@ -163,7 +169,8 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
     labels: the region of each of the space's vertices, "" where it is not asked.
     """
     asked = np.flatnonzero(labels != "").astype(np.int32)
-    count, weights = len(space.modes), np.zeros(len(space.modes))
+    count = len(space.modes)
+    weights = np.zeros(len(space.modes))
     marked = space.mean[space.landmarks]
     turn = Rotation.align_vectors(*(x - x.mean(axis=0) for x in (surface.landmarks, marked)))[0]
     shift = surface.landmarks.mean(axis=0) - turn.apply(marked).mean(axis=0)
@@ -172,12 +179,15 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
         modes = space.modes @ turn.as_matrix().T
         foot, facing, _ = _feet(points, space.triangles, asked, surface)
         near = np.linalg.norm(foot - points[asked], axis=1) < FARTHEST
-        i, n = asked[near], facing[near]
+        i = asked[near]
+        n = facing[near]
         # A small turn w about the origin moves a point p along n by (p x n) w.
         columns = [np.einsum("kij,ij->ki", modes[:, i], n).T, np.cross(points[i], n), n]
-        system, left = np.hstack(columns), ((foot[near] - points[i]) * n).sum(axis=1)
+        system = np.hstack(columns)
+        left = ((foot[near] - points[i]) * n).sum(axis=1)
         share = INDEPENDENT / max(len(i), 1)
-        normal, right = share * system.T @ system, share * system.T @ left
+        normal = share * system.T @ system
+        right = share * system.T @ left
         if number < WITH_LANDMARKS:
             marks = space.landmarks[LANDMARKS]
             for axis in np.eye(3):
@@ -191,12 +201,14 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
         step = np.linalg.solve(normal, right)
         weights = weights + step[:count]
         moved = Rotation.from_rotvec(step[count : count + 3])
-        turn, shift = moved * turn, moved.apply(shift) + step[count + 3 :]
+        turn = moved * turn
+        shift = moved.apply(shift) + step[count + 3 :]
     points = turn.apply(space.person(weights)) + shift
     foot, facing, cosine = _feet(points, space.triangles, asked, surface)
     away = foot - points[asked]
     near = np.linalg.norm(away, axis=1) < FARTHEST
-    distance, angle = (away * facing).sum(axis=1), np.degrees(np.arccos(cosine))
+    distance = (away * facing).sum(axis=1)
+    angle = np.degrees(np.arccos(cosine))
     groups = {name: near & (labels[asked] == name) for name in REGIONS} | {"all": near}
     return Rest(
         weights,
@@ -243,7 +255,8 @@ def report(found: Mapping[str, Rest]) -> str:
         "",
     ]
     for name, each in found.items():
-        rms, largest = _rms(each.weights), np.abs(each.weights).max()
+        rms = _rms(each.weights)
+        largest = np.abs(each.weights).max()
         lines.append(
             f"weights, {name}: rms {rms:.2f}, largest {largest:.1f}; people have 1 and 2.5"
         )

@@ -24,7 +24,8 @@ from risorius.app.recordings.names import shape_of
 from .report import Target, at_least, table
 from .subjects import Points, Scans, settled_positions
 
-LEAST_MEAN, LEAST_OF_A_SHAPE = 0.94, 0.88  # cosines
+LEAST_MEAN = 0.94  # cosine
+LEAST_OF_A_SHAPE = 0.88  # cosine
 SETTLE = 60  # frames of 1/60 s until a pose is still
 ALSO_CALLED = {"cheekraiser": "cheekSquint"}  # ICT-FaceKit has AU6 twice
 
@@ -46,7 +47,8 @@ def measure(directory: Path) -> tuple[list[Row], list[str]]:
     """
     scans = Scans.read(directory)
     simulation = sim.create(scans.head)
-    rows, left_out = [], []
+    rows = []
+    left_out = []
     for name, field in scans.fields.items():
         shapes = _shapes(name, simulation)
         if not shapes or not field.any():
@@ -83,7 +85,8 @@ def _row(name: str, moved: Points, scanned: Points, areas: Points) -> Row:
     def product(a: Points, b: Points) -> float:
         return float((areas * a * b).sum())
 
-    own, true = product(moved, moved), product(scanned, scanned)
+    own = product(moved, moved)
+    true = product(scanned, scanned)
     cosine = product(moved, scanned) / np.sqrt(own * true) if own > 0.0 else 0.0
     off = moved - scanned
     return Row(name, float(cosine), float(np.sqrt(own / true)), product(off, off) / true)

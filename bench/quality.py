@@ -39,13 +39,16 @@ Mesh = Any
 """Positions [mm] and unit normals, shape (N, 3), and triangles, shape (M, 3); RefinedMesh fits."""
 
 BUDGET = 2.0
-SIZE, FINER = 480, 2  # width and height of a picture [pixels]
+SIZE = 480  # width and height of a picture [pixels]
+FINER = 2
 VIEWS = ("front", "three-quarter", "profile")
 ON_BLACK = replace(CLAY, bumps=0.0, background=render.BLACK)
 LEVEL_BEHIND = 215.0  # grey level where there is no mesh, about that of the window's
-SEARCH_STEPS, SCALES = 18, (1e-5, 1e3)  # of thresholds: too many, too few triangles
+SEARCH_STEPS = 18
+SCALES = (1e-5, 1e3)  # of thresholds: too many, too few triangles
 LEAST_GAIN = 20.0  # [%] of the error of static
-STATIC, BEST = "static", "cubic displacement 2x"
+STATIC = "static"
+BEST = "cubic displacement 2x"
 _TOLD = PRESETS[FIRST_PRESET]["face"].told("kahler")
 
 
@@ -112,7 +115,8 @@ def measure(
     with Canvas((SIZE * FINER, SIZE * FINER), samples=0) as canvas:
         for name in expressions or subject.poses:
             progress(name)
-            pose, faces = subject.poses[name], subject.dense_faces
+            pose = subject.poses[name]
+            faces = subject.dense_faces
             dense = pose.dense, vertex_normals(pose.dense, faces), faces
             truth = _shoot(canvas, cameras, dense)
             for method, make in bound.items():
@@ -151,7 +155,8 @@ def _slid(
 
     def refined(logarithm: float) -> refine.RefinedMesh:
         scale = float(np.exp(logarithm))
-        once, twice = scale * float(usual.once), scale * float(usual.twice)
+        once = scale * float(usual.once)
+        twice = scale * float(usual.twice)
         criterion.thresholds = Thresholds(once, twice, "measures")
         return refiner.refine(positions)
 
@@ -180,7 +185,8 @@ def _apart(
     shots: tuple[Points, npt.NDArray[np.bool_]], truth: tuple[Points, npt.NDArray[np.bool_]]
 ) -> tuple[float, float]:
     """Root mean square of grey levels, and pixels of the outline in a view."""
-    (grey, covered), (true_grey, true_covered) = shots, truth
+    (grey, covered) = shots
+    (true_grey, true_covered) = truth
     either = _block_means(covered | true_covered) > 0.0
     wrong = np.count_nonzero(covered != true_covered) / FINER**2 / len(VIEWS)
     return float(np.sqrt(((grey - true_grey)[either] ** 2).mean())), wrong

@@ -48,7 +48,8 @@ SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
 TRIANGLE_COUNTS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
 SIZES = ("face", "20k", "200k", "1M")
 """What is measured unless told; 2k is for a quick look."""
-FEWEST_ROUNDS, MOST_ROUNDS = 5, 200
+FEWEST_ROUNDS = 5
+MOST_ROUNDS = 200
 WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
 METHODS: Mapping[str, Mapping[str, Any]] = {
     "kahler": {},
@@ -145,7 +146,8 @@ def waving_mesh(name: str, triangle_count: int) -> Load:
 
 def _waved(rest: Points, phase: float) -> Points:
     """The mesh at a moment of its waves, stronger in some places than in others."""
-    x, y = rest[:, 0], rest[:, 1]
+    x = rest[:, 0]
+    y = rest[:, 1]
     strength = 0.15 + np.sin(x / 61.0) ** 2 * np.sin(y / 47.0) ** 2
     height = np.zeros(len(rest))
     for length, direction in WAVES:

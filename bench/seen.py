@@ -169,7 +169,8 @@ def measure(tracker: Tracker) -> dict[str, Shape]:
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
         neutral = pose_scores(tracker, studio, ())
         for base, names in bases():
-            own, beside = names, BESIDE.get(base, ())
+            own = names
+            beside = BESIDE.get(base, ())
             if base in BESIDE:
                 own = names[:1]
             scores = pose_scores(tracker, studio, (*own, *beside))

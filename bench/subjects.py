@@ -61,7 +61,8 @@ class Scans:
         for name, array in arrays.items():
             if array.shape != vertices.shape:
                 raise UserError(f"{directory / DENSE}: {name} must move all vertices")
-            stem, end = name[:-2], name[-2:]
+            stem = name[:-2]
+            end = name[-2:]
             if end in SIDES:
                 is_whole = all(f"{stem}{each}" in arrays for each in SIDES)
                 name = stem if is_whole else stem + SIDES[end]
@@ -114,7 +115,8 @@ def built_in(level: int = 2) -> Subject:
     The muscles of its rig move the dense mesh; the coarse one goes along, as its first vertices.
     """
     head = assets.load("head")
-    fine, count = head.finer(level), len(head.vertices)
+    fine = head.finer(level)
+    count = len(head.vertices)
     simulation = fine_simulation(head, fine)
     poses = {}
     for name, values in head.expressions.items():

@@ -94,14 +94,17 @@ def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
 
 def _run(viewer: Viewer, seconds: float) -> Frames:
     frames = []
-    last, used = time.perf_counter(), time.process_time()
+    last = time.perf_counter()
+    used = time.process_time()
     end = last + seconds
     while last < end:
         viewer.frame()
-        now, spent = time.perf_counter(), time.process_time()
+        now = time.perf_counter()
+        spent = time.process_time()
         stages = [viewer.times.milliseconds[stage][-1] for stage in PHASES]
         frames.append([now - last, spent - used, *stages])
-        last, used = now, spent
+        last = now
+        used = spent
     return frames
 
 
@@ -111,7 +114,8 @@ def _idle_share(viewer: Viewer, *, is_alive: bool) -> float:
     viewer.settings.is_alive = is_alive
     while not (viewer.is_left_alone if is_alive else viewer.is_idle):
         viewer.frame()
-    begin, used = time.perf_counter(), time.process_time()
+    begin = time.perf_counter()
+    used = time.process_time()
     while time.perf_counter() - begin < IDLE_SECONDS:
         viewer.pause()
         viewer.frame()
@@ -124,7 +128,8 @@ def _rate(frames: npt.NDArray[np.float64]) -> float:
 
 def _cells(name: str, frames: npt.NDArray[np.float64]) -> list[object]:
     """The row of a case."""
-    elapsed, stages = 1e3 * frames[:, 0], frames[:, 2:]
+    elapsed = 1e3 * frames[:, 0]
+    stages = frames[:, 2:]
     rest = np.median(elapsed - stages.sum(axis=1))
     times = [np.median(elapsed), np.percentile(elapsed, 95), elapsed.min()]
     times.append(1e3 * np.median(frames[:, 1]))

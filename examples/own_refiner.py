@@ -74,10 +74,12 @@ class Quarters(BaseRefiner):
         """Write one frame; where the eye is, is all the same to this one."""
         mesh = self.connectivity
         self.edge_splits[:] = self._longest_edge(self.positions) > self._limit
-        triangles, source = mesh.corners, np.arange(len(mesh.faces))
+        triangles = mesh.corners
+        source = np.arange(len(mesh.faces))
         first = vertex_count = len(mesh.wedge_vertices)
         if self.splits.any():
-            triangles, source = self._cut, self._cut_source
+            triangles = self._cut
+            source = self._cut_source
             vertex_count = self.vertex_capacity
         rows, out_triangles, out_source = self.reserve(stream, vertex_count, len(triangles))
 

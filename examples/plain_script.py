@@ -17,8 +17,10 @@ from risorius import refine
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-AROUND, ALONG = 12, 16  # cells of the tube
-RADIUS, LENGTH = 1.0, 8.0
+AROUND = 12  # cells of the tube
+ALONG = 16  # cells of the tube
+RADIUS = 1.0
+LENGTH = 8.0
 BEND = 3.5  # [radians] of the last frame
 
 
@@ -29,7 +31,8 @@ def tube() -> tuple[Points, Faces]:
     heights = LENGTH * np.linspace(0.0, 1.0, ALONG + 1)
     vertices = (circle[None] + heights[:, None, None] * [0.0, 1.0, 0.0]).reshape(-1, 3)
     ring, k = np.meshgrid(np.arange(ALONG), np.arange(AROUND), indexing="ij")
-    a, b = ring * AROUND + k, ring * AROUND + (k + 1) % AROUND
+    a = ring * AROUND + k
+    b = ring * AROUND + (k + 1) % AROUND
     lower = np.stack([a, b, b + AROUND], axis=2)
     upper = np.stack([a, b + AROUND, a + AROUND], axis=2)
     return vertices, np.concatenate([lower, upper]).reshape(-1, 3).astype(np.int32)
@@ -40,7 +43,8 @@ def bent(rest: Points, angle: float) -> Points:
     curvature = max(angle, 1e-9) / LENGTH
     turn = curvature * rest[:, 1]
     across = 1.0 / curvature - rest[:, 0]  # distance from the middle of the arc
-    x, y = 1.0 / curvature - across * np.cos(turn), across * np.sin(turn)
+    x = 1.0 / curvature - across * np.cos(turn)
+    y = across * np.sin(turn)
     return np.stack([x, y, rest[:, 2]], axis=1)
 
 

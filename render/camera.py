@@ -112,14 +112,18 @@ class OrbitCamera:
         """Make the target `factor` times as large in the frame by stepping closer or back."""
         if not factor > 0.0:
             raise ValueError(f"zoom factor is {factor}; it must be positive (2 = twice as large)")
-        closest, farthest = 0.02 * self.scene_radius, 100.0 * self.scene_radius
+        closest = 0.02 * self.scene_radius
+        farthest = 100.0 * self.scene_radius
         self.distance = min(max(self.distance / factor, closest), farthest)
 
     def axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Unit vectors of the frame in the world: right, up, and from the target to the eye."""
-        yaw, pitch = math.radians(self.yaw), math.radians(self.pitch)
-        sine, cosine = math.sin(yaw), math.cos(yaw)
-        rise, level = math.sin(pitch), math.cos(pitch)
+        yaw = math.radians(self.yaw)
+        pitch = math.radians(self.pitch)
+        sine = math.sin(yaw)
+        cosine = math.cos(yaw)
+        rise = math.sin(pitch)
+        level = math.cos(pitch)
         right = np.array([cosine, 0.0, -sine])
         up = np.array([-sine * rise, level, -cosine * rise])
         return right, up, np.array([sine * level, rise, cosine * level])
@@ -131,8 +135,10 @@ class OrbitCamera:
 
     def view_matrix(self) -> Matrix44:
         """World -> camera (x right, y up, looking along -z)."""
-        axes, matrix = np.stack(self.axes()), np.eye(4)
-        matrix[:3, :3], matrix[3, :3] = axes.T, -axes @ self.eye
+        axes = np.stack(self.axes())
+        matrix = np.eye(4)
+        matrix[:3, :3] = axes.T
+        matrix[3, :3] = -axes @ self.eye
         return Matrix44(matrix)
 
     def projection_matrix(self, aspect: float) -> Matrix44:
@@ -167,7 +173,8 @@ class OrbitCamera:
             x, y, z = axes @ (points - self.target).T
             self.distance = float((z + np.abs(y) / usable).max()) or self.scene_radius
             depth = self.distance - z
-            across, along = x / depth, y / depth
+            across = x / depth
+            along = y / depth
             middle = 0.5 * np.array([across.min() + across.max(), along.min() + along.max()])
             self.target = self.target + self.distance * (middle @ axes[:2])
         x, y, z = axes @ (points - self.target).T

@@ -51,10 +51,12 @@ class Compositor:
         target: moderngl.Framebuffer | None = None,
     ) -> None:
         """Lay the scene into an area (None: all) of this frame or a `target`, which stays bound."""
-        gl, target = self._gl, target or self.frame
+        gl = self._gl
+        target = target or self.frame
         scene.flush()
         target.use()
-        gl.viewport, gl.scissor = (0, 0, *self.size), area  # of what is bound
+        gl.viewport = (0, 0, *self.size)  # of the framebuffer that is bound
+        gl.scissor = area
         if scene.samples and scene.size == self.size:
             gl.copy_framebuffer(target, scene.frame)
         else:
@@ -67,7 +69,8 @@ class Compositor:
 
     def lay(self, x: int, y: int, image: Any) -> None:
         """Lay a label on what is bound; see `WindowSurface.labels`."""
-        gl, (height, width, _) = self._gl, image.shape
+        gl = self._gl
+        (height, width, _) = image.shape
         gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)
         gl.viewport = x, y, width, height
         gl.enable_only(moderngl.BLEND)

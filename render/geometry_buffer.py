@@ -57,9 +57,11 @@ class GeometryBuffer:
         maps: Mapping[BumpMap, float],
     ) -> Geometry:
         """Draw what `stream` last uploaded, and parts; see `Renderer.draw_geometry`."""
-        gl, program = self._gl, self._program_of({})
+        gl = self._gl
+        program = self._program_of({})
         self._target.use()
-        gl.viewport, gl.scissor = (0, 0, *self.size), None
+        gl.viewport = (0, 0, *self.size)
+        gl.scissor = None
         gl.enable_only(moderngl.DEPTH_TEST)
         self._target.clear()
         skin = self._program_of(maps)

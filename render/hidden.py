@@ -53,13 +53,16 @@ class Occluder:
 
     def look(self, view: CameraView, area: Rectangle) -> None:
         """Take the depths within an area [pixels] of a view; nothing is hidden elsewhere."""
-        self._view, self._layer_number = view, self.target.layer_number
+        self._view = view
+        self._layer_number = self.target.layer_number
         columns, rows = self._tiles.size
-        left, bottom = area[0] // TILE, area[1] // TILE
+        left = area[0] // TILE
+        bottom = area[1] // TILE
         right, top = (-(-(area[k] + area[k + 2]) // TILE) for k in (0, 1))
         self._tiles.use()
         self._gl.enable_only(moderngl.NOTHING)
-        self._gl.viewport, self._gl.scissor = (0, 0, columns, rows), None
+        self._gl.viewport = (0, 0, columns, rows)
+        self._gl.scissor = None
         self._tiles.clear(1.0)
         self._gl.scissor = left, bottom, right - left, top - bottom
         self.target.layer_depth.use(_UNIT)
@@ -76,7 +79,9 @@ class Occluder:
 
     def choose_parts(self, placed: Sequence[PlacedPart]) -> None:
         """Choose the faces of parts that are not surely hidden; all at once, which takes less."""
-        vertices, faces, first = [], [], 0
+        vertices = []
+        faces = []
+        first = 0
         for buffers, transform in placed:
             for side in buffers.sides():
                 vertices.append(side @ transform[:3, :3].T + transform[:3, 3])
@@ -116,7 +121,9 @@ class Occluder:
             a, b, c = triangles.T.astype(np.intp)
             turn = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
             turned = np.flatnonzero(~((turn if away else -turn) > SLIVER))
-            a, b, c = a[turned], b[turned], c[turned]
+            a = a[turned]
+            b = b[turned]
+            c = c[turned]
             nearest = np.minimum(np.minimum(z[a], z[b]), z[c])
             # A pixel to spare on each side.
             low = [np.minimum(np.minimum(at[a], at[b]), at[c]) - 1.0 / TILE for at in (x, y)]

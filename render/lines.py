@@ -25,7 +25,8 @@ class Lines(NamedTuple):
 
     def segments(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
         """Position and sRGB of all points, (n, 6), and the ends of each segment, (s, 2)."""
-        polylines, colours = self.polylines, np.asarray(self.colour, np.float32)
+        polylines = self.polylines
+        colours = np.asarray(self.colour, np.float32)
         counts = np.array([len(line) for line in polylines], np.int64)
         if not counts.sum():
             return np.zeros((0, 6), np.float32), np.zeros((0, 2), np.uint32)

@@ -86,9 +86,13 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: C
 
 def set_light(program: moderngl.Program, light: Light) -> None:
     """Where light comes from."""
-    program["to_key"], program["to_fill"] = light.to_key, light.to_fill
-    program["key_light"], program["fill_light"] = light.key, light.fill
-    program["rim_light"], program["sky"], program["ground"] = light.rim, light.sky, light.ground
+    program["to_key"] = light.to_key
+    program["to_fill"] = light.to_fill
+    program["key_light"] = light.key
+    program["fill_light"] = light.fill
+    program["rim_light"] = light.rim
+    program["sky"] = light.sky
+    program["ground"] = light.ground
 
 
 def value_texture(

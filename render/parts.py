@@ -16,9 +16,11 @@ from .translucency import blending
 OF_SHELLS = "in_strand", "in_way", "in_dense"
 # What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
-LAYERS, FEWEST = 9, 2  # of shells; with more a picture takes longer, with fewer one sees between
+LAYERS = 9  # of shells; with more a picture takes longer, with fewer one sees between
+FEWEST = 2  # shells
 LAYER_PIXELS = 10.0  # that a layer is there for, where they are thickest
-ROOT, TIP = -0.6, 0.4  # of that way, from vertices
+ROOT = -0.6  # of that way, from vertices
+TIP = 0.4  # of that way, from vertices
 
 
 class Part(Protocol):

@@ -75,13 +75,15 @@ class RenderTarget:
         """Direct drawing to the frame, over all that was drawn so far."""
         self.flush()
         self.frame.use()
-        self._gl.viewport, self._gl.scissor = (0, 0, *self.size), None
+        self._gl.viewport = (0, 0, *self.size)
+        self._gl.scissor = None
 
     def use_layer(self, viewport: Rectangle, part: Rectangle) -> None:
         """Direct drawing to the layer, within `part` of the viewport."""
         self._clear_layer()
         self._layer.use()
-        self._gl.viewport, self._gl.scissor = viewport, part
+        self._gl.viewport = viewport
+        self._gl.scissor = part
         drawn_on = self._drawn_on
         self._drawn_on = part if drawn_on is None else bounding_rectangle(drawn_on, part)
 
@@ -128,14 +130,17 @@ def scaled(viewport: Rectangle, scale: float) -> Rectangle:
         )
     if scale == 1.0:
         return viewport
-    x, y = math.floor(scale * left), math.floor(scale * bottom)
-    right, top = math.ceil(scale * (left + width)), math.ceil(scale * (bottom + height))
+    x = math.floor(scale * left)
+    y = math.floor(scale * bottom)
+    right = math.ceil(scale * (left + width))
+    top = math.ceil(scale * (bottom + height))
     return x, y, right - x, top - y
 
 
 def intersection(first: Rectangle, second: Rectangle) -> Rectangle:
     """The pixels of both rectangles; a width or height of 0 where they share none."""
-    left, bottom = max(first[0], second[0]), max(first[1], second[1])
+    left = max(first[0], second[0])
+    bottom = max(first[1], second[1])
     right = min(first[0] + first[2], second[0] + second[2])
     top = min(first[1] + first[3], second[1] + second[3])
     return left, bottom, max(right - left, 0), max(top - bottom, 0)
@@ -143,7 +148,8 @@ def intersection(first: Rectangle, second: Rectangle) -> Rectangle:
 
 def bounding_rectangle(first: Rectangle, second: Rectangle) -> Rectangle:
     """The smallest rectangle that holds both."""
-    left, bottom = min(first[0], second[0]), min(first[1], second[1])
+    left = min(first[0], second[0])
+    bottom = min(first[1], second[1])
     right = max(first[0] + first[2], second[0] + second[2])
     top = max(first[1] + first[3], second[1] + second[3])
     return left, bottom, right - left, top - bottom

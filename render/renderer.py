@@ -38,7 +38,10 @@ from .surface import NEWEST, Surface
 from .texture import BumpMap, Texture
 from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
 
-_VALUE_UNIT, _SHADOW_UNIT, _ALBEDO_UNIT = 0, 2, 3  # texture units; the target uses 1
+# Texture units; the target uses 1.
+_VALUE_UNIT = 0
+_SHADOW_UNIT = 2
+_ALBEDO_UNIT = 3
 
 
 class Renderer:
@@ -149,7 +152,8 @@ class Renderer:
 
     def _target_occluder(self) -> Occluder | None:
         """What leaves hidden triangles out where pixels have several samples; else the last one."""
-        target, occluder = self.surface.target, self._occluder
+        target = self.surface.target
+        occluder = self._occluder
         if target.samples and (occluder is None or occluder.target is not target):
             self._occluder = Occluder(self._gl, target)
         return self._occluder

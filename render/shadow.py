@@ -63,7 +63,8 @@ class ShadowMap:
         to_light = view.world_to_view @ self._view_to_light(view)
         write_uniform(self._program, "light_matrix", to_light)
         self._target.use()
-        gl.viewport, gl.scissor = (0, 0, RESOLUTION, RESOLUTION), None
+        gl.viewport = (0, 0, RESOLUTION, RESOLUTION)
+        gl.scissor = None
         self._target.clear(depth=1.0)
         for thrower in throwers:
             transform = np.eye(4) if isinstance(thrower, MeshBuffers) else thrower[1]

@@ -229,8 +229,10 @@ class Stream(MeshBuffers):
                 f"bump_amounts has shape {bump_amounts.shape}; it must be ({vertex_count}, 2), two "
                 "amounts for each uploaded vertex"
             )
-        rows, triangles = self.vertices[:vertex_count], self.triangles[:triangle_count]
-        self.frame, self.places = _Uploaded(rows, triangles), rows[:, :3]
+        rows = self.vertices[:vertex_count]
+        triangles = self.triangles[:triangle_count]
+        self.frame = _Uploaded(rows, triangles)
+        self.places = rows[:, :3]
         self.has_bumps = bump_amounts is not None
         self._ranges = {}
         if vertex_count == 0 or triangle_count == 0:
@@ -281,7 +283,8 @@ class GpuStream(MeshBuffers):
         frame: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
         bump_amounts: as `Stream.upload` takes them.
         """
-        self.frame, self.places = frame, positions.astype(np.float32)
+        self.frame = frame
+        self.places = positions.astype(np.float32)
         self.has_bumps = bump_amounts is not None
         self._ranges = {}
         box = np.stack([positions.min(axis=0) - self._margin, positions.max(axis=0) + self._margin])

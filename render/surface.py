@@ -19,7 +19,8 @@ from .errors import OFFSCREEN, GLError, diagnose
 from .render_target import RenderTarget
 
 Image = npt.NDArray[np.uint8]
-NEWEST, OLDEST = 430, 330  # OpenGL, times 100: with compute shaders, and what all drawing needs
+NEWEST = 430  # OpenGL, times 100: it has compute shaders
+OLDEST = 330  # OpenGL, times 100: all drawing needs it
 
 
 class Surface:

@@ -18,7 +18,10 @@ from .surface import Image, Surface, is_software
 Slopes = tuple[Image, float]  # a map (H, W, 2), and what 255 in it is, see `BumpMap`
 _SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
 LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
-_BUMP_UNIT, _AROUND_UNIT, _FINE_UNIT = 5, 6, 7  # texture units; 4 is for a window's enlargement
+# Texture units; 4 is for a window's enlargement.
+_BUMP_UNIT = 5
+_AROUND_UNIT = 6
+_FINE_UNIT = 7
 _AROUND_LEVEL = 5  # of the smaller versions: a texel there is the mean of 32 x 32
 ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
@@ -95,10 +98,12 @@ class Texture(_Mipmaps):
 
     def set_uniforms(self, program: moderngl.Program, unit: int, occlusion: float) -> None:
         """Let a program look it up, through a unit; occlusion: whether it counts, 0 or 1."""
-        program["albedo_texture"], program["around_texture"] = unit, _AROUND_UNIT
+        program["albedo_texture"] = unit
+        program["around_texture"] = _AROUND_UNIT
         self._texture.use(unit)
         self._around.use(_AROUND_UNIT)
-        program["redness"], program["lightness_weights"] = self.redness, LIGHTNESS
+        program["redness"] = self.redness
+        program["lightness_weights"] = LIGHTNESS
         program["occlusion"] = occlusion
 
 
@@ -126,7 +131,8 @@ class BumpMap(_Mipmaps):
         """Let a program that includes bumps.glsl look it up."""
         name = self.define.lower()
         self._texture.use(self._unit)
-        program[f"{name}_map"], program[f"{name}_slope"] = self._unit, self.steepest
+        program[f"{name}_map"] = self._unit
+        program[f"{name}_slope"] = self.steepest
         program[f"{name}_strength"] = strength
 
 

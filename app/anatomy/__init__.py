@@ -105,7 +105,8 @@ class Anatomy:
 
     def _muscles_now(self, scene: FaceScene) -> Muscles:
         """The muscles, shaped anew unless nothing has moved: a camera that turns is no reason."""
-        bones, sums = scene.bone_transforms(), scene.simulation.controls.sums
+        bones = scene.bone_transforms()
+        sums = scene.simulation.controls.sums
         now = np.concatenate([scene.positions, *bones.values()], axis=None)
         now = np.append(now, list(sums.values()))
         if self._muscles is None:

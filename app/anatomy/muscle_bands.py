@@ -18,15 +18,23 @@ import scipy
 from risorius.geometry.normals import vertex_normals
 
 Floats = npt.NDArray[np.float64]
-ROWS, AROUND = 22, 16  # places along a band, and around its cross section
+ROWS = 22  # places along a band
+AROUND = 16  # places around its cross section
 NEAR = 8  # vertices that say where the skin is
 # Measures [mm], chosen by eye after anatomical plates: the share of the rig's width that is flesh,
 # how wide bands are at least and at most, how thick, how deep where they end, and the skin on top.
-FLESH, LEAST, MOST, THICK, DEEP, SKIN = 0.5, 4.0, 17.0, 2.8, 3.4, 1.0
+FLESH = 0.5
+LEAST = 4.0
+MOST = 17.0
+THICK = 2.8
+DEEP = 3.4
+SKIN = 1.0
 TENDON_ENDS = 0.14  # share of a band's length that is tendon, at both ends
-RELAXED, CONTRACTED = np.array([0.68, 0.29, 0.245]), np.array([0.50, 0.035, 0.045])  # sRGB
+RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
+CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
-EYE, MOUTH = ((5.0, 9.0), (12.5, 9.0)), ((1.0, 8.0), (7.5, 8.0))
+EYE = ((5.0, 9.0), (12.5, 9.0))
+MOUTH = ((1.0, 8.0), (7.5, 8.0))
 RINGS = (  # how names of muscles begin and end; landmarks; bands: how far outward, how wide [mm]
     ("orbicularis_oculi", "right", (36, 37, 38, 39), EYE),
     ("orbicularis_oculi", "right", (36, 41, 40, 39), EYE),
@@ -82,7 +90,8 @@ class Muscles:
                 self.names.append((name, number))
                 width = FLESH * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
                 widths.append(np.clip(width, LEAST, MOST))
-        marks, rings = scene.rest_positions[scene.landmarks], list[Floats]()
+        marks = scene.rest_positions[scene.landmarks]
+        rings = list[Floats]()
         self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
         for start, end, numbers, bands in RINGS:
             edge = _resampled(marks[None, list(numbers)])[0]
@@ -122,7 +131,8 @@ class Muscles:
 
     def follow(self, scene: Any) -> None:
         """Take the shape and the colours of now."""
-        sums, bone = scene.simulation.controls.sums, scene.bone_transforms()["cranium"]
+        sums = scene.simulation.controls.sums
+        bone = scene.bone_transforms()["cranium"]
         middle = bone[:3, :3] @ self._middle + bone[:3, 3]
         skin = _Skin(scene.positions, scene.faces, self._bone_depth, middle)
         lines = self._lines(scene.simulation, scene.positions)
@@ -175,7 +185,8 @@ class Muscles:
         """Faces and places of striation."""
         count = len(self._width)
         number = np.arange(count * ROWS * AROUND).reshape(count, ROWS, AROUND)
-        here, ahead = number[:, :-1], number[:, 1:]
+        here = number[:, :-1]
+        ahead = number[:, 1:]
         quads = [here, ahead, np.roll(ahead, -1, axis=2), np.roll(here, -1, axis=2)]
         self.faces = np.concatenate(
             [np.stack([quads[k] for k in ks], -1).reshape(-1, 3) for ks in ((0, 1, 2), (0, 2, 3))]
@@ -192,7 +203,9 @@ class _Skin:
 
     def __init__(self, x: Floats, faces: Any, bone: Floats, middle: Floats) -> None:
         """bone: how deep it is below each vertex of x; middle: from where a face looks outward."""
-        self.x, self._bone, self._middle = x, bone, middle
+        self.x = x
+        self._bone = bone
+        self._middle = middle
         self.normals = vertex_normals(x, faces)
         self.tree = scipy.spatial.cKDTree(x)
 

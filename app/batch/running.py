@@ -21,7 +21,9 @@ from ..stopping import cleaned_up_if_stopped
 from ..workers import Send, WorkerPool
 from .listing import Job
 
-OK, FAILED, SKIPPED = "ok", "failed", "skipped"
+OK = "ok"
+FAILED = "failed"
+SKIPPED = "skipped"
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,8 @@ def _run_here(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
 
 def do_line(pool: WorkerPool, job: Job) -> Result:
     """Have a line done by a process."""
-    begin, frames = time.monotonic(), list[int]()
+    begin = time.monotonic()
+    frames = list[int]()
     try:
         pool.run(_do, job, tell=frames.append, log=job.log)
     except UserError as error:

@@ -48,16 +48,22 @@ def plate(text: str, size: float) -> Image:
 @functools.lru_cache(maxsize=8)
 def colour_bar(size: float) -> Image:
     """What colours of splits stand for: an upright bar, its numbers and its title, on a plate."""
-    small, count, pad = font(0.82 * size), len(render.SPLIT_PALETTE), round(0.65 * size)
-    tall, wide, numbers = round(13.0 * size), round(0.8 * size), round(3.1 * size)
+    small = font(0.82 * size)
+    count = len(render.SPLIT_PALETTE)
+    pad = round(0.65 * size)
+    tall = round(13.0 * size)
+    wide = round(0.8 * size)
+    numbers = round(3.1 * size)
     page, draw = _page(numbers + small.getlength(f"{count}") + pad, tall + 2 * pad, size)
-    step, left = tall / count, round(1.85 * size)
+    step = tall / count
+    left = round(1.85 * size)
     for index, shade in enumerate(render.SPLIT_PALETTE):
         low = pad + tall - step * index
         ink = tuple(round(255.0 * part) for part in shade)
         draw.rectangle((left, round(low - step), left + wide - 1, round(low) - 1), fill=ink)
         draw.text((numbers, low - 0.5 * step), f"{index + 1}", font=small, fill=INK, anchor="lm")
-    title, middle = PIL.Image.new("RGBA", (tall, wide + pad)), (0.5 * tall, 0.65 * size)
+    title = PIL.Image.new("RGBA", (tall, wide + pad))
+    middle = (0.5 * tall, 0.65 * size)
     ImageDraw.Draw(title).text(middle, BAR_TITLE, font=small, fill=FAINT, anchor="mm")
     page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
     return np.asarray(page.convert("RGBa"))
@@ -66,7 +72,8 @@ def colour_bar(size: float) -> Image:
 def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
     """A dark plate with round corners, and what draws on it."""
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
-    draw, corners = ImageDraw.Draw(page), (0, 0, page.width - 1, page.height - 1)
+    draw = ImageDraw.Draw(page)
+    corners = (0, 0, page.width - 1, page.height - 1)
     draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, PLATE))
     return page, draw
 
@@ -84,7 +91,8 @@ def labels(
     room it is left out. least: size of letters [pixels], which are larger in a high picture.
     """
     size = max(least, viewports[0][3] / 36.0)
-    pad, made = round(0.7 * size), list[Label]()
+    pad = round(0.7 * size)
+    made = list[Label]()
     for index, (text, (left, bottom, width, _)) in enumerate(zip(texts, viewports, strict=False)):
         image = plate(text, size)
         room = width - image.shape[1] - 2 * pad
@@ -93,7 +101,8 @@ def labels(
     if has_bar and viewports[-1][3] >= 64:  # in less nobody reads its numbers
         left, bottom, width, height = viewports[-1]
         image = colour_bar(min(0.78 * size, height / 26.0))
-        x, y = width - image.shape[1] - pad, height - image.shape[0] - pad
+        x = width - image.shape[1] - pad
+        y = height - image.shape[0] - pad
         made += [(left + x, bottom + y, image)] if min(x, y) >= 0 else []
     return made
 

@@ -157,7 +157,8 @@ class Capture:
     def draw_image(self) -> Image:
         """Draw the scene as it is now, and read the picture back; (H, W, 4) if transparent."""
         self.surface.begin()
-        options, style = self.options, self.options.style
+        options = self.options
+        style = self.options.style
         self.pipeline.draw(self.camera, style, self.viewports, anatomy=options.anatomy)
         self.surface.end()
         image = self.surface.read_scene(4 if self.options.is_transparent else 3)
@@ -179,7 +180,8 @@ class Capture:
         What is compared is the scene, not pictures: each process that plays it says the same. What
         lies beside pictures has to be exact, so with passes nothing is still.
         """
-        scene, camera = self.scene, self.camera
+        scene = self.scene
+        camera = self.camera
         # Bones turn what is as far from them as the scene is wide; a control counts as 1 mm.
         bones = [
             np.vstack([each[:3, :3] * camera.scene_radius, each[:3, 3]])
@@ -206,7 +208,8 @@ class Capture:
 
     def draw_frame(self) -> Frame:
         """Draw the scene as it is now, and say what is known of the picture."""
-        image, known = self.draw_image(), None
+        image = self.draw_image()
+        known = None
         triangles = max(drawn.triangle_count for drawn, *_ in self.viewports)
         if self._passes is not None:
             known = labelled(self._passes, self.camera, self.options.passes)
@@ -219,7 +222,8 @@ class Capture:
 
         Frames before the options' span are played, too: what is seen then depends on them.
         """
-        options, yaw = self.options, self.camera.yaw
+        options = self.options
+        yaw = self.camera.yaw
         viewer = self.camera.eye if options.is_alive else None
         begin, end = options.span or (0.0, script.duration if until is None else until)
         frames = max(round((end - begin) * options.frames_per_second), 1)

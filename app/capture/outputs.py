@@ -117,13 +117,15 @@ class Encoder:
     ) -> None:
         """Start it, for frames of `size` pixels; UserError where there is none."""
         form = FORMATS[target.suffix.lower()]
-        self._target, self._part = target, part
+        self._target = target
+        self._part = part
         rate = Fraction(frames_per_second).limit_denominator()
         frames = f"-f rawvideo -pix_fmt rgb24 -s {size[0]}x{size[1]} -r {rate} -i -"
         sound = ["-an"]
         if soundtrack is not None and form.sound is not None:
             sound = soundtrack.options(form.sound)
-        name, coding = ffmpeg(), form.coding.split()
+        name = ffmpeg()
+        coding = form.coding.split()
         self._messages = tempfile.TemporaryFile()
         try:  # in a session of its own: Ctrl-C is for us alone
             self._process = subprocess.Popen(

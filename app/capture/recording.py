@@ -47,8 +47,10 @@ def capture(
 
 def _draw_sheet(script: Script, options: CaptureOptions, sheet: Path, progress: bool) -> int:
     """Lay pictures of the named poses out in one; the largest number of triangles in them."""
-    half, most = 0.5 / options.frames_per_second, 0
-    wanted, named = list(script.key_poses), list[tuple[str, Image]]()
+    half = 0.5 / options.frames_per_second
+    most = 0
+    wanted = list(script.key_poses)
+    named = list[tuple[str, Image]]()
     for now, draw in _played(script, options, script.duration, progress):
         if wanted and wanted[0].time <= now + half:
             frame = draw()
@@ -76,7 +78,8 @@ def _draw_film(
     script: Script, options: CaptureOptions, output: Path, overwrite: bool, progress: bool
 ) -> int:
     """Draw a film, or by its name a folder of frames; the largest number of triangles in them."""
-    rate, most = options.frames_per_second, 0
+    rate = options.frames_per_second
+    most = 0
     begin, end = options.span or (0.0, script.duration)
     count = processes.worthwhile(options, round((end - begin) * rate + 0.5) + 1)
     if format_of(output):

@@ -88,7 +88,8 @@ def batch(
 
 def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
     """What the lines of a list ask for; tells what is wrong with which, and ends the program."""
-    jobs, wrong = [], []
+    jobs = []
+    wrong = []
     for number, text in lines_of(listing):
         try:
             jobs.append(_job(number, text, logs, resume=resume))

@@ -170,6 +170,7 @@ def demo() -> None:
 
     script = script_for(None, "face")
     options = CaptureOptions(beside=(Refinement(refiner=STATIC),), camera=script.camera)
-    film, sheet = Path("out/demo.mp4"), Path("out/demo.png")
+    film = Path("out/demo.mp4")
+    sheet = Path("out/demo.png")
     most = film_of(script, options, output=film, sheet=sheet)
     click.echo(f"{film} ({script.duration:g} s) and {sheet}: {most} triangles at most")

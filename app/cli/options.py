@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from risorius import render
 
 
-LEAST, MOST = 16, 8192  # [pixels] of a side
+LEAST = 16  # [pixels] of a side
+MOST = 8192  # [pixels] of a side
 BACKGROUNDS = ("light", "dark", "white", "black")  # of `render`
 PERSON_NAMES = ("ada", "kofi", "maria")  # of `assets.identities`, which is not imported yet
 

@@ -74,7 +74,8 @@ def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
 
 
 VISEME = "viseme_"
-ENDINGS, LEAST_STEM = ("ing", "ed", "s"), 3  # of a word that is looked for; letters before them
+ENDINGS = ("ing", "ed", "s")  # of a word that is looked for
+LEAST_STEM = 3  # letters before an ending
 
 
 def readable(name: str) -> str:

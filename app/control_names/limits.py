@@ -65,7 +65,8 @@ class ControlValues(Mapping[str, float]):
     def __init__(self, limits: Limits, numbers: Floats) -> None:
         """Made by `Limits`, or of other values so that they stay within; nobody writes them."""
         numbers.flags.writeable = False
-        self.limits, self.numbers = limits, numbers
+        self.limits = limits
+        self.numbers = numbers
 
     def __getitem__(self, name: str) -> float:
         return self.numbers.item(self.limits.place[name])

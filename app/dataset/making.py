@@ -75,7 +75,8 @@ def make_set(
 
 def make_samples(share: Share, send: Send) -> None:
     """Make the samples of a share that are not there, and tell how many bytes each has."""
-    studio, folder = Studio(share.request), SetFolder(share.request.output)
+    studio = Studio(share.request)
+    folder = SetFolder(share.request.output)
     for index in share.indices:
         if not folder.has(index):  # a process before may have died behind it
             send(folder.write_sample(index, studio.shoot(index).save))

@@ -109,7 +109,8 @@ class _Face:
 
     def fill(self, kind: str) -> str:
         """Make a face of this kind; what it is called."""
-        table, random = self._table, self._random
+        table = self._table
+        random = self._random
         if kind == "expression":
             rows = table.expressions
             name = chosen(random, {name: row.share for name, row in rows.items()})
@@ -172,7 +173,8 @@ def _blink(
     table: SampleTable, random: np.random.Generator, controls: Mapping[str, float]
 ) -> dict[str, float]:
     """Lids on their way or shut, where nothing else moves them."""
-    is_blinking, closed = random.random() < table.eyes.blink, random.uniform(0.25, 1.0)
+    is_blinking = random.random() < table.eyes.blink
+    closed = random.uniform(0.25, 1.0)
     if not is_blinking or not {"AU5", "AU43", "AU46_left", "AU46_right"}.isdisjoint(controls):
         return {}
     return {BLINK: float(closed)}

@@ -108,7 +108,9 @@ class Studio:
         request = self._request
         random = np.random.default_rng(sample.surroundings)
         light = light_of(sample.light, random)
-        picture, colours, name = None, None, ""
+        picture = None
+        colours = None
+        name = ""
         if request.backgrounds.pictures:
             name, picture = request.backgrounds.picture(random, request.size)
         else:

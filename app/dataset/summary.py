@@ -59,7 +59,8 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
 
 def card_of(request: Request, counts: Counts) -> str:
     """The card of a set that was made as requested: how it was made, how often what is in it."""
-    samples, persons = counts.kinds.total(), len(counts.persons)
+    samples = counts.kinds.total()
+    persons = len(counts.persons)
     units = [(name, counts.units[name]) for name in sorted(counts.units, key=by_number)]
     text = (files(__package__) / "card.md").read_text("utf-8")
     return text.format(

@@ -22,7 +22,8 @@ from ..errors import UserError, as_text
 from ..files import Image
 
 TURN = 18.0  # [degrees] that the key light is moved, standard deviation
-BRIGHTNESS, WARMTH = (0.75, 1.15), 0.08  # of all light; of red over blue light, standard deviation
+BRIGHTNESS = (0.75, 1.15)  # of all light
+WARMTH = 0.08  # of red over blue light, standard deviation
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
 SMALLEST = 0.6  # share of a picture's shorter side that is seen, at least
 
@@ -62,8 +63,10 @@ class Backgrounds:
         with _readable(path) as opened:
             whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
         scale = share * min(whole.width / size[0], whole.height / size[1])
-        width, height = scale * size[0], scale * size[1]
-        left, top = across * (whole.width - width), along * (whole.height - height)
+        width = scale * size[0]
+        height = scale * size[1]
+        left = across * (whole.width - width)
+        top = along * (whole.height - height)
         part = whole.resize(
             size, PIL.Image.Resampling.LANCZOS, (left, top, left + width, top + height)
         )

@@ -134,7 +134,8 @@ def record(
     bones: list[Mapping[str, Floats]] = []
     shapes: list[list[Singles]] = [[] for _ in scene.parts]
     moved = scene.simulation.controls if isinstance(scene, FaceScene) else None
-    controls, activations = list[Floats](), list[Floats]()
+    controls = list[Floats]()
+    activations = list[Floats]()
     for now in play(scene, script, frames_per_second, until=end, progress=progress):
         if now < begin - 0.5 / frames_per_second:
             continue

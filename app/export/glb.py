@@ -17,7 +17,8 @@ import PIL.Image
 
 import risorius
 
-ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963  # what a buffer view is for: vertices, corners
+ARRAY_BUFFER = 34962  # a buffer view for vertices
+ELEMENT_ARRAY_BUFFER = 34963  # a buffer view for corners
 COMPONENT_TYPES = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
 TYPES: dict[tuple[int, ...], str] = {
     (): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4",

@@ -35,9 +35,13 @@ from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 from .morphs import TOLERANCE, Floats, decompose, follow
 
 LONGEST_SHORT = 65535  # vertices that 16 bits can number
-HEAD, NECK = "cranium", "neck"  # names of bones
+HEAD = "cranium"  # name of a bone
+NECK = "neck"  # name of a bone
 STILL = 1e-7  # [m, or of a quaternion] by which a node that does not move may be off
-SKIN_ROUGHNESS, DULL, WET = 0.55, 0.75, 0.12  # chosen by eye; parts from dull to wet by their shine
+# Roughness, chosen by eye; parts go from dull to wet by their shine.
+SKIN_ROUGHNESS = 0.55
+DULL = 0.75
+WET = 0.12
 
 
 @dataclass(frozen=True)
@@ -70,11 +74,13 @@ def write_gltf(clip: Clip, part: Path, request: Request) -> str | None:
 
 def moving_pieces(clip: Clip) -> tuple[list[Piece], float]:
     """The surfaces of a clip with the targets that its motion needs; how far off they are [mm]."""
-    pieces, error = [], 0.0
+    pieces = []
+    error = 0.0
     for surface, part in zip(clip.surfaces, [None, *clip.scene.parts], strict=True):
         bone = None if part is None else part.bone
         if surface.shapes is None:
-            none, normals = np.zeros((0, *surface.rest.shape)), part.normals.astype(np.float64)
+            none = np.zeros((0, *surface.rest.shape))
+            normals = part.normals.astype(np.float64)
             pieces.append(Piece(surface, bone, normals, none, none, np.zeros((0, 0))))
             continue
         shapes = surface.shapes.astype(np.float64)
@@ -111,7 +117,8 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
         node: dict[str, Any] = {"name": piece.surface.name}
         share = None
         if piece.bone is None and isinstance(clip.scene, FaceScene):
-            node["skin"], share = skeleton.skin, clip.scene.simulation.bones.head_weight
+            node["skin"] = skeleton.skin
+            share = clip.scene.simulation.bones.head_weight
         node["mesh"] = _add_mesh(glb, clip, piece, skeleton.pivot(piece.bone), share)
         number = glb.add("nodes", node)
         if piece.bone is None:
@@ -134,7 +141,8 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
     if surface.face_uv is not None:  # where there are seams, vertices are split
         corners = np.column_stack([faces.ravel(), surface.face_uv.ravel()]).astype(np.int64)
         pairs, numbers = np.unique(corners, axis=0, return_inverse=True)
-        (vertices, coordinates), faces = pairs.T, numbers.reshape(-1, 3)
+        (vertices, coordinates) = pairs.T
+        faces = numbers.reshape(-1, 3)
 
     def of_vertices(values: npt.NDArray[Any], *, is_bounded: bool = False) -> int:
         rows = values[vertices].astype(values.dtype if values.dtype == np.uint8 else np.float32)

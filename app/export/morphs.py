@@ -49,15 +49,18 @@ def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = MOST_TARG
     """
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
     rank = int((lengths > max(LEAST * lengths.max(initial=0.0), NOTHING)).sum())
-    curves, shapes = curves[:, :rank], lengths[:rank, None] * shapes[:rank]
+    curves = curves[:, :rank]
+    shapes = lengths[:rank, None] * shapes[:rank]
     limit = min(rank, most - 1)
     weighing = np.ones(moved.shape[1])
     found: list[Morphs] = []
-    low, high = 0, limit
+    low = 0
+    high = limit
     for _ in range(ROUNDS):
         weighed = shapes * np.repeat(weighing, 3)
         mixing = np.linalg.eigh(weighed @ weighed.T)[1][:, ::-1][:, :limit]
-        mixed_curves, mixed_shapes = curves @ mixing, mixing.T @ shapes
+        mixed_curves = curves @ mixing
+        mixed_shapes = mixing.T @ shapes
         while low < high:
             count = (low + high) // 2
             off = _farthest(moved, mixed_curves[:, :count], mixed_shapes[:count])
@@ -88,13 +91,15 @@ def _farthest(moved: Floats, curves: Floats, shapes: Floats) -> Floats:
 def _shifted(moved: Floats, curves: Floats, shapes: Floats) -> Morphs:
     """The sum of shapes (k, 3 V) times curves (N, k), by weights from 0 to 1."""
     signs = np.where(curves.max(axis=0) >= -curves.min(axis=0), 1.0, -1.0)
-    curves, shapes = curves * signs, shapes * signs[:, None]
+    curves = curves * signs
+    shapes = shapes * signs[:, None]
     lowest = np.minimum(curves.min(axis=0), 0.0)
     lengths = curves.max(axis=0) - lowest
     targets = np.vstack([lowest @ shapes, lengths[:, None] * shapes])
     shifted = (curves - lowest) / np.where(lengths > 0.0, lengths, 1.0)
     weights = np.column_stack([np.ones(len(moved)), np.clip(shifted, 0.0, 1.0)])
     kept = np.abs(targets).max(axis=1, initial=0.0) > NOTHING
-    targets, weights = targets[kept], weights[:, kept]
+    targets = targets[kept]
+    weights = weights[:, kept]
     error = float(_farthest(moved, weights, targets).max())
     return Morphs(targets.reshape(-1, *moved.shape[1:]), weights, error)

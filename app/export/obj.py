@@ -76,9 +76,11 @@ def _obj_text(clip: Clip, frame: Sequence[FrameSurface], material: str) -> str:
         colours = white if whole.colours is None else whole.colours.astype(np.float64)
         texts.append(_rows("v", np.hstack([surface.points * METRES, colours])))
         texts.append(_rows("vn", surface.normals))
-        uv, face_uv = surface.uv, surface.face_uv
+        uv = surface.uv
+        face_uv = surface.face_uv
         if uv is None or face_uv is None:  # for readers that expect one at all corners
-            uv, face_uv = np.zeros((1, 2), np.float32), np.zeros_like(surface.faces)
+            uv = np.zeros((1, 2), np.float32)
+            face_uv = np.zeros_like(surface.faces)
         texts.append(_rows("vt", uv))
         texts.append(f"g {whole.name}\n")
         if material:

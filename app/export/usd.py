@@ -28,7 +28,8 @@ Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdUtils, Vt = (
     for name in ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "UsdUtils", "Vt")
 )
 
-DULL, WET = 0.6, 0.1  # roughness
+DULL = 0.6  # roughness
+WET = 0.1  # roughness
 PICTURE = "skin.png"
 ALWAYS = Usd.TimeCode.Default()
 
@@ -116,7 +117,8 @@ def _add_refined(mesh: Any, clip: Clip, request: Request) -> None:
 
 def _set_faces(mesh: Any, faces: npt.NDArray[Any], when: Any) -> None:
     """Triangles, from a time on or always."""
-    counts, corners = np.full(len(faces), 3, np.int32), faces.astype(np.int32).ravel()
+    counts = np.full(len(faces), 3, np.int32)
+    corners = faces.astype(np.int32).ravel()
     mesh.CreateFaceVertexCountsAttr().Set(Vt.IntArray.FromNumpy(counts), when)
     mesh.CreateFaceVertexIndicesAttr().Set(Vt.IntArray.FromNumpy(corners), when)
 

@@ -23,7 +23,8 @@ from ..scenes import FaceScene, Scene
 
 Floats = npt.NDArray[np.float64]
 
-ACTION_UNITS, ARKIT_SHAPES = "Action units", "ARKit shapes"  # titles of layers
+ACTION_UNITS = "Action units"  # title of a layer
+ARKIT_SHAPES = "ARKit shapes"  # title of a layer
 SMALLNESS = 1e-3  # of values beside the fit: of all that fit alike, those in between are taken
 PARALLEL = 1e-9  # two controls do the same, but one more of it
 

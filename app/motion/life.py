@@ -32,17 +32,20 @@ from ..scenes import FaceScene, Scene
 Values = dict[str, float]
 Place = tuple[float, float]  # to the left and up [degrees]
 
-BLINK_SPAN, GLANCE_SPAN = 3.5, 1.6  # [s] in which there is one
+BLINK_SPAN = 3.5  # [s] in which there is one
+GLANCE_SPAN = 1.6  # [s] in which there is one
 EARLY = 0.8  # share of a span in which it begins, so that there is time between two
 # The lid's muscle follows late, and a short pulse would not shut the eye. With these the lid of the
 # simulation is down by 95 % after 0.12 s, stays so for 0.09 s (99 % at most), comes up in 0.13 s.
-SHUT_FOR, OPENS_IN = 0.14, 0.18  # [s] that the muscle is drawn, and then relaxes
+SHUT_FOR = 0.14  # [s] that the muscle is drawn
+OPENS_IN = 0.18  # [s] in which it relaxes
 
 # Glances [degrees]
 EYE_RANGE = 30.0  # that gaze = 1 stands for
 FACE_SPREAD = 1.1, 0.7  # of glances over the viewer's face, across and along
 AWAY = 0.1  # share of glances that leave the viewer, by so much; up and down by half of that
-AWAY_LEAST, AWAY_MOST = 4.0, 12.0
+AWAY_LEAST = 4.0
+AWAY_MOST = 12.0
 # A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
 SECONDS_PER_DEGREE = 0.0022
 
@@ -95,7 +98,8 @@ class Life:
     def _glance(self, time: float) -> Place:
         """Where the eyes look; a saccade leads from one place to the next."""
         number, start = self._latest(GLANCES, GLANCE_SPAN, time)
-        before, there = self._place(number - 1), self._place(number)
+        before = self._place(number - 1)
+        there = self._place(number)
         duration = SECONDS_PER_DEGREE * math.dist(before, there)
         share = min((time - start) / duration, 1.0) if duration else 1.0
         return (
@@ -111,7 +115,8 @@ class Life:
         if chance.random() >= AWAY:
             across, along = np.clip(chance.normal(0.0, FACE_SPREAD), -2.0, 2.0)
             return float(across), float(along)
-        size, angle = chance.uniform(AWAY_LEAST, AWAY_MOST), chance.uniform(0.0, 2.0 * math.pi)
+        size = chance.uniform(AWAY_LEAST, AWAY_MOST)
+        angle = chance.uniform(0.0, 2.0 * math.pi)
         return size * math.cos(angle), 0.5 * size * math.sin(angle)
 
     def _drifts(self, time: float) -> list[float]:
@@ -136,7 +141,8 @@ EYES_ALONE = 10.0  # [degrees] off straight ahead that are left to the eyes
 SHARE_OF_HEAD = 0.5  # of what lies beyond
 EYES_MOST = 25.0  # [degrees] that eyes turn without strain
 # [degrees] aside, and above or below: as far the viewer is looked at; and not at all.
-FOLLOWED, LOST = (45.0, 32.0), (65.0, 45.0)
+FOLLOWED = (45.0, 32.0)
+LOST = (65.0, 45.0)
 
 
 class Idle:

@@ -38,7 +38,8 @@ DIGITS = 8  # behind the point: whoever projects points anew is off by less than
 COUNT = 70
 # [mm] along the camera's axis: the refined skin may pass a landmark by and be steep within a pixel,
 # and over a pupil a lid of a millimetre may close.
-TOLERANCE, PUPIL_TOLERANCE = 2.0, 0.6
+TOLERANCE = 2.0
+PUPIL_TOLERANCE = 0.6
 
 
 def labels_of(
@@ -66,7 +67,8 @@ def labels_of(
     if not isinstance(scene, FaceScene):
         return labels
     cranium = scene.bone_transforms()["cranium"]
-    rotation, to_head = placed.rotation @ cranium[:3, :3], cranium[:3, :3].T
+    rotation = placed.rotation @ cranium[:3, :3]
+    to_head = cranium[:3, :3].T
     turned = _FACING @ rotation
     turns = {
         "yaw": math.atan2(turned[0, 2], turned[2, 2]),
@@ -130,7 +132,8 @@ def landmarks_in(
 ) -> Landmarks:
     """The landmarks of a face in the picture of which `depth`, (H, W), is the depth map."""
     points = points_of(scene)
-    pixels, depths = camera.project(points), camera.to_camera(points)[:, 2]
+    pixels = camera.project(points)
+    depths = camera.to_camera(points)[:, 2]
     height, width = depth.shape
     columns, rows = np.floor(pixels).astype(int).T
     is_inside = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)

@@ -36,7 +36,8 @@ class Passes:
 
     def __init__(self, pipeline: Pipeline, drawn: DrawnMesh) -> None:
         self.scene = scene = pipeline.scene
-        self._pipeline, self.drawn = pipeline, drawn
+        self._pipeline = pipeline
+        self.drawn = drawn
         # Thin hairs are what is behind them, as in pictures that people label.
         self._parts = [part for part in scene.parts if not part.strand_radius]
         self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, self._parts)])
@@ -54,7 +55,9 @@ class Passes:
         The camera and the scene must be as they were then. Raises ValueError before the first
         picture, and for the segmentation of a scene that has none.
         """
-        scene, pipeline, drawn = self.scene, self._pipeline, self.drawn
+        scene = self.scene
+        pipeline = self._pipeline
+        drawn = self.drawn
         if drawn.mesh is None:
             raise ValueError("nothing was drawn yet; call Pipeline.draw first")
         maps = {}

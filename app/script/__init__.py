@@ -172,7 +172,8 @@ class Channel:
     @functools.cached_property
     def _parts(self) -> tuple[array[float], array[float], array[int]]:
         """The same numbers in sequences of Python's own, which are quicker to look into."""
-        times, values = array("d", self.times.tobytes()), array("d", self.values.tobytes())
+        times = array("d", self.times.tobytes())
+        values = array("d", self.values.tobytes())
         return times, values, array("H", self.easings.tobytes())
 
     def value(self, time: float) -> float:
@@ -216,7 +217,8 @@ class Channel:
         """
         edges = np.linspace(start, end, count + 1)
         first, last = np.searchsorted(self.times, (start, end))
-        keys, values = self.times[first:last], self.values[first:last]
+        keys = self.times[first:last]
+        values = self.values[first:last]
         if len(keys) <= count:  # "hold" jumps at a key: it needs a point just before as well
             times = np.unique(np.concatenate([edges, keys, np.nextafter(keys, -np.inf)]))
             return times, self.values_at(times)
@@ -292,7 +294,8 @@ class Script:
         if not self.posed_names:
             return np.zeros(0)
         before, after, share = _between(self._pose_times, time)
-        start, end = self._pose_rows[before], self._pose_rows[after]
+        start = self._pose_rows[before]
+        end = self._pose_rows[after]
         posed: Floats = start + (end - start) * ALL_EASINGS[self.poses[after].easing](share)
         return posed
 
@@ -359,7 +362,8 @@ def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
     if after in (0, len(times)):
         outermost = min(after, len(times) - 1)
         return outermost, outermost, 0.0
-    previous, following = times[after - 1], times[after]
+    previous = times[after - 1]
+    following = times[after]
     return after - 1, after, (time - previous) / (following - previous)
 
 

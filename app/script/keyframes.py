@@ -70,7 +70,9 @@ def moved(script: Script, places: Places, seconds: float, source: Script | None 
     source: whose keys are copied, while its own stay; None moves them.
     """
     shift = max(seconds, -places.first) if places else 0.0
-    changed, arrived, before = {}, {}, _columns(script, places)
+    changed = {}
+    arrived = {}
+    before = _columns(script, places)
     for name, columns in _columns(source or script, places).items():
         is_chosen = among(columns[0], places.times[name])
         times, *rest = _picked(columns, is_chosen)
@@ -115,7 +117,8 @@ def raised(
     script: Script, places: Places, amount: float, limits: Limits, posed: Iterable[str]
 ) -> Script:
     """The script with these keys higher, within limits; of poses, in the controls `posed`."""
-    poses, tracks = script.poses, dict(script.tracks)
+    poses = script.poses
+    tracks = dict(script.tracks)
     for name, times in places.times.items():
         if name == POSES:
             at = set(times.tolist())
@@ -228,7 +231,8 @@ def _joined(there: Columns, arriving: Columns) -> Columns:
 
 def _with(script: Script, changed: Mapping[str, Columns]) -> Script:
     """The script with other keys in some tracks; a track without any is none."""
-    poses, tracks = script.poses, dict(script.tracks)
+    poses = script.poses
+    tracks = dict(script.tracks)
     for name, columns in changed.items():
         if name == POSES:
             pairs = zip(*(column.tolist() for column in columns), strict=True)

@@ -32,7 +32,8 @@ class Recorder:
     ) -> None:
         """played: what the controls do where nobody moves them. start: [s]. held: from before."""
         self._played = played
-        self.held, self._kept = dict(held or {}), dict[str, float]()  # and what is recorded of it
+        self.held = dict(held or {})
+        self._kept = dict[str, float]()  # values that are recorded of those held
         self.start = self.time = rounded(start)
         # Of each control that has moved: times [s] and what its track has, from the last key on.
         self.samples: dict[str, tuple[array[float], array[float]]] = {}
@@ -43,7 +44,8 @@ class Recorder:
         if time <= self.time:
             return
         before, self.time = self.time, time
-        posed, at_first = self._played.posed(time), self._played.posed(before)
+        posed = self._played.posed(time)
+        at_first = self._played.posed(before)
         for name in differing(self._played, time, values):
             if name not in self.samples:
                 first = self._told(name, before) if before else values[name] - at_first.get(name, 0)
@@ -82,7 +84,8 @@ class Recorder:
     def _joined(self, name: str, taken: Channel) -> Channel:
         """The script's track with what was taken of it, from which it goes back at its end."""
         old = self._played.tracks.get(name, Channel([], []))
-        start, end = rounded(taken.times[0]), rounded(self.time)
+        start = rounded(taken.times[0])
+        end = rounded(self.time)
         is_last = end >= self._played.duration - FRAME
         head = [key for key in old.keys if key.time < start]
         tail = [key for key in old.keys if key.time > end]

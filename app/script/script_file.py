@@ -64,7 +64,9 @@ def _channel_of_lines(text: str) -> Channel:
 
     A take has half a million of them: numbers are put into arrays, and checked there.
     """
-    times, values, easings = array("d"), array("d"), array("H")
+    times = array("d")
+    values = array("d")
+    easings = array("H")
     for number, words in enumerate(filter(None, map(str.split, io.StringIO(text))), start=1):
         try:
             time, value, easing = words if len(words) == 3 else (*words, "linear")

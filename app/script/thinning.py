@@ -28,7 +28,8 @@ def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLE
     """
     moments = np.array(times, np.float64).round(DECIMALS)
     is_later = np.diff(moments, prepend=-np.inf) > 0.0
-    moments, samples = moments[is_later], np.array(values, np.float64)[is_later]
+    moments = moments[is_later]
+    samples = np.array(values, np.float64)[is_later]
     decimals = math.ceil(-math.log10(0.1 * tolerance))
     ends = samples.round(decimals) + 0.0  # which makes -0.0 to 0.0
     kept = _corners(moments, samples, ends, tolerance)
@@ -45,7 +46,9 @@ def _corners(
     start = 0
     is_corner[0] = True
     while start < count - 1:
-        low, high, farthest = -np.inf, np.inf, start + 1
+        low = -np.inf
+        high = np.inf
+        farthest = start + 1
         for index in range(start + 1, count):
             seconds = times[index] - times[start]
             if low <= (ends[index] - ends[start]) / seconds <= high:

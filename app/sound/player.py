@@ -53,7 +53,8 @@ class Player:
 
     def __init__(self, sound: Sound, clock: Callable[[], float] = time.perf_counter) -> None:
         """clock: tells seconds, as the device counts them too, if not just as many."""
-        self._sound, self._clock = sound, clock
+        self._sound = sound
+        self._clock = clock
         self._device = open_device(sound.rate, sound.samples.shape[1])
         self._part: _Part | None = None
         # When the device asked last, for which part, and how much of it was given before [s].
@@ -67,7 +68,8 @@ class Player:
     @property
     def position(self) -> float:
         """The time of the sound that is heard just now [s]; between two requests by the clock."""
-        part, (when, asked_for, given) = self._part, self._asked
+        part = self._part
+        (when, asked_for, given) = self._asked
         if part is None or asked_for is not part:
             return part.start if part is not None else 0.0
         since = min(self._clock() - when, 2.0 * PERIOD)  # a device that hangs stays where it is
@@ -77,7 +79,8 @@ class Player:
     @property
     def is_stuck(self) -> bool:
         """Whether the device asks for nothing any more, as one that was unplugged."""
-        part, when = self._part, self._asked[0]
+        part = self._part
+        when = self._asked[0]
         return part is not None and self._clock() - max(when, part.since) > STUCK
 
     @property
@@ -115,11 +118,13 @@ class Player:
 
     def _samples(self) -> Generator[Samples | bytes, int, None]:
         """Answers each request for a number of frames, in the device's own thread."""
-        part, given = None, 0
+        part = None
+        given = 0
         count = yield b""
         while True:
             if part is not self._part:
-                part, given = self._part, 0
+                part = self._part
+                given = 0
             self._asked = self._clock(), part, given / self._sound.rate
             chunk = self._chunk(part, given, count)
             given += count
@@ -127,7 +132,8 @@ class Player:
 
     def _chunk(self, part: _Part | None, first: int, count: int) -> Samples:
         """So many frames of a part from its `first` on, (count, C); silence where there is none."""
-        sound, rate = self._sound.samples, self._sound.rate
+        sound = self._sound.samples
+        rate = self._sound.rate
         chunk = np.zeros((count, sound.shape[1]), np.int16)
         if part is not None:
             places = part.start * rate + part.speed * np.arange(first, first + count)

@@ -24,8 +24,12 @@ class ApplicationContext:
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
         """surface: of the window, which is open and has nothing in it yet."""
-        self.session, self.settings, self.surface = session, settings, surface
-        self.times, self.messages, self.files = FrameTimes(), Messages(), FileDialogs()
+        self.session = session
+        self.settings = settings
+        self.surface = surface
+        self.times = FrameTimes()
+        self.messages = Messages()
+        self.files = FileDialogs()
         with contextlib.ExitStack() as stack:
             self.gui = Gui(surface.handle)
             stack.callback(self.gui.close)

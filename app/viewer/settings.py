@@ -125,7 +125,9 @@ class Display(Record):
 
     def choose_preset(self, name: str) -> None:
         """Refine by a look, and by nothing but it."""
-        self.look, self.refiner, self.options = name, None, {}
+        self.look = name
+        self.refiner = None
+        self.options = {}
 
     def refiner_on(self, scene: Scene) -> str:
         """The name of the refiner that is chosen for this scene."""

@@ -40,7 +40,8 @@ class Claim:
     @property
     def allowed(self) -> str:
         """The numbers that agree with it."""
-        low, high = self.ours(self.low), self.ours(self.high)
+        low = self.ours(self.low)
+        high = self.ours(self.high)
         if low == high:
             return f"exactly {low}"
         bounds = [f"at least {low}"] if self.low > -math.inf else []

@@ -105,10 +105,15 @@ class Cell:
 
 def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
     """How much of the error of mouths goes away, by the interpolating scheme."""
-    changed, left, outline, rows = [], [], [], []
+    changed = []
+    left = []
+    outline = []
+    rows = []
     for expression, cells in _drawn(size):
-        named, truth = {cell.title: cell for cell in cells}, cells[-1]
-        static, refined = named[STATIC.title], named[CUBIC.title]
+        named = {cell.title: cell for cell in cells}
+        truth = cells[-1]
+        static = named[STATIC.title]
+        refined = named[CUBIC.title]
         changed.append(100.0 * (refined.off(static) > SEEN).mean())
         left.append(refined.rms(truth) / static.rms(truth))
         outline.append(refined.wrong(truth).sum() / static.wrong(truth).sum())
@@ -131,7 +136,8 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
 
 def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     """Every expression in every variant; the cell of the dense mesh is the last of each."""
-    scene, head = FaceScene(), assets.load("head")
+    scene = FaceScene()
+    head = assets.load("head")
     fine = head.finer(LEVEL)
     simulation = fine_simulation(head, fine)
     refiners = []
@@ -170,5 +176,6 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
 
 def _smaller(image: Image) -> Image:
     """A picture at its final size."""
-    height, width = image.shape[0] // FINER, image.shape[1] // FINER
+    height = image.shape[0] // FINER
+    width = image.shape[1] // FINER
     return np.asarray(PIL.Image.fromarray(image).resize((width, height), LANCZOS))

@@ -100,7 +100,8 @@ def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[S
     directions, is_fold = find_folds(faces, positions)
     is_fold &= refiner.splits[refiner.triangle_edges].any(axis=1)
     before = _shapes(positions[faces[is_fold]], directions[is_fold])
-    is_part, corners = is_fold[mesh.source], mesh.positions.astype(np.float64)[mesh.triangles]
+    is_part = is_fold[mesh.source]
+    corners = mesh.positions.astype(np.float64)[mesh.triangles]
     return before, _shapes(corners[is_part], directions[mesh.source[is_part]])
 
 
@@ -108,13 +109,15 @@ def find_folds(faces: Faces, positions: Points) -> tuple[Points, npt.NDArray[np.
     """The direction of least curvature in each triangle (F, 3), and whether it lies in a fold."""
     static = refine.create("none", faces, positions).refine(positions)
     x, normals = (each.astype(np.float64)[static.triangles] for each in static[:2])
-    edges, turns = np.roll(x, -1, axis=1) - x, np.roll(normals, -1, axis=1) - normals
+    edges = np.roll(x, -1, axis=1) - x
+    turns = np.roll(normals, -1, axis=1) - normals
     across = np.cross(edges[:, 0], edges[:, 1])
     areas = np.linalg.norm(across, axis=1) / 2.0
     axes = np.stack([edges[:, 0], np.cross(across, edges[:, 0])], axis=2)  # of the triangle's plane
     axes /= np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-12)
     # Curvature (a b, b c) turns normals along an edge (u, v) by (a u + b v, b u + c v).
-    (u, v), zero = np.moveaxis(edges @ axes, 2, 0), np.zeros(edges.shape[:2])
+    (u, v) = np.moveaxis(edges @ axes, 2, 0)
+    zero = np.zeros(edges.shape[:2])
     rows = np.concatenate([np.stack([u, v, zero], -1), np.stack([zero, u, v], -1)], axis=1)
     wanted = np.moveaxis(turns @ axes, 2, 1).reshape(len(faces), 6, 1)
     a, b, c = np.moveaxis((np.linalg.pinv(rows) @ wanted)[..., 0], 1, 0)

@@ -43,16 +43,19 @@ def outcome(size: tuple[int, int] = (380, 230)) -> Outcome:
 
     The rows of each shading in turn, the true sine last; columns are moments.
     """
-    means, rows = {}, []
+    means = {}
+    rows = []
     with Canvas(size) as canvas:
         plane = Waving(canvas)
         true = [plane.true_image(phase) for phase in PHASES]
         for shading, style in SHADINGS:
             for variant in VARIANTS:
-                cells, levels = [], []
+                cells = []
+                levels = []
                 for phase, truth in zip(PHASES, true, strict=True):
                     image, count = plane.image(variant, style, phase)
-                    off, outline = levels_apart(image, truth), outline_apart(image, truth)
+                    off = levels_apart(image, truth)
+                    outline = outline_apart(image, truth)
                     text = f"{count} triangles: {off:.1f} levels, outline {outline:.1%} off"
                     cells.append((text, image))
                     levels.append(off)
@@ -72,7 +75,8 @@ class Waving:
     """The plane in the frame of the figure, as refiners show it and as it should be."""
 
     def __init__(self, canvas: Canvas) -> None:
-        self._canvas, self._scene = canvas, PlaneScene()
+        self._canvas = canvas
+        self._scene = PlaneScene()
         self._camera = camera_for(self._scene, VIEW)
         self._dense = make_grid(COLUMNS * FINENESS, ROWS * FINENESS, CELL / FINENESS)
 
@@ -101,14 +105,16 @@ class Waving:
 
 def levels_apart(image: Image, truth: Image) -> float:
     """Root mean square of the difference in grey levels (0 .. 255), where both show the surface."""
-    grey, true_grey = _grey(image), _grey(truth)
+    grey = _grey(image)
+    true_grey = _grey(truth)
     both = np.maximum(grey, true_grey) < BACKGROUND
     return float(np.sqrt(np.mean((grey - true_grey)[both] ** 2)))
 
 
 def outline_apart(image: Image, truth: Image) -> float:
     """Share of the true surface's pixels that only one of the two shows, or only the other."""
-    shows, true_shows = _grey(image) < BACKGROUND, _grey(truth) < BACKGROUND
+    shows = _grey(image) < BACKGROUND
+    true_shows = _grey(truth) < BACKGROUND
     return float((shows != true_shows).sum() / true_shows.sum())
 
 

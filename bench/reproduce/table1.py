@@ -99,14 +99,17 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
 
 def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
     """The frame of the scene's own script with the most triangles, and how many these are."""
-    best, fullest, script = -1, scene.positions, script_for(None, scene.name)
+    best = -1
+    fullest = scene.positions
+    script = script_for(None, scene.name)
     scene.reset()
     for number in range(round(script.duration * FRAMES_PER_SECOND) + 1):
         scene.take(script.values(number / FRAMES_PER_SECOND, scene.limits))
         scene.step(1.0 / FRAMES_PER_SECOND)
         count = len(refiner.refine(scene.positions).triangles)
         if count > best:
-            best, fullest = count, scene.positions.copy()
+            best = count
+            fullest = scene.positions.copy()
     return fullest, best
 
 

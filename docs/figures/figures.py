@@ -55,7 +55,8 @@ def sheet(cells: Sequence[tuple[str, Image]], columns: int) -> Image:
 
 def webp(image: Image) -> bytes:
     """A picture as WebP: without loss where that is not much larger."""
-    exact, near = io.BytesIO(), io.BytesIO()
+    exact = io.BytesIO()
+    near = io.BytesIO()
     page = PIL.Image.fromarray(image)
     page.save(exact, "WEBP", lossless=True, quality=80)
     page.save(near, "WEBP", quality=QUALITY)

@@ -58,7 +58,8 @@ def system() -> Image:
         "split where they bend": {"refinement": Refinement(PAPERS_PRESET), "style": splits},
         "and drawn as skin": {},
     }
-    scene, cells = FaceScene(), []
+    scene = FaceScene()
+    cells = []
     for title, how in steps.items():
         options = CaptureOptions((320, 440), camera="-26,3,1.06", captions=False, **how)
         cells.append((title, figures.shoot(scene, {"joy": 0.85}, options)))

@@ -27,10 +27,14 @@ TURN = (-24.0, 4.0)  # [degrees] of the camera
 SETTLED = 1.0  # [s]
 MARGIN = 0.04  # of the picture, free on each side
 # Samples of a seed as `risorius dataset` makes them; of some their labels are shown, too.
-SEED, CELL, COLUMNS, ROWS = 21, 192, 6, 4
+SEED = 21
+CELL = 192
+COLUMNS = 6
+ROWS = 4
 LABELLED = (2, 3, 10, 11, 14, 22)  # numbers of samples
 EDGE = np.array((255, 255, 255), np.uint8)
-SEEN, HIDDEN = (40, 230, 60), (235, 60, 40)
+SEEN = (40, 230, 60)
+HIDDEN = (235, 60, 40)
 COLOURS = {
     Segment.SKIN: (221, 176, 152), Segment.NOSE: (240, 145, 45), Segment.RIGHT_EYE: (40, 85, 225),
     Segment.LEFT_EYE: (40, 195, 225), Segment.RIGHT_BROW: (10, 100, 40),
@@ -86,7 +90,8 @@ def _palette() -> dict[int, Any]:
 
 
 def _grey(depth: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDArray[Any]:
-    near, far = depth[on].min(), depth[on].max()
+    near = depth[on].min()
+    far = depth[on].max()
     return np.repeat(((60.0 + 195.0 * (far - depth) / (far - near)) * on)[..., None], 3, axis=2)
 
 
@@ -98,7 +103,8 @@ def _directions(normal: npt.NDArray[Any], on: npt.NDArray[np.bool_]) -> npt.NDAr
 def dotted(picture: Image, labels: dict[str, Any], radius: float) -> Image:
     """A picture with its landmarks, hidden ones red."""
     page = PIL.Image.fromarray(picture)
-    draw, landmarks = ImageDraw.Draw(page), labels["landmarks"]
+    draw = ImageDraw.Draw(page)
+    landmarks = labels["landmarks"]
     for (x, y), is_visible in zip(landmarks["pixels"], landmarks["visible"], strict=True):
         place = (x - radius, y - radius, x + radius, y + radius)
         draw.ellipse(place, fill=SEEN if is_visible else HIDDEN)

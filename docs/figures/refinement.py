@@ -24,8 +24,11 @@ from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 Places = npt.NDArray[np.float64]
 
 SCALE = 3
-PAPER, INK, FAINT = (255, 255, 255), (32, 34, 40), (150, 154, 162)
-FILL, NEW = (236, 240, 245), (0, 114, 178)
+PAPER = (255, 255, 255)
+INK = (32, 34, 40)
+FAINT = (150, 154, 162)
+FILL = (236, 240, 245)
+NEW = (0, 114, 178)
 SECOND = (213, 94, 0)
 Colour = tuple[int, int, int]
 Place = npt.ArrayLike
@@ -103,10 +106,12 @@ def triangulation(diagram: Diagram, corners: Places, splits: tuple[int, int, int
 
 def cases() -> Image:
     """All 27 configurations in the order of the table, three to a column."""
-    cell, columns = 96, 9
+    cell = 96
+    columns = 9
     diagram = Diagram(columns * cell, 3 * (cell + 14) + 8)
     for number in range(27):
-        column, row = number % columns, number // columns
+        column = number % columns
+        row = number // columns
         centre = ((column + 0.5) * cell, diagram.size[1] - 8 - row * (cell + 14) - cell / 2)
         splits = splits_of(number)
         triangulation(diagram, equilateral(centre, 0.78 * cell), splits)

@@ -52,7 +52,8 @@ def controls(viewer: Viewer) -> None:
 def wipe(viewer: Viewer) -> None:
     """Static and refined, half a face each, divided by a line; the dark theme."""
     viewer.session.toggle_alone("disgust")
-    viewer.wanted_tab, viewer.settings.theme = "Mechanism", "dark"
+    viewer.wanted_tab = "Mechanism"
+    viewer.settings.theme = "dark"
     # Of the panel show what says how the mesh is refined, and its colours.
     viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
     viewer.settings.display = Display(compare="wipe", wireframe=True, splits=True, skin="clay")
@@ -62,7 +63,8 @@ def wipe(viewer: Viewer) -> None:
 
 def timeline(viewer: Viewer) -> None:
     """Keys of poses and tracks, some of them selected; the dark theme."""
-    viewer.settings.theme, viewer.settings.folds["Tracks"] = "dark", True
+    viewer.settings.theme = "dark"
+    viewer.settings.folds["Tracks"] = True
     axis = viewer.time_axis
     viewer.session.seek(2.3)
     viewer.frame()

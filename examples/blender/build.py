@@ -16,7 +16,8 @@ from pathlib import Path
 
 ADD_ON = Path(__file__).parent / "risorius_refine"
 CHECKOUT = Path(__file__).parents[2]
-PYTHON, NUMPY = "3.11", "numpy==1.26.4"  # of Blender 5.0
+PYTHON = "3.11"  # of Blender 5.0
+NUMPY = "numpy==1.26.4"  # of Blender 5.0
 PASSED_OVER = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "out", "*.egg-info")
 WHEELS_FOR = {  # by Blender's name of a platform: tags of wheels that run there
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_27_x86_64", "manylinux2014_x86_64"),

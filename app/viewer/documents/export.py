@@ -44,7 +44,10 @@ class Exporter:
     """Screenshots of a stage; films and files of a session, one at a time."""
 
     def __init__(self, session: Session, settings: Settings, stage: Stage, view: View) -> None:
-        self.session, self._settings, self._stage, self._view = session, settings, stage, view
+        self.session = session
+        self._settings = settings
+        self._stage = stage
+        self._view = view
         self.job: ExportJob | None = None
         self.is_asking = False  # the dialog is open
 
@@ -75,9 +78,12 @@ class Exporter:
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
         """How `capture` is told to draw what the window shows, a comparison side by side."""
-        choices, view, display = self.choices, self._view, self._view.display
+        choices = self.choices
+        view = self._view
+        display = self._view.display
         is_clear = choices.is_transparent and self.kind.can_be_transparent
-        is_compared, static = display.compare != "off", Refinement(refiner=STATIC)
+        is_compared = display.compare != "off"
+        static = Refinement(refiner=STATIC)
         is_refined = display.is_refined or is_compared
         return CaptureOptions(
             choices.size,
@@ -97,7 +103,8 @@ class Exporter:
 
         UserError where it cannot be.
         """
-        choices, script = self.choices, self.session.script
+        choices = self.choices
+        script = self.session.script
         scene = self.session.scene
         head = scene.head if isinstance(scene, FaceScene) else None
         head = head if isinstance(head, FittedHead) else None
@@ -130,7 +137,8 @@ class Exporter:
         job = self.job
         if job is None or not job.task.is_done:
             return None
-        self.job, is_cancelled = None, job.task.is_stopped
+        self.job = None
+        is_cancelled = job.task.is_stopped
         job.task.stop(waits=False)
         if is_cancelled:
             return f"Cancelled: {job.target.name}"
@@ -145,7 +153,9 @@ class Exporter:
 
 
 TITLE = "Export"
-LABELS, WIDTH, BUTTON = 7.5, 31.0, 6.5  # [em] of words at the left, the dialog, a button
+LABELS = 7.5  # [em] of words at the left
+WIDTH = 31.0  # [em] of the dialog
+BUTTON = 6.5  # [em] of a button
 PICTURES = {
     **{(640, 480): "VGA", (1280, 720): "HD", (1920, 1080): "Full HD", (3840, 2160): "4K"},
     **{(1080, 1080): "Square", (1080, 1920): "Upright"},
@@ -158,7 +168,10 @@ class ExportDialog:
     """Draws the dialog, and how far an export is; carries out what is done with them."""
 
     def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: View) -> None:
-        self._gui, self._exporter, self._files, self._view = gui, exporter, files, view
+        self._gui = gui
+        self._exporter = exporter
+        self._files = files
+        self._view = view
         self._rows = LabelledRows(gui, LABELS / WIDTH, {})
         self._was_focused = False  # in the frame before: no list was open over it
 
@@ -206,7 +219,8 @@ class ExportDialog:
 
     def _draw_end(self, choices: ExportChoices) -> None:
         """How much will be written; and the buttons, the first of which asks for a name."""
-        exporter, duration = self._exporter, self._exporter.session.script.duration
+        exporter = self._exporter
+        duration = self._exporter.session.script.duration
         imgui.separator()
         imgui.align_text_to_frame_padding()
         left = imgui.get_content_region_avail().x - em(2.0 * BUTTON)
@@ -217,12 +231,14 @@ class ExportDialog:
         is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(BUTTON))
         was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
         # Enter is for the widget that Tab has come to, unless that is a line of text.
-        io, is_enter = imgui.get_io(), imgui.is_key_pressed(imgui.Key.enter)
+        io = imgui.get_io()
+        is_enter = imgui.is_key_pressed(imgui.Key.enter)
         is_enter = is_enter and (io.want_text_input or not io.nav_visible)
         if is_over or (was_focused and imgui.is_key_pressed(imgui.Key.escape)):
             exporter.is_asking = False
         elif is_begun or (was_focused and is_enter):
-            exporter.is_asking, suffix = False, exporter.kind.suffix
+            exporter.is_asking = False
+            suffix = exporter.kind.suffix
             ask = partial(self._files.ask, TITLE, exporter.start, saving=True, suffixes=(suffix,))
             ask(proposed=f"{Path(exporter.session.work.name).stem}{suffix}")
 

@@ -47,7 +47,8 @@ class Request:
         folders = [f"{entry.name}/" for entry in visible if entry.is_dir()]
         fitting = [each.name for each in visible if each.name.lower().endswith(self.suffixes)]
         self.found = [*sorted(folders, key=str.lower), *sorted(fitting, key=str.lower)]
-        self.folder, self.complaint = folder.resolve(), ""
+        self.folder = folder.resolve()
+        self.complaint = ""
         if not self.is_saving:
             self.name = ""
 
@@ -107,7 +108,8 @@ class FileDialogs:
 
     def draw(self, gui: Gui) -> Message:
         """Draw the dialog while it is needed, and go on with the file that it gives."""
-        request, chosen = self.request, None
+        request = self.request
+        chosen = None
         if request is None:
             return None
         with dialog(request.title, *SIZE) as is_open:

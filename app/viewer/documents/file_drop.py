@@ -58,10 +58,14 @@ class FileDrop:
         read: in a thread; what has the landmarks of a mesh marked, or those of a file that are
         missing.
         """
-        self._files, self._scripts, self._show_scene = files, scripts, show_scene
+        self._files = files
+        self._scripts = scripts
+        self._show_scene = show_scene
         self._read = read
         self.making: Future[Task] | None = None  # what shows a head
-        self._what, self._begun, self._told = "", 0.0, 0  # when, and for how long it is known [s]
+        self._what = ""
+        self._begun = 0.0  # when [s]
+        self._told = 0
 
     def open(self, paths: Sequence[str]) -> Message:
         """Open files, or begin to make a head."""
@@ -69,7 +73,8 @@ class FileDrop:
         if gone is not None:
             raise UserError(f"{gone}: no such file")
         found = sorted_out([Path(path) for path in paths])
-        mesh, landmarks = found.pop("mesh", None), found.pop("landmarks", None)
+        mesh = found.pop("mesh", None)
+        landmarks = found.pop("landmarks", None)
         if mesh is None and landmarks is not None:
             raise UserError(
                 f"{landmarks.name}: is half of a head; drop it together with its mesh, an .obj say"
@@ -91,7 +96,9 @@ class FileDrop:
 
     def _begin(self, what: str, make: Callable[[], Task]) -> None:
         """Have a thread make what shows a head; one that is being made is wanted no more."""
-        self._what, self._begun, self._told = what, time.monotonic(), -1
+        self._what = what
+        self._begun = time.monotonic()
+        self._told = -1
         thread = ThreadPoolExecutor(1)
         self.making = thread.submit(make)
         self.making.add_done_callback(lambda _: wake_up())
@@ -100,7 +107,8 @@ class FileDrop:
     @property
     def has_news(self) -> bool:
         """Whether there is more to be told of what is being made than a moment ago."""
-        making, seconds = self.making, int(time.monotonic() - self._begun)
+        making = self.making
+        seconds = int(time.monotonic() - self._begun)
         return making is not None and (making.done() or seconds > self._told)
 
     def poll(self) -> Message:
@@ -114,11 +122,13 @@ class FileDrop:
 
     def _make(self, mesh: Path, landmarks: Path | None, others: Mapping[str, Path]) -> Task:
         """In a thread: what shows a head, or has it marked, and plays what came with it."""
-        show, remark = None, ""
+        show = None
+        remark = ""
         try:
             if landmarks is not None:
                 scene = build_scene("face", own_head(mesh, landmarks))
-                show, remark = partial(self._show_scene, scene), f" with {mesh.name}"
+                show = partial(self._show_scene, scene)
+                remark = f" with {mesh.name}"
         except UnfinishedError:
             pass  # it is marked further
         except assets.AssetError as error:

@@ -63,7 +63,8 @@ class Question:
         self.other = other
         if not self.unsaved:
             return task()
-        self.task, self.verb = task, verb
+        self.task = task
+        self.verb = verb
         return None
 
 
@@ -81,7 +82,9 @@ class ScriptCommands:
         note_recent: Callable[..., object],
     ) -> None:
         """note_recent: is told what files were opened together, or saved."""
-        self._session, self._files, self._question = session, files, question
+        self._session = session
+        self._files = files
+        self._question = question
         self.note_recent = note_recent
 
     def new(self) -> Message:
@@ -96,7 +99,8 @@ class ScriptCommands:
 
     def ask_open(self) -> None:
         """Ask for a script, a pose or a recording, and show it."""
-        title, ends = "Open script, pose or recording", (SUFFIX, *RECORDINGS)
+        title = "Open script, pose or recording"
+        ends = (SUFFIX, *RECORDINGS)
         self._files.ask(title, self.open, saving=False, suffixes=ends)
 
     def open(self, path: Path, remark: str = "") -> Message:
@@ -141,7 +145,8 @@ class ScriptCommands:
 
     def save_as(self, then: Task = lambda: None) -> None:
         """Ask for a name, and write the script."""
-        path, script = self._session.file.path, self._session.script
+        path = self._session.file.path
+        script = self._session.script
         name = "script.toml"
         if script.is_converted:
             name = f"{Path(script.source).stem}{SUFFIX}"
@@ -207,7 +212,9 @@ def draw_question(
     gui: Gui, question: Question, session: Session, scripts: ScriptCommands
 ) -> Message:
     """Draw the question, if there is one, and go on with what was answered."""
-    task, verb, other = question.task, question.verb, question.other
+    task = question.task
+    verb = question.verb
+    other = question.other
     if task is None:
         return None
     again = partial(question.before, verb, task, other)  # there may be more to save

@@ -70,8 +70,10 @@ class MenuBar:
         self, gui: Gui, messages: Messages, commands: Sequence[Command], unsaved: Callable[[], str]
     ) -> None:
         """unsaved: what work would be lost now, in words; "" for none."""
-        self._gui, self._messages = gui, messages
-        self._commands, self._unsaved = commands, unsaved
+        self._gui = gui
+        self._messages = messages
+        self._commands = commands
+        self._unsaved = unsaved
 
     def draw(self) -> float:
         """Draw the bar; returns its height [window units]."""
@@ -102,7 +104,8 @@ class MenuBar:
                 self._gui.remember(f"menu {title}: {command.label}")
                 continue
             is_on = command.is_on is not None and command.is_on()
-            label, keys = command.label, command.displayed_keys
+            label = command.label
+            keys = command.displayed_keys
             is_clicked, _ = imgui.menu_item(label, keys, is_on, command.can_run())
             self._gui.remember(f"menu {title}: {label}")
             if is_clicked:
@@ -130,7 +133,8 @@ def command_button(
     is_on = is_wanted or (command.is_on is not None and command.is_on())
     ink = colour(gui.theme.accent, 0.6) if is_on else None
     imgui.begin_disabled(not command.can_run())
-    text, told = label or command.label, meaning or command.displayed_keys
+    text = label or command.label
+    told = meaning or command.displayed_keys
     if button(gui, text, name=name, width=width, meaning=told, highlight=ink):
         messages.carry_out(command.run)
     imgui.end_disabled()

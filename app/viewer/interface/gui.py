@@ -30,7 +30,10 @@ import glfw  # isort: skip - after imgui_bundle, see above
 
 FONT = Path(imgui_bundle.__file__).parent / "assets/fonts/Roboto/Roboto-Regular.ttf"
 FONT_SIZE = 15.0  # [window units at scale 1]
-LEFT, RIGHT, MIDDLE = 0, 1, 2  # buttons of the mouse
+# Buttons of the mouse.
+LEFT = 0
+RIGHT = 1
+MIDDLE = 2
 BUTTON = -1  # in place of a key: one of the mouse was pressed
 SETTLING = 3  # turns of the GUI in which what a press has opened gets the focus
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
@@ -89,7 +92,8 @@ class Gui:
     """The Dear ImGui context of one window; `places` says where each item is, for who drives it."""
 
     def __init__(self, window: Any) -> None:
-        self._window, self._title = window, ""
+        self._window = window
+        self._title = ""
         self._context = imgui.create_context()
         self.double_click_time = 0.3  # [s] in which the second press comes
         self.has_popup = False  # a menu, a list or a dialog, as the turn began
@@ -176,17 +180,21 @@ class Gui:
         """Cut before a press: the mouse has to be there before. It may be as old as the last."""
         if action == glfw.PRESS:
             self._presses.append((self._context.input_events_queue.size(), BUTTON))
-            io, longest = imgui.get_io(), self.double_click_time + self._blind
-            io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.1
+            io = imgui.get_io()
+            longest = self.double_click_time + self._blind
+            io.mouse_double_click_time = longest
+            io.mouse_single_click_delay = longest + 0.1
 
     def turns(self) -> Iterator[None]:
         """Turns of the GUI, a `frame` each, until all that the user did is answered."""
-        io, queue = imgui.get_io(), self._context.input_events_queue
+        io = imgui.get_io()
+        queue = self._context.input_events_queue
         waiting = type(queue)()
         for event in queue:
             waiting.push_back(event)
         queue.clear()
-        cuts, self._presses = [(0, None), *self._presses, (waiting.size(), 0)], []
+        cuts = [(0, None), *self._presses, (waiting.size(), 0)]
+        self._presses = []
         for (start, pressed), (end, following) in pairwise(cuts):
             for index in range(start, end):
                 queue.push_back(waiting[index])
@@ -240,7 +248,8 @@ class Gui:
 
     def remember(self, name: str) -> None:
         """Keep where the item drawn last is."""
-        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        low = imgui.get_item_rect_min()
+        high = imgui.get_item_rect_max()
         self.places[name] = (low.x, low.y, high.x, high.y)
 
     def close(self) -> None:

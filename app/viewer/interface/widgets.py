@@ -40,8 +40,10 @@ def slider(
 
     mark: what stands at its beginning.
     """
-    io, label = imgui.get_io(), f"##{name}"
-    is_typed, has_ctrl = imgui.internal.temp_input_is_active(imgui.get_id(label)), io.key_ctrl
+    io = imgui.get_io()
+    label = f"##{name}"
+    is_typed = imgui.internal.temp_input_is_active(imgui.get_id(label))
+    has_ctrl = io.key_ctrl
     hidden = () if is_typed else HIDDEN
     imgui.set_next_item_width(width)
     imgui.push_style_var(imgui.StyleVar_.grab_min_size, 1.0)
@@ -54,7 +56,8 @@ def slider(
     imgui.pop_style_color(len(hidden))
     imgui.pop_style_var()
     gui.remember(name)
-    is_done, is_hovered = imgui.is_item_deactivated_after_edit(), imgui.is_item_hovered()
+    is_done = imgui.is_item_deactivated_after_edit()
+    is_hovered = imgui.is_item_hovered()
     if not is_typed:
         _draw_bar(gui, now, limits, mark, digits)
     if is_hovered and imgui.is_mouse_clicked(RIGHT):
@@ -64,8 +67,11 @@ def slider(
 
 def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, digits: int) -> None:
     """The slider drawn last as a bar that is filled from 0, with its number at the end."""
-    theme, paper, padding = gui.theme, imgui.get_window_draw_list(), em(0.3)
-    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    theme = gui.theme
+    paper = imgui.get_window_draw_list()
+    padding = em(0.3)
+    low = imgui.get_item_rect_min()
+    high = imgui.get_item_rect_max()
     least, most = limits
     ends = sorted((value, min(max(0.0, least), most)))
     first, last = (low.x + (high.x - low.x) * (end - least) / (most - least) for end in ends)
@@ -173,7 +179,9 @@ class LabelledRows:
 
     def __init__(self, gui: Gui, share: float, hints: Mapping[str, str]) -> None:
         """share: of the panel, that labels take. hints: by label."""
-        self._gui, self._share, self._hints = gui, share, hints
+        self._gui = gui
+        self._share = share
+        self._hints = hints
 
     @property
     def second(self) -> float:

@@ -113,7 +113,8 @@ class Marking:
 
     def __init__(self, path: Path, files: FileDialogs) -> None:
         """Read a mesh; UserError where no head can be made of it, whatever is marked."""
-        self.path, self._files = path, files
+        self.path = path
+        self._files = files
         with _for_users():
             self.mesh = mesh = read_mesh(path)
         with _for_users(f"{path.name}: "):
@@ -244,7 +245,8 @@ class Marking:
 
     def _write(self, then: Task, path: Path) -> Message:
         save_text(path, landmarks_text(self.marks.places, self.marks.guessed))
-        self.file, self._saved = path, self.marks
+        self.file = path
+        self._saved = self.marks
         rest = "" if self.marks.is_complete else "; the others can be marked another time"
         return then() or f"{path}: {len(self.marks.places)} landmarks written{rest}"
 

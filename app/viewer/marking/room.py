@@ -31,9 +31,11 @@ from ..settings import Display, Settings
 from .marking import GROUP_OF, GROUPS, FloatArray, Marking
 
 FACING = 0.15  # cosine to the line of sight beyond which a mark is seen
-WIDTH, SHARE = 21.0, 0.4  # [em] of the panel, and at most of the window
+WIDTH = 21.0  # [em] of the panel
+SHARE = 0.4  # of the window that the panel has at most
 GUIDE = 11.0  # [em] of its height
-DARK, WHITE = (0.08, 0.08, 0.10), (1.0, 1.0, 1.0)
+DARK = (0.08, 0.08, 0.10)
+WHITE = (1.0, 1.0, 1.0)
 NAMES = {  # of the first points
     **{36: "Outer corner of the right eye", 45: "Outer corner of the left eye"},
     **{30: "Tip of the nose", 48: "Right corner of the mouth", 54: "Left corner of the mouth"},
@@ -63,7 +65,8 @@ class MeshScene(Scene):
     limits = Limits({})
 
     def __init__(self, marking: Marking) -> None:
-        self.rest_positions, self.faces = marking.positions, marking.faces
+        self.rest_positions = marking.positions
+        self.faces = marking.faces
         self._marking = marking
 
     @property
@@ -75,8 +78,11 @@ class MarkingView(View):
     """How the mesh is seen: as clay, by a camera that frames all of it."""
 
     def __init__(self, marking: Marking, settings: Settings, surface: render.WindowSurface) -> None:
-        self._marking, self._settings, self._surface = marking, settings, surface
-        self.area, self.pointed = (0.0, 0.0, 1.0, 1.0), {}
+        self._marking = marking
+        self._settings = settings
+        self._surface = surface
+        self.area = (0.0, 0.0, 1.0, 1.0)
+        self.pointed = {}
         self.fit_scene()
 
     def fit_scene(self) -> None:
@@ -116,8 +122,11 @@ class MarkingPanel:
         commands: Iterable[Command],
     ) -> None:
         """commands: that get buttons."""
-        self._gui, self._messages, self._marking = gui, messages, marking
-        self._menus, self._commands = menus, tuple(commands)
+        self._gui = gui
+        self._messages = messages
+        self._marking = marking
+        self._menus = menus
+        self._commands = tuple(commands)
         head = assets.load("head")
         self._guide = head.vertices[head.landmarks][:, :2] * (1.0, -1.0)
 
@@ -133,26 +142,32 @@ class MarkingPanel:
             self._draw_guide()
             self._draw_buttons()
             imgui.pop_text_wrap_pos()
-        marks, current = self._marking.marks, self._marking.current
-        pen, at = imgui.get_background_draw_list(), view.places()
+        marks = self._marking.marks
+        current = self._marking.current
+        pen = imgui.get_background_draw_list()
+        at = view.places()
         pen.push_clip_rect((left, top), (display.x, display.y))
         _draw_points(pen, at, current, joined=marks.is_complete)
         for number in marks.guessed & at.keys():
             pen.add_circle_filled(at[number], em(0.12), ink_of(WHITE))
         for number in at.keys() & {*GROUP_OF[current].numbers}:
-            x, y = at[number][0] + em(0.45), at[number][1] - em(0.95)
+            x = at[number][0] + em(0.45)
+            y = at[number][1] - em(0.95)
             pen.add_text((x + em(0.07), y + em(0.07)), ink_of(DARK), str(number))
             pen.add_text((x, y), ink_of(WHITE), str(number))
         pen.pop_clip_rect()
 
     def _draw_task(self) -> None:
-        marking, is_complete = self._marking, self._marking.marks.is_complete
+        marking = self._marking
+        is_complete = self._marking.marks.is_complete
         number = marking.current
         muted(self._gui, marking.path.name)
         if number in FIRST and not is_complete:
-            step, name = f"First points: {FIRST.index(number) + 1} of {len(FIRST)}", NAMES[number]
+            step = f"First points: {FIRST.index(number) + 1} of {len(FIRST)}"
+            name = NAMES[number]
         else:
-            step, name = GROUP_OF[number].title.capitalize(), f"Point {number}"
+            step = GROUP_OF[number].title.capitalize()
+            name = f"Point {number}"
         imgui.text_colored(colour(self._gui.theme.accent), step)
         imgui.text_wrapped(name)
         side = 0.0 if MIRRORED[number] == number else float(np.sign(self._guide[number, 0]))
@@ -163,12 +178,15 @@ class MarkingPanel:
 
     def _draw_guide(self) -> None:
         """Where the current point belongs among those of a face; its group, as large as it can."""
-        current, is_complete = self._marking.current, self._marking.marks.is_complete
-        low, size = imgui.get_cursor_screen_pos(), (imgui.get_content_region_avail().x, em(GUIDE))
+        current = self._marking.current
+        is_complete = self._marking.marks.is_complete
+        low = imgui.get_cursor_screen_pos()
+        size = (imgui.get_content_region_avail().x, em(GUIDE))
         imgui.dummy(size)
         numbers = list(GROUP_OF[current].numbers) if is_complete else range(len(self._guide))
         shown = self._guide[numbers]
-        middle, spread = 0.5 * (shown.max(axis=0) + shown.min(axis=0)), np.ptp(shown, axis=0)
+        middle = 0.5 * (shown.max(axis=0) + shown.min(axis=0))
+        spread = np.ptp(shown, axis=0)
         scale = 0.8 * float(np.min(np.array(size) / np.maximum(spread, 1e-9)))
         spots = np.array([low.x, low.y]) + 0.5 * np.array(size) + scale * (self._guide - middle)
         at = {n: (float(x), float(y)) for n, (x, y) in enumerate(spots) if n in numbers}
@@ -222,7 +240,9 @@ class MarkingMouse(CameraMouse):
         self, view: MarkingView, stage: Stage, marking: Marking, messages: Messages
     ) -> None:
         super().__init__(view, stage)
-        self._seen, self._marking, self._messages = view, marking, messages
+        self._seen = view
+        self._marking = marking
+        self._messages = messages
 
     def _hover(self, io: Any) -> None:
         if self._mark_under(io) is not None:
@@ -253,7 +273,8 @@ class MarkingMouse(CameraMouse):
 
     def _put(self, io: Any) -> bool:
         """Place the current mark under the mouse; whether there is skin on which it is seen."""
-        marking, before = self._marking, self._marking.marks
+        marking = self._marking
+        before = self._marking.marks
         point = self._skin_under(io)
         if point is None:
             return False
@@ -284,14 +305,19 @@ class Room:
         leave: Callable[[], None],
     ) -> None:
         """others: the window's own commands. leave: goes back to the face."""
-        self.marking, self._question = marking, app.question
-        self._open_files, self._leave = open_files, leave
-        gui, surface, messages = app.gui, app.surface, app.messages
+        self.marking = marking
+        self._question = app.question
+        self._open_files = open_files
+        self._leave = leave
+        gui = app.gui
+        surface = app.surface
+        messages = app.messages
         self.view = MarkingView(marking, app.settings, surface)
         stage = Stage(surface, MeshScene(marking), self.view.display, app.times)
         self.painter = Painter(stage, self.view, messages)
         self.mouse = MarkingMouse(self.view, stage, marking, messages)
-        own, shared = self._commands(), [each for each in others if each.label in SHARED]
+        own = self._commands()
+        shared = [each for each in others if each.label in SHARED]
         self.commands = (*own, *shared)
         menus = MenuBar(gui, messages, self.commands, lambda: app.session.work.unsaved)
         self.panel = MarkingPanel(gui, messages, marking, menus, own)
@@ -324,7 +350,8 @@ class Room:
     def _step(self, direction: int) -> None:
         """To another landmark; if its side is turned away, the camera goes there."""
         self.marking.go(direction)
-        number, camera = self.marking.current, self.view.camera
+        number = self.marking.current
+        camera = self.view.camera
         if number not in self.view.places():
             aside = 0.0 if MIRRORED[number] == number else ASIDE
             camera.yaw = float(np.copysign(aside, self.marking.seen([number])[0][0, 0]))
@@ -338,8 +365,10 @@ class Room:
 
     def _commands(self) -> tuple[Command, ...]:
         """All that a key or a menu does here alone."""
-        marking, view = self.marking, self.view
-        file, edit = partial(Command, "File"), partial(Command, "Edit")
+        marking = self.marking
+        view = self.view
+        file = partial(Command, "File")
+        edit = partial(Command, "Edit")
         complete = partial(Command, can_run=lambda: marking.marks.is_complete)
         landmarks = partial(complete, "Landmarks")
         history = marking.history

@@ -94,7 +94,8 @@ def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
     return " ".join((names, readable(names), *title_of(row.label, action), group, action))
 
 
-LABEL_SHARE, MOST_LABEL = 0.5, 15.0  # of a row, and [em]
+LABEL_SHARE = 0.5  # of a row
+MOST_LABEL = 15.0  # [em]
 NARROW = 15.0  # [em] of room below which bars stand under their names
 
 
@@ -102,14 +103,17 @@ class ControlRows:
     """Draws rows of controls, and carries out what is done to them."""
 
     def __init__(self, app: ApplicationContext) -> None:
-        self._gui, self._session = app.gui, app.session
-        self._settings, self._view = app.settings, app.view
+        self._gui = app.gui
+        self._session = app.session
+        self._settings = app.settings
+        self._view = app.view
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 
     def of(self, names: tuple[str, ...]) -> list[Row]:
         """The rows of these controls as they are now, or as they were when a drag began."""
         if names not in self._rows or not imgui.is_any_item_active():
-            current, linked = self._session.current, self._settings.is_linked
+            current = self._session.current
+            linked = self._settings.is_linked
             self._rows[names] = rows_of(names, current, linked=linked)
         return self._rows[names]
 
@@ -118,9 +122,12 @@ class ControlRows:
 
         number: of the key that shows it, 0 for none. is_marked: it was asked for.
         """
-        session, names, spacing = self._session, row.names, imgui.get_style().item_spacing
+        session = self._session
+        names = row.names
+        spacing = imgui.get_style().item_spacing
         current = session.current
-        left, room = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
+        left = imgui.get_cursor_pos_x()
+        room = imgui.get_content_region_avail().x
         is_narrow = room < em(NARROW)
         label_room = room if is_narrow else min(LABEL_SHARE * room, em(MOST_LABEL))
         is_lit = is_marked or any(current[name] for name in names)
@@ -133,7 +140,8 @@ class ControlRows:
         for index, name in enumerate(names):
             if index:
                 imgui.same_line()
-            limits, side = session.controls.limits[name], parted(name)[1].strip("_")[:1].upper()
+            limits = session.controls.limits[name]
+            side = parted(name)[1].strip("_")[:1].upper()
             is_of_both = not side and len(row.sides) > 0
             mark = "" if is_of_both or len(names) == 1 else side or "L"
             slid = slider(self._gui, name, current[name], limits, width=width, mark=mark)
@@ -149,14 +157,17 @@ class ControlRows:
 
     def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
         """Code and name; whether the mouse is on it."""
-        theme, session, padding = self._gui.theme, self._session, imgui.get_style().frame_padding
+        theme = self._gui.theme
+        session = self._session
+        padding = imgui.get_style().frame_padding
         room -= em(0.3)
         action = session.scene.actions.get(row.names[-1], "")
         code, name = title_of(row.label, action)
         is_whole_face = row.label in session.scene.expressions
         code, widest = (str(number or ""), "0 ") if is_whole_face else (code, code and "AU00  ")
         indent = imgui.calc_text_size(widest).x if name else 0.0
-        place, wrapped = imgui.get_cursor_screen_pos(), room - indent - padding.x
+        place = imgui.get_cursor_screen_pos()
+        wrapped = room - indent - padding.x
         height = imgui.calc_text_size(name or code, wrap_width=wrapped).y + 2.0 * padding.y
         if not is_whole_face:
             imgui.dummy((room, height))
@@ -184,7 +195,9 @@ class FacePanel:
     """Buttons, search, and groups of rows."""
 
     def __init__(self, app: ApplicationContext) -> None:
-        self._gui, self._session, self._settings = app.gui, app.session, app.settings
+        self._gui = app.gui
+        self._session = app.session
+        self._settings = app.settings
         self.rows = ControlRows(app)
         self.search = ""
         self._selected: str | None = None  # to be scrolled to
@@ -193,7 +206,8 @@ class FacePanel:
     def select(self, name: str) -> None:
         """Open the group of a control, scroll to it and mark it."""
         self.search = ""
-        self._selected, self._flash = name, FLASH
+        self._selected = name
+        self._flash = FLASH
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
@@ -207,7 +221,9 @@ class FacePanel:
         self._flash = max(self._flash - 1, 0)
 
     def _draw_buttons(self) -> None:
-        gui, session, settings = self._gui, self._session, self._settings
+        gui = self._gui
+        session = self._session
+        settings = self._settings
         if button(gui, "Neutral", meaning="relax all ([Neutral])"):
             session.neutral()
         stay_in_line(button_width("Mirror"))
@@ -225,7 +241,9 @@ class FacePanel:
 
     def _draw_group(self, title: str, names: Sequence[str]) -> int:
         """Draw a group under its heading; how many rows it has that are asked for."""
-        session, folds, current = self._session, self._settings.folds, self._session.current
+        session = self._session
+        folds = self._settings.folds
+        current = self._session.current
         rows = self.rows.of(tuple(names))
         active = sum(any(current[name] for name in row.names) for row in rows)
         if self.search:

@@ -35,7 +35,8 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
     is_clicked = imgui.is_window_hovered() and imgui.is_mouse_clicked(0)
     if is_clicked or (imgui.is_key_pressed(imgui.Key.escape) and not gui.has_popup):
         messages.text = ""
-    place, size = imgui.get_window_pos(), imgui.get_window_size()
+    place = imgui.get_window_pos()
+    size = imgui.get_window_size()
     imgui.end()
     gui.places["message"] = (place.x, place.y, place.x + size.x, place.y + size.y)
 
@@ -55,8 +56,12 @@ class Layout:
         timeline: Timeline,
     ) -> None:
         """tabs: what draws the panels at the left, by their titles, or label###title."""
-        self._app, self._gui, self._settings = app, app.gui, app.settings
-        self._menus, self._tabs, self._timeline = menus, tabs, timeline
+        self._app = app
+        self._gui = app.gui
+        self._settings = app.settings
+        self._menus = menus
+        self._tabs = tabs
+        self._timeline = timeline
 
     def draw(self, view: View) -> None:
         """Draw everything, and give the view its place."""

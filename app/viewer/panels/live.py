@@ -33,13 +33,17 @@ class LivePanel:
 
     def __init__(self, app: ApplicationContext, commands: Mapping[str, Command]) -> None:
         """commands: by their labels."""
-        self._gui, self._messages, self._live = app.gui, app.messages, app.live
+        self._gui = app.gui
+        self._messages = app.messages
+        self._live = app.live
         self._commands = commands
         self._rows = LabelledRows(app.gui, LABEL_SHARE, HINTS)
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""
-        gui, live, messages = self._gui, self._live, self._messages
+        gui = self._gui
+        live = self._live
+        messages = self._messages
         imgui.begin_child("live")
         self._draw_listening()
         label = "Stop listening" if live.is_on else "Listen"
@@ -64,8 +68,10 @@ class LivePanel:
 
     def _draw_listening(self) -> None:
         """Who sends: protocol, computers, port."""
-        live, rows = self._live, self._rows
-        wanted, by_title = live.wanted, {each.title: kind for kind, each in PROTOCOLS.items()}
+        live = self._live
+        rows = self._rows
+        wanted = live.wanted
+        by_title = {each.title: kind for kind, each in PROTOCOLS.items()}
         imgui.begin_disabled(live.is_on)
         chosen = rows.choose("Protocol", wanted.protocol.title, by_title)
         if chosen is not None:

@@ -69,9 +69,13 @@ class MechanismPanel:
     """Everything about how the mesh becomes a picture."""
 
     def __init__(self, app: ApplicationContext, file_drop: FileDrop) -> None:
-        self._gui, self._settings = app.gui, app.settings
-        self._messages, self._file_drop = app.messages, file_drop
-        self._stage, self._view, self._times = app.stage, app.view, app.times
+        self._gui = app.gui
+        self._settings = app.settings
+        self._messages = app.messages
+        self._file_drop = file_drop
+        self._stage = app.stage
+        self._view = app.view
+        self._times = app.times
         self._rows = LabelledRows(app.gui, LABEL_SHARE, HINTS)
 
     @property
@@ -103,7 +107,8 @@ class MechanismPanel:
         imgui.end_child()
 
     def _draw_refinement(self) -> None:
-        display, stage = self._display, self._stage
+        display = self._display
+        stage = self._stage
         self._switch("Refine")
         look = display.preset_as_changed(stage.scene)
         self._choose("Look", look, tuple(PRESETS), display.choose_preset)
@@ -131,11 +136,13 @@ class MechanismPanel:
 
     def _draw_option(self, name: str, default: Any) -> None:
         """A slider, a checkbox or a list for an option, by what its default is."""
-        scene, refiner = self._stage.scene, self._display.refiner_on(self._stage.scene)
+        scene = self._stage.scene
+        refiner = self._display.refiner_on(self._stage.scene)
         stored = self._display.options.setdefault(refiner, {})
         told = PRESETS[self._display.look][scene.name].told(refiner)
         value = stored.get(name, told.get(name, default))
-        label, put = name.replace("_", " "), partial(stored.__setitem__, name)
+        label = name.replace("_", " ")
+        put = partial(stored.__setitem__, name)
         if isinstance(default, bool):
             self._check(label, bool(value), partial(put, not value))
         elif isinstance(default, int):
@@ -194,7 +201,8 @@ class MechanismPanel:
             self._check(name.capitalize(), is_on, partial(display.toggle_overlay, name))
         if display.anatomy.structures:
             now = display.skin_opacity
-            label, name = "Skin opacity", "skin_opacity"
+            label = "Skin opacity"
+            name = "skin_opacity"
             display.skin_opacity = self._rows.slide(label, name, now, (0.0, 1.0), OPACITY)
             self._pick("Dissect", tuple(SIDES))
 

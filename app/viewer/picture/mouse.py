@@ -32,7 +32,8 @@ class CameraMouse:
     """Turns and moves a camera by the mouse, from press to release; the left button may do more."""
 
     def __init__(self, view: View, stage: Stage) -> None:
-        self._view, self._stage = view, stage
+        self._view = view
+        self._stage = stage
         self.forget()
 
     def forget(self) -> None:
@@ -77,7 +78,8 @@ class CameraMouse:
             self._doing = self._take(io)
 
     def _drag(self, io: Any) -> None:
-        camera, delta = self._view.camera, io.mouse_delta
+        camera = self._view.camera
+        delta = io.mouse_delta
         if self._doing == "orbit":
             degrees = DEGREES_PER_EM / em()
             camera.orbit(-delta.x * degrees, delta.y * degrees)
@@ -108,7 +110,9 @@ class CameraMouse:
 
     def _zoom(self, io: Any) -> None:
         """What the mouse is on stays under it: skin, or beside it what is as far as the target."""
-        camera, point, before = self._view.camera, self._skin_under(io), self._view.camera.distance
+        camera = self._view.camera
+        point = self._skin_under(io)
+        before = self._view.camera.distance
         if point is None:
             point = self._ray(io).at_depth_of(camera.target, camera.axes()[2])
         room = float(np.linalg.norm(camera.eye - point)) / (CLOSEST * camera.scene_radius)
@@ -126,7 +130,9 @@ class Mouse(CameraMouse):
     ) -> None:
         """grab: makes a finger. select_muscle: called with the name of one that was clicked."""
         super().__init__(view, stage)
-        self._messages, self._grab, self._select_muscle = messages, grab, select_muscle
+        self._messages = messages
+        self._grab = grab
+        self._select_muscle = select_muscle
 
     def forget(self) -> None:
         super().forget()

@@ -84,7 +84,9 @@ class SkinDrag:
         self, session: Session, settings: Settings, point: Array, sight: Array, poses: bool
     ) -> None:
         """sight: direction in which the point is seen. poses: whether muscles shall hold it."""
-        self._session, self._sight, self.point = session, sight, point
+        self._session = session
+        self._sight = sight
+        self.point = point
         self._simulation: sim.Simulation = session.scene.simulation  # type: ignore[attr-defined]
         positions = self._simulation.positions
         distance = np.linalg.norm(positions - point, axis=1)
@@ -94,7 +96,9 @@ class SkinDrag:
         self._from = positions[self._vertices].copy()
         near = np.minimum(distance[self._vertices] / FINGER, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
-        self.offset, self._solved, self._due = np.zeros(3), np.zeros(3), 0.0
+        self.offset = np.zeros(3)
+        self._solved = np.zeros(3)
+        self._due = 0.0
         poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
         is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
@@ -143,7 +147,8 @@ class SkinDrag:
             finger = self._vertices, self._firmness
             self._pull = sim.Pull(self._simulation, *finger, self._candidates, self._sight)
             self._at_rest = self._pull.targets
-        pull, self._solved = self._pull, self.offset
+        pull = self._pull
+        self._solved = self.offset
         pull.targets = self._at_rest + self.offset
         pull.solve()
         solved = {name: value for names, value in pull.changes.items() for name in names}
@@ -163,10 +168,12 @@ def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple
 
     Beside the middle (`is_aside`) linked sides move alike, so nothing goes to one of them.
     """
-    found, values = list[tuple[str, ...]](), session.values
+    found = list[tuple[str, ...]]()
+    values = session.values
     lowest = session.scene.simulation.controls.lowest  # type: ignore[attr-defined]
     for name in lowest:
-        twin, is_whole = twin_of(name), f"{name}_left" in lowest
+        twin = twin_of(name)
+        is_whole = f"{name}_left" in lowest
         if is_whole or name.startswith(NOT_PULLED):
             continue
         if linked and is_aside and (name in TURNED or parted(name)[0] in OPPOSITE):

@@ -45,7 +45,9 @@ class View:
     pointed: Mapping[str, float]
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
-        self._session, self._settings, self._surface = session, settings, surface
+        self._session = session
+        self._settings = settings
+        self._surface = surface
         self.area = (0.0, 0.0, 1.0, 1.0)
         self.pointed = {}
         self.fit_scene()
@@ -79,9 +81,11 @@ class View:
         """A part of the window, as one of the framebuffer."""
         display = imgui.get_io().display_size
         width, height = self._surface.size
-        across, along = width / max(display.x, 1.0), height / max(display.y, 1.0)
+        across = width / max(display.x, 1.0)
+        along = height / max(display.y, 1.0)
         left, top, wide, high = area
-        x, y = round(left * across), round((display.y - top - high) * along)
+        x = round(left * across)
+        y = round((display.y - top - high) * along)
         return max(x, 0), max(y, 0), max(round(wide * across), 1), max(round(high * along), 1)
 
     @property
@@ -103,7 +107,8 @@ class View:
             return []
         left, bottom, width, height = self.viewport
         unit = max(round(em(0.13) * width / max(self.area[2], 1.0)), 2)
-        x, y = left + round(self.display.share * width), bottom + height // 2
+        x = left + round(self.display.share * width)
+        y = bottom + height // 2
         line = (x - unit // 2, bottom, unit, height)
         grip = (x - unit // 2 - unit, y - 10 * unit, 3 * unit, 20 * unit)
         rules = [(line, WHITE), (grip, THEMES[self._settings.theme].accent)]
@@ -113,7 +118,8 @@ class View:
 FULL = render.Detail(samples=4, scale=1.0)
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
 POINTED_AT = np.array([1.0, 0.66, 0.10])  # sRGB
-MOST_SEEN, LEAST_SEEN = 0.9, 0.2  # opacity of the muscle that does most; share that is seen
+MOST_SEEN = 0.9  # opacity of the muscle that does most
+LEAST_SEEN = 0.2  # of the share of the muscle that does most, from which on others are seen
 
 
 class Stage:
@@ -168,7 +174,8 @@ class Stage:
 
     def draw(self, view: View, *, is_photo: bool = False) -> None:
         """Draw the scene as finely as the surface's `detail` says; a photo without the mouse's."""
-        display, timed = view.display, self._times.timed
+        display = view.display
+        timed = self._times.timed
         viewports = self.viewports(display, view.viewport)
         style = style_of(display, view.background)
         with timed("draw"):
@@ -216,10 +223,12 @@ def pointed_lines(scene: Scene, shares: Mapping[str, float]) -> list[render.Line
         for side in (name, f"{name}_left", f"{name}_right"):
             if side in fibres:
                 seen[side] = max(share, seen.get(side, 0.0))
-    most, drawn = max(seen.values(), default=1.0), []
+    most = max(seen.values(), default=1.0)
+    drawn = []
     for name, share in seen.items():
         if share >= LEAST_SEEN * most:
-            opacity, colours = MOST_SEEN * share / most, np.tile(POINTED_AT, (len(fibres[name]), 1))
+            opacity = MOST_SEEN * share / most
+            colours = np.tile(POINTED_AT, (len(fibres[name]), 1))
             drawn.append(render.Lines(fibres[name], colours, 2.5, opacity, opacity))
     return drawn
 
@@ -292,7 +301,9 @@ class Painter:
     """Keeps the picture of the scene up to date, as finely as the machine can."""
 
     def __init__(self, stage: Stage, view: View, messages: Messages) -> None:
-        self._stage, self._view, self._messages = stage, view, messages
+        self._stage = stage
+        self._view = view
+        self._messages = messages
         self.level_of_detail = LevelOfDetail(is_software=stage.surface.is_software)
         self._calm_for = 0.0  # [s] that the picture has not changed
         self.forget()
@@ -331,7 +342,8 @@ class Painter:
 
     def _draw(self, detail: render.Detail, state: object) -> None:
         self._messages.attempt(lambda: self._stage.bind(self._view.display))
-        self._stage.surface.detail, self._stage.surface.labels = detail, ()
+        self._stage.surface.detail = detail
+        self._stage.surface.labels = ()
         try:
             self._stage.draw(self._view)
         except PlugInError as error:  # work goes on, and the mesh is drawn as it is

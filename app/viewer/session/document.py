@@ -64,7 +64,8 @@ class LiveOverride:
             self._names, self._known = names, tuple(n for n in names if n in self._limits)
             self._places = self._limits.places(self._known)
         wanted = np.array([controls[name] for name in self._known], np.float64)
-        self._wanted, self._share = self._limits.cut_off(wanted, self._places), share
+        self._wanted = self._limits.cut_off(wanted, self._places)
+        self._share = share
 
     @property
     def is_on(self) -> bool:
@@ -124,7 +125,9 @@ class ScriptFile:
     def save(self, script: Script, path: Path) -> None:
         """Write the script, which from now on is kept there; UserError where it cannot be."""
         save_script(path, script)
-        self.path, self._saved, self._bytes = path, script, _bytes_of(path)
+        self.path = path
+        self._saved = script
+        self._bytes = _bytes_of(path)
 
 
 def _bytes_of(path: Path | None) -> bytes | None:

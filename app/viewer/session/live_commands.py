@@ -37,7 +37,9 @@ class LiveCommands:
 
         wake: makes a window that waits for events go on; it is called from another thread.
         """
-        self._session, self._show_panel, self._wake = session, show_panel, wake
+        self._session = session
+        self._show_panel = show_panel
+        self._wake = wake
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
         self.own_address = ""
@@ -56,7 +58,9 @@ class LiveCommands:
         check_scene(self._session.scene.name)
         self.stop()
         face = LiveFace(wanted, wake=self._wake)
-        self.face, self.wanted, self.own_address = face, wanted, own_address()
+        self.face = face
+        self.wanted = wanted
+        self.own_address = own_address()
         self._show_panel()
         return f"{wanted.protocol.title}: listening on {wanted.address}, port {face.port}"
 
@@ -91,7 +95,8 @@ class LiveCommands:
         was_calibrating = face.is_calibrating
         face.advance(min(seconds, LONGEST_STEP))
         told = face.state, face.received > 0
-        self.has_changed, self._told = told != self._told, told
+        self.has_changed = told != self._told
+        self._told = told
         self._session.live_override.take(face.controls(), face.presence)
         if was_calibrating and not face.is_calibrating:
             return "This face is neutral now"

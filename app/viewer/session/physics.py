@@ -92,7 +92,8 @@ class Physics:
     """Lets time pass in a session."""
 
     def __init__(self, session: Session, times: FrameTimes) -> None:
-        self._session, self._times = session, times
+        self._session = session
+        self._times = times
         self._clock = Clock()
         self.begin_anew()
 
@@ -129,7 +130,8 @@ class Physics:
         moved. UserError where the simulation gave up.
         """
         steps = self._clock.steps(seconds, EARLIEST if is_urgent else EARLY)
-        session, scene = self._session, self._session.scene
+        session = self._session
+        scene = self._session.scene
         wanted = session.current
         is_driven = session.is_playing or session.is_recording or is_skin_dragged
         is_driven = is_driven or wanted != self._posed
@@ -145,11 +147,13 @@ class Physics:
         self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
         self.has_moved = not self.is_left_alone or self._is_to_be_seen()
         if self.has_moved:
-            self._seen, self._seen_bones = scene.positions.copy(), scene.bone_transforms()
+            self._seen = scene.positions.copy()
+            self._seen_bones = scene.bone_transforms()
 
     def _step(self, steps: int, life: Life | None) -> float:
         """Take steps; how far the farthest vertex went in the last of them [mm]."""
-        session, scene = self._session, self._session.scene
+        session = self._session
+        scene = self._session.scene
         before = scene.positions
         self._times.next_frame()
         with self._times.timed("simulation"):
@@ -189,7 +193,9 @@ class IdleLife:
         eye: Callable[[], npt.NDArray[np.float64]],
     ) -> None:
         """is_wanted: whether the user wants it. eye: where the viewer's is, shape (3,) [mm]."""
-        self._session, self._is_wanted, self._eye = session, is_wanted, eye
+        self._session = session
+        self._is_wanted = is_wanted
+        self._eye = eye
         self._idle = Idle(session.scene)
         self._time = 0.0  # of its life [s]
         self._without_input = 0.0  # [s]
@@ -223,6 +229,7 @@ class IdleLife:
             self._idle = Idle(self._session.scene)
         self._time += seconds
         self._without_input += seconds
-        viewer, session = self._eye(), self._session
+        viewer = self._eye()
+        session = self._session
         moved = session.controls.moved_by(session.values)
         return self._idle.beneath(moved, viewer, self._time, is_still=is_held)

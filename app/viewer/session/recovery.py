@@ -36,7 +36,8 @@ class Recovery:
     def __init__(
         self, folder: Path | None, session: Session, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._clock, self._session = clock, session
+        self._clock = clock
+        self._session = session
         self._path = folder and folder / f"unsaved-{session.scene.name}.toml"
         self._lock: IO[Any] | None = None
         self._safe: object = None  # the state that the file has
@@ -61,7 +62,8 @@ class Recovery:
         if not self._session.work.unsaved:
             if self._safe is not None:
                 self.discard()
-            self._safe, self._due = None, math.inf
+            self._safe = None
+            self._due = math.inf
         elif self._due < math.inf:
             if self.due_in() <= 0.0:
                 self.save()
@@ -86,7 +88,8 @@ class Recovery:
             if not is_told:
                 raise UserError(f"unsaved work is not kept safe: {error}") from None
         finally:  # if it failed, it is tried again after the next change
-            self._safe, self._due = state, math.inf
+            self._safe = state
+            self._due = math.inf
             self._writing_took = time.perf_counter() - begin
 
     def discard(self) -> None:

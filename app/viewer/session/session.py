@@ -27,11 +27,13 @@ class Session:
 
     def __init__(self, scene: Scene, script: Script) -> None:
         script.check(scene.limits)
-        self.scene, self.controls = scene, SceneControls(scene)
+        self.scene = scene
+        self.controls = SceneControls(scene)
         self.values = script.values(0.0, scene.limits)
         self.script = script
         self.file = ScriptFile.of(script)
-        self.time, self.speed = 0.0, 1.0
+        self.time = 0.0
+        self.speed = 1.0
         self.is_playing = self.is_looping = self.is_keying = False  # keying: hands set keys at once
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.is_following = any(self.values.numbers)  # the script; a neutral face need not yet
@@ -46,7 +48,8 @@ class Session:
         if scene.name != self.scene.name or not scene.limits.keys() >= self.controls.limits.keys():
             raise UserError(f"this window shows a {self.scene.name}, which has other controls")
         self.script.check(scene.limits)
-        self.scene, self.controls = scene, SceneControls(scene)
+        self.scene = scene
+        self.controls = SceneControls(scene)
         self.values = scene.limits.pose(self.values)
         self.live_override = LiveOverride(scene.limits)
 
@@ -86,7 +89,8 @@ class Session:
             self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
             self.is_playing = self.is_following = False
-            self.pose_is_unsaved, self._is_touched = is_unsaved, True
+            self.pose_is_unsaved = is_unsaved
+            self._is_touched = True
         self.values = pose
         self.note()
 
@@ -135,12 +139,14 @@ class Session:
         self._refuse_while_recording()
         document = self.history.go(place)
         self.is_playing = self._is_touched = False
-        self.script, self.file = document.script, document.file
+        self.script = document.script
+        self.file = document.file
         if document.values is None:
             self._go_to(self.time)
         else:  # a pose is seen where it was made
             self.time = min(document.time, self.script.duration)
-            self.values, self.is_following = self.scene.limits.pose(document.values), False
+            self.values = self.scene.limits.pose(document.values)
+            self.is_following = False
         self.pose_is_unsaved = bool(document.values)
 
     # Time
@@ -245,7 +251,8 @@ class Session:
 
     def _follow_script(self) -> None:
         self.is_following = True
-        held, limits = self.recorder.held if self.recorder is not None else {}, self.scene.limits
+        held = self.recorder.held if self.recorder is not None else {}
+        limits = self.scene.limits
         self.values = limits.pose(held, self.script.values(self.time, limits))
 
     @property
@@ -262,18 +269,22 @@ class Session:
             held = {name: self.values[name] for name in self.differing}
             start = self.time % self.script.duration if self.is_looping else self.time
             self.recorder = Recorder(self.script, start, held)
-            self.time, self.pose_is_unsaved = self.recorder.start, False
+            self.time = self.recorder.start
+            self.pose_is_unsaved = False
             if not self.is_playing:
                 self.toggle_playing()
             return f"Recording from {self.time:.2f} s: what you move replaces the script there"
         recorder, self.recorder = self.recorder, None
-        recording, self.is_playing = recorder.script(), False
+        recording = recorder.script()
+        self.is_playing = False
         if recording is not None:
             self.script = recording
             self._go_to(rounded(self.time))  # which is the end, where the recording is the last
-        self.values, self.is_following = self.scene.limits.pose(recorder.missed, self.values), False
+        self.values = self.scene.limits.pose(recorder.missed, self.values)
+        self.is_following = False
         missed = self.differing  # a pose by hand
-        self.is_following, self.pose_is_unsaved = not missed, bool(missed)
+        self.is_following = not missed
+        self.pose_is_unsaved = bool(missed)
         what = counted(len(recorder.samples), "control")
         self.note()
         if recording is None:
@@ -288,8 +299,11 @@ class Session:
 
     def replace_script(self, script: Script, file: ScriptFile) -> None:
         """Another script in place of this one; a recording ends."""
-        self.recorder, self._is_touched = None, False
-        self.script, self.file, self.is_playing = script, file, False
+        self.recorder = None
+        self._is_touched = False
+        self.script = script
+        self.file = file
+        self.is_playing = False
         self._go_to(0.0)
         self.note()
 
@@ -310,7 +324,8 @@ class Work:
 
     def begin_script(self) -> None:
         """An empty script: the neutral face, to which keys can be added."""
-        scene, camera = self._session.script.scene, self._session.script.camera
+        scene = self._session.script.scene
+        camera = self._session.script.camera
         script = Script("", NEW_SECONDS, "a new script", scene, camera, poses=(Pose(0.0),))
         self._session.replace_script(script, ScriptFile(None, script))
 

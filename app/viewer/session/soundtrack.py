@@ -30,7 +30,8 @@ class Soundtrack:
         self._session = session
         self._file: Path | None = None
         self._player: Player | None = None
-        self._time, self._was_playing = session.time, False  # in the last frame
+        self._time = session.time  # in the last frame
+        self._was_playing = False  # in the last frame
         self.sound = None  # what is in the script's file; None as long as it has none
 
     def refresh(self) -> None:
@@ -39,7 +40,8 @@ class Soundtrack:
         if file == self._file:
             return
         self.close()
-        self._file, self._time = file, self._session.time
+        self._file = file
+        self._time = self._session.time
         if file is None:
             return
         try:
@@ -58,7 +60,8 @@ class Soundtrack:
 
     def elapsed(self, seconds: float) -> float:
         """How much time shall pass for the picture [s], where `seconds` went by."""
-        session, player = self._session, self._player
+        session = self._session
+        player = self._player
         if player is None or self.sound is None:
             return seconds
         was_playing, self._was_playing = self._was_playing, session.is_playing

@@ -28,8 +28,10 @@ from .key_marks import Waveform
 from .keys import KeySelection, Track, all_tracks
 from .time_axis import TimeAxis
 
-ROW, RULER = 1.35, 1.45  # [em] of a row's and the ruler's height
-GUTTER, GUTTER_SHARE = 9.5, 0.2  # [em] for the rows' names, and of the width at most
+ROW = 1.35  # [em] of a row's height
+RULER = 1.45  # [em] of the ruler's height
+GUTTER = 9.5  # [em] for the rows' names
+GUTTER_SHARE = 0.2  # of the width, at most
 MOST_ROWS = 6  # that are seen at once; the rest is scrolled to
 REACH = 0.5  # [em] beside a key that still mean it
 CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
@@ -62,9 +64,14 @@ class DopeSheet:
         menus: MenuBar,
         waveform: Waveform,
     ) -> None:
-        self._gui, self._session, self.settings = app.gui, app.session, app.settings
-        self._messages, self._menus = app.messages, menus
-        self.selection, self.axis, self._waveform = selection, axis, waveform
+        self._gui = app.gui
+        self._session = app.session
+        self.settings = app.settings
+        self._messages = app.messages
+        self._menus = menus
+        self.selection = selection
+        self.axis = axis
+        self._waveform = waveform
         self.graph = Graph(app.gui, selection, axis)
         self._drag: Drag | None = None
         self._grabbed = NOWHERE  # the keys at one time that the mouse was pressed on
@@ -103,11 +110,15 @@ class DopeSheet:
     def draw(self, height: float) -> None:
         """Draw everything, inside the timeline's window, so high [window units]."""
         self._refresh()
-        session, axis, io = self._session, self.axis, imgui.get_io()
-        place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        session = self._session
+        axis = self.axis
+        io = imgui.get_io()
+        place = imgui.get_cursor_screen_pos()
+        room = imgui.get_content_region_avail()
         self._bottom = place.y + height
         self._gutter = min(em(GUTTER), GUTTER_SHARE * room.x)
-        inset, values = em(0.7), em(VALUES) if self.settings.shows_curves else 0.0
+        inset = em(0.7)
+        values = em(VALUES) if self.settings.shows_curves else 0.0
         left = self._gutter + inset + values
         axis.place(place.x + left, room.x - left - inset - em(0.6))
         duration = session.script.duration
@@ -144,13 +155,15 @@ class DopeSheet:
         least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(ROW))
         has_keys = not self.settings.shows_curves
         imgui.begin_child("keys", (0.0 if has_keys else self._gutter, least), 0, flags)
-        place, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        place = imgui.get_cursor_screen_pos()
+        room = imgui.get_content_region_avail()
         heights = [em(ROW) * (track.height if has_keys else 1.0) for track in self.rows]
         self._tops = list(itertools.accumulate(heights, initial=place.y))
         imgui.invisible_button("##keys", (room.x, self._tops[-1] - place.y))
         self._gui.remember("keys")
         is_hovered = imgui.is_item_hovered()
-        theme, duration = self._gui.theme, self._session.script.duration
+        theme = self._gui.theme
+        duration = self._session.script.duration
         painter = key_marks.TrackPainter(theme, self.axis, self.selection.places, duration)
         for track, (top, bottom) in zip(self.rows, itertools.pairwise(self._tops), strict=True):
             if imgui.is_rect_visible((place.x, top), (place.x + room.x, bottom)):
@@ -164,12 +177,15 @@ class DopeSheet:
         imgui.end_child()
 
     def _draw_name(self, track: Track, corner: key_marks.Point, room: float) -> None:
-        arrow, indent = em(0.9) if track.is_sum else 0.0, em(0.5) * len(track.parents)
-        x, y = corner[0] + indent, corner[1] + 0.5 * (em(ROW) - em())
+        arrow = em(0.9) if track.is_sum else 0.0
+        indent = em(0.5) * len(track.parents)
+        x = corner[0] + indent
+        y = corner[1] + 0.5 * (em(ROW) - em())
         self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
         room = min(room, self._gutter) - indent - arrow - em(0.3)
         label = shortened(track.label, room, keeps_end=not track.is_sum)  # which tells the side
-        is_curve, muted = self.settings.shows_curves and track.control, self._gui.theme.muted
+        is_curve = self.settings.shows_curves and track.control
+        muted = self._gui.theme.muted
         ink = self.graph.colour(track) if is_curve else ink_of(muted)
         key_marks.draw_label(label, (x, y), ink, arrow, is_open=self._is_open(track.name))
 
@@ -180,7 +196,8 @@ class DopeSheet:
 
     def _draw_graph(self, io: Any, left: float) -> None:
         imgui.same_line(0.0, 0.0)
-        top, width = imgui.get_cursor_screen_pos().y, imgui.get_content_region_avail().x
+        top = imgui.get_cursor_screen_pos().y
+        width = imgui.get_content_region_avail().x
         edges = top, top + max(self._bottom - top, em(ROW))
         imgui.invisible_button("##graph", (max(width, 1.0), edges[1] - top))
         if imgui.is_item_hovered() and self._drag is None:
@@ -193,8 +210,13 @@ class DopeSheet:
 
     def _hover(self, io: Any, left: float) -> None:
         """The mouse is over rows or curves and holds nothing yet."""
-        selection, axis, (x, y) = self.selection, self.axis, io.mouse_pos
-        row, hit, under, graph = self._row_at(y), None, NOWHERE, self.graph
+        selection = self.selection
+        axis = self.axis
+        (x, y) = io.mouse_pos
+        row = self._row_at(y)
+        hit = None
+        under = NOWHERE
+        graph = self.graph
         track = self.rows[row] if 0 <= row < len(self.rows) else None
         if x < left + self._gutter:
             if track is not None:
@@ -272,7 +294,9 @@ class DopeSheet:
 
     def _follow(self, io: Any, drag: Drag) -> None:
         """Carry out what the mouse does until it lets go; Escape takes back what it did."""
-        (x, y), axis, session = io.mouse_pos, self.axis, self._session
+        (x, y) = io.mouse_pos
+        axis = self.axis
+        session = self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
         drag.has_moved = drag.has_moved or distance > CLICK
         act: dict[str, Task] = {
@@ -300,7 +324,8 @@ class DopeSheet:
         return time if io.key_ctrl else keyframes.on_frame(time)
 
     def _move_keys(self, io: Any, drag: Drag) -> None:
-        right, down = io.mouse_pos.x - drag.began[0], io.mouse_pos.y - drag.began[1]
+        right = io.mouse_pos.x - drag.began[0]
+        down = io.mouse_pos.y - drag.began[1]
         if not io.key_ctrl:  # either way begins with a step
             right, down = (0.0 if abs(way) < CLICK else way for way in (right, down))
         time = self._grabbed.first
@@ -308,12 +333,14 @@ class DopeSheet:
         target = min(max(target, 0.0), self.axis.end)  # further right it would not be seen
         offset = self._snapped(target, io) - time if right else 0.0
         script, places = keyframes.moved(drag.script, drag.selected, offset)
-        line, held = f"{time + offset:.2f} s", self.graph.held
+        line = f"{time + offset:.2f} s"
+        held = self.graph.held
         if held is not None:
             amount = down / self.graph.slope
             if amount and not io.key_ctrl:
                 amount = round(held.value + amount, 2) - held.value
-            limits, posed = self._session.controls.limits, {held.curve.control}
+            limits = self._session.controls.limits
+            posed = {held.curve.control}
             script = keyframes.raised(script, places, amount, limits, posed)
             line += f", {held.curve.label} {held.value + amount:.2f}"
         self._session.edit(script, is_done=False)
@@ -328,7 +355,8 @@ class DopeSheet:
         imgui.set_tooltip(f"slopes {easing}")
 
     def _select_box(self, io: Any, drag: Drag) -> None:
-        corner, inside = (io.mouse_pos.x, io.mouse_pos.y), NOWHERE
+        corner = (io.mouse_pos.x, io.mouse_pos.y)
+        inside = NOWHERE
         if self.settings.shows_curves:
             inside = self.graph.inside(drag.began, corner)
         else:
@@ -340,7 +368,8 @@ class DopeSheet:
 
     def _release(self, io: Any, drag: Drag) -> Message:
         """The mouse has let go; what there is to say about it."""
-        session, line = self._session, None
+        session = self._session
+        line = None
         if drag.doing == "keys" and drag.has_moved:
             lost = len(keyframes.places_of(drag.script)) - len(keyframes.places_of(session.script))
             line = f"{counted(lost, 'key')} replaced; [Undo] brings back" if lost > 0 else None

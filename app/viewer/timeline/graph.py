@@ -53,11 +53,15 @@ class Graph:
     """Draws curves between a time axis and one of values, and knows what is where."""
 
     def __init__(self, gui: Gui, selection: KeySelection, axis: TimeAxis) -> None:
-        self._gui, self._selection, self._axis = gui, selection, axis
+        self._gui = gui
+        self._selection = selection
+        self._axis = axis
         self.curves: list[Track] = []
         self.held: Hit | None = None  # what the mouse was pressed on
         self.handle: Handle | None = None  # that it was pressed on
-        self._low, self._high, self._bottom = 0.0, 1.0, 0.0  # values, and where the low one is
+        self._low = 0.0  # value
+        self._high = 1.0  # value
+        self._bottom = 0.0  # where the low value is
         self.slope = -1.0  # how far down 1 is from 0 [window units]
 
     def take(self, rows: Iterable[Track]) -> None:
@@ -81,12 +85,16 @@ class Graph:
 
     def at(self, x: float, y: float) -> Hit | None:
         """The key there, or else the curve; of keys that cannot be told apart, selected ones."""
-        axis, reach, hits = self._axis, em(REACH), list[tuple[float, Hit]]()
+        axis = self._axis
+        reach = em(REACH)
+        hits = list[tuple[float, Hit]]()
         for curve in self.curves[::-1]:
-            channel, value = curve.channel, curve.channel.value(axis.time(x))
+            channel = curve.channel
+            value = curve.channel.value(axis.time(x))
             hits.append((reach + abs(self.y(value) - y), Hit(curve, value)))
             ends = np.searchsorted(channel.times, (axis.time(x - reach), axis.time(x + reach)))
-            times, values = channel.times[slice(*ends)], channel.values[slice(*ends)]
+            times = channel.times[slice(*ends)]
+            values = channel.values[slice(*ends)]
             away = np.hypot(axis.x(times) - x, self.y(values) - y)
             if len(away) and away.min() < reach:
                 number = int(away.argmin())
@@ -111,11 +119,13 @@ class Graph:
                 times, values = (
                     part[number - 1 : number + 1] for part in (channel.times, channel.values)
                 )
-                (x, right), (y, there) = axis.x(times).tolist(), self.y(values).tolist()
+                (x, right) = axis.x(times).tolist()
+                (y, there) = self.y(values).tolist()
                 if slopes is None or right - x < 3.0 * em(REACH) or abs(there - y) < em(REACH):
                     continue  # held, or no room
                 key = Places.of(KeyPlace(curve.track, float(times[1])))
-                across, rise = (right - x) / 3.0, (there - y) / 3.0
+                across = (right - x) / 3.0
+                rise = (there - y) / 3.0
                 first = x + across, y + slopes[0] * rise
                 last = right - across, there - slopes[1] * rise
                 low, high = values.tolist()
@@ -130,7 +140,8 @@ class Graph:
 
     def bent(self, handle: Handle, y: float) -> str:
         """The easing that the way has if its handle is dragged to a height."""
-        slopes, (own, other) = list(handle.slopes), map(self.y, handle.ends)
+        slopes = list(handle.slopes)
+        (own, other) = map(self.y, handle.ends)
         slopes[handle.number] = 3.0 * (y - own) / (other - own)
         return free_easing(*slopes)
 
@@ -146,7 +157,8 @@ class Graph:
 
     def _is_dense(self, curve: Track) -> bool:
         """Whether its visible keys cannot be told apart."""
-        axis, times = self._axis, curve.channel.times
+        axis = self._axis
+        times = curve.channel.times
         count = np.diff(np.searchsorted(times, (axis.start, axis.end)))[0]
         return bool(1.5 * em(KEY) * count > axis.x(axis.end) - axis.x(axis.start))
 
@@ -157,10 +169,12 @@ class Graph:
 
         duration: of the script [s]. is_held: by the mouse, so that values stay where they are.
         """
-        axis, lines = self._axis, imgui.get_window_draw_list()
+        axis = self._axis
+        lines = imgui.get_window_draw_list()
         if not is_held:
             self._fit(edges)
-        left, right = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
+        left = axis.x(axis.start) - em(0.5)
+        right = axis.x(axis.end) + em(0.5)
         self._draw_ground((left, edges[0]), (right, edges[1]), axis.x(duration))
         self._draw_values(left, right)
         lines.push_clip_rect((left, edges[0]), (right, edges[1]), True)
@@ -177,54 +191,66 @@ class Graph:
     def _fit(self, edges: Point) -> None:
         """Let the axis of values reach from edge to edge: all of them, unless it was zoomed."""
         ends = [0.0, 1.0, *(end for curve in self.curves for end in curve.channel.ends)]
-        self._low, self._high = min(ends), max(ends)
+        self._low = min(ends)
+        self._high = max(ends)
         self._bottom = edges[1] - em(PADDING)
         height = max(self._bottom - edges[0] - em(PADDING), 1.0)
         self.slope = -height / (self._high - self._low)
 
     def _draw_ground(self, low: Point, high: Point, script_end: float) -> None:
         """What curves stand on, between two corners: darker as far as the script goes."""
-        theme, lines = self._gui.theme, imgui.get_window_draw_list()
+        theme = self._gui.theme
+        lines = imgui.get_window_draw_list()
         end = min(max(script_end, low[0]), high[0])
         lines.add_rect_filled(low, high, ink_of(theme.field, 0.45))
         lines.add_rect_filled(low, (end, high[1]), ink_of(theme.field))
 
     def _draw_values(self, left: float, right: float) -> None:
         """Lines at round values, with numbers at their left."""
-        theme, lines = self._gui.theme, imgui.get_window_draw_list()
+        theme = self._gui.theme
+        lines = imgui.get_window_draw_list()
         step = next((each for each in STEPS if -each * self.slope >= em(LABEL_ROOM)), STEPS[-1])
-        first, last = int(np.ceil(self._low / step - SAME)), int(self._high / step + SAME)
+        first = int(np.ceil(self._low / step - SAME))
+        last = int(self._high / step + SAME)
         for number in range(first, last + 1):
-            y, label = round(self.y(number * step)) + 0.5, f"{number * step:g}"
+            y = round(self.y(number * step)) + 0.5
+            label = f"{number * step:g}"
             lines.add_line((left, y), (right, y), ink_of(theme.muted, 0.2 if number else 0.5))
             place = left - em(0.3) - imgui.calc_text_size(label).x, y - 0.5 * em()
             lines.add_text(place, ink_of(theme.muted), label)
 
     def _draw_handles(self) -> None:
         """Of the ways to selected keys, each with the line that it bends."""
-        accent, lines = ink_of(self._gui.theme.accent), imgui.get_window_draw_list()
+        accent = ink_of(self._gui.theme.accent)
+        lines = imgui.get_window_draw_list()
         for handle in self.handles():
             lines.add_line(handle.root, handle.place, accent)
             lines.add_circle_filled(handle.place, em(0.8 * KEY), accent)
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
         """The visible keys; before selected ones the way that the script takes to them."""
-        axis, channel, accent = self._axis, curve.channel, ink_of(self._gui.theme.accent)
+        axis = self._axis
+        channel = curve.channel
+        accent = ink_of(self._gui.theme.accent)
         begin, end = np.searchsorted(channel.times, (axis.start, axis.end))
-        visible, lines = slice(begin, end + 1), imgui.get_window_draw_list()
+        visible = slice(begin, end + 1)
+        lines = imgui.get_window_draw_list()
         times = channel.times[visible]
         selected = self._selection.places.times.get(curve.track, times[:0])
-        are_chosen, is_dense = among(times, selected), self._is_dense(curve)
+        are_chosen = among(times, selected)
+        is_dense = self._is_dense(curve)
         chosen = times[are_chosen]
         befores = channel.times[np.maximum(np.searchsorted(channel.times, chosen) - 1, 0)]
         if is_dense:  # all ways at once
-            befores, chosen = befores[:1], chosen[-1:]
+            befores = befores[:1]
+            chosen = chosen[-1:]
         for before, time in zip(befores.tolist(), chosen.tolist(), strict=True):
             points, values = channel.outline(max(before, axis.start), time, 400 if is_dense else 50)
             draw_line(axis.x(points), self.y(values), accent, em(0.16))
         if is_dense:
             return
-        xs, ys = axis.x(times).tolist(), self.y(channel.values[visible]).tolist()
+        xs = axis.x(times).tolist()
+        ys = self.y(channel.values[visible]).tolist()
         for x, y, is_chosen in zip(xs, ys, are_chosen.tolist(), strict=True):
             reach, fill = (1.4 * KEY, accent) if is_chosen else (KEY, ink)
             lines.add_ngon_filled((x, y), em(reach), fill, 4)

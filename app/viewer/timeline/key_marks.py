@@ -34,7 +34,8 @@ def draw_ruler(
 
     time, duration: [s]. edges: the upper and the lower one [window units].
     """
-    lines, (top, bottom) = imgui.get_window_draw_list(), edges
+    lines = imgui.get_window_draw_list()
+    (top, bottom) = edges
     ink = ink_of(theme.muted)
     for at, has_label in axis.ticks(em(LABEL_ROOM)):
         x = round(axis.x(at)) + 0.5
@@ -48,8 +49,10 @@ def draw_ruler(
         tip = end + em(FLAG), bottom - 0.5 * em(FLAG)
         lines.add_triangle_filled((end, bottom - em(FLAG)), tip, (end, bottom), ink)
     if axis.start <= time <= axis.end:  # below the numbers
-        x, half = axis.x(time), em(0.4)
-        left, right = (x - half, bottom - 1.3 * half), (x + half, bottom - 1.3 * half)
+        x = axis.x(time)
+        half = em(0.4)
+        left = (x - half, bottom - 1.3 * half)
+        right = (x + half, bottom - 1.3 * half)
         lines.add_triangle_filled(left, right, (x, bottom), ink_of(theme.accent))
 
 
@@ -66,7 +69,8 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
     """The line at the time shown [s], from one edge to the other [window units]."""
     if axis.start <= time <= axis.end:
         x = round(axis.x(time)) + 0.5
-        ink, width = ink_of(theme.accent), max(em(0.09), 1.0)
+        ink = ink_of(theme.accent)
+        width = max(em(0.09), 1.0)
         imgui.get_window_draw_list().add_line((x, edges[0]), (x, edges[1]), ink, width)
 
 
@@ -74,7 +78,8 @@ def draw_label(
     text: str, corner: Point, ink: int, arrow: float = 0.0, *, is_open: bool = False
 ) -> None:
     """The name of a row from its upper left corner on, with an arrow where it folds."""
-    lines, (left, top) = imgui.get_window_draw_list(), corner
+    lines = imgui.get_window_draw_list()
+    (left, top) = corner
     if arrow:
         direction = imgui.Dir.down if is_open else imgui.Dir.right
         imgui.internal.render_arrow(lines, (left, top + em(0.15)), ink, direction, 0.7)
@@ -86,9 +91,12 @@ class TrackPainter:
 
     def __init__(self, theme: Theme, axis: TimeAxis, selected: Places, duration: float) -> None:
         """duration: of the script [s]."""
-        self._theme, self._axis, self._selected = theme, axis, selected
+        self._theme = theme
+        self._axis = axis
+        self._selected = selected
         self._lines = imgui.get_window_draw_list()
-        self._low, self._high = axis.x(axis.start) - em(0.5), axis.x(axis.end) + em(0.5)
+        self._low = axis.x(axis.start) - em(0.5)
+        self._high = axis.x(axis.end) + em(0.5)
         margin = axis.seconds(em(0.5))
         count = max(round((self._high - self._low) / CLOSEST), 2)
         self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
@@ -99,16 +107,23 @@ class TrackPainter:
 
         Returns whether the keys that are visible are too dense to be drawn one by one.
         """
-        lines, theme, axis = self._lines, self._theme, self._axis
-        bottom, low, high = top + track.height * unit, self._low, self._high
+        lines = self._lines
+        theme = self._theme
+        axis = self._axis
+        bottom = top + track.height * unit
+        low = self._low
+        high = self._high
         middle = bottom - 0.5 * unit
-        first, last = (low, top + 1.0), (high, bottom - 1.0)
+        first = (low, top + 1.0)
+        last = (high, bottom - 1.0)
         lines.add_rect_filled(first, last, ink_of(theme.field, 0.45), em(0.2))
         lines.add_rect_filled(first, (self._script_end, last[1]), ink_of(theme.field), em(0.2))
         if len(track.channel):
-            edges, (least, most) = self._edges, track.channel.ends
+            edges = self._edges
+            (least, most) = track.channel.ends
             times, values = track.channel.outline(edges[0], edges[-1], len(edges))
-            least, most = min(least, 0.0), max(most, 1.0)
+            least = min(least, 0.0)
+            most = max(most, 1.0)
             heights = bottom - unit * (0.15 + 0.7 * (values - least) / (most - least))
             draw_line(axis.x(times), heights, ink_of(theme.muted))
         self._draw_names(track, top)
@@ -133,7 +148,8 @@ class TrackPainter:
 
     def _draw_names(self, track: Track, top: float) -> None:
         """The names of poses above them, as much of each as there is room for before the next."""
-        axis, ink = self._axis, ink_of(self._theme.muted)
+        axis = self._axis
+        ink = ink_of(self._theme.muted)
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
         for (time, name), end in zip(track.names, ends, strict=False):
             if axis.start <= time <= axis.end:
@@ -165,7 +181,9 @@ class Waveform:
     """Draws the sound of the script; of no height where there is none."""
 
     def __init__(self, gui: Gui, soundtrack: Soundtrack, axis: TimeAxis) -> None:
-        self._gui, self._soundtrack, self._axis = gui, soundtrack, axis
+        self._gui = gui
+        self._soundtrack = soundtrack
+        self._axis = axis
 
     @property
     def height(self) -> float:
@@ -183,19 +201,25 @@ class Waveform:
 
         time, duration: that is shown, and of the script [s].
         """
-        sound, axis, theme = self._soundtrack.sound, self._axis, self._gui.theme
+        sound = self._soundtrack.sound
+        axis = self._axis
+        theme = self._gui.theme
         if sound is None:
             return
-        lines, (left, top) = imgui.get_window_draw_list(), corner
+        lines = imgui.get_window_draw_list()
+        (left, top) = corner
         bottom = top + self.height - 1.0
-        first, last = round(axis.x(axis.start)), round(axis.x(axis.end))
+        first = round(axis.x(axis.start))
+        last = round(axis.x(axis.end))
         lines.add_rect_filled(
             (first - em(0.5), top + 1.0), (last + em(0.5), bottom), ink_of(theme.field), em(0.2)
         )
         draw_label("Sound", (left, top + 0.5 * (self.height - em())), ink_of(theme.muted))
         low, high = peaks_of(sound).between(axis.time(first), axis.time(last), max(last - first, 1))
-        middle, reach = 0.5 * (top + bottom), 0.5 * (bottom - top) - em(0.2)
-        inside, outside = ink_of(theme.muted), ink_of(theme.muted, 0.35)
+        middle = 0.5 * (top + bottom)
+        reach = 0.5 * (bottom - top) - em(0.2)
+        inside = ink_of(theme.muted)
+        outside = ink_of(theme.muted, 0.35)
         ends = axis.x(duration)
         uppers = (middle - LEAST - reach * high).tolist()
         lowers = (middle + LEAST - reach * low).tolist()

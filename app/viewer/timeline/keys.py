@@ -16,7 +16,8 @@ from ...script.places import NOWHERE, Places
 from ..messages import Message
 from ..session.session import Session
 
-TRACKS, ALL = "Tracks", "Whole poses"  # names of rows
+TRACKS = "Tracks"  # name of a row
+ALL = "Whole poses"  # name of a row
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,8 @@ class Track:
 
 def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Track, ...]:
     """The poses and each control that they name, then the tracks by the groups of controls."""
-    rows, times = list[Track](), places_of(script).times
+    rows = list[Track]()
+    times = places_of(script).times
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
         poses = Places({POSES: times.pop(POSES, np.empty(0))})
@@ -63,7 +65,8 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
             rows.append(group)
             parents = TRACKS, group.name
         for name in inside:
-            alone, channel = Places({name: times[name]}), script.tracks[name]
+            alone = Places({name: times[name]})
+            channel = script.tracks[name]
             rows.append(Track(f"track {name}", readable(name), alone, channel, name, name, parents))
     return tuple(replace(row, number=number) for number, row in enumerate(rows))
 

@@ -22,7 +22,8 @@ class TimeAxis:
         self.start = 0.0
         self.span = 1.0
         self.is_whole = True
-        self._left, self._width = 0.0, 1.0
+        self._left = 0.0
+        self._width = 1.0
 
     def show_whole(self) -> None:
         """All of the script, however long it is."""
@@ -30,14 +31,16 @@ class TimeAxis:
 
     def place(self, left: float, width: float) -> None:
         """Where it is drawn [window units]."""
-        self._left, self._width = left, max(width, 1.0)
+        self._left = left
+        self._width = max(width, 1.0)
 
     def fit(self, end: float) -> None:
         """The script ends at `end` [s] now: stay inside it."""
         whole = max(end * MARGIN, LEAST_SPAN)
         self.is_whole = self.is_whole or self.span >= whole
         if self.is_whole:
-            self.start, self.span = 0.0, whole
+            self.start = 0.0
+            self.span = whole
         self.start = min(max(self.start, 0.0), whole - self.span)
 
     @property

@@ -14,7 +14,8 @@ from ..interface.widgets import choose, hint, shortened, stay_in_line
 from .dope_sheet import DopeSheet
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
-BUTTON_WIDTH, SPEED_WIDTH = 4.0, 4.6  # [em]
+BUTTON_WIDTH = 4.0  # [em]
+SPEED_WIDTH = 4.6  # [em]
 MOST_HEIGHT = 0.4  # of the window
 # By the label of the command: what the button reads while that is on, and a hint.
 BUTTONS = {
@@ -35,7 +36,9 @@ class Timeline:
         self, app: ApplicationContext, commands: Iterable[Command], dope_sheet: DopeSheet
     ) -> None:
         """commands: those of the buttons must be among them."""
-        self._gui, self._session, self._messages = app.gui, app.session, app.messages
+        self._gui = app.gui
+        self._session = app.session
+        self._messages = app.messages
         self._commands = {command.label: command for command in commands}
         self.dope_sheet = dope_sheet
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
@@ -68,9 +71,11 @@ class Timeline:
         self._rows = round((imgui.get_cursor_pos_y() - top) / imgui.get_frame_height_with_spacing())
 
     def _draw_button(self, label: str, *, is_wanted: bool = False) -> None:
-        command, (label_on, meaning) = self._commands[label], BUTTONS[label]
+        command = self._commands[label]
+        (label_on, meaning) = BUTTONS[label]
         is_on = command.is_on is not None and command.is_on()
-        text, width = label_on if is_on else label, em(BUTTON_WIDTH)
+        text = label_on if is_on else label
+        width = em(BUTTON_WIDTH)
         if label != "Play":
             stay_in_line(width)
         command_button(
@@ -89,14 +94,18 @@ class Timeline:
 
     def _draw_status(self, differing: int) -> None:
         """The time, and what is being made now, else how many controls differ, or the script."""
-        session, theme = self._session, self._gui.theme
-        status, ink = session.work.name, theme.muted
+        session = self._session
+        theme = self._gui.theme
+        status = session.work.name
+        ink = theme.muted
         if session.work.script_is_unsaved:
             status += " *"
         if differing:
-            status, ink = f"{counted(differing, 'control')} not keyed", theme.accent
+            status = f"{counted(differing, 'control')} not keyed"
+            ink = theme.accent
         if session.is_recording:
-            status, ink = f"recording {session.recorded_seconds:.1f} s", theme.error
+            status = f"recording {session.recorded_seconds:.1f} s"
+            ink = theme.error
             status += "" if session.is_playing else ", paused"
         time = f"{session.time:.2f} of {session.script.duration:.2f} s"
         stay_in_line(imgui.calc_text_size(time).x)

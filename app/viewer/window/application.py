@@ -67,7 +67,8 @@ class Application(ApplicationContext):
         """
         self._settings_path = settings_path
         splash = splash or SplashScreen(size, settings_path)
-        settings, complaint = splash.settings, splash.complaint
+        settings = splash.settings
+        complaint = splash.complaint
         scene = splash.during(partial(_ready_scene, script, head, display or settings.display))
         if display is not None:
             settings.display = display
@@ -99,7 +100,8 @@ class Application(ApplicationContext):
 
     def _join_commands(self) -> None:
         """What can be done, each with what it needs for that."""
-        session, settings = self.session, self.settings
+        session = self.session
+        settings = self.settings
         self.time_axis = TimeAxis()
         self.selection = KeySelection(session)
         self.room: Room | None = None  # a mesh whose landmarks are being marked

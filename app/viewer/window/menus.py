@@ -123,7 +123,8 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     command = partial(Command, "Keys")
     edit = partial(command, can_run=lambda: selection.can_edit)
     change = partial(command, can_run=lambda: selection.can_change)
-    ease, is_eased = selection.ease, selection.is_eased
+    ease = selection.ease
+    is_eased = selection.is_eased
     return (
         edit("Set key", "K", selection.set_key),
         command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
@@ -173,7 +174,9 @@ def view_menu(settings: Settings, view: View) -> Menu:
 
 def expression_menu(session: Session) -> Menu:
     """Keys 1 to 9 show the first expressions of the scene."""
-    command, show, is_on = partial(Command, "Expression"), session.toggle_alone, session.is_alone
+    command = partial(Command, "Expression")
+    show = session.toggle_alone
+    is_on = session.is_alone
     return tuple(
         command(readable(name), str(number), partial(show, name), partial(is_on, name))
         for number, name in enumerate(session.scene.expressions[:9], start=1)

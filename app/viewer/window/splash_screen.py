@@ -35,11 +35,13 @@ class SplashScreen(logging.Handler):
     def __init__(self, size: tuple[int, int] | None, path: Path | None) -> None:
         """size: None for what is remembered, or else as the screen suits. path: of the settings."""
         super().__init__()
-        self.settings, self.complaint = Settings(), ""
+        self.settings = Settings()
+        self.complaint = ""
         if path is not None:
             self.settings, self.complaint = load_settings(path)
         known = size or self.settings.size
-        self._text, self._drawn = LOADING, ((0, 0), "")
+        self._text = LOADING
+        self._drawn = ((0, 0), "")
         size = known or FIRST_SIZE
         self.surface = render.open_window(size, "Risorius", is_scaled=known is None)
         LOG.addHandler(self)

@@ -39,10 +39,13 @@ class Viewer(Application):
     _awake: int  # frames that are drawn yet, whatever happens
     refresh = REFRESH
     # Of the panels as they were drawn last: how old [s], in what window [pixels], over the scene?
-    _panels_age, _panels_size, _is_scene_covered = math.inf, (0, 0), True
+    _panels_age = math.inf
+    _panels_size = (0, 0)
+    _is_scene_covered = True
 
     def __enter__(self) -> Viewer:
-        self._last, self._awake = time.perf_counter(), FRAMES_AFTER_EVENT
+        self._last = time.perf_counter()
+        self._awake = FRAMES_AFTER_EVENT
         on_drop(self.surface.handle, self.drop)
         for _ in range(2):  # panels and tabs find their places before the first picture
             self._draw_gui(is_visible=False)
@@ -88,10 +91,12 @@ class Viewer(Application):
             self._awake = max(self._awake, 1)
         self.messages.attempt(self.exporter.poll, stays=True)
         if self.file_drop.has_news:
-            self._awake, self.messages.text = max(self._awake, 2), ""  # its box grows a frame late
+            self._awake = max(self._awake, 2)  # the box of the message grows a frame late
+            self.messages.text = ""
             self.messages.attempt(self.file_drop.poll, stays=True)
         now = time.perf_counter()
-        elapsed, self._last = now - self._last, now
+        elapsed = now - self._last
+        self._last = now
         room = self.room
         name = self.session.work.name if room is None else room.marking.path.name
         is_unsaved = self.session.work.unsaved if room is None else room.marking.unsaved
@@ -190,7 +195,8 @@ class Viewer(Application):
         On software OpenGL they cost as much as a quarter of the face, and while a script plays only
         sliders creep in them. Whatever the user does is answered in the same frame.
         """
-        size, is_answering = self.surface.size, self._awake > 0 or imgui.is_any_item_active()
+        size = self.surface.size
+        is_answering = self._awake > 0 or imgui.is_any_item_active()
         if not self.is_left_alone:  # what the face does by itself moves no slider
             self._panels_age += elapsed
         # What is dragged in the scene moves no slider.
@@ -204,15 +210,20 @@ class Viewer(Application):
         self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
         self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
         self._draw_gui(is_visible=True)
-        self._panels_age, self._panels_size = 0.0, size
+        self._panels_age = 0.0
+        self._panels_size = size
         self._is_scene_covered = self.gui.covers(view.area)
 
     def _draw_gui(self, *, is_visible: bool) -> None:
         """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
-        messages, gui = self.messages, self.gui
-        room, view, commands = self.room, self.view, self.commands
+        messages = self.messages
+        gui = self.gui
+        room = self.room
+        view = self.view
+        commands = self.commands
         if room is not None:
-            view, commands = room.view, room.commands
+            view = room.view
+            commands = room.commands
         with gui.frame(is_visible=is_visible):
             gui.set_theme(self.settings.theme, self.settings.zoom)
             if room is None:
