@@ -26,7 +26,15 @@ LARGEST_RADIANS = 1.6  # no head that is seen turns further, nor an eye
 OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
 NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
                  "mouthShrugUpper")  # fmt: skip
-OF_NO_USE = ("blendshapecount", "timecode", "index", "", "lefteyeroll", "righteyeroll")
+OF_NO_USE = (
+    "blendshapecount",
+    "timecode",
+    "index",
+    "",
+    "unnamed: 0",
+    "lefteyeroll",
+    "righteyeroll",
+)
 
 
 @dataclass
@@ -38,28 +46,46 @@ class Columns:
     visemes: dict[str, int] = field(default_factory=dict)
     angles: dict[str, int] = field(default_factory=dict)
     unknown: list[int] = field(default_factory=list)
+    repeated: list[int] = field(default_factory=list)
 
     @classmethod
     def of(cls, names: tuple[str, ...]) -> Columns:
-        """Sort out the names of columns; the first of a name counts."""
+        """Sort out the names of columns; the first of a channel counts."""
         found = cls()
         units = [match for name in names if (match := ACTION_UNIT.match(name.casefold()))]
         has_sides = any(match[2] in ("l", "left") for match in units)
         for number, name in enumerate(names):
             unit = ACTION_UNIT.match(name.casefold())
+            known: dict[str, int] | None = None
+            channel = ""
             if unit and unit[2] != "c":
                 sides = {"l": "_left", "left": "_left", "right": "_right"}
                 side = "_right" if unit[2] == "r" and has_sides else sides.get(unit[2] or "", "")
-                found.units.setdefault(f"AU{unit[1]}{side}", number)
+                known = found.units
+                channel = f"AU{unit[1]}{side}"
             elif shape := shape_of(name):
-                found.shapes.setdefault(shape, number)
+                known = found.shapes
+                channel = shape
             elif angle := angle_of(name):
-                found.angles.setdefault(angle, number)
+                known = found.angles
+                channel = angle
             elif name.casefold().startswith("viseme_") and (viseme := viseme_of(name)):
-                found.visemes.setdefault(viseme, number)
+                known = found.visemes
+                channel = viseme
             elif name.casefold() not in OF_NO_USE:
                 found.unknown.append(number)
+            if known is not None and known.setdefault(channel, number) != number:
+                found.repeated.append(number)
         return found
+
+    def notes_of(self, names: tuple[str, ...]) -> list[str]:
+        """A sentence where two columns with different names hold one channel."""
+        folded = [name.casefold() for name in names]
+        twice = [names[each] for each in self.repeated if folded.index(folded[each]) == each]
+        if not twice:
+            return []
+        listed = ", ".join(f"'{name}'" for name in twice)
+        return [f"Another column holds the same, and these were left out: {listed}."]
 
     @property
     def are_known(self) -> bool:
@@ -86,6 +112,7 @@ def read(table: Table, request: Request) -> Take:
     table = one_face(table, request)
     notes: list[str] = []
     columns = Columns.of(table.names)
+    notes += columns.notes_of(table.names)
     times, used = times_of(table, request.rate, notes)
     wanted = columns.shapes | columns.units | columns.visemes | columns.angles
     numbers = table.numbers_of(wanted)

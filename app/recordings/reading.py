@@ -6,8 +6,10 @@ that recognises it and one that reads it, and a row here.
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -58,8 +60,15 @@ def read_take(path: Path, *, face: str | None = None, rate: float | None = None)
     """
     if rate is not None and not 1.0 <= rate <= 1000.0:
         raise UserError(f"rate {rate:g}: must lie within 1 and 1000 frames a second")
-    text = read_recording(path)
-    request = Request(face, rate)
+    text, encoding = read_recording(path)
+    take = _take_in(text, path, Request(face, rate))
+    if encoding == "UTF-8":
+        return take
+    return replace(take, notes=(f"The text was read as {encoding}.", *take.notes))
+
+
+def _take_in(text: str, path: Path, request: Request) -> Take:
+    """The take in a text. UserError as `read_take` has it."""
     if JSON.match(text):
         try:
             document = parsed_json(text)
@@ -96,31 +105,56 @@ def _strange(names: tuple[str, ...]) -> str:
     return f"is a table of which no column is known ({listed}, ...)"
 
 
-def read_recording(path: Path) -> str:
-    """The whole text of a file. UserError for what is not there, too long, or no text."""
+def read_recording(path: Path) -> tuple[str, str]:
+    """The whole text of a file, and its encoding.
+
+    UserError where nothing is there, for a file that is too long, and for one without text.
+    """
     content = read_bytes(path, what="recording", longest=LONGEST_FILE)
     if not content.strip():
         raise UserError(f"{path}: is empty; a recording is a table (CSV) or JSON")
-    text = _decoded(content)
+    text, encoding = _decoded(content)
     if text is None:
         raise UserError(
             f"{path}: is not a text file; a recording of a face is a table (CSV) or JSON, no film"
         )
-    return text
+    return text, encoding
 
 
 def read_beginning(path: Path) -> str:
-    """The first lines of a file, '' for what is not there or no text."""
+    """The first lines of a file; '' without a file, and for one without text."""
     try:
         content = read_bytes(path, what="recording", longest=LONGEST_FILE, first=BEGINNING)
     except UserError:
         return ""
-    return _decoded(content) or ""
+    return _decoded(content)[0] or ""
 
 
-def _decoded(content: bytes) -> str | None:
-    """The text in these bytes, with line ends of one kind; None where they are no text."""
-    text = content.decode("utf-8-sig", errors="replace")  # the beginning of a file may be torn
+def _decoded(content: bytes) -> tuple[str | None, str]:
+    """The text in these bytes, with line ends of one kind, and its encoding.
+
+    None where they are no text. The end of the bytes may be torn.
+    """
+    codec, encoding = _encoding_of(content)
+    text = content.decode(codec, errors="replace")
     if NOT_IN_TEXT.search(text, 0, BEGINNING):
-        return None
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+        return None, encoding
+    return text.replace("\r\n", "\n").replace("\r", "\n"), encoding
+
+
+def _encoding_of(content: bytes) -> tuple[str, str]:
+    """Python's codec of a text, and its name, by the mark at the beginning or by the bytes."""
+    if content.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
+        return "utf-32", "UTF-32"
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16", "UTF-16"
+    # Without a mark: every other byte of Western text is 0.
+    for codec, first in (("utf-16-be", 0), ("utf-16-le", 1)):
+        beginning = content[first:BEGINNING:2]
+        if 2 * beginning.count(0) > len(beginning):
+            return codec, "UTF-16"
+    try:
+        codecs.getincrementaldecoder("utf-8-sig")().decode(content)
+    except UnicodeDecodeError:
+        return "cp1252", "Windows-1252 (Latin-1)"
+    return "utf-8-sig", "UTF-8"

@@ -20,7 +20,6 @@ from .take import Take
 
 WIDTH = 100  # [characters] of a line
 MOST_LINES = 3  # of one heading
-MOST_NOTES = 6
 MOST_NAMED = 5  # of neutral channels
 SLIGHT = 0.02  # of a neutral channel: no need to be told
 
@@ -74,7 +73,7 @@ def report_of(take: Take, calibration: Calibration) -> Report:
         ("constant", _listed(still)),
         ("missing", _listed(name for name in ARKIT if shapes and name not in channels)),
         ("unknown", _listed(take.unknown)),
-        *(("note", note) for note in take.notes[:MOST_NOTES]),
+        *(("note", note) for note in take.notes),
     ]
     return Report(take.source, _recognised(take), tuple(row for row in rows if row[1]))
 

@@ -1,0 +1,160 @@
+"""Tables as people and programs write them: separators, quotes, decimal commas, encodings."""
+
+import csv
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.errors import UserError
+from risorius.app.recordings import is_recording, read_take
+
+from .recording_files import table, told
+
+JAW = np.sin(np.arange(180) / 30.0) ** 2
+COLUMNS = {"timestamp": np.arange(180) / 60.0, "jawOpen": JAW, "mouthSmile_L": JAW / 2.0}
+
+
+def cells(columns: dict[str, np.ndarray] = COLUMNS) -> list[list[str]]:
+    """The header and the rows."""
+    return list(csv.reader(io.StringIO(table(columns))))
+
+
+def rewritten(separator: str = ",", quoting: int = csv.QUOTE_MINIMAL, quote: str = '"') -> str:
+    """The table with other separators and quotes."""
+    file = io.StringIO()
+    writer = csv.writer(file, delimiter=separator, quoting=quoting, quotechar=quote)  # type: ignore[arg-type]
+    writer.writerows(cells())
+    return file.getvalue()
+
+
+def german(quoting: int = csv.QUOTE_MINIMAL, separator: str = ";") -> str:
+    """The table with decimal commas."""
+    file = io.StringIO()
+    writer = csv.writer(file, delimiter=separator, quoting=quoting)  # type: ignore[arg-type]
+    writer.writerows([[cell.replace(".", ",") for cell in row] for row in cells()])
+    return file.getvalue()
+
+
+def of_r() -> str:
+    """What R's write.csv makes: a column of row names, and quotes around all names."""
+    header, *rows = cells()
+    lines = [",".join(f'"{name}"' for name in ("", *header))]
+    lines += [",".join((f'"{number}"', *row)) for number, row in enumerate(rows, 1)]
+    return "\n".join(lines)
+
+
+def of_r_table() -> str:
+    """What R's write.table makes: row names without a name above."""
+    return of_r().replace('"",', "", 1)
+
+
+TEXTS: dict[str, tuple[Callable[[], str], str]] = {
+    "all quoted": (lambda: rewritten(quoting=csv.QUOTE_ALL), "quotes around cells"),
+    "names quoted": (lambda: rewritten(quoting=csv.QUOTE_NONNUMERIC), "quotes around cells"),
+    "single quotes": (lambda: rewritten(quoting=csv.QUOTE_ALL, quote="'"), "quotes around cells"),
+    "R": (of_r, "quotes around cells"),
+    "R's write.table": (of_r_table, "one cell more than the header"),
+    "semicolons": (lambda: rewritten(";"), "semicolons between cells."),
+    "tabs": (lambda: rewritten("\t"), "tabs between cells."),
+    "bars": (lambda: rewritten("|"), "bars between cells."),
+    "semicolons, quoted": (lambda: rewritten(";", csv.QUOTE_ALL), "semicolons between cells"),
+    "decimal commas": (german, "semicolons between cells, decimal commas"),
+    "decimal commas, tabs": (lambda: german(separator="\t"), "tabs between cells, decimal commas"),
+    "decimal commas, quoted": (
+        lambda: german(csv.QUOTE_ALL, ","),
+        "commas between cells, quotes around cells, decimal commas",
+    ),
+    "a spreadsheet's first line": (lambda: "sep=;\n" + german(), "decimal commas"),
+    "a comma at the end of rows": (
+        lambda: table(COLUMNS).replace("\n", ",\n").replace(",\n", "\n", 1),
+        "",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", TEXTS)
+def test_layouts(kind: str, tmp_path: Path) -> None:
+    """However cells are parted and quoted, times and values are the same; the guess is reported."""
+    make, note = TEXTS[kind]
+    path = tmp_path / "take.csv"
+    path.write_text(make(), encoding="utf-8")
+    assert is_recording(path)
+    take = read_take(path)
+    assert take.duration == pytest.approx(179 / 60.0, abs=1e-5)
+    assert take.channels.keys() == {"jawOpen", "mouthSmileLeft"}
+    assert take.channels["jawOpen"] == pytest.approx(JAW, abs=1e-6)
+    assert not take.unknown
+    assert told(take.notes, note) or not note
+
+
+def test_a_plain_table_needs_no_word(tmp_path: Path) -> None:
+    """Commas, points and UTF-8 are no guess."""
+    path = tmp_path / "take.csv"
+    path.write_text(table(COLUMNS), encoding="utf-8-sig")
+    assert read_take(path).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("codec", "name"),
+    [("utf-16", "UTF-16"), ("utf-16-le", "UTF-16"), ("utf-16-be", "UTF-16"), ("utf-32", "UTF-32"),
+     ("latin-1", "Windows-1252")],
+)  # fmt: skip
+def test_encodings(codec: str, name: str, tmp_path: Path) -> None:
+    """Names that are no ASCII are read right, and the encoding is reported."""
+    path = tmp_path / "take.csv"
+    path.write_bytes(table({"für später": np.ones(180)} | COLUMNS).encode(codec))
+    assert is_recording(path)
+    take = read_take(path)
+    assert take.unknown == ("für später",)
+    assert take.channels["jawOpen"] == pytest.approx(JAW, abs=1e-6)
+    assert told(take.notes, f"read as {name}")
+
+
+def test_json_in_utf_16(tmp_path: Path) -> None:
+    """Encodings are the same for all kinds of files."""
+    path = tmp_path / "take.json"
+    path.write_text('[{"jawOpen": 0.1}, {"jawOpen": 0.5}]', encoding="utf-16")
+    assert is_recording(path)
+    take = read_take(path)
+    assert take.channels["jawOpen"] == pytest.approx([0.1, 0.5])
+    assert told(take.notes, "read as UTF-16")
+
+
+def test_a_quoted_text_beside_numbers(tmp_path: Path) -> None:
+    """A separator, a line end and a doubled quote in a cell belong to its text."""
+    path = tmp_path / "take.csv"
+    path.write_text('time,note,jawOpen\n0,"a, b",0.1\n0.1,"one\ntwo",0.2\n0.2,"""c""",0.3\n')
+    take = read_take(path)
+    assert take.channels["jawOpen"] == pytest.approx([0.1, 0.2, 0.3])
+    assert take.times == pytest.approx([0.0, 0.1, 0.2])
+
+
+def test_a_quote_that_is_not_closed(tmp_path: Path) -> None:
+    """It swallows no row in silence: the line is named."""
+    path = tmp_path / "take.csv"
+    path.write_text('time,jawOpen\n0,0.1\n0.1,"0.2\n0.2,0.3\n')
+    with pytest.raises(UserError, match="a quote in line 3 or below is not closed"):
+        read_take(path)
+
+
+@pytest.mark.parametrize(
+    ("header", "note"),
+    [
+        ("time,jawOpen,jawOpen", "have one name, and the first of each counts: 'jawOpen'"),
+        ("time,jawOpen,JawOpen", "have one name, and the first of each counts: 'jawOpen'"),
+        ("time,jawOpen,jaw_open", "holds the same, and these were left out: 'jaw_open'"),
+        ("time,AU12,AU12", "have one name, and the first of each counts: 'AU12'"),
+        ("time,AU12_r,AU12_r", "have one name, and the first of each counts: 'AU12_r'"),
+    ],
+)
+def test_a_column_that_stands_twice(header: str, note: str, tmp_path: Path) -> None:
+    """The first counts, and this is reported."""
+    path = tmp_path / "take.csv"
+    path.write_text(f"{header}\n0,0.1,0.9\n0.1,0.2,0.8\n")
+    take = read_take(path)
+    (values,) = take.channels.values()
+    assert values[0] < values[1]
+    assert told(take.notes, note)
