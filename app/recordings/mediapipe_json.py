@@ -20,15 +20,12 @@ from .named_columns import is_calibrated, shares
 from .names import HEAD_ANGLES, shape_of
 from .table import LARGEST
 from .take import Array, Request, Take
-from .timing import FRAMES, STAMPS, frame_times, stamp_times
+from .timing import find_times
 
 # All without capitals and underscores, see `_plain`.
 FACES = ("faceblendshapes", "blendshapes", "categories")
 MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
 RATES = ("fps", "exportfps")
-TIMES, NUMBERS = (
-    tuple(dict.fromkeys(name.replace("_", "") for name in names)) for names in (STAMPS, FRAMES)
-)
 
 
 def recognises(document: Any) -> bool:
@@ -43,12 +40,7 @@ def read(document: Any, source: str, request: Request) -> Take:
     frames = _frames(document)
     shapes, unknown = _shapes([_faces(frame) for frame in frames], notes)
     keyed = [_plain(frame) for frame in frames]
-    stamps = {
-        key: np.array([_number(keys.get(key)) for keys in keyed])
-        for key in (*TIMES, *NUMBERS)
-        if any(key in keys for keys in keyed)
-    }
-    times = _times(stamps, len(frames), request.rate, _rate(document), notes)
+    times = _times(keyed, request.rate, _rate(document), notes)
     shapes = shares(shapes, notes)
     return whole_take(
         "MediaPipe JSON",
@@ -79,7 +71,7 @@ def read_weights(document: Any, source: str, request: Request) -> Take:
             found[shape] = np.array([_number(dict(enumerate(row)).get(place)) for row in rows])
         else:
             unknown.append(name)
-    times = _times({}, len(rows), request.rate, _rate(document), notes)
+    times = _times([{}] * len(rows), request.rate, _rate(document), notes)
     shapes = shares(found, notes)
     return whole_take("Audio2Face", source, times, shapes, notes=notes, unknown=unknown)
 
@@ -161,22 +153,24 @@ def _matrix(value: Any) -> Array | None:
 
 
 def _times(
-    stamps: Mapping[str, Array], count: int, rate: float | None, given: float | None,
+    frames: Sequence[Mapping[str, Any]], rate: float | None, written_rate: float | None,
     notes: list[str],
 ) -> Array:  # fmt: skip
-    """Times from the stamps of the frames, else from the rate."""
-    if rate is None:
-        for key in TIMES:
-            if key in stamps and (times := stamp_times(stamps[key], notes)) is not None:
-                return times
-        if given is not None:
-            notes.append(f"{given:g} frames a second, as the file says.")
-    frame = next((stamps[key] for key in NUMBERS if key in stamps), None)
-    return frame_times(frame, count, rate or given, notes)
+    """Times of the frames, by their keys, else by the rate that the document has."""
+    names = dict.fromkeys(key for frame in frames for key, value in frame.items() if value != "")
+
+    def texts(name: str) -> list[str]:
+        values = [frame.get(name) for frame in frames]
+        return [value.strip() if isinstance(value, str) else "" for value in values]
+
+    def numbers(name: str) -> Array:
+        return np.array([_number(frame.get(name)) for frame in frames])
+
+    return find_times([*names], texts, numbers, len(frames), rate, notes, written_rate)
 
 
 def _rate(document: Any) -> float | None:
-    """The frames a second that the document tells."""
+    """The frames a second that the document has."""
     rate = _number(_first(_plain(document), RATES))
     return rate if 1.0 <= rate <= 1000.0 else None
 

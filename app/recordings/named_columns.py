@@ -80,8 +80,7 @@ class Columns:
 
     def notes_of(self, names: tuple[str, ...]) -> list[str]:
         """A sentence where two columns with different names hold one channel."""
-        folded = [name.casefold() for name in names]
-        twice = [names[each] for each in self.repeated if folded.index(folded[each]) == each]
+        twice = [names[each] for each in self.repeated if names.index(names[each]) == each]
         if not twice:
             return []
         listed = ", ".join(f"'{name}'" for name in twice)

@@ -188,9 +188,9 @@ def table_in(text: str, *, source: str) -> Table:
 
 
 def repeated_columns(names: Sequence[str]) -> list[str]:
-    """A sentence where columns have the same name, capitals aside."""
-    counts = Counter(name.casefold() for name in names if name)
-    repeated = [name for name in dict.fromkeys(names) if counts[name.casefold()] > 1]
+    """A sentence where columns have the same name; OpenFace's `x_0` is another than its `X_0`."""
+    counts = Counter(name for name in names if name)
+    repeated = [name for name, count in counts.items() if count > 1]
     if not repeated:
         return []
     listed = ", ".join(f"'{name}'" for name in repeated[:MOST_LISTED])

@@ -144,7 +144,7 @@ def test_a_quote_that_is_not_closed(tmp_path: Path) -> None:
     ("header", "note"),
     [
         ("time,jawOpen,jawOpen", "have one name, and the first of each counts: 'jawOpen'"),
-        ("time,jawOpen,JawOpen", "have one name, and the first of each counts: 'jawOpen'"),
+        ("time,jawOpen,JawOpen", "holds the same, and these were left out: 'JawOpen'"),
         ("time,jawOpen,jaw_open", "holds the same, and these were left out: 'jaw_open'"),
         ("time,AU12,AU12", "have one name, and the first of each counts: 'AU12'"),
         ("time,AU12_r,AU12_r", "have one name, and the first of each counts: 'AU12_r'"),

@@ -1,0 +1,185 @@
+"""When rows were seen: timecode of any rate, clocks, time stamps; and `--rate` beside them."""
+
+import datetime
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from risorius.app.recordings import Take, read_take
+
+from .recording_files import told, written
+
+JAW = np.linspace(0.0, 0.9, 90)
+
+
+def take_of(
+    folder: Path, cells: Sequence[object], *, name: str = "time", rate: float | None = None
+) -> Take:
+    """The take of a table with these times above an opening jaw."""
+    columns = {name: [f'"{cell}"' for cell in cells], "jawOpen": np.linspace(0, 0.9, len(cells))}
+    return read_take(written(folder / "take.csv", columns), rate=rate)
+
+
+def timecode(frame: int, base: int, *, separator: str = ":", start: int = 36_000) -> str:
+    """The label of a frame that is counted from `start` [s]."""
+    second, number = divmod(frame, base)
+    second += start
+    return f"{second // 3600 % 24:02}:{second // 60 % 60:02}:{second % 60:02}{separator}{number:02}"
+
+
+def drop_frame(frame: int, base: int) -> str:
+    """The label of a frame by SMPTE's rule: at each minute but every tenth numbers are dropped."""
+    dropped = base // 15
+    tens, rest = divmod(frame, 600 * base - 9 * dropped)
+    minutes = max(rest - dropped, 0) // (60 * base - dropped)
+    return timecode(frame + dropped * (9 * tens + minutes), base, separator=";", start=0)
+
+
+@pytest.mark.parametrize("base", [24, 25, 30, 48, 50, 60, 72, 75, 90, 100, 120, 144, 240])
+@pytest.mark.parametrize("step", [1, 2])
+def test_any_timecode(base: int, step: int, tmp_path: Path) -> None:
+    """Three seconds are three seconds, also where only every other frame has a row."""
+    frames = range(0, 3 * base, step)
+    cells = [timecode(frame, base) for frame in frames]
+    for rate in (None, float(base), 30.0, base / step):
+        take = take_of(tmp_path, cells, name="Timecode", rate=rate)
+        assert take.times == pytest.approx(np.array(frames) / base, abs=1e-6), rate
+
+
+@pytest.mark.parametrize(("rate", "base"), [(23.976, 24), (29.97, 30), (47.952, 48), (59.94, 60)])
+def test_the_true_rate_of_timecode(rate: float, base: int, tmp_path: Path) -> None:
+    """A rate that is a thousandth less than the count is what the camera really does."""
+    cells = [timecode(frame, base) for frame in range(3 * base)]
+    take = take_of(tmp_path, cells, name="Timecode", rate=rate)
+    assert take.duration == pytest.approx((3 * base - 1) / rate)
+
+
+def test_a_rate_that_timecode_contradicts(tmp_path: Path) -> None:
+    """It is not used, and this is reported."""
+    cells = [timecode(frame, 60) for frame in range(0, 240, 2)]
+    take = take_of(tmp_path, cells, name="Timecode", rate=30.0)
+    assert take.duration == pytest.approx(238 / 60.0)
+    assert told(take.notes, "counts 60 frames a second; 30 was not used")
+
+
+@pytest.mark.parametrize("base", [30, 60, 120])
+def test_drop_frame(base: int, tmp_path: Path) -> None:
+    """Eleven minutes and more: no jump where numbers are left out, and the true rate counts."""
+    frames = np.arange(700 * base // 5) * 5
+    cells = [drop_frame(int(frame), base) for frame in frames]
+    take = take_of(tmp_path, cells, name="Timecode")
+    assert take.times == pytest.approx(frames * 1.001 / base, abs=1e-4)
+    assert told(take.notes, "Timecode drops frames")
+
+
+def test_a_semicolon_that_drops_nothing(tmp_path: Path) -> None:
+    """Numbers that drop-frame timecode leaves out show that it is none."""
+    frames = range(0, 2100)
+    cells = [timecode(frame, 30, separator=";", start=0) for frame in frames]
+    take = take_of(tmp_path, cells, name="Timecode")
+    assert take.times == pytest.approx(np.array(frames) / 30.0)
+
+
+def test_rows_that_share_a_frame_of_timecode(tmp_path: Path) -> None:
+    """60 rows a second with timecode of 30 are 60 a second."""
+    cells = [timecode(row // 2, 30) for row in range(180)]
+    take = take_of(tmp_path, cells, name="Timecode")
+    assert take.times == pytest.approx(np.arange(180) / 60.0)
+    assert told(take.notes, "spread evenly")
+
+
+def clock(form: str) -> Callable[[float], str]:
+    """A label of seconds, by strftime with {ms} for milliseconds."""
+    start = datetime.datetime(2024, 5, 1, 12, 0, 0)
+
+    def label(seconds: float) -> str:
+        at = start + datetime.timedelta(milliseconds=round(seconds * 1000))
+        return at.strftime(form).replace("{ms}", f"{at.microsecond // 1000:03}")
+
+    return label
+
+
+def timedelta_of_pandas(seconds: float) -> str:
+    """As pandas prints a time delta."""
+    return f"0 days 00:00:{seconds:09.6f}"
+
+
+CLOCKS: dict[str, Callable[[float], object]] = {
+    "HH:MM:SS.mmm": clock("%H:%M:%S.{ms}"),
+    "HH:MM:SS,mmm": clock("%H:%M:%S,{ms}"),
+    "from 0": lambda s: f"00:00:{s:06.3f}",
+    "M:SS.s": lambda s: f"0:{s:05.2f}",
+    "ISO 8601 in UTC": clock("%Y-%m-%dT%H:%M:%S.{ms}Z"),
+    "ISO 8601 with a zone": clock("%Y-%m-%dT%H:%M:%S.{ms}+02:00"),
+    "ISO 8601 without a zone": clock("%Y-%m-%dT%H:%M:%S.{ms}"),
+    "ISO 8601 with a blank": clock("%Y-%m-%d %H:%M:%S.{ms}"),
+    "German": clock("%d.%m.%Y %H:%M:%S,{ms}"),
+    "American": clock("%m/%d/%Y %I:%M:%S.{ms} %p"),
+    "pandas": timedelta_of_pandas,
+    "Python": lambda s: str(datetime.timedelta(seconds=s)),
+    "epoch in seconds": lambda s: f"{1_714_564_800 + s:.4f}",
+    "epoch in milliseconds": lambda s: round((1_714_564_800 + s) * 1e3),
+    "epoch in microseconds": lambda s: 1_714_564_800_000_000 + round(s * 1e6),
+    "epoch in nanoseconds": lambda s: 1_714_564_800_000_000_000 + round(s * 1e9),
+}
+
+
+@pytest.mark.parametrize("kind", CLOCKS)
+def test_clocks_and_stamps(kind: str, tmp_path: Path) -> None:
+    """90 frames last 89 / 30 s, however their times are written, in tables and in JSON."""
+    times = np.arange(90) / 30.0
+    cells = [CLOCKS[kind](float(time)) for time in times]
+    for rate in (None, 30.0):
+        take = take_of(tmp_path, cells, rate=rate)
+        assert take.times == pytest.approx(times, abs=6e-3)
+        assert not told(take.notes, "No times are given")
+    frames = [{"time": cell, "jawOpen": jaw} for cell, jaw in zip(cells, JAW, strict=True)]
+    path = tmp_path / "take.json"
+    path.write_text(json.dumps(frames))
+    assert read_take(path).times == pytest.approx(times, abs=6e-3)
+
+
+@pytest.mark.parametrize("form", ["%H:%M:%S.{ms}", "%Y-%m-%d %H:%M:%S.{ms}"])
+def test_a_clock_over_midnight(form: str, tmp_path: Path) -> None:
+    """Time goes on, with and without a date."""
+    times = np.arange(90) / 30.0
+    take = take_of(tmp_path, [clock(form)(43_199.0 + float(time)) for time in times])
+    assert take.times == pytest.approx(times, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "step", "seconds"),
+    [
+        ("frame_time_in_ms", 1000 / 30, 1 / 30),
+        ("frameTime", 1 / 30, 1 / 30),
+        ("time (s)", 5.0, 5.0),
+        ("timestamp [ms]", 2.0, 0.002),
+        ("ts", 1 / 30, 1 / 30),
+        ("timestampUs", 1e6 / 30, 1 / 30),
+        ("pts", 0.04, 0.04),
+    ],
+)
+def test_names_of_times(name: str, step: float, seconds: float, tmp_path: Path) -> None:
+    """A name may say the unit."""
+    take = take_of(tmp_path, [f"{step * row:.6f}" for row in range(90)], name=name)
+    assert take.times == pytest.approx(seconds * np.arange(90), abs=1e-5)
+    assert not take.unknown
+
+
+def test_a_clock_of_whole_seconds(tmp_path: Path) -> None:
+    """Rows of one second are spread over it."""
+    take = take_of(tmp_path, [f"12:00:{row // 30:02}" for row in range(90)])
+    assert take.times == pytest.approx(np.arange(90) / 30.0)
+    assert told(take.notes, "spread evenly")
+
+
+def test_times_that_cannot_be_read(tmp_path: Path) -> None:
+    """The column is named, and frames are played one by one."""
+    take = take_of(tmp_path, ["half past: ten"] * 90)
+    assert take.duration == pytest.approx(89 / 30.0)
+    assert told(take.notes, "The times in 'time' cannot be read, and were not used")
+    assert told(take.notes, "Instead 30 frames a second were assumed")
+    assert not told(take.notes, "No times are given")
