@@ -16,16 +16,22 @@ from typing import Any
 import numpy as np
 
 from .gaps import whole_take
-from .named_columns import is_calibrated, shares
-from .names import HEAD_ANGLES, shape_of
+from .head_pose import head_of
+from .names import shape_of
 from .table import LARGEST
 from .take import Array, Request, Take
-from .timing import find_times
+from .timing import find_times, is_frame, stamp_of
+from .values import is_calibrated, is_flag, rows_without_face, shares, without_rows
 
 # All without capitals and underscores, see `_plain`.
 FACES = ("faceblendshapes", "blendshapes", "categories")
-MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
-RATES = ("fps", "exportfps")
+FRAMES = ("frames", "results", "data", "recording", "samples", "records", "weights")
+LISTED_NAMES = ("facsnames", "names", "blendshapenames", "shapenames", "keys", "channels")
+ROWS = ("weightmat", *FRAMES)
+WEIGHTS = ("weights", "values", "coefficients", "scores", *FACES)  # of one frame
+RATES = ("fps", "exportfps", "framerate")
+OF_NO_USE = ("index", "id", "version", "displayname", "facelandmarks", "landmarks")
+DEEPEST = 4  # tables in one another, in which a face is looked for
 
 
 def recognises(document: Any) -> bool:
@@ -36,68 +42,130 @@ def recognises(document: Any) -> bool:
 def read(document: Any, source: str, request: Request) -> Take:
     """The take in the document."""
     request.refuse_face(source)
-    notes: list[str] = []
-    frames = _frames(document)
-    shapes, unknown = _shapes([_faces(frame) for frame in frames], notes)
-    keyed = [_plain(frame) for frame in frames]
-    times = _times(keyed, request.rate, _rate(document), notes)
-    shapes = shares(shapes, notes)
-    return whole_take(
-        "MediaPipe JSON",
-        source,
-        times,
-        shapes | _head(keyed),
-        notes=notes,
-        unknown=unknown,
-        is_calibrated=is_calibrated(shapes, notes),
-    )
+    return _take_of(_frames(document), "MediaPipe JSON", document, source, request)
 
 
 def recognises_weights(document: Any) -> bool:
-    """Whether the document is what Audio2Face exports."""
-    keys = _plain(document)
-    return all(isinstance(keys.get(name), list) for name in ("facsnames", "weightmat"))
+    """Whether the document names shapes once, for rows of weights, as Audio2Face's exports do."""
+    return bool(_named_rows(document))
 
 
 def read_weights(document: Any, source: str, request: Request) -> Take:
-    """The take in `{"facsNames": ["jawOpen", ...], "weightMat": [[0.2, ...], ...]}`."""
+    """The take in `{"facsNames": ["jawOpen", ...], "weightMat": [[0.2, ...], ...]}`.
+
+    Frames may have times and more beside their weights: `{"weights": [0.2, ...], "time": 0.0}`.
+    """
     request.refuse_face(source)
-    keys, notes = _plain(document), list[str]()
-    rows = [row if isinstance(row, list) else [] for row in keys["weightmat"]]
-    found: dict[str, Array] = {}
-    unknown = []
-    for place, name in enumerate(map(str, keys["facsnames"])):
-        if shape := shape_of(name):
-            found[shape] = np.array([_number(dict(enumerate(row)).get(place)) for row in rows])
-        else:
-            unknown.append(name)
-    times = _times([{}] * len(rows), request.rate, _rate(document), notes)
-    shapes = shares(found, notes)
-    return whole_take("Audio2Face", source, times, shapes, notes=notes, unknown=unknown)
+    kind = "Audio2Face" if "facsnames" in _plain(document) else "JSON of weights"
+    return _take_of(_named_rows(document), kind, document, source, request)
 
 
-def _frames(document: Any) -> list[Any]:
-    """What stands for the frames."""
-    if isinstance(document, dict):
-        frames = _plain(document).get("frames")
-        return frames if isinstance(frames, list) else [document]
-    if isinstance(document, list):
-        return [document] if document and all(map(_category, document)) else document
+def _take_of(
+    frames: Sequence[Any], kind: str, document: Any, source: str, request: Request
+) -> Take:
+    """The take in frames, each a table with a face, or a list of faces."""
+    notes: list[str] = []
+    shapes, unknown = _shapes([_faces(frame) for frame in frames], notes)
+    keyed = [_flat(frame) for frame in frames]
+    times = _times(keyed, request.rate, _rate(document), notes)
+    head, used = head_of(keyed, notes)
+    lost = rows_without_face(_keys(keyed), lambda name: _texts(keyed, name), len(frames))
+    shapes = shares(without_rows(shapes, lost), notes)
+    left_out = [key for key in _keys(keyed) if key not in used and _is_left_out(key)]
+    return whole_take(
+        kind,
+        source,
+        times,
+        shapes | without_rows(head, lost),
+        notes=notes,
+        unknown=[*unknown, *left_out],
+        is_calibrated=kind != "Audio2Face" and is_calibrated(shapes, notes),
+    )
+
+
+def _named_rows(document: Any) -> list[Any]:
+    """Frames of a document that names its shapes once; none of another."""
+    keys = _plain(document)
+    for listed in LISTED_NAMES:
+        names = keys.get(listed)
+        if not isinstance(names, list) or not any(shape_of(str(name)) for name in names):
+            continue
+        rows: list[Any] = next((keys[key] for key in ROWS if isinstance(keys.get(key), list)), [])
+        return [_named_row([str(name) for name in names], row) for row in rows]
     return []
 
 
-def _faces(frame: Any) -> list[dict[str, float]]:
-    """Name as it is written -> score of each face in what stands for a frame."""
+def _named_row(names: Sequence[str], row: Any) -> dict[str, Any]:
+    """The frame of weights that are a row, or stand in a table with other keys."""
+    if not isinstance(row, dict):
+        return {"blendshapes": dict(zip(names, row if isinstance(row, list) else [], strict=False))}
+    frame = dict(row)
+    for key in row:
+        if key.casefold().replace("_", "") in WEIGHTS and isinstance(row[key], list):
+            del frame[key]
+            frame["blendshapes"] = dict(zip(names, row[key], strict=False))
+            break
+    return frame
+
+
+def _frames(document: Any) -> list[Any]:
+    """The frames of a document; one with a face of its own is a frame itself."""
+    if isinstance(document, list):
+        return [document] if document and all(map(_category, document)) else document
+    if not isinstance(document, dict):
+        return []
+    keys = _plain(document)
+    if isinstance(keys.get("frames"), list):
+        return list(keys["frames"])
+    if not _faces(document, depth=1):
+        for key in FRAMES:
+            rows = keys.get(key)
+            if isinstance(rows, list) and any(_faces(row) for row in rows[:1000]):
+                return rows
+    return [document]
+
+
+def _faces(frame: Any, depth: int = DEEPEST) -> list[dict[str, float]]:
+    """Name as it is written -> score of each face in a frame; depth: tables to look into."""
     if isinstance(frame, dict):
         plain = {key: item for key, item in frame.items() if not isinstance(item, dict | list)}
         found = {key: _number(item) for key, item in plain.items() if shape_of(key)}
-        return [found] if found else _faces(_first(_plain(frame), FACES))
+        if found:
+            return [found]
+        keys = _plain(frame)
+        faces = _faces(_first(keys, FACES), depth)
+        if faces or depth <= 1:
+            return faces
+        inner = (_faces(item, depth - 1) for key, item in keys.items() if key not in FACES)
+        return next(filter(None, inner), [])
     if isinstance(frame, list):
         categories = [_category(item) for item in frame]
         if categories and all(categories):
             return [dict(filter(None, categories))]
-        return [face for item in frame for face in _faces(item)]
+        return [face for item in frame for face in _faces(item, depth)]
     return []
+
+
+def _flat(frame: Any, depth: int = DEEPEST) -> dict[str, Any]:
+    """The keys of a frame, and of the tables in it that hold faces; without the faces."""
+    if isinstance(frame, list):
+        frame = frame[0] if len(frame) == 1 else {}
+    keys = _plain(frame)
+    found: dict[str, Any] = {}
+    for key, value in keys.items():
+        if shape_of(key) or key in FACES or value in ("", None) or value == []:
+            continue
+        if depth > 1 and isinstance(value, dict | list) and _faces(value, depth - 1):
+            found = _flat(value, depth - 1) | found
+        else:
+            found[key] = value
+    return found
+
+
+def _is_left_out(key: str) -> bool:
+    """Whether a key of frames says something that nothing here knows."""
+    is_known = is_flag(key) or is_frame(key) or stamp_of(key) is not None
+    return not (is_known or key in OF_NO_USE or key in RATES)
 
 
 def _category(item: Any) -> tuple[str, float] | None:
@@ -113,43 +181,24 @@ def _shapes(
     """Shape -> values, shape (frames,), NaN where there is no face; and names that none has."""
     if (most := max(map(len, frames), default=0)) > 1:
         notes.append(f"Up to {most} faces are in a frame; the first was taken.")
-    values, unknown = dict[str, Array](), dict[str, None]()
+    values: dict[str, Array] = {}
+    spellings: dict[str, str] = {}
+    repeated: dict[str, None] = {}
+    unknown: dict[str, None] = {}
     for row, faces in enumerate(frames):
         for written, score in faces[0].items() if faces else ():
             name = shape_of(written)
-            if name is not None:
+            if name is None:
+                if written != "_neutral":
+                    unknown[written] = None
+            elif spellings.setdefault(name, written) != written:
+                repeated[written] = None
+            else:
                 values.setdefault(name, np.full(len(frames), np.nan))[row] = score
-            elif written != "_neutral":
-                unknown[written] = None
+    if repeated:
+        listed = ", ".join(f"'{each}'" for each in repeated)
+        notes.append(f"Another name holds the same, and these were left out: {listed}.")
     return values, list(unknown)[:1000]
-
-
-def _head(frames: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
-    """The head's angles from MediaPipe's 4 x 4 matrices; x to the subject's left, y up, z ahead."""
-    angles = np.full((3, len(frames)), np.nan)
-    for row, frame in enumerate(frames):
-        matrix = _matrix(_first(frame, MATRICES))
-        if matrix is not None:
-            ahead = matrix[:, 2] / (np.linalg.norm(matrix[:, 2]) or 1.0)
-            angles[0, row] = math.degrees(math.atan2(ahead[0], ahead[2]))
-            angles[1, row] = math.degrees(math.asin(max(-1.0, min(1.0, ahead[1]))))
-            angles[2, row] = math.degrees(math.atan2(matrix[0, 1], matrix[1, 1]))
-    return dict(zip(HEAD_ANGLES, angles, strict=True)) if np.isfinite(angles).any() else {}
-
-
-def _matrix(value: Any) -> Array | None:
-    """The rotation, shape (3, 3), in 4 rows, or in 16 numbers by columns, as pages have them."""
-    while isinstance(value, list) and len(value) == 1:
-        value = value[0]
-    if isinstance(value, dict):
-        value = value.get("data")
-    try:
-        matrix = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        return None
-    if matrix.shape not in ((4, 4), (16,)) or not np.isfinite(matrix).all():
-        return None
-    return (matrix if matrix.ndim == 2 else matrix.reshape(4, 4).T)[:3, :3]
 
 
 def _times(
@@ -157,16 +206,25 @@ def _times(
     notes: list[str],
 ) -> Array:  # fmt: skip
     """Times of the frames, by their keys, else by the rate that the document has."""
-    names = dict.fromkeys(key for frame in frames for key, value in frame.items() if value != "")
-
-    def texts(name: str) -> list[str]:
-        values = [frame.get(name) for frame in frames]
-        return [value.strip() if isinstance(value, str) else "" for value in values]
 
     def numbers(name: str) -> Array:
         return np.array([_number(frame.get(name)) for frame in frames])
 
-    return find_times([*names], texts, numbers, len(frames), rate, notes, written_rate)
+    def texts(name: str) -> list[str]:
+        return _texts(frames, name)
+
+    return find_times(_keys(frames), texts, numbers, len(frames), rate, notes, written_rate)
+
+
+def _keys(frames: Sequence[Mapping[str, Any]]) -> list[str]:
+    """All keys of frames, each once."""
+    return [*dict.fromkeys(key for frame in frames for key in frame)]
+
+
+def _texts(frames: Sequence[Mapping[str, Any]], name: str) -> list[str]:
+    """What frames have under a key, as a table has it; "" for lists and tables."""
+    values = [frame.get(name) for frame in frames]
+    return [str(v).strip() if isinstance(v, bool | int | float | str) else "" for v in values]
 
 
 def _rate(document: Any) -> float | None:

@@ -6,26 +6,27 @@ are in radians there, in others perhaps in degrees, and count down and to the su
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-
+from .angles import in_degrees
 from .gaps import whole_take
-from .names import ACTION_UNIT, ARKIT, NONSENSE, angle_of, shape_of, viseme_of
+from .names import NONSENSE, angle_of, shape_of, unit_of, viseme_of
 from .table import FACE_COLUMNS, Table, one_face
-from .take import Array, Request, Take
+from .take import Request, Take
 from .timing import times_of
+from .values import (
+    intensities,
+    is_calibrated,
+    is_flag,
+    of_percent,
+    rows_without_face,
+    shares,
+    without_rows,
+)
 
-HIGHEST = 6.0  # an intensity beyond is none
-LARGEST_DEGREES = 360.0  # what is larger is no angle in any unit
-LARGEST_RADIANS = 1.6  # no head that is seen turns further, nor an eye
 # [degrees] by which the axes of eyeballs stand outwards where eyes look ahead, in the app's files
 # and packets, as those of real eyes do.
 OUTWARD = {"eye_yaw_left": 4.0, "eye_yaw_right": -4.0}
-NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
-                 "mouthShrugUpper")  # fmt: skip
 OF_NO_USE = (
     "blendshapecount",
     "timecode",
@@ -43,6 +44,7 @@ class Columns:
 
     shapes: dict[str, int] = field(default_factory=dict)
     units: dict[str, int] = field(default_factory=dict)
+    detections: dict[str, int] = field(default_factory=dict)
     visemes: dict[str, int] = field(default_factory=dict)
     angles: dict[str, int] = field(default_factory=dict)
     unknown: list[int] = field(default_factory=list)
@@ -52,17 +54,16 @@ class Columns:
     def of(cls, names: tuple[str, ...]) -> Columns:
         """Sort out the names of columns; the first of a channel counts."""
         found = cls()
-        units = [match for name in names if (match := ACTION_UNIT.match(name.casefold()))]
-        has_sides = any(match[2] in ("l", "left") for match in units)
-        for number, name in enumerate(names):
-            unit = ACTION_UNIT.match(name.casefold())
+        units = [unit_of(name) for name in names]
+        has_sides = any(unit is not None and unit.side == "_left" for unit in units)
+        has_intensities = any(unit is not None and unit.kind == "intensity" for unit in units)
+        for number, (name, unit) in enumerate(zip(names, units, strict=True)):
             known: dict[str, int] | None = None
             channel = ""
-            if unit and unit[2] != "c":
-                sides = {"l": "_left", "left": "_left", "right": "_right"}
-                side = "_right" if unit[2] == "r" and has_sides else sides.get(unit[2] or "", "")
-                known = found.units
-                channel = f"AU{unit[1]}{side}"
+            if unit is not None:
+                is_detection = unit.kind == "detection" or (has_intensities and not unit.kind)
+                known = found.detections if is_detection else found.units
+                channel = unit.channel(has_sides)
             elif shape := shape_of(name):
                 known = found.shapes
                 channel = shape
@@ -72,7 +73,7 @@ class Columns:
             elif name.casefold().startswith("viseme_") and (viseme := viseme_of(name)):
                 known = found.visemes
                 channel = viseme
-            elif name.casefold() not in OF_NO_USE:
+            elif name.casefold() not in OF_NO_USE and not is_flag(name):
                 found.unknown.append(number)
             if known is not None and known.setdefault(channel, number) != number:
                 found.repeated.append(number)
@@ -89,7 +90,7 @@ class Columns:
     @property
     def are_known(self) -> bool:
         """Whether there is anything that can be played."""
-        return bool(self.shapes or self.units or self.visemes)
+        return bool(self.shapes or self.units or self.detections or self.visemes)
 
 
 def recognises(names: tuple[str, ...]) -> bool:
@@ -113,11 +114,20 @@ def read(table: Table, request: Request) -> Take:
     columns = Columns.of(table.names)
     notes += columns.notes_of(table.names)
     times, used = times_of(table, request.rate, notes)
-    wanted = columns.shapes | columns.units | columns.visemes | columns.angles
-    numbers = table.numbers_of(wanted)
+    only_present = {n: c for n, c in columns.detections.items() if n not in columns.units}
+    twice = [name for name in columns.detections if name in columns.units]
+    if twice:
+        notes.append(f"Intensities were taken, and detections left out: {', '.join(twice)}.")
+    if only_present:
+        notes.append(f"{', '.join(only_present)}: only present or absent, 0 or 1.")
+    wanted = columns.shapes | columns.units | only_present | columns.visemes | columns.angles
+    lost = rows_without_face(table.names, table.cells_of, len(table.lines))
+    numbers = without_rows(table.numbers_of(wanted), lost)
     shapes = shares({name: numbers[name] for name in columns.shapes}, notes)
     channels = shapes | intensities({name: numbers[name] for name in columns.units}, notes)
-    channels |= {name: numbers[name] for name in columns.visemes}
+    channels |= {name: numbers[name] for name in only_present}
+    visemes = {name: numbers[name] for name in columns.visemes}
+    channels |= of_percent(visemes, NONSENSE, "Visemes", notes)
     is_known = is_live_link(table.names)
     outward = OUTWARD if is_known else {}
     channels |= in_degrees({name: numbers[name] for name in columns.angles}, outward, notes)
@@ -133,63 +143,3 @@ def read(table: Table, request: Request) -> Take:
         unknown=[name for name in unknown if name.casefold() not in {*used, *FACE_COLUMNS}],
         is_calibrated=is_calibrated(shapes, notes),
     )
-
-
-def shares(shapes: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """ARKit's shapes; NaN where the value is none. Trackers overshoot a little, as notes tell."""
-    found, far, beyond = {}, 0, 0
-    for name, values in shapes.items():
-        is_far = np.abs(values) > NONSENSE
-        far += int(is_far.sum())
-        found[name] = values = np.where(is_far, np.nan, values)
-        beyond += int(np.sum((values < -0.001) | (values > 1.001)))
-    if far:
-        notes.append(f"{far} values of shapes are far from 0 to 1 and were left out.")
-    if beyond:
-        notes.append(f"{beyond} values of shapes were cut off at 0 and 1.")
-    return found
-
-
-def intensities(units: dict[str, Array], notes: list[str]) -> dict[str, Array]:
-    """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) are divided."""
-    units = {name: np.where(np.abs(v) > HIGHEST, np.nan, v) for name, v in units.items()}
-    highest = max((float(np.nanmax(values, initial=0.0)) for values in units.values()), default=0.0)
-    if highest > 1.0:
-        notes.append("Action units go from 0 to 5 and were divided by 5.")
-        units = {name: values / 5.0 for name, values in units.items()}
-    return units
-
-
-def in_degrees(
-    angles: Mapping[str, Array], outward: Mapping[str, float], notes: list[str]
-) -> dict[str, Array]:
-    """Angles in degrees, + to the subject's left, up, to the left shoulder.
-
-    angles: name of ours -> as the file has it, shape (T,), NaN where nothing is known. outward: by
-    how much the axes of eyeballs are off [degrees].
-    """
-    moving = {}
-    for name, values in angles.items():
-        values = np.where(np.abs(values) > LARGEST_DEGREES, np.nan, values)
-        if np.nan_to_num(values).any():
-            moving[name] = values
-    if len(moving) < len(angles):
-        still = ", ".join(name for name in angles if name not in moving)
-        notes.append(f"Always 0, as if switched off, and left out: {still}.")
-    if not moving:
-        return {}
-    size = max(float(np.nanpercentile(np.abs(values), 99)) for values in moving.values())
-    is_radians = size <= LARGEST_RADIANS
-    unit = "radians" if is_radians else "degrees"
-    notes.append(f"Angles reach {size:.2g} and were taken for {unit}.")
-    scale = -180.0 / math.pi if is_radians else -1.0
-    return {name: scale * values - outward.get(name, 0.0) for name, values in moving.items()}
-
-
-def is_calibrated(shapes: dict[str, Array], notes: list[str]) -> bool:
-    """Whether the neutral face was taken away: then shapes that never rest are often at 0."""
-    resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
-    calibrated = sum(bool(np.mean(values <= 1e-6) > 0.2) for values in resting) >= 3
-    if calibrated and len(shapes) == len(ARKIT):
-        notes.append("The take is calibrated: its neutral face is at 0.")
-    return calibrated

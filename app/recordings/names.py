@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import functools
 import re
+from dataclasses import dataclass
 
 ARKIT = (
     "eyeBlinkLeft", "eyeLookDownLeft", "eyeLookInLeft", "eyeLookOutLeft", "eyeLookUpLeft",
@@ -43,7 +44,10 @@ VISEMES = tuple(
     f"viseme_{sound}" for sound in "sil PP FF TH DD kk CH SS nn RR aa E ih oh ou".split()
 )
 
-ACTION_UNIT = re.compile(r"au[ _]?0*([1-9]\d?)(?:[ _]?(r|c|l|left|right))?$")
+ACTION_UNIT = re.compile(
+    r"au[ _]?0*([1-9]\d?)(?:[ _]?(r|c|l|left|right))?"
+    r"(?:[ _.-]?(int(?:ensity)?|detection|detected|presence|present|binary|occurrence))?$"
+)
 OCULUS_VOWELS = {"i": "ih", "o": "oh", "u": "ou", "e": "E"}  # of its visemes -> ours
 _SOUND = {name.removeprefix("viseme_").casefold(): name for name in VISEMES}
 
@@ -76,6 +80,40 @@ def _angle_spellings() -> dict[str, str]:
 
 _SHAPES = _spellings()
 _ANGLES = _angle_spellings()
+
+
+@dataclass(frozen=True)
+class Unit:
+    """An action unit that a column holds.
+
+    side: "_left", "_right", "" for both or unknown. is_short_right: whether the side is a mere R,
+    which is OpenFace's for intensity where no other column has an L. kind: "intensity",
+    "detection", "" where the name does not say.
+    """
+
+    number: int
+    side: str
+    is_short_right: bool
+    kind: str
+
+    def channel(self, has_sides: bool) -> str:
+        """The channel's name; has_sides: whether any column of the file is a left one."""
+        side = "" if self.is_short_right and not has_sides else self.side
+        return f"AU{self.number}{side}"
+
+
+def unit_of(column: str) -> Unit | None:
+    """The action unit that a column holds; None for another column."""
+    match = ACTION_UNIT.match(column.casefold())
+    if match is None:
+        return None
+    sides = {"l": "_left", "left": "_left", "r": "_right", "right": "_right"}
+    kind = ""
+    if match[3]:
+        kind = "intensity" if match[3].startswith("int") else "detection"
+    if match[2] == "c":
+        kind = "detection"
+    return Unit(int(match[1]), sides.get(match[2] or "", ""), match[2] == "r", kind)
 
 
 @functools.lru_cache(maxsize=4096)  # JSON names each shape again in each frame

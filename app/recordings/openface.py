@@ -17,6 +17,7 @@ from .names import EYE_ANGLES
 from .table import Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
+from .values import intensities, rows_without_face, without_rows
 
 INTENSITY = re.compile(r"au(\d\d)_r$")
 PRESENCE = re.compile(r"au(\d\d)_c$")
@@ -27,8 +28,6 @@ POSE = {
 }
 GAZE = ("gaze_angle_x", "gaze_angle_y")
 VECTORS = ("gaze_0_x", "gaze_0_y", "gaze_0_z", "gaze_1_x", "gaze_1_y", "gaze_1_z")
-FAR = 10.0  # an intensity beyond is none
-SEEN = 0.5  # success is 0 or 1; a confidence below is none
 
 
 def recognises(names: tuple[str, ...]) -> bool:
@@ -46,19 +45,22 @@ def read(table: Table, request: Request) -> Take:
     notes: list[str] = []
     times, _ = times_of(table, request.rate, notes)
     places = table.places
-    intensities = {
-        f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY.match(name))
-    }
+    found = {f"AU{int(m[1])}": n for name, n in places.items() if (m := INTENSITY.match(name))}
     presences = {f"AU{int(m[1])}": n for name, n in places.items() if (m := PRESENCE.match(name))}
-    only_present = {name: n for name, n in presences.items() if name not in intensities}
-    others = [n for n in ("success", "confidence", *POSE, *GAZE, *VECTORS) if n in places]
-    wanted = intensities | only_present | {name: places[name] for name in others}
+    only_present = {name: n for name, n in presences.items() if name not in found}
+    others = [n for n in (*POSE, *GAZE, *VECTORS) if n in places]
+    wanted = found | only_present | {name: places[name] for name in others}
     numbers = table.numbers_of(wanted)
 
-    channels = {
-        name: np.where(np.abs(numbers[name]) > FAR, np.nan, numbers[name] / 5.0)
-        for name in intensities
-    }
+    lost = rows_without_face(table.names, table.cells_of, len(times))
+    units = without_rows({name: numbers[name] for name in found}, lost)
+    scaling: list[str] = []
+    channels = intensities(units, scaling)
+    if any("divided by 5." in note for note in scaling):  # as OpenFace itself writes them
+        scaling.clear()
+    elif not scaling and units:
+        scaling.append("Action units go no higher than 1, and were taken for 0 to 1, not 0 to 5.")
+    notes += scaling
     channels |= {name: numbers[name] for name in only_present}
     if only_present:
         notes.append(f"{', '.join(sorted(only_present))}: only present or absent, 0 or 1.")
@@ -66,8 +68,7 @@ def read(table: Table, request: Request) -> Take:
         if column in numbers:
             channels[name] = sign * np.degrees(numbers[column])
     channels |= _eyes(numbers, channels, notes)
-    lost = numbers.get("success", numbers.get("confidence", np.ones(1))) < SEEN
-    channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
+    channels = without_rows(channels, lost)
     version = 2 if "face_id" in places or "gaze_angle_x" in places else 1
     return whole_take(
         f"OpenFace {version}",

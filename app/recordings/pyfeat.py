@@ -17,11 +17,11 @@ import re
 import numpy as np
 
 from .gaps import whole_take
-from .named_columns import shares
 from .names import shape_of
 from .table import Table, one_face
 from .take import Array, Request, Take
 from .timing import times_of
+from .values import intensities, rows_without_face, shares, without_rows
 
 UNIT = re.compile(r"au(\d\d)$")
 BOX = {"facerectx", "facerecty", "facerectwidth", "facerectheight", "facescore"}
@@ -55,11 +55,12 @@ def read(table: Table, request: Request) -> Take:
     others = {name: places[name] for name in ("facescore", *POSE) if name in places}
     wanted = units | shapes | others
     numbers = table.numbers_of(wanted)
-    channels = {name: numbers[name] for name in units}
+    channels = intensities({name: numbers[name] for name in units}, notes)
     channels |= shares({name: numbers[name] for name in shapes}, notes)
     channels |= _head(numbers, bool(shapes), notes)
-    lost = ~(numbers.get("facescore", np.ones(1)) > 0.0)
-    channels = {name: np.where(lost, np.nan, values) for name, values in channels.items()}
+    lost = rows_without_face(table.names, table.cells_of, len(table.lines))
+    lost |= ~(numbers.get("facescore", np.ones(1)) > 0.0)
+    channels = without_rows(channels, lost)
     return whole_take(
         "py-feat 2" if shapes else "py-feat 1",
         table.source,

@@ -113,6 +113,10 @@ class Table:
         """The text in one column."""
         return [line.split(self.delimiter, column + 1)[column].strip() for line in self.lines]
 
+    def cells_of(self, name: str) -> list[str]:
+        """The text in the first column with this name, capitals aside."""
+        return self.cells(self.places[name.casefold()])
+
     def numbers_of(self, places: Mapping[str, int]) -> dict[str, Array]:
         """Name -> the numbers in its column, shape (rows,); NaN where there is none."""
         return dict(zip(places, self.numbers([*places.values()]).T, strict=True))

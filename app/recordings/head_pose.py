@@ -1,0 +1,147 @@
+"""The head's turn beside shapes in JSON: angles, quaternions and matrices, where they are clear.
+
+Three numbers without names are not: programs disagree about their order. Axes of quaternions and
+matrices are MediaPipe's: x to the subject's left, y up, z ahead.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from .angles import in_degrees
+from .names import HEAD_ANGLES, angle_of
+from .take import Array
+
+MATRICES = ("facialtransformationmatrixes", "facialtransformationmatrices", "matrix")
+POSES = re.compile(
+    r"(head|face|facial)?(rotations?|pose|angles?|euler(angles?)?|orientation|quat(ernion)?"
+    r"|transform(ation)?(matrix)?|matrix)$|head$"
+)
+ANGLE = re.compile(r"(?:head)?(yaw|pitch|roll)(?:angle)?(?:in)?(?:deg(?:rees)?|rad(?:ians)?)?$")
+
+
+def is_pose(key: str) -> bool:
+    """Whether a key, without capitals and underscores, may hold the turn of the head."""
+    return key in MATRICES or bool(POSES.match(key))
+
+
+def head_of(
+    frames: Sequence[Mapping[str, Any]], notes: list[str]
+) -> tuple[dict[str, Array], set[str]]:
+    """Angles of head and eyes [degrees], each of shape (frames,), and the keys that hold them.
+
+    frames: keys without capitals and underscores -> values.
+    """
+    named = _named_angles(frames)
+    if named:
+        found, used = named
+        notes.append("Angles were taken to count down and to the subject's right, as ARKit's do.")
+        return in_degrees(found, {}, notes), used
+    keys = dict.fromkeys(key for frame in frames for key in frame if is_pose(key))
+    for key in sorted(keys, key=lambda key: key not in MATRICES):
+        values = [frame.get(key) for frame in frames]
+        matrices = [_matrix(value) for value in values]
+        if all(matrix is None for matrix in matrices):
+            matrices = _turned(values, key, notes)
+        if any(matrix is not None for matrix in matrices):
+            angles = np.array([_angles_of(matrix) for matrix in matrices]).T
+            return dict(zip(HEAD_ANGLES, angles, strict=True)), {key}
+    return {}, set()
+
+
+def _named_angles(frames: Sequence[Mapping[str, Any]]) -> tuple[dict[str, Array], set[str]] | None:
+    """Angles as the file has them, beside shapes or in a table of their own; and their keys."""
+    found: dict[str, Array] = {}
+    used: set[str] = set()
+    for row, frame in enumerate(frames):
+        for key, value in frame.items():
+            if isinstance(value, dict) and is_pose(key):
+                inner = {_letters(each): angle for each, angle in value.items()}
+                if not any(ANGLE.match(each) for each in inner):
+                    continue
+            elif ANGLE.match(key) or angle_of(key):
+                inner = {key: value}
+            else:
+                continue
+            for each, angle in inner.items():
+                match = ANGLE.match(each)
+                name = f"head_{match[1]}" if match else angle_of(each)
+                if name is None or not _is_number(angle):
+                    continue
+                used.add(key)
+                found.setdefault(name, np.full(len(frames), np.nan))[row] = float(angle)
+    return (found, used) if found else None
+
+
+def _turned(values: Sequence[Any], key: str, notes: list[str]) -> list[Array | None]:
+    """The matrices of quaternions, None where there is none."""
+    quaternions = [_quaternion(value) for value in values]
+    known = np.array([each for each in quaternions if each is not None])
+    if not len(known):
+        return [None] * len(values)
+    has_names = any(isinstance(value, dict) for value in values)
+    # A head is never upside down, so that the scalar is the largest number.
+    is_scalar_first = not has_names and bool(
+        np.median(np.abs(known[:, 0])) > np.median(np.abs(known[:, 3]))
+    )
+    order = "w, x, y, z" if is_scalar_first else "x, y, z, w"
+    notes.append(
+        f"'{key}' was read as quaternions {order}, with x to the subject's left, y up and z ahead."
+    )
+    roll = -1 if is_scalar_first else 0
+    return [
+        None if each is None else np.asarray(Rotation.from_quat(np.roll(each, roll)).as_matrix())
+        for each in quaternions
+    ]
+
+
+def _quaternion(value: Any) -> Array | None:
+    """The four numbers of a quaternion in their order, None for another value."""
+    if isinstance(value, dict):
+        parts = {_letters(each).removeprefix("q"): number for each, number in value.items()}
+        value = [parts.get(each) for each in "xyzw"]
+    if not isinstance(value, list) or len(value) != 4 or not all(map(_is_number, value)):
+        return None
+    found = np.array(value, dtype=np.float64)
+    return found if 0.9 < float(np.linalg.norm(found)) < 1.1 else None
+
+
+def _angles_of(matrix: Array | None) -> tuple[float, float, float]:
+    """Yaw, pitch and roll [degrees] of a rotation, shape (3, 3); NaN for None."""
+    if matrix is None:
+        return math.nan, math.nan, math.nan
+    ahead = matrix[:, 2] / (np.linalg.norm(matrix[:, 2]) or 1.0)
+    return (
+        math.degrees(math.atan2(ahead[0], ahead[2])),
+        math.degrees(math.asin(max(-1.0, min(1.0, ahead[1])))),
+        math.degrees(math.atan2(matrix[0, 1], matrix[1, 1])),
+    )
+
+
+def _matrix(value: Any) -> Array | None:
+    """The rotation, shape (3, 3), in 3 or 4 rows, or in 16 numbers by columns, as pages have it."""
+    while isinstance(value, list) and len(value) == 1:
+        value = value[0]
+    if isinstance(value, dict):
+        value = value.get("data")
+    try:
+        matrix = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    if matrix.shape not in ((4, 4), (16,), (3, 3)) or not np.isfinite(matrix).all():
+        return None
+    return (matrix if matrix.ndim == 2 else matrix.reshape(4, 4).T)[:3, :3]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e30
+
+
+def _letters(key: Any) -> str:
+    return re.sub(r"[^a-z0-9]", "", str(key).casefold())

@@ -1,0 +1,167 @@
+"""Units of values, and flags of rows without a face: the same for tables and JSON of all programs.
+
+Shapes are 0 to 1, or 0 to 100 as programs for animation count them. Action units are 0 to 1, 0 to 5
+(FACS' A to E), or 0 to 100. Trackers write zeros, or the last values, while they see no face, and
+many say so in a flag.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .names import ARKIT, NONSENSE
+from .take import Array
+
+Rows = npt.NDArray[np.bool_]
+
+HIGHEST_UNIT = 6.0  # an intensity of 0 to 5 beyond is none
+MOST_PERCENT = 300.0  # of a shape; programs for animation allow more than 100
+SHARE_OF_PERCENT = 0.05  # of rows with large values: percent, and no stray values
+OVERSHOOT = 1.05  # to which smoothed values of 0 to 1 reach
+SEEN = 0.5  # a flag is 0 or 1; a confidence below is none
+SURE_FLAGS = (
+    "facedetected", "detected", "hasface", "facefound", "facepresent", "facevisible", "istracked",
+    "tracked", "istracking", "facetracked", "isfacetracked", "valid", "isvalid", "success",
+    "confidence", "faceconfidence", "detectionconfidence", "trackingconfidence",
+)  # fmt: skip
+COUNT = "blendshapecount"  # of the values in a row
+WORDS = {"true": 1.0, "yes": 1.0, "false": 0.0, "no": 0.0}
+NEVER_AT_REST = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight",
+                 "mouthShrugUpper")  # fmt: skip
+ZERO = 1e-6
+
+
+def is_flag(name: str) -> bool:
+    """Whether a column or key says if a face is seen."""
+    letters = _letters(name)
+    return letters in SURE_FLAGS or letters == COUNT
+
+
+def rows_without_face(
+    names: Iterable[str], texts: Callable[[str], Sequence[str]], count: int
+) -> Rows:
+    """The rows in which a flag says that no face is seen, shape (count,).
+
+    names: of columns or keys. texts: the cells of one of them, "" where there is none. A confidence
+    counts where nothing says yes or no.
+    """
+    lost = np.zeros(count, dtype=bool)
+    flags = [name for name in names if is_flag(name)]
+    plain = [name for name in flags if "confidence" not in _letters(name)]
+    for name in plain or flags:
+        values = np.array([_flag_in(cell) for cell in texts(name)])
+        if _letters(name) == COUNT:
+            is_lost = values == 0.0
+            if is_lost.all():  # of a program that counts nothing
+                continue
+        else:
+            highest = float(np.nanmax(values, initial=0.0))
+            is_lost = values < SEEN * (100.0 if highest > 1.5 else 1.0)
+        lost |= is_lost
+    return lost
+
+
+def shares(shapes: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
+    """ARKit's shapes, 0 to 1; NaN where the value is none. Trackers overshoot a little.
+
+    Rows of zeros in a take whose face is never at 0 are rows without a face, NaN throughout.
+    """
+    found = of_percent(shapes, NONSENSE, "Shapes", notes)
+    far = 0
+    beyond = 0
+    for name, values in found.items():
+        is_far = np.abs(values) > NONSENSE
+        far += int(is_far.sum())
+        kept = np.where(is_far, np.nan, values)
+        found[name] = kept
+        beyond += int(np.sum((kept < -0.001) | (kept > 1.001)))
+    if far:
+        notes.append(f"{far} values of shapes are far from 0 to 1 and were left out.")
+    if beyond:
+        notes.append(f"{beyond} values of shapes were cut off at 0 and 1.")
+    lost = _rows_of_zeros(found)
+    if lost.any():
+        notes.append(f"All shapes are 0 in {int(lost.sum())} frames, as where no face is seen.")
+        found = without_rows(found, lost)
+    return found
+
+
+def intensities(units: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
+    """Action units as intensities 0 to 1; FACS' 0 to 5 (A to E) and percent are divided."""
+    found = of_percent(units, HIGHEST_UNIT, "Action units", notes)
+    found = {name: np.where(np.abs(v) > HIGHEST_UNIT, np.nan, v) for name, v in found.items()}
+    highest = max((float(np.nanmax(values, initial=0.0)) for values in found.values()), default=0.0)
+    if highest > OVERSHOOT:
+        notes.append("Action units go from 0 to 5 and were divided by 5.")
+        found = {name: values / 5.0 for name, values in found.items()}
+    return found
+
+
+def without_rows(channels: Mapping[str, Array], lost: Rows) -> dict[str, Array]:
+    """The channels with NaN in rows without a face."""
+    return {name: np.where(lost, np.nan, values) for name, values in channels.items()}
+
+
+def is_calibrated(shapes: Mapping[str, Array], notes: list[str]) -> bool:
+    """Whether the neutral face was taken away: then shapes that never rest are often at 0.
+
+    Rows without a face, which are NaN, do not count.
+    """
+    resting = [shapes[name] for name in NEVER_AT_REST if name in shapes]
+    at_zero = [values[np.isfinite(values)] <= ZERO for values in resting]
+    calibrated = sum(bool(rows.size and np.mean(rows) > 0.2) for rows in at_zero) >= 3
+    if calibrated and len(shapes) == len(ARKIT):
+        notes.append("The take is calibrated: its neutral face is at 0.")
+    return calibrated
+
+
+def of_percent(
+    channels: Mapping[str, Array], most: float, kind: str, notes: list[str]
+) -> dict[str, Array]:
+    """The channels, divided by 100 where rows of them have values that only percent have.
+
+    most: the highest value in another unit.
+    """
+    if not channels:
+        return {}
+    values = np.array(list(channels.values()))
+    is_large = (values > most) & (values <= MOST_PERCENT)
+    moving = np.any(np.nan_to_num(values) != 0.0, axis=0)
+    if not is_large.any() or is_large.any(axis=0).sum() <= SHARE_OF_PERCENT * moving.sum():
+        return dict(channels)
+    notes.append(f"{kind} go from 0 to 100 and were divided by 100.")
+    return {name: each / 100.0 for name, each in channels.items()}
+
+
+def _rows_of_zeros(shapes: Mapping[str, Array]) -> Rows:
+    """The rows in which all shapes are 0 although those that never rest are not, elsewhere."""
+    if not shapes:
+        return np.zeros(0, dtype=bool)
+    is_zero = np.all([np.abs(np.nan_to_num(values)) <= ZERO for values in shapes.values()], axis=0)
+    is_empty = np.all([np.isnan(values) for values in shapes.values()], axis=0)
+    is_zero &= ~is_empty
+    others = ~(is_zero | is_empty)
+    if not (is_zero.any() and others.any()):
+        return np.zeros(len(is_zero), dtype=bool)
+    resting = [shapes[name][others] for name in NEVER_AT_REST if name in shapes]
+    raised = sum(bool(np.nanmin(values, initial=1.0) > 0.02) for values in resting)
+    return is_zero if raised >= 3 else np.zeros(len(is_zero), dtype=bool)
+
+
+def _flag_in(cell: str) -> float:
+    """The number that a flag is, NaN for none."""
+    word = cell.strip().casefold()
+    if word in WORDS:
+        return WORDS[word]
+    try:
+        return float(word)
+    except ValueError:
+        return np.nan
+
+
+def _letters(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.casefold())

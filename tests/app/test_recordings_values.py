@@ -1,0 +1,224 @@
+"""Units of values, flags of rows without a face, heads beside shapes: in tables and in JSON."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from risorius.app.recordings import Take, is_recording, read_take
+
+from .recording_files import told, written
+
+COUNT = 150
+RISE = np.sin(np.linspace(0.0, np.pi, COUNT)) ** 2
+TIMES = np.arange(COUNT) / 30.0
+RESTING = ("browDownLeft", "browDownRight", "noseSneerLeft", "noseSneerRight", "mouthShrugUpper")
+FRAMES: list[dict[str, Any]] = [
+    {"time": time, "blendshapes": {"jawOpen": value, "mouthClose": 0.1}}
+    for time, value in zip(TIMES.tolist(), RISE.tolist(), strict=True)
+]
+
+
+def of_table(folder: Path, columns: Mapping[str, Sequence[object] | np.ndarray]) -> Take:
+    """The take of a table with these columns behind times."""
+    return read_take(written(folder / "take.csv", {"timestamp": TIMES, **columns}))
+
+
+def of_json(folder: Path, document: Any) -> Take:
+    """The take of a document."""
+    path = folder / "take.json"
+    path.write_text(json.dumps(document))
+    assert is_recording(path)
+    return read_take(path)
+
+
+UNITS: dict[str, tuple[dict[str, Any], str, float, str]] = {
+    "shapes in percent": ({"jawOpen": 100 * RISE}, "jawOpen", 1.0, "0 to 100"),
+    "shapes": ({"jawOpen": RISE}, "jawOpen", 1.0, ""),
+    "units in percent": ({"AU12": 100 * RISE}, "AU12", 1.0, "0 to 100"),
+    "units of FACS": ({"AU12": 4.0 * RISE}, "AU12", 0.8, "divided by 5"),
+    "smoothed units": ({"AU12": 1.02 * RISE}, "AU12", 1.02, ""),
+    "OpenFace": ({"confidence": [0.9] * COUNT, "AU12_r": 4.0 * RISE}, "AU12", 0.8, ""),
+    "OpenFace, 0 to 1": (
+        {"success": [1] * COUNT, "AU12_r": RISE, "AU12_c": [1] * COUNT}, "AU12", 1.0, "0 to 1",
+    ),
+    "OpenFace in percent": (
+        {"success": [1] * COUNT, "AU12_r": 100.0 * RISE}, "AU12", 1.0, "0 to 100",
+    ),
+    "visemes in percent": ({"viseme_aa": 100 * RISE}, "viseme_aa", 1.0, "0 to 100"),
+    "LibreFace": (
+        {"au_12": np.round(RISE), "au_12_intensity": 4.0 * RISE}, "AU12", 0.8, "detections",
+    ),
+    "a presence beside": (
+        {"AU12_presence": np.round(RISE), "AU12": 4.0 * RISE}, "AU12", 0.8, "detections",
+    ),
+    "only a presence": (
+        {"AU12_detection": np.round(RISE)}, "AU12", 1.0, "only present or absent",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", UNITS)
+def test_units(kind: str, tmp_path: Path) -> None:
+    """A channel peaks at its share of the greatest value; what was guessed is reported."""
+    columns, channel, peak, note = UNITS[kind]
+    take = of_table(tmp_path, columns)
+    assert take.channels.keys() == {channel}
+    assert take.channels[channel].max() == pytest.approx(peak, abs=2e-3)
+    assert told(take.notes, note) or not note
+    assert not told(take.notes, "No face")
+
+
+def test_stray_values_are_no_percent(tmp_path: Path) -> None:
+    """A few values that are far off leave the others what they are."""
+    jaw = RISE.copy()
+    jaw[[20, 70]] = 80.0
+    take = of_table(tmp_path, {"jawOpen": jaw})
+    assert take.channels["jawOpen"].max() == pytest.approx(1.0, abs=1e-3)
+    assert told(take.notes, "2 values of shapes are far from 0 to 1")
+
+
+def lost_columns(value: float) -> tuple[dict[str, Any], np.ndarray]:
+    """A face whose brows and nose rest at 0.4, and `value` in all shapes of rows 60 to 99."""
+    lost = (np.arange(COUNT) >= 60) & (np.arange(COUNT) < 100)
+    shapes = {name: np.where(lost, value, 0.4 + 0.02 * RISE) for name in RESTING}
+    return {"jawOpen": np.where(lost, value, 0.2 + 0.5 * RISE), **shapes}, lost
+
+
+@pytest.mark.parametrize(
+    ("flag", "seen", "unseen"),
+    [
+        ("", "", ""),
+        ("faceDetected", "true", "false"),
+        ("face_detected", 1, 0),
+        ("isTracked", "True", "False"),
+        ("tracked", "yes", "no"),
+        ("success", 1, 0),
+        ("confidence", 0.9, 0.1),
+        ("confidence", 90, 10),
+        ("BlendShapeCount", 61, 0),
+    ],
+)
+@pytest.mark.parametrize("is_json", [False, True])
+def test_rows_without_a_face(
+    flag: str, seen: object, unseen: object, is_json: bool, tmp_path: Path
+) -> None:
+    """Zeros are no rest: the pose is held, the neutral face is known, nothing is calibrated."""
+    columns, lost = lost_columns(0.0)
+    if flag:
+        columns[flag] = [unseen if each else seen for each in lost]
+    if is_json:
+        names = [name for name in columns if name != flag]
+        frames = [
+            {"t": time, "blendshapes": {name: float(columns[name][row]) for name in names}}
+            | ({flag: columns[flag][row]} if flag else {})
+            for row, time in enumerate(TIMES.tolist())
+        ]
+        take = of_json(tmp_path, frames)
+    else:
+        take = of_table(tmp_path, columns)
+    assert not take.is_calibrated
+    assert told(take.notes, "No face in 40 of 150 frames")
+    assert take.channels["browDownLeft"].min() > 0.39
+    assert not take.unknown
+
+
+@pytest.mark.parametrize("flag", ["faceDetected", "BlendShapeCount"])
+def test_a_frozen_face(flag: str, tmp_path: Path) -> None:
+    """Values that a tracker repeats while it sees nobody do not count."""
+    columns, lost = lost_columns(0.9)
+    take = of_table(tmp_path, columns | {flag: np.where(lost, 0, 52).tolist()})
+    assert take.channels["browDownLeft"].max() < 0.5
+
+
+def test_zeros_of_a_calibrated_face_are_rest(tmp_path: Path) -> None:
+    """A face that often is at 0 is seen there."""
+    shapes = {name: np.maximum(RISE - 0.5, 0.0) for name in RESTING}
+    take = of_table(tmp_path, shapes)
+    assert take.is_calibrated
+    assert not told(take.notes, "No face")
+
+
+YAW = 20.0 * np.sin(TIMES + 0.1)
+TURNS = Rotation.from_euler("y", YAW[:, None], degrees=True)  # y is up, so that + is to the left
+
+
+def heads() -> dict[str, tuple[list[Any], str, float]]:
+    """Layout -> values of each frame, their key, and the sign of yaw in it."""
+    quaternions = TURNS.as_quat()
+    return {
+        "degrees": ([{"yaw": y, "pitch": 1.0, "roll": 0.5} for y in YAW], "headRotation", -1.0),
+        "radians": ([{"Yaw": y, "Pitch": 0.01} for y in np.radians(YAW)], "head_pose", -1.0),
+        "x, y, z, w": ([list(q) for q in quaternions], "headQuaternion", 1.0),
+        "w, x, y, z": ([list(np.roll(q, 1)) for q in quaternions], "rotation", 1.0),
+        "named": ([dict(zip("xyzw", q, strict=True)) for q in quaternions], "orientation", 1.0),
+        "3 x 3": ([turn.tolist() for turn in TURNS.as_matrix()], "headMatrix", 1.0),
+        "an angle": (list(YAW), "headYaw", -1.0),
+    }
+
+
+@pytest.mark.parametrize("layout", heads())
+def test_heads_beside_shapes(layout: str, tmp_path: Path) -> None:
+    """The head turns by 20 degrees, however its turn is written."""
+    values, key, sign = heads()[layout]
+    take = of_json(
+        tmp_path, [{**frame, key: value} for frame, value in zip(FRAMES, values, strict=True)]
+    )
+    assert take.channels["head_yaw"] == pytest.approx(sign * YAW, abs=1e-6)
+    assert not take.unknown
+
+
+@pytest.mark.parametrize("value", [[1.0, 20.0, 3.0], {"x": 1.0, "y": 20.0, "z": 3.0}, "left"])
+def test_heads_that_are_not_clear(value: Any, tmp_path: Path) -> None:
+    """Numbers without names are left out, and this is reported."""
+    take = of_json(tmp_path, [{**frame, "headRotation": value} for frame in FRAMES])
+    assert "head_yaw" not in take.channels
+    assert take.unknown == ("headrotation",)
+
+
+def in_categories(frame: dict[str, Any]) -> list[Any]:
+    """The shapes as MediaPipe's web page has them."""
+    shapes = [{"categoryName": n, "score": v} for n, v in frame["blendshapes"].items()]
+    return [{"categories": shapes}]
+
+
+LAYOUTS: dict[str, Any] = {
+    "under results": [
+        {"timestamp": f["time"], "results": {"faceBlendshapes": in_categories(f)}} for f in FRAMES
+    ],
+    "under a result in it": {
+        "data": [{"result": {"face": {"blendshapes": f["blendshapes"], "time": f["time"]}}}
+                 for f in FRAMES]
+    },
+    "names once": {
+        "names": ["jawOpen", "mouthClose"],
+        "frames": [{"weights": [*f["blendshapes"].values()], "time": f["time"]} for f in FRAMES],
+    },
+    "names once, rows": {
+        "fps": 30, "blendShapeNames": ["jawOpen", "mouthClose"],
+        "data": [[*f["blendshapes"].values()] for f in FRAMES],
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_layouts_of_json(layout: str, tmp_path: Path) -> None:
+    """Shapes are found in tables in one another, and under names that stand once."""
+    take = of_json(tmp_path, LAYOUTS[layout])
+    assert take.channels["jawOpen"] == pytest.approx(RISE)
+    assert take.times == pytest.approx(TIMES)
+    assert not take.unknown
+
+
+def test_what_json_says_besides(tmp_path: Path) -> None:
+    """Keys that nobody knows, and a shape under two names, are reported."""
+    frames = [{**frame, "emotion": "joy"} for frame in FRAMES]
+    frames[3]["blendshapes"] = {"jawOpen": 0.25, "JawOpen": 0.75}
+    take = of_json(tmp_path, frames)
+    assert take.unknown == ("emotion",)
+    assert take.channels["jawOpen"][3] == 0.25
+    assert told(take.notes, "these were left out: 'JawOpen'")
