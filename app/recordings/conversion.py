@@ -73,6 +73,7 @@ def _script(take: Take, curves: Mapping[str, Array], lead: float) -> Script:
         duration=rounded(take.duration),
         source=take.source,
         camera=CAMERA,
+        sound=take.sound,
         poses=(Pose(0.0),),
         preface=preface,
         is_converted=True,

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..errors import UserError
+from ..errors import UserError, counted
 from .names import ANGLES, NONSENSE
 from .take import Array, Take
 
@@ -30,10 +30,12 @@ def whole_take(
     notes: Sequence[str] = (),
     unknown: Sequence[str] = (),
     is_calibrated: bool = False,
+    has_keys: bool = False,
 ) -> Take:
     """The Take of rows that may be out of order, and of channels that may be NaN.
 
-    times: [s], shape (T,). channels: name -> shape (T,). UserError where no face is in it.
+    times: [s], shape (T,). channels: name -> shape (T,). has_keys: whether rows are keys, which may
+    be far apart. UserError where no face is in it.
     """
     told = list(notes)
     channels = {
@@ -51,7 +53,9 @@ def whole_take(
     moments, first = np.unique(times[known], return_index=True)
     kept = known[first]
     if len(kept) < len(times):
-        told.append(f"{len(times) - len(kept)} rows without a time of their own were left out.")
+        rows_left_out = counted(len(times) - len(kept), "row")
+        were = "was" if len(times) - len(kept) == 1 else "were"
+        told.append(f"{rows_left_out} without a time of their own {were} left out.")
     times = moments - moments[0]
     if times[-1] > LONGEST_TAKE:
         raise UserError(
@@ -63,11 +67,12 @@ def whole_take(
         told.append(
             f"No face in {int((~seen).sum())} of {len(seen)} frames: the last pose is held there."
         )
-    holes = _holes(times)
+    holes = np.empty(0, dtype=np.intp) if has_keys else _holes(times)
     if len(holes):
+        longest = float(np.diff(times)[holes].max())
         told.append(
-            f"Rows are missing in {len(holes)} places, {float(np.diff(times)[holes].max()):.3g} s "
-            "at most: the last pose is held there."
+            f"Rows are missing in {counted(len(holes), 'place')}, {longest:.3g} s at most: "
+            "the last pose is held there."
         )
         times = np.insert(times, holes + 1, times[holes + 1] - SHORT_GAP)
         rows = {name: np.insert(values, holes + 1, np.nan) for name, values in rows.items()}
@@ -76,7 +81,7 @@ def whole_take(
     }
     if not filled:
         raise UserError(f"{source}: {kind}: no frame shows a face with a time")
-    return Take(kind, source, times, filled, is_calibrated, tuple(told), tuple(unknown))
+    return Take(kind, source, times, filled, is_calibrated, tuple(told), tuple(unknown), has_keys)
 
 
 def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

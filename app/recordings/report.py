@@ -84,6 +84,8 @@ def _recognised(take: Take) -> str:
     count = len(take.times)
     if count == 1:
         return f"{take.kind}{calibrated}, one frame"
+    if take.has_keys:
+        return f"{take.kind}{calibrated}, {count} keys in {take.duration:.2f} s"
     rate = 1.0 / float(np.median(np.diff(take.times)))
     return f"{take.kind}{calibrated}, {count} frames in {take.duration:.2f} s, {rate:.4g} a second"
 

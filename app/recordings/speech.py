@@ -8,8 +8,11 @@ time (its manual, "Mouth shapes").
 
 from __future__ import annotations
 
+import contextlib
 import itertools
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path, PureWindowsPath
 from typing import Annotated, Any
 
 import numpy as np
@@ -76,6 +79,7 @@ class _Cues(Record):
 
     others: Rest[Any]
     mouth_cues: Annotated[list[_Cue], called("mouthCues")]
+    metadata: Any = None
 
 
 def recognises_tracks(document: Any) -> bool:
@@ -103,7 +107,7 @@ def read_tracks(document: Any, source: str, request: Request) -> Take:
     channels = _made_clear(channels, notes)
     return whole_take(
         "Viseme tracks", source, times, channels, notes=notes, unknown=unknown,
-        is_calibrated=True,
+        is_calibrated=True, has_keys=True,
     )  # fmt: skip
 
 
@@ -141,7 +145,8 @@ def read_cues(document: Any, source: str, request: Request) -> Take:
     Mouth shapes hold, and go over into each other around the moments of change.
     """
     request.refuse_face(source)
-    given = read_table(_Cues, document, source, error=UserError).mouth_cues
+    written = read_table(_Cues, document, source, error=UserError)
+    given = written.mouth_cues
     if not given:
         raise UserError(f"{source}: has no mouth cues; nothing is said")
     end = max(cue.end for cue in given)
@@ -161,5 +166,24 @@ def read_cues(document: Any, source: str, request: Request) -> Take:
         name, value = MOUTHS[points[float(time)]]
         channels[name][row] = value
     used = {name: values for name, values in channels.items() if values.any()}
-    note = f"Mouth shapes became visemes, {TURN:g} s from one to the next."
-    return whole_take("Rhubarb Lip Sync", source, times, used, notes=[note], is_calibrated=True)
+    notes = [f"Mouth shapes became visemes, {TURN:g} s from one to the next."]
+    sound = _sound_of(written.metadata, source, notes)
+    take = whole_take(
+        "Rhubarb Lip Sync", source, times, used, notes=notes, is_calibrated=True, has_keys=True
+    )
+    return replace(take, sound=sound)
+
+
+def _sound_of(metadata: Any, source: str, notes: list[str]) -> Path | None:
+    """The sound file that Rhubarb heard: where it was then, or beside the recording."""
+    name = metadata.get("soundFile") if isinstance(metadata, dict) else None
+    if not isinstance(name, str) or not name:
+        return None
+    folder = Path(source).parent
+    for path in (folder / name, folder / PureWindowsPath(name).name):
+        with contextlib.suppress(OSError, ValueError):  # a name that no file can have
+            if path.is_file():
+                notes.append(f"The sound is '{path.name}', which the file names.")
+                return Path(os.path.abspath(path))
+    notes.append(f"The sound file '{name}' is not there; --sound names another.")
+    return None

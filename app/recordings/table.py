@@ -135,7 +135,8 @@ class Table:
         none = np.argwhere(~(np.abs(values) < LARGEST))
         for row, place in none[:1]:
             self.notes.append(
-                f"{len(none)} cells hold no usable number, the first in line "
+                f"{counted(len(none), 'cell')} {'holds' if len(none) == 1 else 'hold'} no usable "
+                f"number, the first in line "
                 f"{self.line_numbers[row]}, column '{self.names[columns[place]]}'."
             )
         return np.where(np.abs(values) < LARGEST, values, np.nan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -37,6 +38,8 @@ class Take:
     is_calibrated: whether the neutral face was taken away already.
     notes: what a report says besides: guessed, skipped, left out, each one sentence.
     unknown: columns that nobody knows, as the file spells them.
+    has_keys: whether times are of keys, between which values go straight, and not of frames.
+    sound: the file of the sound that the recording names, where it is there.
     """
 
     kind: str
@@ -46,6 +49,8 @@ class Take:
     is_calibrated: bool = False
     notes: tuple[str, ...] = ()
     unknown: tuple[str, ...] = field(default=(), repr=False)
+    has_keys: bool = False
+    sound: Path | None = None
 
     @property
     def duration(self) -> float:

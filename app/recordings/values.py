@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import counted
 from .names import ARKIT, NONSENSE
 from .take import Array
 
@@ -80,12 +81,18 @@ def shares(shapes: Mapping[str, Array], notes: list[str]) -> dict[str, Array]:
         found[name] = kept
         beyond += int(np.sum((kept < -0.001) | (kept > 1.001)))
     if far:
-        notes.append(f"{far} values of shapes are far from 0 to 1 and were left out.")
+        are = "is" if far == 1 else "are"
+        were = "was" if far == 1 else "were"
+        notes.append(
+            f"{counted(far, 'value')} of shapes {are} far from 0 to 1 and {were} left out."
+        )
     if beyond:
-        notes.append(f"{beyond} values of shapes were cut off at 0 and 1.")
+        were = "was" if beyond == 1 else "were"
+        notes.append(f"{counted(beyond, 'value')} of shapes {were} cut off at 0 and 1.")
     lost = _rows_of_zeros(found)
     if lost.any():
-        notes.append(f"All shapes are 0 in {int(lost.sum())} frames, as where no face is seen.")
+        frames = counted(int(lost.sum()), "frame")
+        notes.append(f"All shapes are 0 in {frames}, as where no face is seen.")
         found = without_rows(found, lost)
     return found
 
