@@ -53,9 +53,7 @@ def whole_take(
     moments, first = np.unique(times[known], return_index=True)
     kept = known[first]
     if len(kept) < len(times):
-        rows_left_out = counted(len(times) - len(kept), "row")
-        were = "was" if len(times) - len(kept) == 1 else "were"
-        told.append(f"{rows_left_out} without a time of their own {were} left out.")
+        told.append(_left_out(len(times) - len(kept)))
     times = moments - moments[0]
     if times[-1] > LONGEST_TAKE:
         raise UserError(
@@ -69,11 +67,7 @@ def whole_take(
         )
     holes = np.empty(0, dtype=np.intp) if has_keys else _holes(times)
     if len(holes):
-        longest = float(np.diff(times)[holes].max())
-        told.append(
-            f"Rows are missing in {counted(len(holes), 'place')}, {longest:.3g} s at most: "
-            "the last pose is held there."
-        )
+        told.append(_missing(np.diff(times)[holes]))
         times = np.insert(times, holes + 1, times[holes + 1] - SHORT_GAP)
         rows = {name: np.insert(values, holes + 1, np.nan) for name, values in rows.items()}
     filled = {
@@ -82,6 +76,20 @@ def whole_take(
     if not filled:
         raise UserError(f"{source}: {kind}: no frame shows a face with a time")
     return Take(kind, source, times, filled, is_calibrated, tuple(told), tuple(unknown), has_keys)
+
+
+def _left_out(count: int) -> str:
+    """The sentence on rows without a time."""
+    were = "was" if count == 1 else "were"
+    return f"{counted(count, 'row')} without a time of their own {were} left out."
+
+
+def _missing(gaps: Array) -> str:
+    """The sentence on holes that last so long [s]."""
+    return (
+        f"Rows are missing in {counted(len(gaps), 'place')}, {float(gaps.max()):.3g} s at most: "
+        "the last pose is held there."
+    )
 
 
 def _holes(times: Array) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
