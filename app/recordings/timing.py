@@ -135,7 +135,7 @@ def find_times(
     for name in sorted(
         stamps, key=lambda name: (stamps[name].place, stamps[name].unit is not None)
     ):
-        cells = texts(name)
+        cells = _with_colons(texts(name))
         sample = [cell for cell in cells if cell][:SAMPLED]
         times: Array | None = None
         if sum(bool(TIMECODE.match(cell)) for cell in sample) * 2 > len(sample):
@@ -153,6 +153,21 @@ def find_times(
         notes.append(f"{written_rate:g} frames a second, as the file says.")
     frame = next((numbers(name) for name in names if is_frame(name)), None)
     return frame_times(frame, count, rate or written_rate, notes, has_stamps=has_stamps)
+
+
+def _with_colons(cells: list[str]) -> list[str]:
+    """Timecode with a colon before its frames, also where the file has a point there.
+
+    Two digits behind the point are hundredths of a second unless they never reach 60: then they
+    count frames, at least 24 of them.
+    """
+    if not cells or not all(re.fullmatch(r"\d+:\d+:\d+\.\d\d", cell) for cell in cells if cell):
+        return cells
+    numbers = {cell[-2:] for cell in cells if cell}
+    seconds = {cell[:-3] for cell in cells if cell}
+    if len(seconds) < 3 or len(numbers) < 24 or max(numbers) >= "60":
+        return cells
+    return [f"{cell[:-3]}:{cell[-2:]}" if cell else "" for cell in cells]
 
 
 def frame_times(

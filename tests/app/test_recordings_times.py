@@ -83,6 +83,17 @@ def test_a_semicolon_that_drops_nothing(tmp_path: Path) -> None:
     assert take.times == pytest.approx(np.array(frames) / 30.0)
 
 
+@pytest.mark.parametrize("base", [24, 25, 30, 48, 60])
+def test_frames_behind_a_point(base: int, tmp_path: Path) -> None:
+    """Two digits that never reach 60 count frames; hundredths of a second do reach it."""
+    frames = range(3 * base)
+    cells = [timecode(frame, base, separator=".") for frame in frames]
+    take = take_of(tmp_path, cells, name="Timecode")
+    assert take.times == pytest.approx(np.array(frames) / base)
+    cells = [f"00:00:{frame / base:05.2f}" for frame in frames]
+    assert take_of(tmp_path, cells).times == pytest.approx(np.array(frames) / base, abs=6e-3)
+
+
 def test_rows_that_share_a_frame_of_timecode(tmp_path: Path) -> None:
     """60 rows a second with timecode of 30 are 60 a second."""
     cells = [timecode(row // 2, 30) for row in range(180)]
