@@ -61,10 +61,11 @@ class Level:
 
     def subdivide(self, rows: Floats) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
-        if rows is not self._frame.rows:
-            self._frame = self._frame._replace(rows=rows)
-        place_vertices(self.points, self.normals, self._rings, self._all_move, rows)
-        place_middles(self._mesh.around, self._frame, self._middles)
+        points, normals, frame = self.points, self.normals, self._frame
+        place_vertices(points, normals, *self._rings, self._all_move, rows)
+        edges, splits, first_points = frame.split_edges, frame.splits, frame.first_points
+        of_edges = edges, splits, first_points, frame.geomorph_once
+        place_middles(points, normals, self._mesh.around.points, *of_edges, self._middles, rows)
 
 
 class Loop(BaseRefiner):

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .mesh.arrays import Doubles, Floats, Unsigned, Wide
-from .mesh.validation import checked_indices, checked_positions, not_finite, round_finite
+from .mesh.validation import checked_indices, checked_positions, take_positions
 from .mesh.vectors import difference, dot
 
 THINNEST = 1e-6
@@ -75,9 +75,7 @@ class Shortening:
                 f"positions must be floats of shape {self._positions.shape} like the rest "
                 f"positions, got {given.dtype} of shape {given.shape}"
             )
-        np.copyto(self._positions, given)
-        if round_finite(self._positions, self._points) > 0:
-            raise ValueError(not_finite(given))
+        take_positions(given, self._positions, self._points)
         _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
         return self._lost
 

@@ -128,7 +128,7 @@ class _CompilationLog(event.Listener):
     def on_start(self, event: event.Event) -> None:
         """Numba begins to compile a function of anybody's."""
         function = event.data["dispatcher"].py_func
-        if function.__module__.partition(".")[0] == __package__:
+        if (function.__module__ or "").partition(".")[0] == __package__:
             log.info("compiling %s.%s", function.__module__, function.__qualname__)
 
     def on_end(self, event: event.Event) -> None:

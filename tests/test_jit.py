@@ -120,3 +120,15 @@ def test_processes_that_start_together(package: Package) -> None:
     with ThreadPoolExecutor(2) as threads:
         assert {lines[-1] for lines in threads.map(lambda _: package.run(), range(2))} == {RESULT}
     assert package.run() == [RESULT]
+
+
+def test_functions_without_a_module_compile() -> None:
+    """Kernels of other programs that come from `exec` are no concern of the log."""
+    program = (
+        "import numba, risorius.jit; names = {}; exec('def twice(x): return 2 * x', names); "
+        "names['twice'].__module__ = None; print(numba.njit(names['twice'])(3))"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert found.stdout.strip() == "6"

@@ -55,14 +55,13 @@ from ..kahler.smoothing import Scheme, geomorph_of_split
 from ..kahler.table import (
     CENTRE,
     CONFIGURATION_COUNT,
-    Patterns,
     Triangle,
     outline,
     splits_of,
     subdivide,
     table_of,
 )
-from ..mesh.arrays import Floats, Small, Unsigned
+from ..mesh.arrays import Floats, Short, Small, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import share
 from ..mesh.vectors import (
@@ -113,7 +112,7 @@ class Blended(Kahler):
     ) -> None:
         """Bind to a mesh, as `Kahler`; the criterion has to measure."""
         super().__init__(faces, rest_positions, criterion=criterion, scheme=scheme, **values)
-        self._patterns = FANS
+        self._look_up_in(FANS, self._frame.configurations)
         self._metric = np.zeros(len(self.connectivity.edges), dtype=np.float32)
 
     @property
@@ -132,7 +131,8 @@ class Blended(Kahler):
         """Number the points in the middle of triangles after all others."""
         super()._number()
         counts = self._frame.counts
-        number_centres(self._frame, self._patterns)
+        frame = self._frame
+        number_centres(frame.configurations, *self._patterns, frame.centre_triangles, counts)
         return int(counts[ROWS] + counts[CENTRES]), int(counts[TRIANGLES])
 
     def _place(self, rows: Floats) -> None:
@@ -162,15 +162,24 @@ def weigh_geomorphs(
 
 
 @njit
-def number_centres(frame: FrameBuffers, patterns: Patterns) -> None:
-    """List the triangles that have a point in the middle; count them, and all subtriangles."""
+def number_centres(
+    configurations: Short,
+    subtriangle_counts: Small,
+    subtriangles: Small,
+    centre_triangles: Unsigned,
+    counts: Wide,
+) -> None:
+    """List the triangles that have a point in the middle; count them, and all subtriangles.
+
+    The arrays are those of `FrameBuffers`, and the two of `Patterns`.
+    """
     centre_count = triangle_count = 0
-    for t in range(frame.configurations.shape[0] - 1):
-        row = frame.configurations[t]
-        frame.centre_triangles[centre_count] = t
-        centre_count += patterns.subtriangles[row, 0, 0] == CENTRE
-        triangle_count += int(patterns.counts[row])
-    frame.counts[TRIANGLES], frame.counts[CENTRES] = triangle_count, centre_count
+    for t in range(configurations.shape[0] - 1):
+        row = configurations[t]
+        centre_triangles[centre_count] = t
+        centre_count += subtriangles[row, 0, 0] == CENTRE
+        triangle_count += int(subtriangle_counts[row])
+    counts[TRIANGLES], counts[CENTRES] = triangle_count, centre_count
 
 
 @njit

@@ -22,8 +22,7 @@ from ..mesh.validation import (
     as_array,
     checked_indices,
     checked_positions,
-    not_finite,
-    round_finite,
+    take_positions,
 )
 from .corner_values import AttributeLike, checked_corner_values
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View
@@ -93,9 +92,12 @@ class BaseRefiner(Refiner):
 
     def reserve(self, stream: Stream, vertex_count: int, triangle_count: int) -> StreamArrays:
         """Let our own stream grow to this size; return the arrays of a stream, checked."""
-        if stream is self._own_stream:
-            self._own_stream.reserve(vertex_count, triangle_count)
-            self._accept(stream, vertex_count, triangle_count)
+        own = self._own_stream
+        if stream is own:
+            own.reserve(vertex_count, triangle_count)
+            seen = self._accepted
+            if seen.vertices is not own.vertices or seen.triangles is not own.triangles:
+                self._accept(own, vertex_count, triangle_count)
         return self._accepted
 
     def find_normals(self) -> None:
@@ -163,10 +165,13 @@ class BaseRefiner(Refiner):
         self.take(positions, view)
         vertex_count, triangle_count = self.fill(stream, view)
         vertices, triangles, source = self._accepted
-        uv, attributes = self.values_in(vertices[:vertex_count])
+        shown, normals = self._geometry
+        uv, attributes = None, _NO_ATTRIBUTES
+        if self._values is not None:
+            uv, attributes = self.values_in(vertices[:vertex_count])
         return RefinedMesh(
-            self._geometry[0][:vertex_count],
-            self._geometry[1][:vertex_count],
+            shown[:vertex_count],
+            normals[:vertex_count],
             triangles[:triangle_count],
             source[:triangle_count],
             uv,
@@ -187,9 +192,7 @@ class BaseRefiner(Refiner):
                 f"positions must be floats of shape {self._shape} like the mesh that was bound, "
                 f"got {positions.dtype} of shape {positions.shape}"
             )
-        self.positions[...] = positions
-        if round_finite(self.positions, self.points) > 0:
-            raise ValueError(not_finite(positions))
+        take_positions(positions, self.positions, self.points)
 
     def _own(self, *things: object) -> None:
         """Raise ValueError if one of these, which learn one mesh, serves another refiner."""

@@ -188,8 +188,10 @@ class Coherent:
 
     def __init__(self, face_count: int) -> None:
         """Start with no split anywhere in `face_count` triangles."""
-        self._tables = sequence_tables()
-        self.patterns = self._tables.patterns
+        tables = sequence_tables()
+        # Copies: compiled code takes an array faster that it may write.
+        self._steps = tables.transitions.copy(), tables.removals.copy()
+        self.patterns = tables.patterns
         """A row for each sequence."""
         self.states: Short = np.zeros(face_count, dtype=np.uint16)
         """The sequence of each triangle, shape (F,): all that lives from frame to frame."""
@@ -201,10 +203,7 @@ class Coherent:
 
         `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F + 1,).
         """
-        tables = self._tables
-        self.removals_out_of_order += follow_splits(
-            configurations, tables.transitions, tables.removals, self.states
-        )
+        self.removals_out_of_order += follow_splits(configurations, *self._steps, self.states)
         return self.states
 
 

@@ -2,11 +2,12 @@
 
 Kähler, Haber, Seidel 2003, section 4. A frame has two halves: first it is decided which edges are
 split (`splits`, and how far their points have grown), then points are placed and triangles written
-into `rows`. Compiled code takes the `FrameBuffers` as they are; the arrays stay the same from frame
-to frame, but for `rows`, which belongs to whoever draws.
+into `rows`. The arrays stay the same from frame to frame, but for `rows`, which belongs to whoever
+draws.
 
-To hand so many arrays to compiled code takes as long as numbering all points. So the passes of the
-paper's frame are generators: they take their arrays once, and `next` lets them do one frame.
+Compiled code takes the `FrameBuffers` as they are, or the arrays that it reads: an array alone
+costs a twentieth of a microsecond, in a named tuple twice as much. So passes of the paper's frame,
+which is done in 40 microseconds, take arrays.
 """
 
 from typing import NamedTuple

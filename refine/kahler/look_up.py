@@ -12,17 +12,14 @@ first paragraph).
 Everything here goes from the edges that are split, not from the triangles: most are not.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from ...jit import njit
 from ..border.rows import GEOMETRY_COLUMNS
-from ..border.stream import StreamArrays
-from ..mesh.arrays import Floats, Indices, Short, Unsigned
+from ..mesh.arrays import Floats, Indices, Short, Small, Unsigned, Wide
 from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, WIDTH, row_of, write_row
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
-from .table import CENTRE, Patterns
+from .table import CENTRE
 
 SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
@@ -42,31 +39,36 @@ def number_points(
     more_sides: Unsigned,
     attribute_edges: Unsigned,
     wedge_count: int,
-    frame: FrameBuffers,
-) -> int:
+    splits: Small,
+    first_points: Unsigned,
+    split_once: Unsigned,
+    split_twice: Unsigned,
+    configurations: Short,
+    counts: Wide,
+) -> tuple[int, int, int]:
     """List the split edges, give new points their rows, and triangles their configuration.
 
-    `split_once` gets every split edge, `split_twice` those split twice. The entries of
-    `first_points` for edges that are not split have no meaning. `counts` gets all but centres.
-    Returns the most splits of an edge.
+    The arrays from `splits` on are those of `FrameBuffers`. `split_once` gets every split edge,
+    `split_twice` those split twice. The entries of `first_points` for edges that are not split have
+    no meaning. `counts` gets all but centres. Returns the numbers of output rows and triangles, and
+    the most splits of an edge.
     """
-    splits, configurations = frame.splits, frame.configurations
     edge_count, face_count = edge_sides.shape[0], configurations.shape[0] - 1
     once_count = twice_count = most = 0
     for e in range(edge_count):
         # Written always and counted when split: no branch that a processor could guess wrong.
-        frame.split_once[once_count] = e
+        split_once[once_count] = e
         once_count += splits[e] > 0
     configurations[:] = 0
     row, triangle_count = wedge_count, face_count
     for k in range(once_count):
-        e = frame.split_once[k]
+        e = split_once[k]
         split = splits[e]
-        frame.split_twice[twice_count] = e
+        split_twice[twice_count] = e
         twice_count += split > 1
         most = max(most, split)
         points = points_on(split)
-        frame.first_points[e] = row
+        first_points[e] = row
         row += points
         for i in range(2):
             t, place = edge_sides[e, i] >> SIDE_BITS, edge_sides[e, i] & SIDE_MASK
@@ -78,25 +80,11 @@ def number_points(
         triangle_count += points_on(split)
     for r in range(edge_count, attribute_edges.shape[0]):
         splits[r] = splits[attribute_edges[r]]
-        frame.first_points[r] = row
+        first_points[r] = row
         row += points_on(splits[r])
-    frame.counts[ROWS], frame.counts[ONCE], frame.counts[TWICE] = row, once_count, twice_count
-    frame.counts[TRIANGLES] = triangle_count
-    return most
-
-
-@njit
-def numbering(
-    edge_sides: Unsigned,
-    more_sides: Unsigned,
-    attribute_edges: Unsigned,
-    wedge_count: int,
-    frame: FrameBuffers,
-) -> Iterator[tuple[int, int, int]]:
-    """Do `number_points` at each `next`: numbers of output rows and triangles, most splits."""
-    while True:
-        most = number_points(edge_sides, more_sides, attribute_edges, wedge_count, frame)
-        yield int(frame.counts[ROWS]), int(frame.counts[TRIANGLES]), most
+    counts[ROWS], counts[TRIANGLES] = row, triangle_count
+    counts[ONCE], counts[TWICE] = once_count, twice_count
+    return row, triangle_count, int(most)
 
 
 @njit
@@ -131,23 +119,27 @@ def place_attributes(attribute_edge_uv: Indices, frame: FrameBuffers, values: Fl
 def look_up_triangles(
     corners: Unsigned,
     triangle_attribute_edges: Unsigned,
-    frame: FrameBuffers,
-    patterns: Patterns,
+    splits: Small,
+    first_points: Unsigned,
     table_rows: Short,
-    out: StreamArrays,
+    subtriangle_counts: Small,
+    subtriangles: Small,
+    first_centre: int,
+    triangles: Unsigned,
+    source: Indices,
 ) -> None:
     """Write the subtriangles of every triangle by its row in the table (section 4.3).
 
-    An attribute edge keeps its points in the direction of the edge; a triangle that runs against it
+    `splits`, `first_points`: those of `FrameBuffers`; `first_centre`: the row of the first point in
+    the middle of a triangle; the two arrays of `Patterns`; `triangles`, `source`: of a stream. An
+    attribute edge keeps its points in the direction of the edge; a triangle that runs against it
     reads the quarter points in reverse. Centres are numbered in the order of the triangles that
     have one.
     """
-    triangles, source, subtriangles = out.triangles, out.source, patterns.subtriangles
-    splits, first_points = frame.splits, frame.first_points
     assert corners.shape[1] == triangle_attribute_edges.shape[1] == WIDTH
     assert triangles.shape[1] == subtriangles.shape[2] == WIDTH
     points = np.zeros(CENTRE + 1, np.uint32)
-    points[CENTRE] = frame.counts[ROWS]
+    points[CENTRE] = first_centre
     one, two = np.uint32(1), np.uint32(2)
     count = np.uint32(0)
     for t in range(corners.shape[0]):
@@ -166,24 +158,9 @@ def look_up_triangles(
             points[3 + 3 * i] = first + (splits[edge] >> 1)  # the only point, or the second
             points[4 + 3 * i] = first + two * against
             points[5 + 3 * i] = first + two - two * against
-        for k in range(patterns.counts[row]):
+        for k in range(subtriangle_counts[row]):
             a, b, c = row_of(subtriangles[row], k)
             write_row(triangles, count, (points[a], points[b], points[c]))
             source[count] = t
             count += one
         points[CENTRE] += subtriangles[row, 0, 0] == CENTRE
-
-
-@njit
-def looking_up(
-    corners: Unsigned,
-    triangle_attribute_edges: Unsigned,
-    frame: FrameBuffers,
-    patterns: Patterns,
-    table_rows: Short,
-    out: StreamArrays,
-) -> Iterator[None]:
-    """Do `look_up_triangles` at each `next`."""
-    while True:
-        look_up_triangles(corners, triangle_attribute_edges, frame, patterns, table_rows, out)
-        yield

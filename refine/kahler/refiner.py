@@ -12,7 +12,6 @@ Differs from the paper: normals of new points are interpolated linearly and then
 deformed mesh is copied once, as a shield against a simulation that runs on meanwhile.
 """
 
-from collections.abc import Iterator
 from typing import Unpack
 
 import numpy as np
@@ -22,15 +21,20 @@ from ..border.base import BaseRefiner
 from ..border.corner_values import Values
 from ..border.plugin import Origins, Stream, View
 from ..border.stream import StreamArrays
-from ..mesh.arrays import Doubles, Floats, Indices, Small
+from ..mesh.arrays import Doubles, Floats, Indices, Short, Small
 from ..mesh.connectivity import Connectivity
 from ..mesh.threads import beside
 from .coherence import Coherent
 from .criterion import Criterion, NormalDrop
 from .frame import buffers_for
-from .look_up import copy_along_attribute_edges, looking_up, numbering, place_attributes
+from .look_up import (
+    copy_along_attribute_edges,
+    look_up_triangles,
+    number_points,
+    place_attributes,
+)
 from .smoothing import LoopScheme, Scheme
-from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE
+from .table import CONFIGURATIONS, MOST_SPLITS, POINTS_OF_EDGE, Patterns
 
 
 class Kahler(BaseRefiner):
@@ -58,15 +62,25 @@ class Kahler(BaseRefiner):
         self.history = Coherent(len(mesh.faces)) if coherent else None
         """What triangles remember of their splits, as they are walked; None unless `coherent`."""
         self._frame = buffers_for(mesh, self.positions, self.points, self.normals)
-        self._patterns, self._table_rows = CONFIGURATIONS, self._frame.configurations
         if self.history is not None:
-            self._patterns, self._table_rows = self.history.patterns, self.history.states
-        self.edge_splits = self._frame.splits[: len(mesh.edges)]
-        sides, more = mesh.edge_sides, mesh.more_sides
-        wedge_count = len(mesh.wedge_vertices)
-        self._numbering = numbering(sides, more, mesh.attribute_edges, wedge_count, self._frame)
-        self._out: StreamArrays | None = None
-        self._looking_up: Iterator[None]
+            self._look_up_in(self.history.patterns, self.history.states)
+        else:
+            self._look_up_in(CONFIGURATIONS, self._frame.configurations)
+        frame = self._frame
+        self._of_numbering = (
+            mesh.edge_sides,
+            mesh.more_sides,
+            mesh.attribute_edges,
+            len(mesh.wedge_vertices),
+            frame.splits,
+            frame.first_points,
+            frame.split_once,
+            frame.split_twice,
+            frame.configurations,
+            frame.counts,
+        )
+        self.edge_splits = frame.splits[: len(mesh.edges)]
+        self._out: StreamArrays
         self._own(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
         self._criterion.set_scheme(self._scheme)
         self.find_normals()
@@ -91,14 +105,28 @@ class Kahler(BaseRefiner):
         self._mark(view)
         vertex_count, triangle_count = self._number()
         out = self.reserve(stream, vertex_count, triangle_count)
-        if out is not self._out:
-            self._write_to(out)
+        if out.vertices is not self._frame.rows:
+            self._frame = self._frame._replace(rows=out.vertices)
+        self._out = out
         look_up = beside(self._look_up, triangle_count)
         try:
             self._place(out.vertices)
         finally:
             look_up()
         return vertex_count, triangle_count
+
+    def _look_up_in(self, patterns: Patterns, rows: Short) -> None:
+        """Take a table, and where each triangle says which row of it is its own."""
+        self._patterns = patterns
+        self._of_look_up = (
+            self.connectivity.corners,
+            self.connectivity.triangle_attribute_edges,
+            self._frame.splits,
+            self._frame.first_points,
+            rows,
+            patterns.counts.copy(),  # compiled code takes an array faster that it may write
+            patterns.subtriangles.copy(),
+        )
 
     def _mark(self, view: View | None) -> None:
         """Decide how often every edge is split (section 4.1)."""
@@ -110,7 +138,8 @@ class Kahler(BaseRefiner):
 
         Raises ValueError if a criterion asks for more than the table has.
         """
-        vertex_count, triangle_count, most = next(self._numbering)
+        vertex_count, triangle_count, most = number_points(*self._of_numbering)
+        self._first_centre = vertex_count
         if most > MOST_SPLITS:
             raise ValueError(
                 f"{type(self._criterion).__name__}.mark must write 0, 1 or 2 for every edge, "
@@ -119,19 +148,6 @@ class Kahler(BaseRefiner):
         if self.history is not None:
             self.history.follow(self._frame.configurations)
         return vertex_count, triangle_count
-
-    def _write_to(self, out: StreamArrays) -> None:
-        """Hand the arrays of a stream to the passes that write them."""
-        mesh, self._out = self.connectivity, out
-        self._frame = self._frame._replace(rows=out.vertices)
-        self._looking_up = looking_up(
-            mesh.corners,
-            mesh.triangle_attribute_edges,
-            self._frame,
-            self._patterns,
-            self._table_rows,
-            out,
-        )
 
     def _place(self, rows: Floats) -> None:
         """Write vertices and new points: positions, normals, attributes (section 4.2)."""
@@ -143,7 +159,8 @@ class Kahler(BaseRefiner):
 
     def _look_up(self) -> None:
         """Write the subtriangles of every triangle (section 4.3)."""
-        next(self._looking_up)
+        out = self._out
+        look_up_triangles(*self._of_look_up, self._first_centre, out.triangles, out.source)
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""

@@ -44,16 +44,13 @@ Section 6: "it would be interesting to investigate the effects of other smoothin
 scheme is one small class, `Scheme`.
 """
 
-from collections.abc import Iterator
-from typing import NamedTuple
-
 import numpy as np
 
 from ...jit import njit
 from ..border.registry import Registry
-from ..mesh.arrays import Doubles, Floats, Small
-from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.rings import NEAR, Rings, vertex_rings
+from ..mesh.arrays import Doubles, Floats, Small, Unsigned, Wide
+from ..mesh.connectivity import Connectivity
+from ..mesh.rings import NEAR, vertex_rings
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -140,15 +137,6 @@ schemes: Registry[Scheme] = Registry("scheme", "risorius.schemes")
 """Schemes by name; a factory is called without arguments, once for each refiner that asks."""
 
 
-class FirstLevel(NamedTuple):
-    """What the second level needs of the first: scratch of a frame."""
-
-    vertex_geomorph: Floats
-    """How far the most grown edge at each vertex has grown, shape (V,); 0 where none is split."""
-    middles: Floats
-    """First-level points as they are when fully grown, shape (E, 3); only of edges split now."""
-
-
 class LoopScheme(Scheme):
     """The paper's scheme: Loop's rules with Warren's weights (section 4.2)."""
 
@@ -158,18 +146,32 @@ class LoopScheme(Scheme):
         """Work out the weights of every vertex."""
         self._around = connectivity.around
         self._rings = vertex_rings(connectivity)
-        self._first_level = FirstLevel(
-            np.zeros(connectivity.vertex_count, dtype=np.float32),
-            np.zeros((len(connectivity.edges), 3), dtype=np.float32),
-        )
+        self._vertex_geomorph = np.zeros(connectivity.vertex_count, dtype=np.float32)
+        self._middles = np.zeros((len(connectivity.edges), 3), dtype=np.float32)
         self._frame: FrameBuffers | None = None
 
     def place(self, frame: FrameBuffers) -> None:
         """Write moved vertices, first level, second level."""
         if frame is not self._frame:
             self._frame = frame
-            self._placing = placing(self._around, frame, self._rings, self._first_level)
-        next(self._placing)
+            self._arrays = (
+                frame.points,
+                frame.normals,
+                self._around.points,
+                self._around.wings,
+                *self._rings,
+                frame.splits,
+                frame.first_points,
+                frame.split_once,
+                frame.split_twice,
+                frame.counts,
+                frame.geomorph_once,
+                frame.geomorph_twice,
+                self._vertex_geomorph,
+                self._middles,
+                frame.rows,
+            )
+        place_by_loop(*self._arrays)
 
 
 @njit
@@ -179,25 +181,37 @@ def write_mean_normal(rows: Floats, p: np.uint32, q: np.uint32, row: np.uint32) 
 
 
 @njit
-def geomorph_vertices(around: Surroundings, frame: FrameBuffers, vertex_geomorph: Floats) -> None:
-    """A vertex moves as much as the most grown edge at it: 0 where none is split."""
+def geomorph_vertices(
+    ends: Unsigned, edges: Unsigned, geomorph: Floats, vertex_geomorph: Floats
+) -> None:
+    """A vertex moves as much as the most grown edge at it: 0 where none is split, shape (V,).
+
+    `ends`: of edges, in the first two columns of (E, 4); `edges`: those that are split, shape (N,);
+    `geomorph`: of edges, shape (E,).
+    """
     vertex_geomorph[:] = ZERO
-    for k in range(frame.counts[ONCE]):
-        e = frame.split_once[k]
-        a, b, geomorph = around.points[e, 0], around.points[e, 1], frame.geomorph_once[e]
-        vertex_geomorph[a] = max(vertex_geomorph[a], geomorph)
-        vertex_geomorph[b] = max(vertex_geomorph[b], geomorph)
+    for e in edges:
+        a, b = ends[e, 0], ends[e, 1]
+        vertex_geomorph[a] = max(vertex_geomorph[a], geomorph[e])
+        vertex_geomorph[b] = max(vertex_geomorph[b], geomorph[e])
 
 
 @njit
 def place_vertices(
-    points: Floats, normals: Floats, rings: Rings, geomorph: Floats, vertices: Floats
+    points: Floats,
+    normals: Floats,
+    own: Floats,
+    ring: Floats,
+    near: Unsigned,
+    starts: Unsigned,
+    others: Unsigned,
+    geomorph: Floats,
+    vertices: Floats,
 ) -> None:
     """Write the original vertices, those at split edges moved by the vertex rule (Fig. 3).
 
-    `geomorph`: of each vertex, shape (V,).
+    `own` to `others`: the arrays of `Rings`; `geomorph`: of each vertex, shape (V,).
     """
-    near, others = rings.near, rings.others
     assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR
     for v in range(points.shape[0]):
         point = row_of(points, v)
@@ -205,32 +219,43 @@ def place_vertices(
             total = row_of(points, near[v, 0])
             for k in range(1, NEAR):
                 total = plus(total, row_of(points, near[v, k]))
-            for k in range(rings.starts[v], rings.starts[v + 1]):
+            for k in range(starts[v], starts[v + 1]):
                 total = plus(total, row_of(points, others[k]))
-            moved = plus(times(rings.own[v], point), times(rings.ring[v], total))
+            moved = plus(times(own[v], point), times(ring[v], total))
             point = mix(point, moved, geomorph[v])
         write_row(vertices, v, point)
         write_row(vertices, v, row_of(normals, v), 3)
 
 
 @njit
-def place_middles(around: Surroundings, frame: FrameBuffers, middles: Floats) -> None:
-    """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`."""
-    points, normals, vertices = frame.points, frame.normals, frame.rows
-    for k in range(frame.counts[ONCE]):
-        e = frame.split_once[k]
-        a, b = around.points[e, 0], around.points[e, 1]
-        c, d = around.points[e, 2], around.points[e, 3]
-        row = frame.first_points[e] + (frame.splits[e] >> 1)
+def place_middles(
+    points: Floats,
+    normals: Floats,
+    around: Unsigned,
+    edges: Unsigned,
+    splits: Small,
+    first_points: Unsigned,
+    geomorph: Floats,
+    middles: Floats,
+    vertices: Floats,
+) -> None:
+    """Write the first-level point of every split edge (Fig. 3), and keep it in `middles`.
+
+    `around`: a, b, c, d of every edge, shape (E, 4); `edges`: those that are split, shape (N,);
+    `middles`: points as they are when fully grown, shape (E, 3).
+    """
+    for e in edges:
+        a, b, c, d = around[e, 0], around[e, 1], around[e, 2], around[e, 3]
+        row = first_points[e] + (splits[e] >> 1)
         ends = plus(row_of(points, a), row_of(points, b))
         middle = times(BORDER_EDGE_END, ends)
-        if around.is_interior[e]:
+        if c != a:  # an edge inside the mesh
             wings = plus(row_of(points, c), row_of(points, d))
             middle = plus(times(EDGE_END, ends), times(EDGE_WING, wings))
         write_row(middles, e, middle)
-        if frame.geomorph_once[e] < ONE:
+        if geomorph[e] < ONE:
             straight = times(HALF, plus(row_of(vertices, a), row_of(vertices, b)))
-            middle = mix(straight, middle, frame.geomorph_once[e])
+            middle = mix(straight, middle, geomorph[e])
         write_row(vertices, row, middle)
         write_row(vertices, row, unit(plus(row_of(normals, a), row_of(normals, b))), 3)
 
@@ -251,21 +276,31 @@ def geomorph_of_split(splits: Small, geomorph: Floats, e: np.uint32) -> np.float
 
 
 @njit
-def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -> None:
-    """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4)."""
-    points, vertices = frame.points, frame.rows
-    splits, once = frame.splits, frame.geomorph_once
-    for k in range(frame.counts[TWICE]):
-        e = frame.split_twice[k]
-        near_a = frame.first_points[e]
+def place_quarters(
+    points: Floats,
+    around: Unsigned,
+    wings: Unsigned,
+    edges: Unsigned,
+    splits: Small,
+    first_points: Unsigned,
+    once: Floats,
+    twice: Floats,
+    middles: Floats,
+    vertices: Floats,
+) -> None:
+    """Write the quarter points of every edge that is split twice, and move its middle (Fig. 4).
+
+    `around`, `wings`: as in `Surroundings`; `edges`: those split twice, shape (N,); `once`,
+    `twice`: geomorph weights of edges; `middles`: as `place_middles` left them.
+    """
+    for e in edges:
+        near_a = first_points[e]
         centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
-        a, b = around.points[e, 0], around.points[e, 1]
+        a, b, c, d = around[e, 0], around[e, 1], around[e, 2], around[e, 3]
         m, moved_a, moved_b = row_of(middles, e), row_of(vertices, a), row_of(vertices, b)
         ends_a, ends_b, moved = plus(moved_a, m), plus(moved_b, m), plus(moved_a, moved_b)
-        if around.is_interior[e]:
-            c, d = around.points[e, 2], around.points[e, 3]
-            ac, bc = around.wings[e, 0], around.wings[e, 1]
-            ad, bd = around.wings[e, 2], around.wings[e, 3]
+        if c != a:  # an edge inside the mesh
+            ac, bc, ad, bd = wings[e, 0], wings[e, 1], wings[e, 2], wings[e, 3]
             p = wing(points, middles, (a, c), ac, geomorph_of_split(splits, once, ac))
             q = wing(points, middles, (b, c), bc, geomorph_of_split(splits, once, bc))
             r = wing(points, middles, (a, d), ad, geomorph_of_split(splits, once, ad))
@@ -278,7 +313,7 @@ def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -
         else:
             beside_a, beside_b = times(BORDER_EDGE_END, ends_a), times(BORDER_EDGE_END, ends_b)
             middle = plus(times(BORDER_MIDDLE_OWN, m), times(BORDER_MIDDLE_RING, moved))
-        geomorph = frame.geomorph_twice[e]
+        geomorph = twice[e]
         write_row(vertices, near_a, mix(times(HALF, ends_a), beside_a, geomorph))
         write_row(vertices, centre, mix(m, middle, geomorph))
         write_row(vertices, near_b, mix(times(HALF, ends_b), beside_b, geomorph))
@@ -287,13 +322,35 @@ def place_quarters(around: Surroundings, frame: FrameBuffers, middles: Floats) -
 
 
 @njit
-def placing(
-    around: Surroundings, frame: FrameBuffers, rings: Rings, first: FirstLevel
-) -> Iterator[None]:
-    """Write moved vertices, the first level and the second level at each `next`."""
-    while True:
-        geomorph_vertices(around, frame, first.vertex_geomorph)
-        place_vertices(frame.points, frame.normals, rings, first.vertex_geomorph, frame.rows)
-        place_middles(around, frame, first.middles)
-        place_quarters(around, frame, first.middles)
-        yield
+def place_by_loop(  # noqa: PLR0913 - all of it at once: four calls take longer than what they do
+    points: Floats,
+    normals: Floats,
+    around: Unsigned,
+    wings: Unsigned,
+    own: Floats,
+    ring: Floats,
+    near: Unsigned,
+    starts: Unsigned,
+    others: Unsigned,
+    splits: Small,
+    first_points: Unsigned,
+    split_once: Unsigned,
+    split_twice: Unsigned,
+    counts: Wide,
+    once: Floats,
+    twice: Floats,
+    vertex_geomorph: Floats,
+    middles: Floats,
+    rows: Floats,
+) -> None:
+    """Write moved vertices, the first level and the second level of a frame.
+
+    The arrays are those of `Surroundings`, `Rings` and `FrameBuffers`; `vertex_geomorph`, shape
+    (V,), and `middles`, shape (E, 3), are scratch.
+    """
+    edges = split_once[: counts[ONCE]]
+    geomorph_vertices(around, edges, once, vertex_geomorph)
+    place_vertices(points, normals, own, ring, near, starts, others, vertex_geomorph, rows)
+    place_middles(points, normals, around, edges, splits, first_points, once, middles, rows)
+    edges = split_twice[: counts[TWICE]]
+    place_quarters(points, around, wings, edges, splits, first_points, once, twice, middles, rows)

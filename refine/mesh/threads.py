@@ -59,6 +59,8 @@ def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
 
 def threads_for(count: int) -> int:
     """How many threads, this one among them, a loop over `count` items is worth."""
+    if count < 2 * PART:  # of small meshes, whose frame this is a part of
+        return 1
     return max(min(count // PART, MOST), 1)
 
 

@@ -18,6 +18,8 @@ SIZES = 1e-6, 1e9
 """Sizes of a mesh, longest side of its box, in which single precision tells normals from rounding.
 Measured: grids with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
 
+_DOUBLE = np.dtype(np.float64)
+
 
 def checked_positions(rest_positions: npt.ArrayLike, name: str = "rest_positions") -> Doubles:
     """Return positions, shape (V, 3), as a copy in double precision."""
@@ -85,6 +87,20 @@ def as_indices(
     return array
 
 
+def take_positions(given: npt.NDArray[np.floating], positions: Doubles, points: Floats) -> None:
+    """Copy the positions of a frame, shape (V, 3), in double and in single precision.
+
+    Raises ValueError unless all are finite and below LARGEST. An array that is no plain one of
+    doubles is copied first, so that compiled code has one kind of array to take.
+    """
+    source: npt.NDArray[Any] = given
+    if given.dtype is not _DOUBLE or not given.flags.carray:
+        positions[...] = given
+        source = positions
+    if copy_finite(source, positions, points) > 0:
+        raise ValueError(not_finite(given))
+
+
 def not_finite(positions: npt.NDArray[np.floating]) -> str:
     """Say which of the positions of a frame are no numbers below LARGEST."""
     bad = np.flatnonzero(~(np.abs(positions) < LARGEST).all(axis=1))
@@ -95,14 +111,15 @@ def not_finite(positions: npt.NDArray[np.floating]) -> str:
 
 
 @njit
-def round_finite(positions: Doubles, points: Floats) -> int:
-    """Write positions, shape (V, 3), as single precision; return how many numbers are too large.
+def copy_finite(given: Doubles, positions: Doubles, points: Floats) -> int:
+    """Copy positions, shape (V, 3), in double and single precision; count numbers too large.
 
     That is NaN, or not below LARGEST: 0 unless what moves the mesh has blown up.
     """
-    numbers, rounded = positions.reshape(-1), points.reshape(-1)
+    numbers, copied, rounded = given.reshape(-1), positions.reshape(-1), points.reshape(-1)
     finite = 0  # counted, not left early: so the loop takes several at a time
     for k in range(numbers.size):
+        copied[k] = numbers[k]
         rounded[k] = numbers[k]
         finite += abs(numbers[k]) < LARGEST
     return int(numbers.size - finite)
