@@ -5,7 +5,8 @@ PyVista (0.48 or newer) finds it by the entry point `pyvista.accessors`, and imp
 """
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ import pyvista
 from tqdm import tqdm
 
 from .refine import View, WeldedRefiner
+from .refine.mesh.arrays import Wide
 
 NORMALS = "Normals"  # what PyVista's own filters call them
 SOURCE = "vtkOriginalCellIds"  # what PyVista's own filters call the cell that a cell was made of
@@ -24,17 +26,11 @@ class PolyDataRefiner:
     def __init__(self, mesh: pyvista.PolyData, *, weld: bool = True, **options: Any) -> None:
         """Bind to a mesh at rest; see `RisoriusAccessor.refiner`."""
         self._rest = mesh.copy()
-        triangles = pyvista.PolyData()
-        triangles.copy_structure(mesh)
-        triangles.cell_data[SOURCE] = np.arange(mesh.n_cells)
-        triangles = triangles.triangulate()  # lines and lone points drop out
-        if triangles.n_cells == 0:
+        triangles, self._cells = triangles_of(mesh)
+        if len(triangles) == 0:
             raise pyvista.MissingDataError("mesh has no faces, so there is nothing to refine")
-        self._cells = np.asarray(triangles.cell_data[SOURCE])
         seams = any(name != NORMALS for name in mesh.point_data)
-        self._refiner = WeldedRefiner(
-            mesh.points, triangles.regular_faces, weld=weld, seams=seams, **options
-        )
+        self._refiner = WeldedRefiner(mesh.points, triangles, weld=weld, seams=seams, **options)
 
     def refine(
         self, frame: pyvista.PolyData | npt.ArrayLike, *, view: View | None = None
@@ -99,6 +95,101 @@ class PolyDataRefiner:
         """
         for frame in tqdm(frames, desc="Refining", disable=not progress_bar):
             yield self.refine(frame)
+
+
+class Cells(NamedTuple):
+    """Cells of one kind, as VTK keeps them."""
+
+    starts: Wide
+    """Where each cell begins among `points`, and where the last one ends, shape (C + 1,)."""
+    points: Wide
+    """Points of all cells, one cell behind the other."""
+
+    @property
+    def sizes(self) -> Wide:
+        """Points of each cell, shape (C,)."""
+        return np.diff(self.starts)
+
+    def of(self, cell: int) -> Wide:
+        """The points of one cell."""
+        return self.points[self.starts[cell] : self.starts[cell + 1]]
+
+
+def triangles_of(mesh: pyvista.PolyData) -> tuple[Wide, Wide]:
+    """Cut the surface of a mesh into triangles, shape (F, 3), and name the cell of each, (F,).
+
+    Lines, lone points and polygons of less than three points have no surface and drop out. VTK is
+    asked to cut polygons of more than three points and nothing else: beside lines and lone points
+    its filter hands out memory that nobody has written. Raises ValueError for cells that name
+    points which are not there.
+    """
+    polygons = _cells_of(mesh.GetPolys(), mesh.n_points)
+    strips = _cells_of(mesh.GetStrips(), mesh.n_points)
+    first_polygon = mesh.GetNumberOfVerts() + mesh.GetNumberOfLines()
+    first_strip = first_polygon + len(polygons.sizes)
+
+    of_three = np.flatnonzero(polygons.sizes == 3)
+    triangles = [polygons.points[polygons.starts[of_three, None] + np.arange(3)]]
+    cells = [first_polygon + of_three]
+    cut, polygon_of = _cut_polygons(mesh.points, polygons)
+    triangles.append(cut)
+    cells.append(first_polygon + polygon_of)
+    for k in np.flatnonzero(strips.sizes >= 3).tolist():
+        strip = strips.of(k)
+        along = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1)
+        along[1::2] = along[1::2, [1, 0, 2]]  # every second triangle of a strip runs backwards
+        triangles.append(along)
+        cells.append(np.full(len(along), first_strip + k))
+    numbers = np.concatenate(cells)
+    order = np.argsort(numbers, kind="stable")
+    return np.concatenate(triangles)[order], numbers[order]
+
+
+def _cells_of(array: Any, point_count: int) -> Cells:
+    """The cells of a vtkCellArray; raises ValueError for points beyond `point_count`."""
+    starts = np.asarray(pyvista.convert_array(array.GetOffsetsArray()), dtype=np.int64)
+    points = np.asarray(pyvista.convert_array(array.GetConnectivityArray()), dtype=np.int64)
+    if len(points) > 0 and not 0 <= points.min() <= points.max() < point_count:
+        raise ValueError(
+            f"cells must name points from 0 to {point_count - 1}, but they name "
+            f"{points.min()} to {points.max()}"
+        )
+    return Cells(starts, points)
+
+
+def _cut_polygons(points: npt.ArrayLike, polygons: Cells) -> tuple[Wide, Wide]:
+    """Triangles of the polygons with more than three points, (T, 3), and the polygon of each."""
+    large = np.flatnonzero(polygons.sizes > 3)
+    if len(large) == 0:
+        return np.zeros((0, 3), dtype=np.int64), large
+    is_of_large = np.repeat(polygons.sizes > 3, polygons.sizes)
+    starts = np.concatenate([[0], np.cumsum(polygons.sizes[large])])
+    uncut = pyvista.PolyData()
+    uncut.points = points
+    arrays: Any = starts, polygons.points[is_of_large]  # PyVista's types ask for arrays of `int`
+    uncut.SetPolys(pyvista.CellArray.from_arrays(*arrays))
+    uncut.cell_data[SOURCE] = large
+    cut = uncut.triangulate()
+    triangles = _cells_of(cut.GetPolys(), cut.n_points).points.reshape(-1, 3)
+    polygon_of = np.asarray(cut.cell_data[SOURCE])
+    # Where points lie on one line, VTK leaves triangles out: their neighbours would have a hole.
+    counts = np.bincount(polygon_of, minlength=len(polygons.sizes))
+    is_short = np.zeros(len(polygons.sizes), dtype=np.bool_)
+    fans: list[tuple[int, int, int]] = []
+    fan_of: list[int] = []
+    for k in large[counts[large] < polygons.sizes[large] - 2].tolist():
+        polygon = polygons.of(k)
+        corners = polygon[polygon != np.roll(polygon, 1)].tolist()
+        if counts[k] < len(set(corners)) - 2:
+            fan = [(corners[0], b, c) for b, c in pairwise(corners[1:])]
+            is_short[k] = True
+            fans += fan
+            fan_of += [k] * len(fan)
+    is_whole = ~is_short[polygon_of]
+    return (
+        np.concatenate([triangles[is_whole], np.array(fans, dtype=np.int64).reshape(-1, 3)]),
+        np.concatenate([polygon_of[is_whole], np.array(fan_of, dtype=np.int64)]),
+    )
 
 
 @pyvista.register_dataset_accessor("risorius", pyvista.PolyData)

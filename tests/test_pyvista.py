@@ -115,6 +115,64 @@ def test_polygons_strips_and_lines() -> None:
     assert strips.risorius.refine().is_manifold
 
 
+def padded(cells: list[list[int]]) -> list[int]:
+    """Cells as VTK has them: each after the number of its points."""
+    return [number for cell in cells for number in (len(cell), *cell)]
+
+
+def test_cells_that_are_no_triangles() -> None:
+    """Beside lines and lone points, every triangle has the data of its own cell."""
+    points = np.array([[0, 0, 0], [0.5, 0.5, 0], [1, 0, 0], [1.01, 0, 0], [0.5, 1, 0.3]], float)
+    mesh = pyvista.PolyData(points, padded([[0, 1, 2], [1, 3, 2], [0, 4, 1]]))
+    mesh.cell_data["region"] = [1, 2, 3]
+    mesh = mesh.clean(tolerance=0.05)
+    assert mesh.n_lines == 1
+    assert set(mesh.risorius.refine()["region"].tolist()) == {1, 3}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_cells_of_all_kinds(seed: int) -> None:
+    """Cells lie at heights of their own, so that each triangle shows which cell it is of."""
+    generator = np.random.default_rng(seed)
+    points: list[list[float]] = []
+    kinds: list[list[list[int]]] = [[], [], [], []]
+    sizes = (1, 2), (2, 5), (3, 7), (3, 8)  # of lone points, lines, polygons and strips
+    for kind, (least, most) in enumerate(sizes):
+        for _ in range(generator.integers(0 if kind == 0 else 1, 5)):
+            size = int(generator.integers(least, most))
+            height = float(sum(map(len, kinds)))
+            first = len(points)
+            for k in range(size):
+                turn = 2.0 * np.pi * k / size
+                strip = [k, k % 2, height]
+                points.append(strip if kind == 3 else [np.cos(turn), np.sin(turn), height])
+            kinds[kind].append(list(range(first, first + size)))
+    mesh = pyvista.PolyData()
+    mesh.points = np.array(points)
+    for name, cells in zip(("verts", "lines", "faces", "strips"), kinds, strict=True):
+        if cells:
+            setattr(mesh, name, padded(cells))
+    heights = np.arange(mesh.n_cells, dtype=float)
+    mesh.cell_data["height"] = heights
+    refined = mesh.risorius.refine(criterion="normal")
+    shown = refined.points[refined.regular_faces][..., 2]
+    np.testing.assert_array_equal(shown, np.repeat(refined["height"][:, None], 3, axis=1))
+    surfaces = len(kinds[2]) + len(kinds[3])
+    assert len(np.unique(refined["vtkOriginalCellIds"])) == surfaces
+
+
+def test_polygons_that_vtk_leaves_holes_in() -> None:
+    """Points on one line or named twice: the polygon is covered; two points are no polygon."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0], [3, 1, 0]], float)
+    polygons = [[0, 1, 2, 3], [0, 1], [0, 1, 2, 3, 5, 4], [4, 5, 5, 0]]
+    mesh = pyvista.PolyData(points, padded(polygons))
+    refined = mesh.risorius.refine(criterion="normal")
+    assert np.bincount(refined["vtkOriginalCellIds"], minlength=4).tolist() == [2, 0, 4, 1]
+    mesh.faces = padded([[0, 1, 2], [0, 1, 7, 8]])
+    with pytest.raises(ValueError, match="points from 0 to 5, but they name 0 to 8"):
+        mesh.risorius.refine()
+
+
 def test_many_frames(capsys: pytest.CaptureFixture[str]) -> None:
     """Frames come one by one, as meshes of their own, with a bar if it is asked for."""
     mesh = plane()
