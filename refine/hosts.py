@@ -7,9 +7,9 @@ import numpy.typing as npt
 
 from .border.plugin import RefinedMesh, View
 from .border.registry import create
-from .mesh.arrays import Doubles, Wide
+from .mesh.arrays import Doubles, Flags, Wide
 from .mesh.seams import weld as weld_vertices
-from .mesh.validation import checked_indices, checked_positions
+from .mesh.validation import checked_mesh
 
 SMOOTH = {"scheme": "cubic", "criterion": "displacement+rest"}
 """Rounds what is coarse at rest, and what bends: the look of the application's window."""
@@ -34,22 +34,24 @@ class WeldedRefiner:
         triangles: npt.ArrayLike,
         *,
         weld: bool = True,
+        weld_tolerance: float | None = None,
         seams: bool = True,
         **options: Any,
     ) -> None:
         """Bind to `points` at rest, shape (V, 3), and `triangles`, shape (F, 3).
 
-        `weld`: whether vertices at equal places are one; False for surfaces that touch at rest and
-        part later, as lips do. `seams`: whether welded vertices part again in the output, which
-        they need only if they carry data. `options`: those of `create_kahler`, but for texture
-        coordinates and attributes: `carry` does that. Raises ValueError as `create` does.
+        `weld`: whether vertices at one place are one; False for surfaces that touch at rest and
+        part later, as lips do. `weld_tolerance`: how far apart they may lie, in sizes of the mesh;
+        None for 1e-9, or the last bits of the points' type where that is more. `seams`: whether
+        welded vertices part again in the output, which they need only if they carry data.
+        `options`: those of `create_kahler`, but for texture coordinates and attributes: `carry`
+        does that. Raises ValueError as `create` does.
         """
-        rest = checked_positions(points, "points")
-        self.triangles = checked_indices("triangles", triangles, len(rest), "points")
+        rest, self.triangles = checked_mesh(points, triangles, ("points", "triangles"))
         self.point_count = len(rest)
         self._faces, self._kept = self.triangles, np.arange(len(rest))
         if weld:
-            kept, faces = weld_vertices(rest, self.triangles)
+            kept, faces = weld_vertices(points, self.triangles, tolerance=weld_tolerance)
             self._kept, self._faces = kept.astype(np.int64), faces.astype(np.int64)
         self._is_proper = (self._faces != np.roll(self._faces, 1, axis=1)).all(axis=1)
         self._parts = seams and len(self._kept) < len(rest)
@@ -93,12 +95,12 @@ class WeldedRefiner:
         if self._origins is None:
             self._origins = self._find_origins()
         rows, weights = self._origins
-        if table.dtype.kind not in "fciub":
-            return np.asarray(table[rows[np.arange(len(rows)), weights.argmax(axis=1)]])
-        wide = table if table.dtype.kind in "fc" else table.astype(np.float64)
-        mixed = np.einsum("nc,nc...->n...", weights, wide[rows])
-        carried = mixed if table.dtype.kind in "fc" else np.rint(mixed)
-        return np.asarray(carried, dtype=table.dtype)
+        nearest = weights.argmax(axis=1)
+        carried = np.array(table[rows[np.arange(len(rows)), nearest]])
+        if table.dtype.kind in "fciub":
+            between = np.flatnonzero(weights.max(axis=1) < 1.0)  # points of the input stay exact
+            carried[between] = _mixed(table, rows[between], weights[between])
+        return carried
 
     def _find_origins(self) -> tuple[Wide, Doubles]:
         """The input's points that each point of the frame lies between, (N, 3), and its weights."""
@@ -117,3 +119,45 @@ class WeldedRefiner:
             rows = np.where(is_corner.any(axis=2), own, rows)
         wide = weights.astype(np.float64)
         return rows, wide / wide.sum(axis=1, keepdims=True)  # as single they add up to 1.00000003
+
+
+def _mixed(table: npt.NDArray[Any], rows: Wide, weights: Doubles) -> npt.NDArray[Any]:
+    """Means of rows of a table, (M, 3), with weights of the same shape; numbers of any type."""
+    if table.dtype.kind == "c":  # as pairs: infinity times a complex share is no number
+        pairs = np.ascontiguousarray(table)[..., None].view(table.real.dtype)
+        return np.ascontiguousarray(_mixed(pairs, rows, weights)).view(table.dtype)[..., 0]
+    corners = table[rows]
+    shares = weights.reshape(weights.shape + (1,) * (table.ndim - 1))
+    has_part = np.broadcast_to(shares > 0.0, corners.shape)
+    if table.dtype.kind in "iu" and table.dtype.itemsize == 8:
+        return _mixed_wide(corners, shares, has_part)
+    parts = np.zeros(corners.shape, dtype=np.result_type(table.dtype, np.float64))
+    np.multiply(corners, shares, where=has_part, out=parts)  # infinity has no part that is zero
+    mixed = parts.sum(axis=1)
+    if table.dtype.kind == "f":  # what is equal at all corners stays so to the last bit
+        first = np.where(has_part, corners, np.inf).min(axis=1)
+        last = np.where(has_part, corners, -np.inf).max(axis=1)
+        mixed = np.minimum(np.maximum(mixed, first), last)
+    rounded = mixed if table.dtype.kind == "f" else np.rint(mixed)
+    return np.asarray(rounded, dtype=table.dtype)
+
+
+def _mixed_wide(
+    corners: npt.NDArray[np.integer], shares: Doubles, has_part: Flags
+) -> npt.NDArray[np.integer]:
+    """The same for integers of 64 bits, shape (M, 3, ...), which doubles do not hold.
+
+    Doubles hold how far they lie above the least of them. Halves are rounded to the even number, as
+    `numpy.rint` does.
+    """
+    least = np.where(has_part, corners, np.iinfo(corners.dtype).max).min(axis=1).astype(np.uint64)
+    above = np.where(has_part, corners.astype(np.uint64) - least[:, None], np.uint64(0))
+    most = above.max(axis=1)
+    mean = (above.astype(np.float64) * shares).sum(axis=1)
+    is_below = mean < most.astype(np.float64)
+    whole = np.where(is_below, np.floor(mean), 0.0)
+    rest = np.where(is_below, mean - whole, 0.0)
+    mixed = np.where(is_below, whole.astype(np.uint64), most)
+    is_odd = (least + mixed) % 2 == 1
+    mixed += (rest > 0.5) | ((rest == 0.5) & is_odd)
+    return np.asarray((least + mixed).astype(corners.dtype))

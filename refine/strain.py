@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from ..jit import njit
 from .mesh.arrays import Doubles, Floats, Unsigned, Wide
-from .mesh.validation import checked_indices, checked_positions, take_positions
+from .mesh.validation import checked_mesh, take_positions, used_vertices
 from .mesh.vectors import difference, dot
 
 THINNEST = 1e-6
@@ -46,8 +46,8 @@ class Shortening:
         vertices without triangles are fine and have no strain. Raises ValueError for arrays of
         other shapes, indices out of range, and what is not finite.
         """
-        rest = checked_positions(rest_positions)
-        triangles = checked_indices("faces", faces, len(rest), "rest_positions")
+        rest, triangles = checked_mesh(rest_positions, faces)
+        self._is_used = used_vertices(triangles, len(rest))
         self._positions, self._points = rest.copy(), rest.astype(np.float32)
         wanted = np.asarray(directions, dtype=np.float64)
         if wanted.ndim != 3 or wanted.shape[::2] != (len(rest), 3) or not np.isfinite(wanted).all():
@@ -75,7 +75,7 @@ class Shortening:
                 f"positions must be floats of shape {self._positions.shape} like the rest "
                 f"positions, got {given.dtype} of shape {given.shape}"
             )
-        take_positions(given, self._positions, self._points)
+        take_positions(given, self._is_used, self._positions, self._points)
         _shorten(self._positions, self._faces, self._rest, self._weights, self._lost)
         return self._lost
 

@@ -81,6 +81,7 @@ def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) 
     rows = len(mesh.wedge_vertices) + 3 * len(mesh.attribute_edges)
     return {
         "vertex_count": mesh.vertex_count,
+        "first_vertex": mesh.first_vertex,
         "edge_count": len(mesh.edges),
         "wedge_count": len(mesh.wedge_vertices),
         "attribute_edge_count": len(mesh.attribute_edges),

@@ -23,14 +23,14 @@ SOURCE = "vtkOriginalCellIds"  # what PyVista's own filters call the cell that a
 class PolyDataRefiner:
     """Refines one `pyvista.PolyData` in motion; `mesh.risorius.refiner()` makes it."""
 
-    def __init__(self, mesh: pyvista.PolyData, *, weld: bool = True, **options: Any) -> None:
+    def __init__(self, mesh: pyvista.PolyData, **options: Any) -> None:
         """Bind to a mesh at rest; see `RisoriusAccessor.refiner`."""
         self._rest = mesh.copy()
         triangles, self._cells = triangles_of(mesh)
         if len(triangles) == 0:
             raise pyvista.MissingDataError("mesh has no faces, so there is nothing to refine")
         seams = any(name != NORMALS for name in mesh.point_data)
-        self._refiner = WeldedRefiner(mesh.points, triangles, weld=weld, seams=seams, **options)
+        self._refiner = WeldedRefiner(mesh.points, triangles, seams=seams, **options)
 
     def refine(
         self, frame: pyvista.PolyData | npt.ArrayLike, *, view: View | None = None
@@ -201,7 +201,12 @@ class RisoriusAccessor:
         self._mesh = mesh
 
     def refine(
-        self, *, rest: pyvista.PolyData | None = None, weld: bool = True, **options: Any
+        self,
+        *,
+        rest: pyvista.PolyData | None = None,
+        weld: bool = True,
+        weld_tolerance: float | None = None,
+        **options: Any,
     ) -> pyvista.PolyData:
         """Refine this mesh once.
 
@@ -211,6 +216,8 @@ class RisoriusAccessor:
             The same mesh before it was deformed. Without, this mesh counts as undeformed, and is
             refined where it is coarse.
         weld : bool, default: True
+            As for `refiner`.
+        weld_tolerance : float, optional
             As for `refiner`.
         **options
             As for `refiner`, but that `blend` is False unless it is given.
@@ -227,17 +234,24 @@ class RisoriusAccessor:
         >>> refined.plot(show_edges=True)
         """
         source = self._mesh if rest is None else rest
-        return PolyDataRefiner(source, weld=weld, **{"blend": False, **options}).refine(self._mesh)
+        chosen = {"weld": weld, "weld_tolerance": weld_tolerance, "blend": False, **options}
+        return PolyDataRefiner(source, **chosen).refine(self._mesh)
 
-    def refiner(self, *, weld: bool = True, **options: Any) -> PolyDataRefiner:
+    def refiner(
+        self, *, weld: bool = True, weld_tolerance: float | None = None, **options: Any
+    ) -> PolyDataRefiner:
         """Bind a refiner to this mesh, which is at rest, for all frames of an animation.
 
         Parameters
         ----------
         weld : bool, default: True
-            Whether points at equal places are one, so that no crack opens between them. False for
+            Whether points at one place are one, so that no crack opens between them. False for
             surfaces that touch at rest and part later. Where points carry data, they part again in
             the output.
+        weld_tolerance : float, optional
+            How far apart points may lie that are one, in sizes of the mesh (longest side of its
+            bounds): 1e-9 unless told otherwise, or the last bits of the points' type where that is
+            more. 0 welds what is equal to the last bit.
         **options
             What `risorius.refine.create_kahler` takes, but for texture coordinates and attributes:
             all data go along by themselves. Unless told otherwise, `scheme="cubic"` and
@@ -258,4 +272,4 @@ class RisoriusAccessor:
         >>> bent.n_cells > 2 * plate.n_cells
         True
         """
-        return PolyDataRefiner(self._mesh, weld=weld, **options)
+        return PolyDataRefiner(self._mesh, weld=weld, weld_tolerance=weld_tolerance, **options)

@@ -48,7 +48,8 @@ class RestCurvature(Measuring):
         super().bind(connectivity, rest_positions, rest_normals)
         start, end = connectivity.edges.T
         turns = rest_normals[end].astype(np.float64) - rest_normals[start]
-        along = (rest_positions[end] - rest_positions[start]) / _diagonal(rest_positions)
+        along = rest_positions[end] - rest_positions[start]
+        along /= _diagonal(rest_positions[connectivity.edges])
         heights = 0.125 * np.abs(np.einsum("ij,ij->i", turns, along))
         measures = heights * np.cbrt(np.linalg.norm(along, axis=1) / USUAL)
         limits = self.thresholds
@@ -62,6 +63,9 @@ class RestCurvature(Measuring):
 
 
 def _diagonal(positions: Doubles) -> float:
-    """Of the box around all vertices; 1 if it has no size."""
-    size = float(np.linalg.norm(np.ptp(positions, axis=0))) if len(positions) else 0.0
+    """Of the box around the ends of edges, shape (E, 2, 3); 1 if it has no size.
+
+    Points that no triangle uses do not count: where they lie says nothing of the mesh.
+    """
+    size = float(np.linalg.norm(np.ptp(positions, axis=(0, 1)))) if len(positions) else 0.0
     return size if size > 0.0 else 1.0

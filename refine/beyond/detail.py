@@ -32,7 +32,7 @@ from ...jit import njit
 from ..kahler.frame import FrameBuffers
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.validation import checked_indices, checked_positions
+from ..mesh.validation import checked_mesh
 from ..mesh.vectors import TINY, Vector, between, cross, dot, less, plus, row_of, unit, write_row
 from .cubic import FULLNESS, MIDDLE, NEAR_END, NEAR_START, CubicScheme
 from .measuring import mean_length
@@ -55,8 +55,7 @@ class DetailScheme(CubicScheme):
                 "detail must be a pair (finer rest positions, finer triangles), "
                 f"got {type(finer).__name__}"
             )
-        positions = checked_positions(finer[0], "detail[0]")
-        faces = checked_indices("detail[1]", finer[1], len(positions), "detail[0]")
+        positions, faces = checked_mesh(*finer, ("detail[0]", "detail[1]"))
         if len(faces) == 0:
             raise ValueError("detail[1] must have triangles, got none")
         self._finer = positions, faces

@@ -68,6 +68,7 @@ class WholeSurface:
     def __init__(self, mesh: Connectivity, rest_positions: Doubles) -> None:
         """Make room; `rest_positions`: shape (V, 3)."""
         self._mesh, self._fans = mesh, fans_of(mesh)
+        self._origin = mesh.first_vertex
         vertex_count, edge_count = mesh.vertex_count, len(mesh.edges)
         near, points = np.zeros_like(rest_positions), rest_positions.astype(np.float32)
         frame = buffers_for(mesh, near, points, np.zeros_like(points))
@@ -76,16 +77,16 @@ class WholeSurface:
         self._centres = np.zeros((len(mesh.faces), 3), dtype=np.float32)
         self.rows = rows
         """Of the vertices, then of the middles of all edges, shape (V + E, 6): positions first, as
-        seen from vertex 0, so that a mesh far from the origin loses nothing."""
+        seen from the first vertex in use, so that a mesh far from the origin loses nothing."""
         self.normals = np.zeros((vertex_count + edge_count, 3), dtype=np.float32)
         """Unit normals there, shape (V + E, 3)."""
 
     def split(self, frame: FrameBuffers) -> FrameBuffers:
-        """The mesh of `frame`, as seen from vertex 0, every edge split once; to be placed."""
+        """The mesh of `frame`, as seen from its first vertex, every edge split once; unplaced."""
         if frame.normals is not self._frame.normals:
             self._frame = self._frame._replace(normals=frame.normals)
         positions, (near, points) = frame.positions, self._frame[:2]
-        share(see_from_first, len(positions), positions, near, points)
+        share(see_from, len(positions), positions, self._origin, near, points)
         return self._frame
 
     def find_normals(self) -> None:
@@ -151,12 +152,12 @@ class RefinedNormals(Scheme):
 
 
 @njit
-def see_from_first(
-    first: int, last: int, positions: Doubles, near: Doubles, points: Floats
+def see_from(
+    first: int, last: int, positions: Doubles, origin: int, near: Doubles, points: Floats
 ) -> None:
-    """Write positions less the first of all, shape (V, 3), in double and in single precision."""
+    """Write positions less that of one vertex, shape (V, 3), in double and in single precision."""
     for v in range(first, last):
-        away = difference(positions, 0, v)
+        away = difference(positions, origin, v)
         write_row(near, v, away)
         write_row(points, v, away)
 

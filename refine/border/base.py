@@ -18,12 +18,7 @@ import numpy.typing as npt
 from ..mesh.arrays import Doubles, Floats, Indices, Small
 from ..mesh.connectivity import Connectivity, connect
 from ..mesh.normals import vertex_normals
-from ..mesh.validation import (
-    as_array,
-    checked_indices,
-    checked_positions,
-    take_positions,
-)
+from ..mesh.validation import as_array, checked_mesh, take_positions, used_vertices
 from .corner_values import AttributeLike, checked_corner_values
 from .plugin import Origins, RefinedMesh, Refiner, Stream, View
 from .rows import GEOMETRY_COLUMNS, wedge_values, write_wedges
@@ -65,8 +60,7 @@ class BaseRefiner(Refiner):
         attributes: Mapping[str, AttributeLike] | None = None,
     ) -> None:
         """Check and connect (see `registry.create`); a subclass hands the `refine.Values` on."""
-        positions = checked_positions(rest_positions)
-        triangles = checked_indices("faces", faces, len(positions), "rest_positions")
+        positions, triangles = checked_mesh(rest_positions, faces)
         self._values = checked_corner_values(
             triangles, len(positions), uv=uv, face_uv=face_uv, attributes=attributes
         )
@@ -80,6 +74,7 @@ class BaseRefiner(Refiner):
         self.normals = np.zeros_like(self.points)
         self.edge_splits = np.zeros(len(self.connectivity.edges), dtype=np.uint8)
         self._shape = positions.shape
+        self._is_used = used_vertices(triangles, len(positions))
         self._accepted: StreamArrays = _NO_ROWS
         self._geometry: tuple[Floats, Floats]
 
@@ -192,7 +187,7 @@ class BaseRefiner(Refiner):
                 f"positions must be floats of shape {self._shape} like the mesh that was bound, "
                 f"got {positions.dtype} of shape {positions.shape}"
             )
-        take_positions(positions, self.positions, self.points)
+        take_positions(positions, self._is_used, self.positions, self.points)
 
     def _own(self, *things: object) -> None:
         """Raise ValueError if one of these, which learn one mesh, serves another refiner."""

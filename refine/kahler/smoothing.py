@@ -105,7 +105,7 @@ class Scheme:
         """Look at the deformed mesh, before the criterion decides.
 
         What is kept should be differences of positions: refined normals ask `place` twice, first
-        for the mesh as seen from vertex 0 with every edge split once.
+        for the mesh as seen from its first vertex with every edge split once.
         """
 
     def place(self, frame: FrameBuffers) -> None:

@@ -81,6 +81,11 @@ class Connectivity(NamedTuple):
         """Triangles that name a vertex twice, shape (F,)."""
         return np.asarray(self.triangle_edges[:, 0] < 0)
 
+    @property
+    def first_vertex(self) -> int:
+        """The first vertex that a triangle uses; 0 if there are no triangles."""
+        return int(self.faces.min()) if len(self.faces) > 0 else 0
+
 
 def connect(
     faces: npt.ArrayLike,

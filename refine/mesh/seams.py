@@ -10,13 +10,21 @@ An attribute edge has its own output points, at the very positions of its edge, 
 can crack.
 """
 
+import itertools
+from numbers import Real
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Flags, Indices, Unsigned, Wide
-from .validation import as_indices, checked_positions
+from .arrays import Doubles, Flags, Indices, Unsigned, Wide
+from .validation import checked_mesh, size_of, used_vertices
+
+SAME_PLACE = 1e-9
+"""Vertices no farther apart than this, in sizes of the mesh, are doubled ones: what is computed
+twice, as sin(0) and sin(2 pi), differs by its last bits."""
+LAST_BITS = 2.0
+"""Steps of the type of the positions by which doubled vertices may differ."""
 
 
 def find_seams(
@@ -78,22 +86,90 @@ def number_by_first_use(keys: Wide) -> tuple[Wide, Wide]:
     return rank[inverse.reshape(-1)], first[order].astype(np.int64)
 
 
-def weld(positions: npt.ArrayLike, faces: npt.ArrayLike) -> tuple[Indices, Indices]:
-    """Merge vertices with equal positions: for meshes whose vertices were doubled along seams.
+def weld(
+    positions: npt.ArrayLike, faces: npt.ArrayLike, *, tolerance: float | None = None
+) -> tuple[Indices, Indices]:
+    """Merge vertices at one place: for meshes whose vertices were doubled along seams.
 
-    `positions`: shape (V, 3); `faces`: shape (F, 3). Returns one vertex of each place, shape
-    (K,), and the triangles in terms of them, shape (F, 3). Bind the refiner to these triangles with
-    `rest_positions[vertices]`, give it the texture coordinates of the doubled vertices as `uv` and
-    the original triangles as `face_uv`, and hand it `positions[vertices]` in every frame.
+    `positions`: shape (V, 3); `faces`: shape (F, 3); `tolerance`: how far apart vertices may lie
+    that are one, in sizes of the mesh (longest sides of its box), 0 for those that are equal to the
+    last bit. None, the default, is `SAME_PLACE`, or the last bits of the type that positions come
+    in where that is more. Returns one vertex of each place, shape (K,), and the triangles in terms
+    of them, shape (F, 3). Bind the refiner to these triangles with `rest_positions[vertices]`, give
+    it the texture coordinates of the doubled vertices as `uv` and the original triangles as
+    `face_uv`, and hand it `positions[vertices]` in every frame. A vertex that no triangle uses
+    stays one of its own.
 
     It is a call of its own, never done unasked: closed lips touch at rest and must not be sewn up.
     Raises ValueError for arrays that do not fit together, and for positions that are not finite.
     """
-    points = checked_positions(positions, "positions")
-    corners = as_indices("faces", faces, len(points), "positions")
-    rows = np.unique(points, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
+    points, corners = checked_mesh(positions, faces, ("positions", "faces"))
+    used = np.flatnonzero(used_vertices(corners, len(points)))
+    if tolerance is not None and not (isinstance(tolerance, Real) and 0.0 <= tolerance < 1.0):
+        raise ValueError(
+            f"tolerance must be a number from 0 to 1, in sizes of the mesh, got {tolerance!r}"
+        )
+    distance = (SAME_PLACE if tolerance is None else float(tolerance)) * size_of(points[used])
+    given = np.asarray(positions).dtype
+    if tolerance is None and given.kind == "f":
+        last_bits = LAST_BITS * float(np.finfo(given).eps) * np.abs(points[used]).max(initial=0.0)
+        distance = max(distance, last_bits)
+    rows = len(points) + np.arange(len(points))
+    rows[used] = number_places(points[used], distance)
     number, first_uses = number_by_first_use(rows)
     return first_uses.astype(np.int32), number[corners].astype(np.int32)
+
+
+def number_places(points: Doubles, distance: float) -> Wide:
+    """Number points, shape (N, 3), so that those have one number that are one place.
+
+    They are one place if they are not farther apart than `distance`, or others lie between them
+    that are not.
+    """
+    places, numbers = np.unique(points, axis=0, return_inverse=True)
+    pairs = _near_pairs(places, distance) if distance > 0.0 and len(places) > 0 else None
+    joined = np.arange(len(places))
+    while pairs is not None:
+        before = joined.copy()
+        lowest = joined[pairs].min(axis=1)
+        np.minimum.at(joined, pairs, lowest[:, None])
+        joined = joined[joined]
+        if (joined == before).all():
+            break
+    return np.asarray(joined[numbers.reshape(-1)], dtype=np.int64)
+
+
+def _near_pairs(places: Doubles, distance: float) -> Wide:
+    """Pairs of different places not farther apart than `distance`, shape (P, 2).
+
+    Places are sorted into cubes, which are some times larger than the distance. One that lies so
+    near to the side of a cube is sorted into the next cube, too.
+    """
+    lowest = places.min(axis=0)
+    side = max(4.0 * distance, 1e-6 * size_of(places))  # so that a number of 64 bits names a cube
+    cubes = [np.floor((places - lowest + away) / side) + 1 for away in (-distance, distance)]
+    keys, members = [], []
+    for corner in itertools.product((0, 1), repeat=3):
+        cube = np.stack([cubes[end][:, axis] for axis, end in enumerate(corner)], axis=1)
+        is_other = (np.array(corner) == 0) | (cubes[0] != cubes[1])
+        chosen = np.flatnonzero(is_other.all(axis=1))
+        keys.append(cube[chosen].astype(np.int64) @ [1 << 42, 1 << 21, 1])
+        members.append(chosen)
+    key = np.concatenate(keys)
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+    member = np.concatenate(members)[order]
+    pairs = [np.zeros((0, 2), dtype=np.int64)]
+    here = np.arange(len(key))
+    step = 1
+    while len(here) > 0:
+        here = here[here + step < len(key)]
+        here = here[key[here] == key[here + step]]
+        pair = np.stack([member[here], member[here + step]], axis=1)
+        apart = np.linalg.norm(places[pair[:, 0]] - places[pair[:, 1]], axis=1)
+        pairs.append(pair[apart <= distance])
+        step += 1
+    return np.concatenate(pairs)
 
 
 def _attribute_edges(

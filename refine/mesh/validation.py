@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...jit import njit
-from .arrays import Doubles, Floats, Wide
+from .arrays import Doubles, Flags, Floats, Wide
 
 LARGEST = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""
@@ -21,30 +21,54 @@ Measured: grids with edges of a fortieth of that are refined as ever from 1e-7 t
 _DOUBLE = np.dtype(np.float64)
 
 
-def checked_positions(rest_positions: npt.ArrayLike, name: str = "rest_positions") -> Doubles:
-    """Return positions, shape (V, 3), as a copy in double precision."""
-    positions = as_array(name, rest_positions, "numbers of shape (V, 3)")
-    if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
+def checked_mesh(
+    positions: npt.ArrayLike,
+    faces: npt.ArrayLike,
+    names: tuple[str, str] = ("rest_positions", "faces"),
+) -> tuple[Doubles, Wide]:
+    """Return positions, shape (V, 3), in double precision, and triangles, (F, 3), as copies.
+
+    Points that no triangle uses may lie anywhere, and need not be numbers: those that are none come
+    back where the first point lies that is used. `names`: of the two arguments, for errors.
+    """
+    name = names[0]
+    given = as_array(name, positions, "numbers of shape (V, 3)")
+    if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in "fiu":
         raise ValueError(
-            f"{name} must be numbers of shape (V, 3), "
-            f"got {positions.dtype} of shape {positions.shape}"
+            f"{name} must be numbers of shape (V, 3), got {given.dtype} of shape {given.shape}"
         )
-    checked = np.array(positions, dtype=np.float64, order="C")
-    is_good = np.abs(checked) < LARGEST
-    if not is_good.all():
-        bad = np.flatnonzero(~is_good.all(axis=1))
+    triangles = checked_indices(names[1], faces, len(given), name)
+    is_used = used_vertices(triangles, len(given))
+    with np.errstate(over="ignore"):
+        checked = np.array(given, dtype=np.float64, order="C")
+    is_good = (np.abs(checked) < LARGEST).all(axis=1)
+    bad = np.flatnonzero(is_used & ~is_good)
+    if len(bad) > 0:
         raise ValueError(
             f"{name} must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
-            f"{positions[bad[0]]} ({len(bad)} such vertices in all); repair the mesh before "
+            f"{given[bad[0]]} ({len(bad)} such vertices in all); repair the mesh before "
             "binding it"
         )
-    size = float(np.ptp(checked, axis=0).max()) if len(checked) else 0.0
+    size = size_of(checked[is_used])
     if size != 0.0 and not SIZES[0] <= size <= SIZES[1]:
         raise ValueError(
             f"{name} must extend over {SIZES[0]:g} to {SIZES[1]:g} (or lie all at one place), but "
             f"extend over {size:g}; take another unit of length, at binding and in all frames"
         )
-    return checked
+    checked[~is_good] = checked[is_used.argmax()] if is_used.any() else 0.0
+    return checked, triangles
+
+
+def used_vertices(faces: npt.NDArray[np.integer], vertex_count: int) -> Flags:
+    """Flag the vertices that triangles name, shape (V,)."""
+    is_used = np.zeros(vertex_count, dtype=np.bool_)
+    is_used[faces] = True
+    return is_used
+
+
+def size_of(positions: Doubles) -> float:
+    """Longest side of the box around positions, shape (N, 3); 0 if there are none."""
+    return float(np.ptp(positions, axis=0).max()) if len(positions) > 0 else 0.0
 
 
 def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
@@ -87,27 +111,32 @@ def as_indices(
     return array
 
 
-def take_positions(given: npt.NDArray[np.floating], positions: Doubles, points: Floats) -> None:
+def take_positions(
+    given: npt.NDArray[np.floating], is_used: Flags, positions: Doubles, points: Floats
+) -> None:
     """Copy the positions of a frame, shape (V, 3), in double and in single precision.
 
-    Raises ValueError unless all are finite and below LARGEST. An array that is no plain one of
-    doubles is copied first, so that compiled code has one kind of array to take.
+    Raises ValueError unless all that are used are finite and below LARGEST; `is_used`: which those
+    are, shape (V,). Others that are not come out where the first point lies that is used. An array
+    that is no plain one of doubles is copied first, so that compiled code has one kind of array to
+    take.
     """
     source: npt.NDArray[Any] = given
     if given.dtype is not _DOUBLE or not given.flags.carray:
         positions[...] = given
         source = positions
-    if copy_finite(source, positions, points) > 0:
-        raise ValueError(not_finite(given))
-
-
-def not_finite(positions: npt.NDArray[np.floating]) -> str:
-    """Say which of the positions of a frame are no numbers below LARGEST."""
-    bad = np.flatnonzero(~(np.abs(positions) < LARGEST).all(axis=1))
-    return (
-        f"positions must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
-        f"{positions[bad[0]]} ({len(bad)} such vertices in all); what moves the mesh has blown up"
-    )
+    if copy_finite(source, positions, points) == 0:
+        return
+    is_bad = ~(np.abs(positions) < LARGEST).all(axis=1)
+    bad = np.flatnonzero(is_bad & is_used)
+    if len(bad) > 0:
+        raise ValueError(
+            f"positions must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
+            f"{given[bad[0]]} ({len(bad)} such vertices in all); what moves the mesh has blown up"
+        )
+    first = is_used.argmax()
+    positions[is_bad] = positions[first] if is_used[first] else 0.0
+    points[is_bad] = positions[is_bad]
 
 
 @njit

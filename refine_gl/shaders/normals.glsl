@@ -1,6 +1,6 @@
 // A vertex: its normal, the sum of the cross products around it in the order of triangles; for cubic
-// edges another by the weights that corners have at rest, and its place as seen from vertex 0, so
-// that a mesh far from the origin loses nothing.
+// edges another by the weights that corners have at rest, and its place as seen from the first
+// vertex in use, so that a mesh far from the origin loses nothing.
 FOR_EACH(v, vertex_count) {
     precise vec3 plain = vec3(0.0), weighted = vec3(0.0);
     for (uint k = corner_starts(v); k < corner_starts(v + 1u); ++k) {
@@ -17,6 +17,6 @@ FOR_EACH(v, vertex_count) {
     normals(v) = vec4(unit(plain), 0.0);
 #ifdef CURVED
     tangent_normals(v) = vec4(unit(weighted), 0.0);
-    seen(v) = vec4(between(0u, v), 0.0);
+    seen(v) = vec4(between(first_vertex, v), 0.0);
 #endif
 }

@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius import refine
+from risorius.refine.mesh.seams import number_places
 from tests import meshes
-from tests.refine.cases import Forced
+from tests.refine.cases import Forced, GivenMetric
 
 Points = npt.NDArray[np.float64]
 
@@ -131,3 +132,127 @@ def test_mistakes_are_told() -> None:
         refiner.carry([1.0, 2.0, 3.0])
     with pytest.raises(ValueError, match="unknown option 'sceme'"):
         refine.WeldedRefiner(points, faces, sceme="cubic")
+
+
+def vase() -> tuple[Points, npt.NDArray[np.int64]]:
+    """A turned surface, whose seam is computed twice, at 0 and at 2 pi."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 13)
+    height = np.linspace(0.0, 2.0, 7)
+    turns, heights = np.meshgrid(turn, height, indexing="ij")
+    radius = 0.6 + 0.25 * np.sin(3.0 * heights)
+    grid = np.stack([radius * np.cos(turns), radius * np.sin(turns), heights], axis=2)
+    number = np.arange(13 * 7).reshape(13, 7)
+    a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    faces = np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)])
+    return grid.reshape(-1, 3), faces.reshape(-1, 3)
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.float32])
+@pytest.mark.parametrize("moved", [0.0, 3000.0])
+def test_seams_equal_but_for_the_last_bits(kind: type[np.floating], moved: float) -> None:
+    """Whatever computed or stored them, both sides of a seam have one normal."""
+    turned = np.linalg.qr(np.random.default_rng(3).random((3, 3)))[0]
+    points, faces = vase()
+    points = (points @ turned + moved).astype(kind)
+    mesh = refine.WeldedRefiner(points, faces).refine(points)
+    assert heights_of_borders(refine.WeldedRefiner(vase()[0], faces).refine(vase()[0])) == {0, 2}
+    used, joined = refine.weld(points, faces)
+    assert len(used) == 12 * 7
+    seam = np.flatnonzero(np.bincount(joined[:, 0], minlength=84) > 0)
+    assert len(seam) > 0
+    places, number = np.unique(mesh.positions, axis=0, return_inverse=True)
+    assert len(places) < mesh.vertex_count
+    first = np.zeros(len(places), dtype=np.int64)
+    first[number.reshape(-1)] = np.arange(mesh.vertex_count)
+    np.testing.assert_array_equal(mesh.normals, mesh.normals[first[number.reshape(-1)]])
+
+
+def test_how_far_apart_welded_vertices_may_lie() -> None:
+    """In sizes of the mesh; 1e-9 unless told otherwise, 0 for what is equal."""
+    points, faces = box()
+    size = 2.0
+    for apart, tolerance, count in (
+        (0.0, 0.0, 8),
+        (1e-13, 0.0, 16),
+        (1e-13, None, 8),
+        (0.9e-9 * size, None, 8),
+        (1.2e-9 * size, None, 16),
+        (1.2e-9 * size, 1e-8, 8),
+        (0.004 * size, 0.005, 8),
+        (0.006 * size, 0.005, 16),
+    ):
+        shifted = points.copy()
+        shifted[[1, 2, 5, 6, 9, 10, 13, 14], 0] += apart
+        assert len(refine.weld(shifted, faces, tolerance=tolerance)[0]) == count
+    for wrong in (-1e-9, np.nan, 1.0, "small"):
+        with pytest.raises(ValueError, match="tolerance must be a number from 0 to 1"):
+            refine.WeldedRefiner(points, faces, weld_tolerance=wrong)  # type: ignore[arg-type]
+
+
+@settings(max_examples=40)
+@given(seed=st.integers(0, 2**16), distance=st.sampled_from([1e-9, 1e-4, 0.03, 0.2]))
+def test_places_are_those_of_all_pairs(seed: int, distance: float) -> None:
+    """Points are one place where a chain of near ones joins them, as all distances say."""
+    generator = np.random.default_rng(seed)
+    points = generator.random((40, 3)).round(int(generator.integers(1, 4)))
+    points += distance * generator.uniform(-1.0, 1.0, points.shape)
+    near = np.linalg.norm(points[:, None] - points, axis=2) <= distance
+    while True:
+        further = near @ near
+        if (further == near).all():
+            break
+        near = further
+    numbers = number_places(points, distance)
+    np.testing.assert_array_equal(numbers[:, None] == numbers, near)
+
+
+WIDE = (2**53, 2**53 + 1, 2**62 + 3)
+
+
+@pytest.mark.parametrize("blend", [False, True])
+@pytest.mark.parametrize(
+    "values",
+    [
+        np.array(WIDE, np.int64),
+        -np.array(WIDE, np.int64),
+        np.array([2**64 - 1, 2**64 - 3, 1], np.uint64),
+        np.array([-(2**63), 2**63 - 1, 0], np.int64),
+        np.array([[7, 2**60 + 1], [9, 2**60 + 1], [5, 2**60 + 1]], ">i8"),
+        np.array([np.inf, 1.0, -0.0]),
+        np.array([0.1, 0.1, 0.1], np.float32),
+        np.array([np.pi] * 3, np.longdouble) + np.longdouble(2) ** -60,
+        np.array([1e300 + 1e300j, 1.0, np.inf]),
+        np.array(["2026-11-28", "NaT", "1970-01-01"], "datetime64[D]"),
+        np.array([(1, 2.5), (3, 4.5), (5, 6.5)], [("a", "i8"), ("b", "f4")]),
+        np.array([{"a": 1}, None, "word"], object),
+    ],
+    ids=str,
+)
+def test_points_of_the_input_keep_their_values(values: npt.NDArray[Any], blend: bool) -> None:
+    """Exactly, in any type; new points lie between their corners, equal corners stay equal."""
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    asks = GivenMetric([1.1, 0.9, 0.3]) if blend else Forced([2, 1, 1])
+    refiner = refine.WeldedRefiner(points, [[0, 1, 2]], criterion=asks, blend=blend)
+    refiner.refine(points)
+    carried = refiner.carry(values)
+    assert carried.dtype == values.dtype
+    assert carried[:3].tolist() == values.tolist() or str(carried[:3]) == str(values)
+    if values.dtype.kind in "iu":
+        exact = [int(value) for value in carried.ravel()]
+        assert min(exact) == int(values.min()) and max(exact) == int(values.max())
+    if values.dtype.kind == "f" and np.isfinite(values).all():
+        assert (carried == values[0]).all()
+
+
+def test_wide_integers_are_rounded_as_all_numbers_are() -> None:
+    """The mean of both ends to the nearest, halves to the even one; infinite ends are not lost."""
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    refiner = refine.WeldedRefiner(points, [[0, 1, 2]], criterion=Forced([1, 1, 1]), blend=False)
+    refiner.refine(points)
+    a, b, c = 2**62, 2**62 + 1, 2**62 + 5
+    for kind in (np.int64, np.uint64):
+        carried = refiner.carry(np.array([a, b, c], kind))
+        assert carried[3:].tolist() == [2**62, 2**62 + 3, 2**62 + 2]
+    assert refiner.carry(np.array([1, 2, 4], np.int64))[3:].tolist() == [2, 3, 2]
+    assert refiner.carry(np.array([1, 2, 4], np.int32))[3:].tolist() == [2, 3, 2]
+    assert refiner.carry(np.array([np.inf, 1.0, 2.0]))[3:].tolist() == [np.inf, 1.5, np.inf]

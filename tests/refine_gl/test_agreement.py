@@ -188,3 +188,17 @@ def test_coherent_frames(frames: int, rules: str, head: Head) -> None:
         assert_same(processor, card, face.positions)
     assert isinstance(processor, refine.Kahler) and processor.history is not None
     assert card.removals_out_of_order == processor.history.removals_out_of_order > 0
+
+
+@pytest.mark.parametrize("rules", ["two levels", "window's look"])
+def test_points_that_nothing_uses(rules: str) -> None:
+    """Far away, or no numbers: what the first point is does not matter."""
+    mesh = meshes.irregular(4)
+    strays = np.array([[np.nan, 0.0, 0.0], [1e14, 0.0, 0.0]])
+    rest = np.concatenate([strays, mesh.vertices])
+    bent = np.concatenate([strays, meshes.wrinkled(mesh, 5)])
+    processor, card = bound_twice(mesh.faces + len(strays), rest, **RULES[rules])
+    got = assert_same(processor, card, bent)
+    alone = refine.create("kahler", mesh.faces, mesh.vertices, **RULES[rules])
+    wanted = alone.refine(bent[len(strays) :])
+    np.testing.assert_array_equal(got.positions[got.triangles], wanted.positions[wanted.triangles])
