@@ -171,6 +171,11 @@ class Rules:
         metric = np.empty(len(self._mesh.edges), np.float32)
         self.others.set_view(view)
         self.others.measure(positions, normals, metric)
+        if np.isnan(metric).any():
+            raise ValueError(
+                self.others.find_complaint(positions, normals, len(metric))
+                or self.others.complaint(metric)
+            )
         return np.maximum(metric, self.still)
 
     def _ring(self) -> Arrays:

@@ -125,7 +125,9 @@ class Blended(Kahler):
         frame = self._frame
         self._criterion.set_view(view)
         self._criterion.measure(frame.positions, frame.normals, self._metric)
-        weigh_geomorphs(self._metric, self.edge_splits, frame.geomorph_once, frame.geomorph_twice)
+        grown = frame.geomorph_once, frame.geomorph_twice
+        if weigh_geomorphs(self._metric, self.edge_splits, *grown) > 0:
+            raise ValueError(self.complaint() or self._criterion.complaint(self._metric))
 
     def _number(self) -> tuple[int, int]:
         """Number the points in the middle of triangles after all others."""
@@ -153,12 +155,15 @@ class Blended(Kahler):
 @njit
 def weigh_geomorphs(
     metric: Floats, splits: Small, geomorph_once: Floats, geomorph_twice: Floats
-) -> None:
-    """Write splits and geomorph weights of every edge from its metric, all of shape (E,)."""
+) -> int:
+    """Write splits and geomorph weights of every edge from its metric, all of (E,); count NaN."""
+    undefined = 0
     for e in range(metric.shape[0]):
         splits[e] = np.uint8(metric[e] > ZERO) + np.uint8(metric[e] > ONE)
         geomorph_once[e] = min(max(metric[e] / RAMP, ZERO), ONE)
         geomorph_twice[e] = min(max((metric[e] - ONE) / RAMP, ZERO), ONE)
+        undefined += metric[e] != metric[e]
+    return undefined
 
 
 @njit

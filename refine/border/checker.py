@@ -13,6 +13,7 @@ The relations (Kähler, Haber, Seidel 2003, sections 3 and 4.3, Fig. 7 for the c
   - a sub-edge on an input edge has the sides that this edge has in the input: so no T-junction, and
     no border where there was none;
   - an edge that was split s times has 2^s sub-edges;
+  - criteria measure numbers, where a refiner can say so (`Kahler.complaint`);
   - a vertex at which no edge was split is where the input has it, to the last bit of a float32.
 A triangle of the input that names a vertex twice takes part in none of this; it comes out once.
 """
@@ -54,6 +55,9 @@ def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floatin
     `mesh`: what `refiner.refine(positions)` returned, still of its last frame; `positions`: the
     deformed vertex positions, shape (V, 3). Returns nothing and changes nothing.
     """
+    complain = getattr(refiner, "complaint", None)
+    complaint = complain() if callable(complain) else None
+    _require(complaint is None, f"a criterion measures numbers ({complaint})")
     mesh = RefinedMesh._make(getattr(mesh, name) for name in RefinedMesh._fields)  # fetched once
     origins = refiner.origins()
     _check_arrays(mesh, origins, len(positions), len(refiner.triangle_edges))

@@ -77,7 +77,8 @@ class Criterion:
         if len(self._metric) != len(splits):
             self._metric = np.zeros(len(splits), dtype=np.float32)
         self.measure(positions, normals, self._metric)
-        splits_of_metric(self._metric, splits)
+        if splits_of_metric(self._metric, splits) > 0:
+            raise ValueError(self.complaint(self._metric))
 
     @property
     def measures(self) -> bool:
@@ -90,6 +91,26 @@ class Criterion:
         It has to be a continuous function of the positions for blending to be one.
         """
         raise NotImplementedError(f"{type(self).__name__} must have a method mark or measure")
+
+    def complaint(self, metric: Floats) -> str:
+        """Say where it has measured what is no number; `metric`: of every edge, shape (E,)."""
+        bad = np.flatnonzero(np.isnan(metric))
+        return (
+            f"the criterion {type(self).__name__} measures NaN for {len(bad)} of {len(metric)} "
+            f"edges, first for edge {bad[0]}; measure must write a number for every edge"
+        )
+
+    def find_complaint(self, positions: Doubles, normals: Floats, edge_count: int) -> str | None:
+        """Measure a frame again, each of its parts alone; return the first complaint of one."""
+        for part in self.parts:
+            complaint = part.find_complaint(positions, normals, edge_count)
+            if complaint is not None:
+                return complaint
+        if not self.measures:
+            return None
+        metric = np.zeros(edge_count, dtype=np.float32)
+        self.measure(positions, normals, metric)
+        return self.complaint(metric) if np.isnan(metric).any() else None
 
 
 criteria: Registry[Criterion] = Registry("criterion", "risorius.criteria")
@@ -201,10 +222,13 @@ def mark_drops(
 
 
 @njit
-def splits_of_metric(metric: Floats, splits: Small) -> None:
-    """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice."""
+def splits_of_metric(metric: Floats, splits: Small) -> int:
+    """Write 0, 1 or 2 into `splits`, shape (E,): above 0 once, above 1 twice; count NaN."""
+    undefined = 0
     for e in range(metric.shape[0]):
         splits[e] = np.uint8(metric[e] > np.float32(0.0)) + np.uint8(metric[e] > np.float32(1.0))
+        undefined += metric[e] != metric[e]
+    return undefined
 
 
 @njit

@@ -162,6 +162,14 @@ class Kahler(BaseRefiner):
         out = self._out
         look_up_triangles(*self._of_look_up, self._first_centre, out.triangles, out.source)
 
+    def complaint(self) -> str | None:
+        """Say which criterion has measured what is no number in the last frame; None if none has.
+
+        It measures again, for `refine.check`.
+        """
+        frame = self._frame
+        return self._criterion.find_complaint(frame.positions, frame.normals, len(self.edges))
+
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh."""
         points = points_on_edges(self.connectivity, self.edge_splits)

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from risorius import refine
@@ -227,3 +228,55 @@ def test_a_rule_that_says_nothing(options: dict[str, Any], text: str) -> None:
     refiner = kahler(mesh, **options)
     with pytest.raises(NotImplementedError, match=text):
         refiner.refine(mesh.vertices)
+
+
+class Heat(refine.Criterion):
+    """A criterion of somebody, which divides nothing by nothing at one edge."""
+
+    def __init__(self, at: int, frame: int = 0) -> None:
+        self.at = at
+        self.frame = frame
+
+    def measure(self, positions: object, normals: object, metric: npt.NDArray[np.float32]) -> None:
+        """Write what is no number from some frame on."""
+        metric[:] = 0.5
+        if self.frame <= 0:
+            metric[self.at] = np.nan
+        self.frame -= 1
+
+
+class Warmth(Heat):
+    """One that decides by itself, and would have spoilt a blended frame alone."""
+
+    def mark(self, positions: object, normals: object, splits: npt.NDArray[np.uint8]) -> None:
+        """Split nothing."""
+        splits[:] = 0
+
+
+@pytest.mark.parametrize("blend", [False, True])
+@pytest.mark.parametrize("name", ["kahler", "kahler-gl"])
+@pytest.mark.parametrize("is_part", [False, True])
+def test_no_number_is_reported(blend: bool, name: str, is_part: bool) -> None:
+    """By the frame in which it is measured, with the criterion's name, alone or beside others."""
+    mesh = meshes.irregular(3)
+    for first in (0, 2):
+        heat = Heat(7, first)
+        asks: Any = ["normal", heat] if is_part else heat
+        scheme = "cubic" if blend else "loop"
+        options: dict[str, Any] = {"criterion": asks, "blend": blend, "scheme": scheme}
+        refiner = refine.create(name, mesh.faces, mesh.vertices, **options)
+        for _ in range(first):
+            refiner.refine(mesh.vertices)
+        with pytest.raises(
+            ValueError, match=r"criterion Heat measures NaN for 1 of \d+ edges, .* 7;"
+        ):
+            refiner.refine(mesh.vertices)
+
+
+def test_check_reports_what_would_be_no_number() -> None:
+    """Of a criterion that decides by itself, `check` asks what it measures."""
+    mesh = meshes.irregular(3)
+    refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Warmth(7))
+    refined = refiner.refine(mesh.vertices)
+    with pytest.raises(refine.BrokenMeshError, match="criterion Warmth measures NaN for 1 of"):
+        refine.check(refiner, refined, mesh.vertices)
