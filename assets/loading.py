@@ -87,8 +87,8 @@ def read_words() -> Mapping[str, Any]:
 def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
     """Parts lie one after the other in shared arrays: an npz entry costs more than its numbers."""
     of_vertex, of_face = (np.cumsum(arrays[f"part_{of}_counts"])[:-1] for of in ("vertex", "face"))
-    names = "vertices", "normals", "colours", "roots"
-    vertices, normals, colours, roots = (
+    names = "vertices", "normals", "colours", "roots", "mandible_shares"
+    vertices, normals, colours, roots, shares = (
         np.split(arrays[f"part_{name}"], of_vertex) for name in names
     )
     faces = np.split(arrays["part_faces"], of_face)
@@ -103,6 +103,7 @@ def _parts(arrays: dict[str, npt.NDArray[Any]]) -> tuple[Part, ...]:
             shine=float(arrays["part_shine"][i]),
             roots=roots[i] if roots[i].min() >= 0 else None,
             strand_radius=float(arrays["part_hair"][i]),
+            mandible_shares=shares[i] if shares[i].any() else None,
         )
         for i, name in enumerate(arrays["part_names"].tolist())
     )

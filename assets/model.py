@@ -84,6 +84,8 @@ class Part:
     roots: for a part that is attached to the skin and moves with it, for each vertex the one whose
         place on the skin it keeps to, shape (n,), int32; None for all others.
     strand_radius: half the thickness of the hairs that it consists of [mm]; 0 where it is none.
+    mandible_shares: for a part of the skull that stretches between both jaws, how far each vertex
+        goes with the mandible, 0 to 1, shape (n,), float32; None for all others.
     striation: for hair alone the place of each vertex across and along its strands [mm], the way
         from their roots to their tips [mm], and how dense they are, shape (n, 6), float32.
     """
@@ -98,6 +100,7 @@ class Part:
     roots: IndexArray | None = None
     strand_radius: float = 0.0
     striation: SingleArray | None = None
+    mandible_shares: SingleArray | None = None
 
     @property
     def is_enclosed(self) -> bool:

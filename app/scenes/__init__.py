@@ -23,7 +23,7 @@ from risorius.assets.identities import Person, built_in_hair, recoloured
 from ..control_names import parted
 from ..control_names.limits import ControlValues, Limits
 from ..errors import UserError
-from .mouth import Tongue, shaded_mouth
+from .mouth import MouthWalls, Tongue, shaded_mouth
 from .surface_attachment import SurfaceAttachment
 
 BUILT_IN, OWN = "built-in", "own"  # what heads are called: that which comes along, and a user's
@@ -172,6 +172,9 @@ class FaceScene(Scene):
                     part.follow(self.positions, bones[part.bone])
                 elif isinstance(part, Tongue) and tongue is not None:
                     part.bend(tongue)
+                elif isinstance(part, MouthWalls):
+                    to_cranium = np.linalg.inv(bones["cranium"])
+                    part.stretch(self.simulation.bones.jaw, to_cranium @ bones["mandible"])
         return self._parts
 
     def bone_transforms(self) -> Mapping[str, npt.NDArray[np.float64]]:

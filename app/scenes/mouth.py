@@ -1,5 +1,5 @@
-"""What is in the mouth: darker toward the back, where less light from all around gets in; and a
-tongue that bends, out of the dark.
+"""What is in the mouth: darker toward the back, where less light from all around gets in; a tongue
+that bends, out of the dark; and walls that stretch between both jaws.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from risorius.assets.fitting.mouth_walls import stretched_walls
 from risorius.geometry.normals import vertex_normals
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
@@ -73,14 +74,61 @@ class Tongue:
         self.colours = _shaded(vertices, self.unlit, self.front, TONGUE)
 
 
+@dataclass(eq=False)
+class MouthWalls:
+    """A part that stretches between both jaws; drawn as any other (render/parts.py)."""
+
+    name: str
+    vertices: Floats
+    normals: Floats
+    faces: npt.NDArray[np.int32]
+    colours: Floats
+    bone: str
+    shine: float
+    shares: Floats  # how far each vertex goes with the mandible, shape (n,)
+    rest: Floats
+    resting_normals: Floats
+    jaw: tuple[float, ...] = ()  # its values when the walls were stretched last
+    is_enclosed: bool = True
+    strand_radius: float = 0.0
+    striation: None = None
+    roots: None = None
+
+    @classmethod
+    def of(cls, part: Any) -> MouthWalls:
+        """The walls of a head."""
+        return cls(
+            part.name, part.vertices, part.normals, part.faces, part.colours, part.bone, part.shine,
+            part.mandible_shares, part.vertices, part.normals,
+        )  # fmt: skip
+
+    def stretch(self, jaw: tuple[float, ...], mandible: npt.NDArray[np.float64]) -> None:
+        """Go with the mandible; nothing for the same values of the jaw.
+
+        mandible: how it has moved, seen from the cranium, a matrix (4, 4).
+        """
+        if jaw == self.jaw:
+            return
+        self.jaw = jaw
+        if not any(jaw):
+            self.vertices = self.rest
+            self.normals = self.resting_normals
+            return
+        stretched = stretched_walls(self.rest.astype(np.float64), self.shares, mandible)
+        self.vertices = stretched.astype(np.float32)
+        self.normals = vertex_normals(stretched, self.faces).astype(np.float32)
+
+
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
-    """The parts, those of the mouth the darker the farther back they are; the tongue can bend."""
+    """The parts, those of the mouth the darker the farther back they are; some can bend."""
     front = max((part.vertices[:, 2].max() for part in parts if "teeth" in part.name), default=0.0)
 
     def shaded(part: Any) -> Any:
         """The part itself where it is not of the mouth."""
         if part.name == "tongue":
             return Tongue.of(part, float(front))
+        if part.mandible_shares is not None:
+            return MouthWalls.of(part)
         if not part.name.startswith(IN_MOUTH):
             return part
         gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)

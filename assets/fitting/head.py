@@ -41,7 +41,8 @@ from .mesh_validation import (
     with_seams_joined,
     without_bag,
 )
-from .organs import FittedSkin, place_eyes, place_parts, with_eyelid_rims
+from .mouth_walls import FittedSkin
+from .organs import place_eyes, place_parts, with_eyelid_rims
 from .painting import Layout, drawn_over, maps_in, own_picture, plain_skin, spread_uv
 from .warp import Similarity, ThinPlateSpline, nearest_on
 
@@ -60,6 +61,7 @@ UPPER_LIP, LOWER_LIP = (60, 61, 62, 63, 64), (60, 67, 66, 65, 64)  # from corner
 TOUCHING = 0.01  # of the way between the outer eye corners: lips that touch lie so near their line
 STEPS = 33  # places on each part of that line
 CHIN, FADE = 8, 25.0  # landmark, and [mm] above a neck's edge, half the way to the chin at most
+EYES = slice(36, 48)
 FARTHEST_FROM_A_FACE = 14.0  # [mm] mean distance of landmarks from those of the built-in head
 
 
@@ -101,10 +103,12 @@ class FittedHead:
         Skin that ends in the middle of a picture may fade so toward its end.
         """
         chin = self.vertices[self.landmarks[CHIN]]
+        eyes = self.vertices[self.landmarks[EYES], 1].mean()
         edges = [self.vertices[loop] for loop in boundary_loops(self.faces)]
+        edges = [edge for edge in edges if edge[:, 1].max() < eyes]  # that of a mask goes around it
         ways = [np.roll(edge, -1, axis=0) - edge for edge in edges]
         points, along = (np.vstack([np.empty((0, 3)), *each]) for each in (edges, ways))
-        is_level = np.abs(along[:, 1]) < 0.5 * np.linalg.norm(along, axis=1)  # else of a mask
+        is_level = np.abs(along[:, 1]) < 0.5 * np.linalg.norm(along, axis=1)  # not of a half head
         points = points[is_level & (points[:, 1] < chin[1])]
         if len(points) < 3:
             return None
@@ -187,7 +191,7 @@ def fit(mesh: Mesh, landmarks: IndexArray, *, points: FloatArray | None = None) 
     warped = warp.points(known.vertices)
     nearest = nearest_on(skin.vertices, normals, warped, known.faces)
     weight = nearest.interpolate(known.mandible_weight)
-    fitted = FittedSkin(skin.vertices, normals, target, weight)
+    fitted = FittedSkin(skin.vertices, normals, skin.faces, target, weight)
     eyes = place_eyes(known, fitted)
     parts = place_parts(known, fitted, warp, eyes)
     # Landmarks do not say exactly enough where a lid ends for lashes and tears.

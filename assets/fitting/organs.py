@@ -2,14 +2,14 @@
 
 Eyeballs stay round: each is moved and scaled by its own eye's landmarks, then fitted into its
 lids, so that they lie on it all around. Teeth, gums and tongue stay stiff: they follow the warp by
-the similarity that comes nearest to it. The walls of the mouth and the corners of the eyes bend
-with it; the walls are pushed back where skin would come to lie behind them when the jaw opens.
+the similarity that comes nearest to it. The walls of the mouth (mouth_walls.py) and the corners of
+the eyes bend with it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -18,11 +18,11 @@ from risorius.geometry.normals import vertex_normals
 
 from ..model import Eye, FloatArray, Head, IndexArray, Part
 from ..topology import boundary_loops, grid_faces
+from .mouth_walls import WALLS, FittedSkin, opened_jaws, within_skin
 from .warp import Similarity, ThinPlateSpline
 
 EYE_LANDMARKS = {"right": slice(36, 42), "left": slice(42, 48)}
 STIFF = ("gums", "teeth", "tongue")  # how the names of stiff parts begin
-WALLS = "oral_cavity"  # and those of the mouth's walls
 LID_CLEARANCE = 0.3  # [mm] between eyeball and the skin of the lids
 SECTORS = 12  # around an eye; in each the skin nearest to the eyeball should lie on it
 TOUCHING = 0.5  # [mm] off the lids from which a sector counts less: corners are off the ball
@@ -31,15 +31,10 @@ ROUND = 20.0  # [mm] that a sphere twice as large costs in the fit
 SUNK = 3.0  # x that skin in the eyeball costs more than a gap before it
 LID_DEPTH = 5.0  # [mm] from the landmarks on a lid's edge, as far as its inner skin may reach
 MOUTH = slice(48, 68)
-NARROWER = 0.25  # at their lower end: between the sides of the mandible, then of the throat
-LONGER = 1.5  # that walls hang farther below the lips: a jaw may open wider than the built-in one
-WALL_DEPTH = 6.0  # [mm] of a wall of the mouth behind the skin
-BESIDE, AROUND = 9.0, 8  # [mm] and number of skin vertices that are in front of a wall
 FACING = 0.2  # forward share of a normal from which skin is in front of teeth
 TEETH_CLEARANCE = 4.0, 3  # [mm] and number of skin vertices that teeth and gums must keep away from
 STIFF_DEPTH = 2.5  # [mm] of teeth and gums behind the skin: the least that lips and cheeks are
 FARTHEST_BACK = 10.0  # [mm] that the teeth are set back for it
-JAW_SHARES = (0.0, 0.5, 1.0)  # of the way that the jaw opens
 # Of the rim from the edge of lids to the eyeball.
 FLESH = "eye_corners"  # the part that rims belong to: they have its colour
 RIM_FARTHEST = 1.6  # radii of the ball from its centre: the edge around an eye is nearer
@@ -47,21 +42,6 @@ RIM_ROWS = 8  # of vertices, from the lids' edge backward
 RIM_BEHIND = 3.0  # [mm] behind the equator of the ball: there a rim ends
 TUCKED, RIM_SUNK = 0.2, 0.3  # [mm] that it begins within the lids and ends within the ball
 RIM_DARKEST = 0.6  # of the light at its end: it lies in the shade
-
-
-@dataclass(frozen=True)
-class FittedSkin:
-    """What the organs of the built-in head are fitted into.
-
-    vertices, normals: the skin at rest [mm], shape (V, 3).
-    landmarks: their points [mm], shape (68, 3).
-    mandible_weight: carried over from the built-in head, shape (V,).
-    """
-
-    vertices: FloatArray
-    normals: FloatArray
-    landmarks: FloatArray
-    mandible_weight: FloatArray
 
 
 def place_eyes(known: Head, fitted: FittedSkin) -> tuple[Eye, ...]:
@@ -151,6 +131,7 @@ def place_parts(
 ) -> tuple[Part, ...]:
     """The rigid parts of the built-in head, in another one."""
     mouth = _mouth_of(known, fitted, warp)
+    jaws = opened_jaws(known, warp)
     balls = {}
     for old, new in zip(known.eyes, eyes, strict=True):
         scale = new.radius / old.radius
@@ -159,11 +140,8 @@ def place_parts(
     for part in known.parts:
         stiffly = balls.get(part.bone) or (mouth if part.name.startswith(STIFF) else None)
         placed = _bent(part, warp) if stiffly is None else _moved(part, stiffly)
-        if part.name.startswith(WALLS) and part.bone == "cranium":
-            lips = fitted.landmarks[MOUTH].mean(axis=0)
-            walls = _lengthened(placed.vertices.astype(np.float64), lips)
-            walls = _behind_skin(walls, _opening(known, fitted, warp))
-            placed = replace(placed, vertices=walls.astype(np.float32))
+        if part.name.startswith(WALLS):
+            placed = within_skin(placed, fitted, mouth, jaws)
         parts.append(placed)
     return tuple(parts)
 
@@ -201,48 +179,6 @@ def _bent(part: Part, warp: ThinPlateSpline) -> Part:
     ahead = warp.points(part.vertices + part.normals) - vertices
     normals = ahead / np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
     return replace(part, vertices=vertices.astype(np.float32), normals=normals.astype(np.float32))
-
-
-def _lengthened(walls: FloatArray, lips: FloatArray) -> FloatArray:
-    """Walls that hang farther down below the lips, and narrower."""
-    below = np.minimum(walls[:, 1] - lips[1], 0.0)
-    longer = walls.copy()
-    longer[:, 1] += (LONGER - 1.0) * below
-    longer[:, 0] -= NARROWER * (walls[:, 0] - lips[0]) * below / min(float(below.min()), -1.0)
-    return longer
-
-
-def _opening(known: Head, fitted: FittedSkin, warp: ThinPlateSpline) -> FloatArray:
-    """Points of the skin that faces forward while the jaw opens [mm], shape (n, 3).
-
-    As coarse as need be: each vertex turns about the condyles by its share of the jaw's angle.
-    """
-    jaw = known.rig.get("jaw", {})
-    right, left = warp.points(known.jaw_axis)
-    hinge = (left - right) / np.linalg.norm(left - right)
-    facing = fitted.normals[:, 2] > 0.0
-    skin, weight = fitted.vertices[facing], fitted.mandible_weight[facing]
-    seen = []
-    for share in JAW_SHARES:
-        angle = share * np.radians(float(jaw.get("opening_deg", 20.0)))
-        turned = (
-            scipy.spatial.transform.Rotation.from_rotvec(angle * weight[:, None] * hinge).apply(
-                skin - right
-            )
-            + right
-        )
-        glide = share * np.array(jaw.get("opening_glide", (0.0, 0.0, 0.0)))
-        seen.append(turned + weight[:, None] * glide)
-    return np.vstack(seen)
-
-
-def _behind_skin(points: FloatArray, skin: FloatArray) -> FloatArray:
-    """Points pushed back until they lie behind all skin that is seen in front of them."""
-    distance, beside = scipy.spatial.cKDTree(skin[:, :2]).query(points[:, :2], k=AROUND)
-    depth = np.where(distance < BESIDE, skin[beside, 2], np.inf).min(axis=1) - WALL_DEPTH
-    pushed = points.copy()
-    pushed[:, 2] = np.minimum(points[:, 2], depth)
-    return pushed
 
 
 def with_eyelid_rims(

@@ -20,7 +20,8 @@ from risorius.geometry.normals import cross_products, vertex_normals
 from ..data_files import Image
 from ..errors import AssetError
 from ..fitting.head import FittedHead
-from ..fitting.organs import EYE_LANDMARKS, FittedSkin, lids_on_eyes, place_parts
+from ..fitting.mouth_walls import FittedSkin
+from ..fitting.organs import EYE_LANDMARKS, lids_on_eyes, place_parts
 from ..fitting.warp import Similarity, ThinPlateSpline
 from ..intersections import self_intersections
 from ..loading import load
@@ -105,7 +106,7 @@ def _made(identity: Identity) -> Person:
     larger = float(np.sqrt(spread / usual))
     warp = ThinPlateSpline(known.vertices[named], vertices[named], GIVE)
     normals, landmarks = vertex_normals(vertices, known.faces), vertices[known.landmarks]
-    skin = FittedSkin(vertices, normals, landmarks, known.mandible_weight)
+    skin = FittedSkin(vertices, normals, known.faces, landmarks, known.mandible_weight)
     return Person(
         vertices=vertices,
         faces=known.faces,

@@ -1,10 +1,11 @@
 """Where lines meet triangles."""
 
 import numpy as np
+import numpy.typing as npt
 from numpy.testing import assert_allclose
 
 from risorius.geometry.normals import cross_products
-from risorius.geometry.rays import crossings
+from risorius.geometry.rays import crossings, exits
 
 
 def test_weights_and_distance_name_one_point() -> None:
@@ -20,3 +21,38 @@ def test_weights_and_distance_name_one_point() -> None:
     assert_allclose(volume[50:], -(normals * directions[50:]).sum(axis=1), atol=1e-12)  # outside
     on_triangle = np.einsum("kn,nkj->nj", [1.0 - u - v, u, v], corners)[50:]
     assert_allclose(on_triangle, (origins + along[:, None] * directions)[50:], atol=1e-6)
+
+
+def test_rays_leave_a_cube_where_its_walls_are() -> None:
+    """From anywhere within: one exit each, as far away as the wall, with the wall's cosine."""
+    random = np.random.default_rng(1)
+    vertices, faces = cube()
+    origin = np.array([0.3, -0.2, 0.5])
+    directions = random.normal(size=(300, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    ray, distance, cosine = exits(origin, directions, vertices, faces)
+    order = np.argsort(ray)
+    assert np.array_equal(ray[order], np.arange(300))
+    to_walls = (np.sign(directions) - origin) / directions
+    assert_allclose(distance[order], to_walls.min(axis=1), rtol=1e-9)
+    walls = to_walls.argmin(axis=1)
+    assert_allclose(cosine[order], np.abs(directions[np.arange(300), walls]), rtol=1e-9)
+
+
+def test_what_a_ray_enters_is_no_exit() -> None:
+    """A box within the box, whose outside the ray meets, has one exit: its far side."""
+    vertices, faces = cube()
+    small = 0.2 * vertices + [0.6, 0.1, 0.2]
+    both = np.vstack([vertices, small])
+    numbers = np.vstack([faces, faces + len(vertices)])
+    ray, distance, _ = exits(np.zeros(3), np.array([[1.0, 0.13, 0.29]]), both, numbers)
+    assert np.array_equal(ray, [0, 0])
+    assert_allclose(np.sort(distance), [0.8, 1.0])
+
+
+def cube() -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+    """Vertices (8, 3) at -1 and 1, and faces (12, 3) counter-clockwise from outside."""
+    vertices = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+    squares = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [[a, *pair] for a, b, c, d in squares for pair in ((b, c), (c, d))]
+    return vertices, np.array(faces, np.int32)

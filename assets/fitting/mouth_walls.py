@@ -1,0 +1,133 @@
+"""The walls of the mouth: they lie within the skin, and stretch between both jaws.
+
+The upper walls hang from the skull, beside the teeth and behind the throat, down to the floor of
+the mouth, which is the mandible's. `Part.mandible_shares` says how far each of their vertices goes
+with the mandible, so they are no longer than a shut mouth needs: nothing of them reaches the neck,
+whose skin follows the head less and less. On another head they are drawn toward the middle of the
+mouth where they would leave its skin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from risorius.geometry.rays import exits
+
+from ..model import FloatArray, Head, IndexArray, Part, SingleArray
+from .warp import Similarity, ThinPlateSpline
+
+ShareArray = FloatArray | SingleArray
+WALLS = "oral_cavity"  # how the names of these parts begin
+WALL_DEPTH = 5.0  # [mm] behind the skin
+LEAST_COSINE = 0.35  # between the skin's normal and a ray: flatter rays count as this
+
+
+@dataclass(frozen=True)
+class FittedSkin:
+    """What the organs of the built-in head are fitted into.
+
+    vertices, normals: the skin at rest [mm], shape (V, 3).
+    faces: its triangles, counter-clockwise seen from outside, shape (F, 3).
+    landmarks: their points [mm], shape (68, 3).
+    mandible_weight: carried over from the built-in head, shape (V,).
+    """
+
+    vertices: FloatArray
+    normals: FloatArray
+    faces: IndexArray
+    landmarks: FloatArray
+    mandible_weight: FloatArray
+
+
+def stretched_walls(walls: FloatArray, shares: ShareArray, mandible: FloatArray) -> FloatArray:
+    """Points [mm], shape (n, 3), between the skull and a jaw that has moved.
+
+    shares: how far each goes with the mandible, 0 to 1, shape (n,). mandible: how that has moved,
+    seen from the skull, a matrix (4, 4) for column vectors.
+    """
+    moved = walls @ mandible[:3, :3].T + mandible[:3, 3]
+    return np.asarray(walls + shares[:, None] * (moved - walls))
+
+
+def opened_jaws(known: Head, warp: ThinPlateSpline) -> list[FloatArray]:
+    """How the mandible of another head moves while it opens, half and wholly: matrices (4, 4).
+
+    known: the built-in head, whose condyles `warp` takes to the other one.
+    """
+    jaw = known.rig.get("jaw", {})
+    right, left = warp.points(known.jaw_axis)
+    hinge = (left - right) / np.linalg.norm(left - right)
+    opened = []
+    for share in (0.5, 1.0):
+        angle = share * np.radians(float(jaw.get("opening_deg", 20.0)))
+        glide = share * np.array(jaw.get("opening_glide", (0.0, 0.0, 0.0)))
+        matrix = np.eye(4)
+        matrix[:3, :3] = scipy.spatial.transform.Rotation.from_rotvec(angle * hinge).as_matrix()
+        matrix[:3, 3] = right - matrix[:3, :3] @ right + glide
+        opened.append(matrix)
+    return opened
+
+
+def within_skin(
+    part: Part, fitted: FittedSkin, mouth: Similarity, jaws: Sequence[FloatArray]
+) -> Part:
+    """A part drawn toward the middle of the mouth, until it lies WALL_DEPTH behind all skin.
+
+    mouth: takes the built-in mouth to that of the head. jaws: how its mandible moves; the skin goes
+    with it by its weight. An open jaw opens the throat of a mask, too, so the border of the skin
+    counts as closed at rest alone.
+    """
+    walls = part.vertices.astype(np.float64)
+    shares: ShareArray = np.full(len(walls), 1.0 if part.bone == "mandible" else 0.0)
+    if part.mandible_shares is not None:
+        shares = part.mandible_shares
+    middle = mouth.points((0.0, -71.0, 63.0))  # between the teeth and the throat
+    skins = [_closed(fitted, mouth)]
+    for mandible in jaws:
+        moved = stretched_walls(fitted.vertices, fitted.mandible_weight, mandible)
+        skins.append((moved, fitted.faces))
+    for mandible, (vertices, faces) in zip([np.eye(4), *jaws], skins, strict=True):
+        away = stretched_walls(walls, shares, mandible) - middle
+        length = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
+        ray, distance, cosine = exits(middle, away / length[:, None], vertices, faces)
+        room = np.full(len(walls), np.inf)
+        np.minimum.at(room, ray, distance - WALL_DEPTH / np.maximum(cosine, LEAST_COSINE))
+        nearer = np.clip(room / length, 0.0, 1.0)
+        walls = middle + nearer[:, None] * (walls - middle)
+    return replace(part, vertices=walls.astype(np.float32))
+
+
+def _closed(fitted: FittedSkin, mouth: Similarity) -> tuple[FloatArray, IndexArray]:
+    """Vertices and faces of a skin whose border is closed by fans; lids and lips stay open.
+
+    The tip of a fan is the middle of the border, as in the plane of a cut neck. The border of a
+    mask goes around the face: there the tip lies behind the throat, which has room so.
+    """
+    skin = fitted.vertices
+    faces = fitted.faces
+    count = len(skin)
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    numbers = sides.astype(np.int64)
+    has_other = np.isin(numbers @ [count, 1], numbers @ [1, count])
+    border = sides[~has_other]
+    links = scipy.sparse.coo_matrix((np.ones(len(border)), border.T), shape=(count, count))
+    group = scipy.sparse.csgraph.connected_components(links, directed=False)[1][border[:, 0]]
+    throat = mouth.points((0.0, -71.0, -10.0))  # behind it by 28 mm
+    widest = 1.5 * np.linalg.norm(fitted.landmarks[54] - fitted.landmarks[48])  # of the mouth
+    tips: list[FloatArray] = []
+    fans: list[IndexArray] = []
+    for number in np.unique(group):
+        edge = border[group == number]
+        points = skin[edge[:, 0]]
+        if np.linalg.norm(np.ptp(points, axis=0)) < widest:
+            continue
+        goes_around = points[:, 1].min() < throat[1] < points[:, 1].max()
+        fans.append(
+            np.column_stack([edge[:, 1], edge[:, 0], np.full(len(edge), count + len(tips))])
+        )
+        tips.append(throat if goes_around else points.mean(axis=0))
+    return np.vstack([skin, *tips]), np.vstack([faces, *fans])

@@ -1,0 +1,163 @@
+"""The mouth's inside stays in the mouth: in turned heads, with open jaws, on masks."""
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+import PIL.Image
+import PIL.ImageDraw
+import pytest
+from scipy.ndimage import binary_dilation
+from scipy.spatial import ConvexHull
+
+from risorius import assets, render
+from risorius.app.passes.labels import CameraLabels
+from risorius.app.passes.passes import Passes
+from risorius.app.pipeline import Pipeline, Viewport
+from risorius.app.refining.presets import Refinement
+from risorius.app.scenes import FaceScene
+from risorius.app.scenes.mouth import MouthWalls
+from risorius.assets import Segment
+from risorius.assets.fitting import FittedHead, fit
+from risorius.assets.identities import make_person, sample_identity
+from risorius.assets.meshes import Mesh
+
+SIZE = (300, 300)
+JAWS: tuple[dict[str, float], ...] = ({}, {"jaw_open": 1.0}, {"jaw_open": 0.7, "jaw_sideways": 1.0})
+TURNS = tuple(
+    dict(zip(("head_pitch", "head_yaw", "head_roll"), signs, strict=True))
+    for signs in product((-1.0, 1.0), repeat=3)
+)
+
+
+@pytest.fixture(scope="module")
+def renderer() -> Iterator[render.Renderer]:
+    """A frame for small pictures."""
+    with render.open_offscreen(SIZE, samples=1) as surface:
+        yield render.Renderer(surface)
+
+
+class Sitter:
+    """A face before a camera."""
+
+    def __init__(self, scene: FaceScene, renderer: render.Renderer) -> None:
+        self.scene, self.surface = scene, renderer.surface
+        self.pipeline = Pipeline(scene, renderer)
+        self.drawn = self.pipeline.bind(Refinement(refiner="none"))
+        self.passes = Passes(self.pipeline, self.drawn)
+
+    def outside_lips(self, yaw: float, pitch: float) -> int:
+        """How many pixels that show the mouth's inside lie outside the outline of the lips."""
+        scene = self.scene
+        camera = render.OrbitCamera.framing(scene.rest_positions, view="front")
+        camera.orbit(yaw, pitch)
+        camera.fit(scene.positions, 0.02)
+        self.surface.begin()
+        self.pipeline.draw(camera, render.Style(), [Viewport(self.drawn, (0, 0, *SIZE))])
+        self.surface.end()
+        classes = self.passes.draw(camera, {"segmentation"})["segmentation"]
+        places = CameraLabels.of(camera, SIZE).project(scene.positions[scene.landmarks[48:60]])
+        outline = places[ConvexHull(places).vertices]
+        lips = PIL.Image.new("1", SIZE)
+        PIL.ImageDraw.Draw(lips).polygon([tuple(place) for place in outline.tolist()], fill=1)
+        within = binary_dilation(np.asarray(lips))  # by the pixel that the outline runs through
+        return int(((classes == Segment.MOUTH_INTERIOR) & ~within).sum())
+
+
+@pytest.mark.slow
+def test_nothing_of_the_mouth_pierces_the_throat(renderer: render.Renderer) -> None:
+    """Thirty persons with heads turned as far as they go, jaws shut, open and aside, from below."""
+    found = {}
+    for number in (*range(28), 63, 189):
+        sitter = Sitter(FaceScene(make_person(sample_identity(number))), renderer)
+        for k, jaw in enumerate(JAWS):
+            sitter.scene.reset()
+            for turn in (TURNS[(number + k) % 8], TURNS[(number + k + 3) % 8]):
+                # As far as the limits, and as far as somebody turns who looks around.
+                for share in (1.0, 0.5):
+                    pose = {name: share * value for name, value in turn.items()}
+                    sitter.scene.pose({**jaw, **pose})
+                    sitter.scene.step(0.6)
+                    for view in ((0.0, -8.0), (40.0 if number % 2 else -40.0, -8.0)):
+                        if count := sitter.outside_lips(*view):
+                            found[number, *jaw, *pose.values(), view] = count
+    assert found == {}
+
+
+def mask(lowest: float) -> FittedHead:
+    """The front of the built-in head, without neck and ears: cut along the jaw, `lowest` [mm]."""
+    head = assets.load("head")
+    _, y, z = head.vertices[head.faces].mean(axis=1).T
+    jaw = lowest + 0.5 * np.maximum(70.0 - z, 0.0)
+    faces = head.faces[(y < 60.0) & (z > 12.0) & (y > jaw)]
+    used, numbers = np.unique(faces, return_inverse=True)
+    place_of = np.full(len(head.vertices), -1)
+    place_of[used] = np.arange(len(used))
+    mesh = Mesh(head.vertices[used], numbers.reshape(-1, 3).astype(np.int32))
+    return fit(mesh, place_of[head.landmarks].astype(np.int32))
+
+
+def seen_from_in_front(
+    sitter: Sitter, pitches: tuple[float, ...]
+) -> dict[tuple[float, float], int]:
+    """Pixels of the mouth's inside beside the lips, by the view that shows any."""
+    views = product((-80.0, -40.0, 0.0, 40.0, 80.0), pitches)
+    counts = {view: sitter.outside_lips(*view) for view in views}
+    return {view: count for view, count in counts.items() if count}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lowest", [-118.0, -113.0])
+def test_nothing_hangs_below_a_mask(renderer: render.Renderer, lowest: float) -> None:
+    """A skin without a neck hides what is in its mouth, at rest and with an open jaw.
+
+    Only who looks up into a mask whose jaw is open sees what lies in it.
+    """
+    sitter = Sitter(FaceScene(mask(lowest)), renderer)
+    assert seen_from_in_front(sitter, (-10.0, 0.0, 20.0)) == {}
+    sitter.scene.pose({"jaw_open": 0.5})
+    sitter.scene.step(0.6)
+    assert seen_from_in_front(sitter, (0.0, 20.0)) == {}
+
+
+def test_a_mask_has_no_neck_that_fades() -> None:
+    """Its border goes around the face, so none of its chin is see-through."""
+    assert mask(-118.0).fade() is None
+
+
+def lower_edge(walls: MouthWalls) -> npt.NDArray[np.float32]:
+    """The vertices of walls that go with the mandible most, where they are now."""
+    return walls.vertices[walls.shares > 0.9]
+
+
+def test_walls_stretch_with_the_jaw(face: FaceScene) -> None:
+    """Their edge follows the mandible, their root the skull; at rest they are the same array."""
+    face.reset()
+    walls = next(part for part in face.parts if isinstance(part, MouthWalls))
+    rest = walls.vertices
+    edge = lower_edge(walls)
+    face.pose({"head_yaw": 0.8, "head_pitch": -0.5})
+    face.step(0.5)
+    assert face.parts and walls.vertices is rest  # a bone carries them
+    face.pose({"jaw_open": 1.0})
+    face.step(0.8)
+    assert face.parts and walls.vertices is not rest
+    mandible = face.bone_transforms()["mandible"]
+    moved = edge @ mandible[:3, :3].T + mandible[:3, 3]
+    assert np.linalg.norm(lower_edge(walls) - moved, axis=1).max() < 2.5
+    fixed = walls.shares == 0.0
+    assert np.array_equal(walls.vertices[fixed], rest[fixed])
+    assert np.allclose(np.linalg.norm(walls.normals, axis=1), 1.0, atol=1e-4)
+    stretched = walls.vertices
+    assert face.parts and walls.vertices is stretched
+    face.reset()
+    assert face.parts and walls.vertices is rest
+
+
+def test_walls_end_above_the_chin(face: FaceScene) -> None:
+    """Skin below the chin does not follow the head wholly; what lies deeper would pierce it."""
+    for head in (face.head, make_person(sample_identity(63)), make_person(sample_identity(6))):
+        chin = head.vertices[head.landmarks[8], 1]
+        walls = [part.vertices for part in head.parts if part.name.startswith("oral_cavity")]
+        assert len(walls) == 2 and np.vstack(walls)[:, 1].min() > chin + 8.0
