@@ -108,7 +108,7 @@ def _digest() -> str:
     for package in ("geometry", "refine", "sim"):  # either may be absent
         found = importlib.util.find_spec(f"{__package__}.{package}")
         for folder in (found and found.submodule_search_locations) or ():
-            for file in sorted(Path(folder).rglob("*.py")):
+            for file in sorted(Path(folder).rglob("[!.]*.py")):  # no editor's hidden ones
                 digest.update(str(file.relative_to(folder)).encode() + file.read_bytes())
     return digest.hexdigest()[:16]
 

@@ -23,7 +23,7 @@ def lay(target: Path) -> None:
             ROOT / folder,
             target / package.replace(".", os.sep),
             copy_function=os.symlink,
-            ignore=shutil.ignore_patterns("__pycache__"),
+            ignore=shutil.ignore_patterns("__pycache__", ".*"),
         )
     for folder in sorted(target.rglob("*/"), reverse=True):  # of sources that have left
         if folder.is_dir() and not any(folder.iterdir()):

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from .tracked import tracked
+
 ROOT = Path(__file__).parents[1]
 FOLDERS = (
     *("app", "assets", "bench", "docs", "examples"),
@@ -51,7 +53,7 @@ def test_packages_import_only_what_they_may(folder: str, allowed: set[str]) -> N
     """Not even within a function; a package can be lifted out, and needs no more than this."""
     found = {
         name.partition(".")[0]
-        for path in (ROOT / folder).rglob("*.py")
+        for path in tracked(folder, "*.py")
         for node in ast.walk(ast.parse(path.read_text("utf-8")))
         for name in _imported(node)
     }
@@ -69,7 +71,7 @@ def _imported(node: ast.AST) -> list[str]:
 
 def test_files_and_functions_are_short() -> None:
     """One screen for a function, a few for a file; what is excused is too long indeed."""
-    sources = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py")]
+    sources = [path for folder in FOLDERS for path in tracked(folder, "*.py")]
     assert len(sources) > 100
     long = {
         str(path.relative_to(ROOT)) for path in sources if _is_too_long(path.read_text("utf-8"))

@@ -16,11 +16,12 @@ from click.testing import CliRunner
 from risorius.__main__ import command as risorius
 from risorius.refine.border.registry import refiners
 from tests.as_installed import lay
+from tests.tracked import tracked
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 TUTORIALS = ROOT / "docs" / "tutorials"
-PAGES = [README, ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [README, ROOT / "CONTRIBUTING.md", *tracked("docs", "*.md")]
 COMMAND = re.compile(r"(?:`|^(?:    )?(?:xvfb-run -a )?)(risorius [a-z][^`#\n]*)", re.MULTILINE)
 
 
@@ -75,7 +76,7 @@ def test_pages_of_the_documentation_are_read() -> None:
 
 def test_pictures_are_few_and_small() -> None:
     """They travel with every clone: at most 40 files, and 8 MB in all."""
-    pictures = list((ROOT / "docs/pictures").iterdir())
+    pictures = tracked("docs/pictures")
     assert len(pictures) <= 40
     assert sum(path.stat().st_size for path in pictures) < 8_000_000
 
@@ -84,13 +85,13 @@ def test_every_picture_is_shown() -> None:
     """No picture of the documentation is forgotten; forgotten pages stop the site's build."""
     texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
     shown = {Path(target).name for target in re.findall(r"\]\(([^)\s#]+)", texts)}
-    assert {path.name for path in (ROOT / "docs/pictures").iterdir()} <= shown
+    assert {path.name for path in tracked("docs/pictures")} <= shown
 
 
 def test_pages_have_short_lines() -> None:
     """The README has at most 130 lines; prose has at most 120 columns, tables and code aside."""
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 130
-    for page in [README, ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")]:
+    for page in [README, ROOT / "CHANGELOG.md", *tracked("docs", "*.md")]:
         prose = re.sub(r"^```.*?^```$", "", page.read_text("utf-8"), flags=re.M | re.S)
         for line in prose.splitlines():
             is_prose = page == README or not line.startswith(("|", "    "))

@@ -16,14 +16,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+import setuptools.glob
 
 import risorius
+
+from .tracked import tracked
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 FOLDERS: dict[str, str] = {"risorius": "risorius", **SETUPTOOLS["package-dir"]}
 TOP_NAMES = {package.partition(".")[2] for package in SETUPTOOLS["package-dir"]}
+LEFT = (".#lock", "leftover.orig", "notes.rej", ".DS_Store", "Thumbs.db")
+"""Files that editors and systems leave in any folder."""
 PASSED_OVER = shutil.ignore_patterns(
     ".git", ".venv*", ".*cache", ".hypothesis", "__pycache__", "build", "dist", "out", "*.egg-info"
 )
@@ -32,10 +37,9 @@ PASSED_OVER = shutil.ignore_patterns(
 def files_of_packages() -> Iterator[tuple[str, Path]]:
     """Every file of the packages, with the package that its folder is."""
     for top, folder in FOLDERS.items():
-        for file in sorted((ROOT / folder).rglob("*")):
-            if file.is_file() and "__pycache__" not in file.parts:
-                inside = file.parent.relative_to(ROOT / folder).parts
-                yield ".".join((top, *inside)), file
+        for file in tracked(folder):
+            inside = file.parent.relative_to(ROOT / folder).parts
+            yield ".".join((top, *inside)), file
 
 
 def test_every_package_is_listed() -> None:
@@ -55,7 +59,19 @@ def test_every_data_file_is_listed() -> None:
     }
     data = {file for _, file in files_of_packages() if file.suffix != ".py"}
     assert len(data) > 15
-    assert listed == data
+    assert listed & set(tracked()) == data
+
+
+def test_what_an_editor_leaves_is_not_listed(tmp_path: Path) -> None:
+    """Locks, copies and halves of files beside ours, also where they end as ours do."""
+    for package, patterns in SETUPTOOLS["package-data"].items():
+        for pattern in patterns:
+            folder = (tmp_path / package / pattern).parent
+            folder.mkdir(parents=True, exist_ok=True)
+            end = Path(pattern).suffix
+            for name in (*LEFT, f".#ours{end}", f"ours{end}~", f"#ours{end}#", f".ours{end}.swp"):
+                (folder / name).touch()
+            assert not setuptools.glob.glob(str(tmp_path / package / pattern)), pattern
 
 
 def test_python_versions_agree() -> None:
@@ -85,10 +101,9 @@ def test_the_release_is_the_same_everywhere() -> None:
 
 def test_nothing_is_imported_by_its_folder() -> None:
     """In the checkout `import render` would find a second copy of `risorius.render`."""
-    folders = [path for path in ROOT.iterdir() if path.is_dir() and not path.name.startswith(".")]
     names = "|".join(TOP_NAMES)
     looks_so = re.compile(rf"^\s*(from\s+({names})\b|import\s.*\b({names})\b)", re.MULTILINE)
-    for file in (file for folder in folders for file in folder.rglob("*.py")):
+    for file in tracked(pattern="*.py"):
         source = file.read_text(encoding="utf-8")
         # Reading all files as Python takes seconds.
         for node in ast.walk(ast.parse(source)) if looks_so.search(source) else ():
@@ -135,7 +150,14 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     """Built in copies, so that nothing is left in the checkout."""
     folder = tmp_path_factory.mktemp("built")
     checkout = folder / "checkout"
-    shutil.copytree(ROOT, checkout, ignore=PASSED_OVER)
+    shutil.copytree(ROOT, checkout, ignore=PASSED_OVER, symlinks=True)
+    for inside in ("app", "assets/data", "docs/pictures", "examples", "render/shaders", "tests"):
+        for name in LEFT:
+            (checkout / inside / name).unlink(missing_ok=True)
+            (checkout / inside / name).write_text("left by an editor")
+        for name in (".#head.npz", ".#files.py"):  # a lock is a link that leads nowhere
+            (checkout / inside / name).unlink(missing_ok=True)
+            (checkout / inside / name).symlink_to("somebody@a.host.1234:5678")
     code = f"from setuptools import build_meta; build_meta.build_sdist({str(folder)!r})"
     run(sys.executable, "-c", code, cwd=checkout)
     (sdist,) = folder.glob("*.tar.gz")
@@ -182,12 +204,12 @@ def test_sdist_holds_what_its_tests_need(built: Built) -> None:
     }
     wanted |= {
         str(file.relative_to(ROOT))
-        for folder in ("tests", "examples")
-        for file in (ROOT / folder).rglob("*")
-        if file.is_file() and "__pycache__" not in file.parts
+        for folder in (".github", "docs", "examples", "tests")
+        for file in tracked(folder)
     }
     assert wanted <= names
     assert not [name for name in names if name.endswith(".pyc")]
+    assert not [name for name in names if Path(name).name in LEFT or ".#" in name]
 
 
 @pytest.mark.slow
