@@ -8,7 +8,7 @@ import pytest
 
 from risorius import assets, sim
 from risorius.app.errors import UserError
-from risorius.bench.motion import Row, measure
+from risorius.bench.motion import Row, _blobs, measure, report, targets
 from tests.heads import METRES, SHIFT, TURN, Stranger, shape, stranger
 from tests.sim.poses import settled_displacement
 
@@ -71,6 +71,46 @@ def test_own_motion_is_known_again(scored: tuple[dict[str, Row], list[str]]) -> 
         is_guessed = name in ("jawOpen", "mouthClose")  # their mandible, from landmarks
         assert 0.8 < row.magnitude < (1.5 if is_guessed else 1.25), name
         assert row.residual < (0.6 if is_guessed else 0.25), name
+
+
+def held_to(*rows: Row) -> list[str]:
+    """What is missed beside a shape that is sound."""
+    sound = Row("jawOpen", 0.99, 1.0, 0.02, 0.5)
+    return [target.text for target in targets([sound, *rows], []) if not target.is_met]
+
+
+def test_a_shape_below_its_blob_is_missed() -> None:
+    """Where a smooth bump comes nearer to the scan: by its directions, or by its size."""
+    assert held_to() == []
+    assert held_to(Row("mouthLeft", 0.95, 1.0, 0.1, 0.9)) == []
+    (astray,) = held_to(Row("eyeWide", 0.95, 1.0, 0.1, 0.96))
+    assert astray.startswith("residual beside its blob, eyeWide: 0.1, at most 0.078")
+    (too_far,) = held_to(Row("mouthShrugUpper", 0.98, 2.8, 3.35, 0.7))
+    assert too_far.startswith("residual beside its blob, mouthShrugUpper: 3.35, at most 0.51")
+    assert len(held_to(Row("mouthLeft", np.nan, 1.0, np.nan, 0.9))) > 1
+
+
+def test_the_blob_stands_beside_each_shape() -> None:
+    """As the last column, of the mean as well."""
+    text = report([Row("jawOpen", 0.95, 1.0, 0.1, 0.901), Row("eyeWide", 0.96, 1.1, 0.1, 0.8)], [])
+    lines = [line.split() for line in text.splitlines()]
+    assert ["shape", "cosine", "magnitude", "residual", "blob"] in lines
+    assert [line[-1] for line in lines if line[:1] in (["jawOpen"], ["mean"])] == ["0.901", "0.851"]
+
+
+def test_a_bump_is_known_as_a_blob() -> None:
+    """One of the widths is nearly the field of a bump on one side, and one on both of them."""
+    head = assets.load("head")
+    for corners in (["cheek_left"], ["cheek_left", "cheek_right"]):
+        places = head.vertices[[head.anatomy[name] for name in corners]]
+        away = np.linalg.norm(head.vertices[:, None] - places, axis=2)
+        scanned = np.exp(-((away / 20.0) ** 2)).sum(axis=1)[:, None] * [0.0, 1.0, 0.5]
+        size = np.linalg.norm(scanned)
+        cosines = [
+            float((blob * scanned).sum() / (np.linalg.norm(blob) * size))
+            for blob in _blobs(head.vertices, scanned)
+        ]
+        assert max(cosines) > 0.99 > min(cosines)
 
 
 @pytest.fixture(scope="module")
