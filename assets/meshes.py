@@ -18,6 +18,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.read_only import make_read_only
+
 from .errors import AssetError
 from .gltf import read_gltf
 from .pictures import Texture, texture_of
@@ -55,6 +57,9 @@ class Mesh:
     same: npt.NDArray[np.integer[Any]] | None = None
     corners: npt.NDArray[np.int32] | None = None
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        make_read_only(self)
 
 
 def read_mesh(path: str | Path) -> Mesh:

@@ -20,6 +20,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from risorius.geometry.read_only import make_read_only
+
 from .data_files import Image, read_arrays, read_image
 from .topology import quarter
 
@@ -68,6 +70,9 @@ class Eye:
     radius: float
     iris_radius: float
 
+    def __post_init__(self) -> None:
+        make_read_only(self)
+
 
 @dataclass(frozen=True)
 class Part:
@@ -101,6 +106,9 @@ class Part:
     strand_radius: float = 0.0
     striation: SingleArray | None = None
     mandible_shares: SingleArray | None = None
+
+    def __post_init__(self) -> None:
+        make_read_only(self)
 
     @property
     def is_enclosed(self) -> bool:
@@ -141,6 +149,9 @@ class Wrinkles:
     steepest: float
     across: SingleArray
     resting: SingleArray = field(default_factory=lambda: np.zeros(1, np.float32))
+
+    def __post_init__(self) -> None:
+        make_read_only(self)
 
 
 class FineShape(NamedTuple):

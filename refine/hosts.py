@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.read_only import read_only
 from .border.plugin import RefinedMesh, View
 from .border.registry import create
 from .mesh.arrays import Doubles, Flags, Wide
@@ -47,7 +48,8 @@ class WeldedRefiner:
         `options`: those of `create_kahler`, but for texture coordinates and attributes: `carry`
         does that. Raises ValueError as `create` does.
         """
-        rest, self.triangles = checked_mesh(points, triangles, ("points", "triangles"))
+        rest, given = checked_mesh(points, triangles, ("points", "triangles"))
+        self.triangles = read_only(given)
         self.point_count = len(rest)
         self._faces, self._kept = self.triangles, np.arange(len(rest))
         if weld:

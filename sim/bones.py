@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.read_only import read_only
 from .controls import Controls
 from .face_model import FaceModel
 from .landmarks import Array
@@ -21,8 +22,9 @@ class Bones:
 
     def __init__(self, model: FaceModel, controls: Controls) -> None:
         self._skull, self._space = model.skull, model.space
-        self.mandible_weight, self._closed_weight = model.skull.mandible_weight, model.closed_weight
-        self.head_weight = model.turns[:, 0]
+        self.mandible_weight = read_only(model.skull.mandible_weight)
+        self._closed_weight = model.closed_weight
+        self.head_weight = read_only(model.turns[:, 0])
         sides = [ball.side.value for ball in model.skull.eyeballs]
         ways = [f"gaze_{way}_{side}" for side in sides for way in ("horizontal", "vertical")]
         self._controls, places = controls, controls.places_in_reached
@@ -30,7 +32,7 @@ class Bones:
         self._head, self._gaze = places(HEAD_CONTROLS), places(ways)
         self.jaw, self._head_values = (0.0, 0.0, 0.0), [0.0, 0.0, 0.0]
         self.mandible = self.head = REST  # seen from the cranium, and from the neck
-        self.turn: Array = np.eye(4)  # of the head, for column vectors [head units]
+        self.turn: Array = read_only(np.eye(4))  # of the head, for column vectors [head units]
 
     def follow(self) -> None:
         """Jaw, lips and head go where the controls are now."""
@@ -41,11 +43,13 @@ class Bones:
             self.mandible = self._skull.mandible_motion(*jaw)
         self.weight = self.mandible_weight
         if self.lips_closed > 0.0:
-            self.weight = self.weight + self.lips_closed * (self._closed_weight - self.weight)
+            closed = self.lips_closed * (self._closed_weight - self.weight)
+            self.weight = read_only(self.weight + closed)
         if (head := reached[self._head].tolist()) != self._head_values:
             self._head_values = head
             self.head = self._skull.head_motion(*head)
-            self.turn = np.eye(4) if self.head is REST else self.head.matrix(self._space)
+            turn = np.eye(4) if self.head is REST else self.head.matrix(self._space)
+            self.turn = read_only(turn)
 
     def gaze(self) -> Array:
         """Where each eyeball looks: to the subject's left and up, -1 to 1, shape (eyes, 2)."""

@@ -21,6 +21,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
+from ..geometry.read_only import read_only
 from ..jit import njit
 from ..schema import quoted
 from .checked import number as finite
@@ -71,7 +72,11 @@ class Controls:
     tables: Layers
     """What each control of the layers adds to the C lowest ones, in their order."""
     reached: Array
-    """Activations of the lowest controls now, and a 0 behind them, shape (C + 1,)."""
+    """Activations of the lowest controls now, and a 0 behind them, shape (C + 1,), read only."""
+    wanted: Array
+    """Sums of the lowest controls, shape (C,), read only."""
+    activation: Array
+    """What follows them, shape (C,), read only."""
 
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
         self.lowest, self.tables = tuple(control.name for control in controls), layers
@@ -96,8 +101,11 @@ class Controls:
             (self._places[name], self._places[whole]) for name, whole in layers.share_of.items()
         ]
         self._values: Array = np.zeros(len(self.names))
-        self.wanted, self._speed = np.zeros((2, len(controls)))
-        self.reached: Array = np.zeros(len(controls) + 1)
+        self._wanted, self._speed = np.zeros((2, len(controls)))
+        self._reached: Array = np.zeros(len(controls) + 1)
+        self._activation = self._reached[:-1]
+        self.wanted = read_only(self._wanted)
+        self.reached = read_only(self._reached)
         self.activation = self.reached[:-1]
 
     def place(self, name: str) -> int:
@@ -167,32 +175,32 @@ class Controls:
             )
         self._values[:] = wanted
         count = len(self.lowest)
-        self.wanted[:] = self._values[:count]
+        self._wanted[:] = self._values[:count]
         if len(self._shares):
             counted = self._values.copy()
             for index, whole in self._share_of:
                 counted[index] = share_of_whole(self._values[index], self._values[whole])
-            self.wanted += counted[count:] @ self._shares
+            self._wanted += counted[count:] @ self._shares
             least = (counted[count:][self._floored, None] * self._floors).max(axis=0, initial=0.0)
-            np.maximum(self.wanted, least, out=self.wanted, where=least > 0.0)
-            np.clip(self.wanted, self._low, self._high, out=self.wanted)
+            np.maximum(self._wanted, least, out=self._wanted, where=least > 0.0)
+            np.clip(self._wanted, self._low, self._high, out=self._wanted)
 
     def advance(self, dt: float) -> None:
         """Let activations follow their values for `dt` [s]: exact critically damped motion."""
-        follow(self.wanted, self.activation, self._speed, self._rate, dt)
+        follow(self._wanted, self._activation, self._speed, self._rate, dt)
 
     def arrive(self) -> None:
         """Let activations be where their values are, at once."""
-        self.activation[:], self._speed[:] = self.wanted, 0.0
+        self._activation[:], self._speed[:] = self._wanted, 0.0
 
     def copy_from(self, other: Controls) -> None:
         """Take on values and activations of controls of the same face."""
-        self._values[:], self.wanted[:] = other._values, other.wanted
-        self.activation[:], self._speed[:] = other.activation, other._speed
+        self._values[:], self._wanted[:] = other._values, other._wanted
+        self._activation[:], self._speed[:] = other._activation, other._speed
 
     def reset(self) -> None:
         """All values and activations to zero at once."""
-        for array in (self._values, self.wanted, self.reached, self._speed):
+        for array in (self._values, self._wanted, self._reached, self._speed):
             array[:] = 0.0
 
 

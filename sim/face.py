@@ -24,6 +24,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..geometry.read_only import read_only
 from ..schema import quoted
 from . import checked
 from .anatomy import Anatomy
@@ -48,20 +49,19 @@ class Simulation:
 
     controls: what moves it: muscles, jaw, gaze, and the layers above. bones: where these and the
     eyeballs are. anatomy: what lies under the skin now. touch: what hands do to the skin.
-    positions, rest_positions: of the vertices now and at rest [head units], shape (V, 3); read-only
-    views, of which `step` rewrites the first. faces: triangles, shape (F, 3); they never change.
-    areas: skin that belongs to each vertex at rest [mm2 of the standard face], shape (V,).
+    positions, rest_positions: of the vertices now and at rest [head units], shape (V, 3); `step`
+    rewrites the first. faces: triangles, shape (F, 3). areas: skin that belongs to each vertex at
+    rest [mm2 of the standard face], shape (V,). All of them are read only.
     """
 
     def __init__(self, model: FaceModel) -> None:
         surface = model.surface
         self._state = State.at_rest(surface, len(model.muscles.bundle.muscle))
         self._model, self._grip = model, SEALED
-        self._positions, self.rest_positions = model.vertices.copy(), model.vertices.copy()
-        self.positions = self._positions.view()
-        for array in (self.positions, self.rest_positions):
-            array.flags.writeable = False
-        self.faces, self.areas = surface.faces, surface.areas
+        self._positions = model.vertices.copy()
+        self.positions = read_only(self._positions)
+        self.rest_positions = read_only(model.vertices.copy())
+        self.faces, self.areas = read_only(surface.faces), read_only(surface.areas)
         self._axes = model.space.axes * model.space.scale
         self.controls = Controls(model.controls, model.layers)
         self.bones = Bones(model, self.controls)

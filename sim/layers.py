@@ -54,6 +54,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from ..geometry.read_only import read_only
 from ..schema import OneOf, Record, Rest, Within, question, read
 from .checked import several
 from .landmarks import Array
@@ -112,12 +113,13 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
         for name, row in read(dict[str, _Row], layer.rows, str(layer.source)).items():
             names += reader.add(f"{layer.source}, '{name}'", name, row, below)
         reader.groups[str(layer.title)] = tuple(names)
-    count = len(lowest)
+    shares = list(reader.shares.items())[len(lowest) :]
+    floors = list(reader.floors.items())[len(lowest) :]
     return Layers(
         MappingProxyType({title: names for title, names in reader.groups.items() if names}),
         MappingProxyType(reader.actions),
-        MappingProxyType(dict(list(reader.shares.items())[count:])),
-        MappingProxyType(dict(list(reader.floors.items())[count:])),
+        MappingProxyType({name: read_only(row) for name, row in shares}),
+        MappingProxyType({name: read_only(row) for name, row in floors}),
         MappingProxyType(reader.share_of),
     )
 

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..geometry.read_only import read_only
 from ..jit import njit
 from .coordinates import FaceSpace
 from .landmarks import EYE_LANDMARKS, MIRRORED, UPPER_LIP, Array, Side
@@ -42,9 +43,14 @@ class RigidMotion(NamedTuple):
     shift: Array  # (3,)
 
     @classmethod
+    def of(cls, rotation: Array, shift: Array) -> RigidMotion:
+        """A motion whose arrays cannot be written: several faces may share it."""
+        return cls(read_only(rotation), read_only(shift))
+
+    @classmethod
     def about(cls, pivot: Array, rotation: Array) -> RigidMotion:
         """Turn about `pivot`."""
-        return cls(rotation, pivot - rotation @ pivot)
+        return cls.of(rotation, pivot - rotation @ pivot)
 
     def displacements(self, points: Array) -> Array:
         """How far points (..., 3) move."""
@@ -52,7 +58,8 @@ class RigidMotion(NamedTuple):
 
     def after(self, first: RigidMotion) -> RigidMotion:
         """This motion done after another."""
-        return RigidMotion(self.rotation @ first.rotation, self.rotation @ first.shift + self.shift)
+        rotation, shift = self.rotation @ first.rotation, self.rotation @ first.shift + self.shift
+        return RigidMotion.of(rotation, shift)
 
     def matrix(self, space: FaceSpace) -> Array:
         """The motion in head coordinates as a (4, 4) matrix for column vectors."""
@@ -60,7 +67,7 @@ class RigidMotion(NamedTuple):
         return result
 
 
-REST = RigidMotion(np.eye(3), np.zeros(3))
+REST = RigidMotion.of(np.eye(3), np.zeros(3))
 
 
 @dataclass(frozen=True)
@@ -93,14 +100,14 @@ class Skull:
             -math.radians(head.pitch_deg) * pitch,
             -math.radians(head.roll_deg) * roll,
         )
-        return RigidMotion(*turn_head(self.condyles, head.joint, angles))
+        return RigidMotion.of(*turn_head(self.condyles, head.joint, angles))
 
     def mandible_motion(self, opening: float, forward: float, sideways: float) -> RigidMotion:
         """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
         ways = self.jaw.opening_glide, self.jaw.forward_glide, self.jaw.sideways_glide
         angles = math.radians(self.jaw.opening_deg), math.radians(self.jaw.sideways_deg)
         values = opening, max(forward, BACKWARD * forward), sideways
-        return RigidMotion(*move_mandible(self.condyles, ways, angles, values))
+        return RigidMotion.of(*move_mandible(self.condyles, ways, angles, values))
 
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:
         """An eyeball looking to the subject's left (+1) and up (+1)."""

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from risorius import assets, sim
 from risorius.assets.fitting import FittedHead, fit_head
 from risorius.assets.identities import Person, built_in_hair, recoloured
+from risorius.geometry.read_only import read_only
 
 from ..control_names import parted
 from ..control_names.limits import ControlValues, Limits
@@ -131,12 +132,12 @@ class FaceScene(Scene):
         self.in_tone = recoloured if is_known else None if person is None else person.in_tone
         self.landmarks = head.landmarks
         landmarks = head.vertices[head.landmarks]
-        self.focus = 0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0))
+        self.focus = read_only(0.5 * (landmarks.min(axis=0) + landmarks.max(axis=0)))
         self._are_bent = False  # parts, as the face is now
         hair = [part.vertices for part in self._parts if part.striation is not None]
-        self.extent = np.vstack([self.rest_positions, *hair])
+        self.extent = read_only(np.vstack([self.rest_positions, *hair]))
         lowest = float(landmarks[CHIN, 1]) - NECK  # what is below may lie beyond the frame
-        self.framed = self.extent[self.extent[:, 1] > lowest]
+        self.framed = read_only(self.extent[self.extent[:, 1] > lowest])
         self._moved_by: dict[str, dict[str, float]] = {}
         self.values = self.limits.pose(controls.values)
 
@@ -210,14 +211,15 @@ class PlaneScene(Scene):
     def __init__(self) -> None:
         plane = assets.load("plane")
         self.faces, self.rest_positions = plane.faces, plane.vertices
-        self.focus = plane.vertices.mean(axis=0)
+        self.focus = read_only(plane.vertices.mean(axis=0))
         self.values = self.limits.pose({})
         self._length = float(np.ptp(plane.vertices, axis=0).max())
         self.extent = self.framed = plane.vertices
-        self.positions = plane.vertices.copy()
+        self._positions = plane.vertices.copy()
+        self.positions = read_only(self._positions)
 
     def step(self, seconds: float) -> None:
-        self.positions[:] = self.waved(self.rest_positions)[0]
+        self._positions[:] = self.waved(self.rest_positions)[0]
 
     def waved(
         self, points: npt.NDArray[np.float64]
@@ -234,7 +236,7 @@ class PlaneScene(Scene):
 
     def reset(self) -> None:
         super().reset()
-        self.positions[:] = self.rest_positions
+        self._positions[:] = self.rest_positions
 
 
 SCENES: dict[str, Callable[[], Scene]] = {

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from risorius.assets.fitting.mouth_walls import stretched_walls
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.read_only import read_only
 
 IN_MOUTH = ("teeth", "gums", "tongue")  # names begin so; the cavity is painted dark
 
@@ -60,7 +61,7 @@ class Tongue:
         """The tongue of a head."""
         return cls(
             part.name, part.vertices, part.normals, part.faces,
-            _shaded(part.vertices, part.colours, front, TONGUE), part.bone, part.shine,
+            read_only(_shaded(part.vertices, part.colours, front, TONGUE)), part.bone, part.shine,
             part.colours, front,
         )  # fmt: skip
 
@@ -69,9 +70,10 @@ class Tongue:
         if vertices is self.shape:
             return
         self.shape = vertices
-        self.vertices = vertices.astype(np.float32)
-        self.normals = vertex_normals(vertices, self.faces).astype(np.float32)
-        self.colours = _shaded(vertices, self.unlit, self.front, TONGUE)
+        self.vertices = read_only(vertices.astype(np.float32))
+        normals = vertex_normals(vertices, self.faces)
+        self.normals = read_only(normals.astype(np.float32))
+        self.colours = read_only(_shaded(vertices, self.unlit, self.front, TONGUE))
 
 
 @dataclass(eq=False)

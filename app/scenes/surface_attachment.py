@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from risorius.assets.fitting.warp import nearest_on
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.read_only import read_only
 
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
@@ -57,9 +58,9 @@ class SurfaceAttachment:
         there = (skin[self._near] - bone[:3, 3]) @ np.linalg.inv(bone[:3, :3]).T
         places, frames = self._frames(there)
         turned = np.einsum("nij,nj->ni", frames[self._row], self._local)
-        self.vertices = (places[self._row] + turned).astype(np.float32)
+        self.vertices = read_only((places[self._row] + turned).astype(np.float32))
         normals = np.einsum("nij,nj->ni", frames[self._row], self._local_normals)
-        self.normals = normals.astype(np.float32)
+        self.normals = read_only(normals.astype(np.float32))
 
     def _frames(self, skin: Floats) -> tuple[Floats, Floats]:
         """Feet of the roots, (R, 3), and right-handed unit axes there, (R, 3, 3), in columns."""

@@ -23,6 +23,7 @@ import numpy as np
 import scipy
 
 from risorius.geometry.normals import vertex_normals
+from risorius.geometry.read_only import make_read_only
 
 from ..data_files import Image
 from ..errors import AssetError
@@ -96,6 +97,9 @@ class FittedHead:
     file_vertices: IndexArray
     notes: tuple[str, ...] = field(default=(), kw_only=True)
     fine_shape: FineShape | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        make_read_only(self)
 
     def fade(self) -> tuple[float, float, float, float] | None:
         """A x + b y + c z + d is 0 along the neck's edge, 1 FADE above; None: there is no edge.

@@ -18,6 +18,7 @@ import numpy.typing as npt
 import scipy
 
 from risorius.geometry.closest import SurfacePoints, closest_points
+from risorius.geometry.read_only import make_read_only
 
 from ..model import FloatArray, IndexArray
 
@@ -31,6 +32,9 @@ class Similarity:
     scale: float
     rotation: FloatArray  # (3, 3)
     shift: FloatArray  # (3,)
+
+    def __post_init__(self) -> None:
+        make_read_only(self)
 
     @classmethod
     def between(cls, source: FloatArray, target: FloatArray) -> Similarity:

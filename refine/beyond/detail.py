@@ -68,10 +68,11 @@ class DetailScheme(CubicScheme):
         edge_count = len(connectivity.edges)
         self._every_edge = np.arange(edge_count, dtype=np.uint32)
         self._axes = np.zeros((edge_count, 3, 3, 3), dtype=np.float32)
-        self._displace(rest_positions)
+        rest = rest_positions.copy()  # of the kind that frames have, which kernels know
+        self._displace(rest)
         normals = self._normals  # at rest: all directions follow those that the cubic has
-        middle_axes(self._around, rest_positions, normals, self._axes)
-        quarter_axes(self._around, rest_positions, normals, self._every_edge, self._axes)
+        middle_axes(self._around, rest, normals, self._axes)
+        quarter_axes(self._around, rest, normals, self._every_edge, self._axes)
 
         share = np.array([0.25, 0.5, 0.75])[:, None]
         start, end = connectivity.edges.T

@@ -15,8 +15,9 @@ from weakref import WeakValueDictionary
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.read_only import read_only
 from ..mesh.arrays import Doubles, Floats, Indices, Small
-from ..mesh.connectivity import Connectivity, connect
+from ..mesh.connectivity import Connectivity, connect_writable
 from ..mesh.normals import vertex_normals
 from ..mesh.validation import as_array, checked_mesh, take_positions, used_vertices
 from .corner_values import AttributeLike, checked_corner_values
@@ -38,9 +39,9 @@ class BaseRefiner(Refiner):
     """
 
     connectivity: Connectivity
-    """Edges, neighbours and wedges of the mesh, found once."""
+    """Edges, neighbours and wedges of the mesh, found once; read only."""
     rest_positions: Doubles
-    """Undeformed vertex positions, shape (V, 3)."""
+    """Undeformed vertex positions, shape (V, 3); read only."""
     positions: Doubles
     """Those of this frame, a copy: a simulation may run on meanwhile."""
     points: Floats
@@ -65,10 +66,11 @@ class BaseRefiner(Refiner):
             triangles, len(positions), uv=uv, face_uv=face_uv, attributes=attributes
         )
         corners = None if self._values is None else self._values.corners
-        self.connectivity = connect(triangles, len(positions), corners)
+        self._mesh = connect_writable(triangles, len(positions), corners)
+        self.connectivity = self._mesh.read_only()
         if self._values is not None:
             self._wedge_values = wedge_values(self.connectivity, self._values.values)
-        self.rest_positions = positions
+        self.rest_positions = read_only(positions)
         self.positions = positions.copy()
         self.points = positions.astype(np.float32)
         self.normals = np.zeros_like(self.points)
@@ -97,7 +99,7 @@ class BaseRefiner(Refiner):
 
     def find_normals(self) -> None:
         """Write the vertex normals of `positions` into `normals`."""
-        vertex_normals(self.positions, self.connectivity.faces, self.normals)
+        vertex_normals(self.positions, self._mesh.faces, self.normals)
 
     def write_wedges(self, rows: Floats) -> None:
         """Write what follows vertices, when the first V rows have positions and normals.
@@ -124,9 +126,7 @@ class BaseRefiner(Refiner):
     @property
     def splits(self) -> Small:
         """How often each edge was split in the last frame, shape (E,), read only."""
-        splits = self.edge_splits.view()
-        splits.flags.writeable = False
-        return splits
+        return read_only(self.edge_splits)
 
     @property
     def edges(self) -> Indices:

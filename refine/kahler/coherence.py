@@ -39,7 +39,9 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+import numpy.typing as npt
 
+from ...geometry.read_only import read_only
 from ...jit import njit
 from ..mesh.arrays import Short, Small
 from .table import (
@@ -193,18 +195,38 @@ class Coherent:
         self._steps = tables.transitions.copy(), tables.removals.copy()
         self.patterns = tables.patterns
         """A row for each sequence."""
-        self.states: Short = np.zeros(face_count, dtype=np.uint16)
-        """The sequence of each triangle, shape (F,): all that lives from frame to frame."""
+        self._states: Short = np.zeros(face_count, dtype=np.uint16)
+        self._shown = read_only(self._states)
         self.removals_out_of_order = 0
         """Splits taken back while a later one stayed, in all frames; each may turn lines."""
+
+    @property
+    def states(self) -> Short:
+        """The sequence of each triangle, (F,), read only: all that lives from frame to frame.
+
+        May be set to those of another refiner of the same mesh, which goes on from there. Raises
+        ValueError for other shapes and for numbers of no sequence.
+        """
+        return self._shown
+
+    @states.setter
+    def states(self, states: npt.ArrayLike) -> None:
+        given = np.asarray(states)
+        is_right = given.shape == self._states.shape and given.dtype.kind in "iu"
+        if not is_right or ((given < 0) | (given >= SEQUENCE_COUNT)).any():
+            raise ValueError(
+                f"states must be integers from 0 to {SEQUENCE_COUNT - 1} of shape "
+                f"{self._states.shape}, got {given.dtype} of shape {given.shape}"
+            )
+        self._states[:] = given
 
     def follow(self, configurations: Short) -> Short:
         """Move every triangle from its sequence to the next one; return these, shape (F,).
 
         `configurations`: s0 + 3 s1 + 9 s2 of each triangle in the frame, shape (F + 1,).
         """
-        self.removals_out_of_order += follow_splits(configurations, *self._steps, self.states)
-        return self.states
+        self.removals_out_of_order += follow_splits(configurations, *self._steps, self._states)
+        return self._states
 
 
 @njit

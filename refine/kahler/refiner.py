@@ -56,14 +56,14 @@ class Kahler(BaseRefiner):
         `coherent`: whether triangulations continue those of the frame before (section 4.4).
         """
         super().__init__(faces, rest_positions, **values)
-        mesh = self.connectivity
+        mesh = self._mesh
         self._criterion = NormalDrop() if criterion is None else criterion
         self._scheme = LoopScheme() if scheme is None else scheme
         self.history = Coherent(len(mesh.faces)) if coherent else None
         """What triangles remember of their splits, as they are walked; None unless `coherent`."""
         self._frame = buffers_for(mesh, self.positions, self.points, self.normals)
         if self.history is not None:
-            self._look_up_in(self.history.patterns, self.history.states)
+            self._look_up_in(self.history.patterns, self.history._states)
         else:
             self._look_up_in(CONFIGURATIONS, self._frame.configurations)
         frame = self._frame
@@ -84,8 +84,8 @@ class Kahler(BaseRefiner):
         self._own(self._criterion, *self._criterion.parts, self._scheme, *self._scheme.parts)
         self._criterion.set_scheme(self._scheme)
         self.find_normals()
-        self._criterion.bind(mesh, self.rest_positions, self.normals)
-        self._scheme.bind(mesh, self.rest_positions, self.normals)
+        self._criterion.bind(self.connectivity, self.rest_positions, self.normals)
+        self._scheme.bind(self.connectivity, self.rest_positions, self.normals)
 
     @property
     def vertex_capacity(self) -> int:
@@ -119,8 +119,8 @@ class Kahler(BaseRefiner):
         """Take a table, and where each triangle says which row of it is its own."""
         self._patterns = patterns
         self._of_look_up = (
-            self.connectivity.corners,
-            self.connectivity.triangle_attribute_edges,
+            self._mesh.corners,
+            self._mesh.triangle_attribute_edges,
             self._frame.splits,
             self._frame.first_points,
             rows,

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ...geometry.read_only import read_only
 from ...jit import njit
 from .arrays import Flags, Indices, Unsigned
 from .seams import find_seams
@@ -81,6 +82,15 @@ class Connectivity(NamedTuple):
         """Triangles that name a vertex twice, shape (F,)."""
         return np.asarray(self.triangle_edges[:, 0] < 0)
 
+    def read_only(self) -> "Connectivity":
+        """The same arrays, which cannot be written through what this returns."""
+        fields = self._asdict()
+        for name, array in fields.items():
+            if isinstance(array, np.ndarray):
+                fields[name] = read_only(array)
+        fields["around"] = Surroundings._make(map(read_only, self.around))
+        return Connectivity(**fields)
+
     @property
     def first_vertex(self) -> int:
         """The first vertex that a triangle uses; 0 if there are no triangles."""
@@ -95,7 +105,18 @@ def connect(
     """Build the connectivity of triangles `faces`, shape (F, 3), with indices below `vertex_count`.
 
     `face_uv`: texture coordinate index of each corner, shape (F, 3); None when each vertex has one.
+    What it returns is read only.
     Raises ValueError for other shapes or types and for indices out of range.
+    """
+    return connect_writable(faces, vertex_count, face_uv).read_only()
+
+
+def connect_writable(
+    faces: npt.ArrayLike, vertex_count: int, face_uv: npt.ArrayLike | None = None
+) -> Connectivity:
+    """Do as `connect`, for a refiner that keeps it to itself.
+
+    Compiled code is handed an array sooner that it could write.
     """
     if not isinstance(vertex_count, int | np.integer) or not 0 <= vertex_count < MOST_VERTICES:
         most = MOST_VERTICES - 1
@@ -113,16 +134,13 @@ def connect(
     edge_of, edges, sides, side_counts = find_edges(corners, vertex_count)
     around = Surroundings(*find_surroundings(corners, edge_of, edges, sides, side_counts))
     seams = find_seams(corners, edge_of, edges, sides, vertex_count, face_uv)
-    triangle_edges = edge_of.reshape(-1, 3)
-    for handed_out in (edges, triangle_edges):
-        handed_out.flags.writeable = False
     return Connectivity(
         faces=corners,
         edges=edges,
         around=around,
         edge_sides=sides,
         more_sides=_more_sides(edge_of, sides, side_counts),
-        triangle_edges=triangle_edges,
+        triangle_edges=edge_of.reshape(-1, 3),
         vertex_count=vertex_count,
         **seams,
     )

@@ -3,5 +3,6 @@
 closest.py      the closest points of a triangle mesh
 normals.py      cross products of triangles, normals of vertices
 texels.py       the texels of a picture that triangles lie over
+read_only.py    views that cannot be written
 colour.py       screen colours (sRGB) and linear light
 """

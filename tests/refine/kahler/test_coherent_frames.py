@@ -134,7 +134,18 @@ def test_states_are_all_the_memory() -> None:
     for positions in frames[:30]:
         old.refine(positions)
     new = kahler(mesh, coherent=True)
-    history_of(new).states[:] = history_of(old).states
+    history_of(new).states = history_of(old).states
     for positions in frames[30:]:
         for ours, theirs in zip(old.refine(positions)[:4], new.refine(positions)[:4], strict=True):
             assert ours.tobytes() == theirs.tobytes()
+
+
+def test_states_of_another_mesh_are_refused() -> None:
+    """Compiled code reads tables by them: they must be numbers of sequences, one a triangle."""
+    history = history_of(kahler(meshes.irregular(3), coherent=True))
+    count = len(history.states)
+    for wrong in (np.zeros(count - 1, int), np.full(count, 271), np.full(count, -1), [0.5] * count):
+        with pytest.raises(ValueError, match=r"integers from 0 to 270 of shape"):
+            history.states = wrong
+    with pytest.raises(ValueError, match="read-only"):
+        history.states += 1

@@ -1,0 +1,136 @@
+"""What is said never to change cannot be written: neither by mistake nor by one `+=`."""
+
+import enum
+import types
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from risorius import assets, refine, sim
+from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.assets.fitting import FittedHead, fit
+from risorius.assets.identities import Person, make_person, sample_identity
+from risorius.assets.model import Head
+from risorius.refine.kahler.table import CONFIGURATIONS
+from tests.heads import stranger
+
+Array = npt.NDArray[np.generic]
+OF_A_FRAME = {"positions", "points", "normals", "edge_splits"}
+"""Of a refiner, for who derives from it to write: each frame writes all of them anew."""
+PLAIN = (str, bytes, int, float, bool, np.generic, type, types.ModuleType, enum.Enum)
+
+
+def arrays_of(thing: object, name: str, seen: dict[int, object]) -> Iterator[tuple[str, Array]]:
+    """All arrays that public attributes, items and rows lead to, with the way there."""
+    if thing is None or id(thing) in seen or isinstance(thing, PLAIN) or callable(thing):
+        return
+    seen[id(thing)] = thing  # which also keeps it alive: nothing else gets its number
+    if isinstance(thing, np.ndarray):
+        yield name, thing
+    elif isinstance(thing, Mapping):
+        for key, value in thing.items():
+            yield from arrays_of(value, f"{name}[{key!r}]", seen)
+    elif isinstance(thing, list | tuple | set | frozenset) and not hasattr(thing, "_fields"):
+        for number, value in enumerate(thing):
+            yield from arrays_of(value, f"{name}[{number}]", seen)
+    elif type(thing).__module__.partition(".")[0] == "risorius":
+        for attribute in dir(thing):
+            if attribute.startswith("_") or not is_kept(thing, attribute):
+                continue
+            value = getattr(thing, attribute)
+            yield from arrays_of(value, f"{name}.{attribute}", seen)
+
+
+def is_kept(thing: object, name: str) -> bool:
+    """Whether an attribute can be read, and is the same when it is read once more."""
+    try:
+        first, second = getattr(thing, name), getattr(thing, name)
+    except Exception:  # of what this head has not, or has not yet
+        return False
+    if isinstance(first, np.ndarray):
+        return np.shares_memory(first, second)
+    return first is second
+
+
+def own_head() -> FittedHead:
+    """One that somebody brings."""
+    brought = stranger()
+    return fit(brought.mesh, brought.landmarks)
+
+
+def person() -> Person:
+    """One who is nobody."""
+    return make_person(sample_identity(63))
+
+
+THINGS: dict[str, Any] = {
+    "head": lambda head: head,
+    "finer": lambda head: head.finer(1),
+    "plane": lambda head: assets.load("plane"),
+    "own head": lambda head: own_head(),
+    "own mesh": lambda head: stranger().mesh,
+    "person": lambda head: person(),
+    "simulation": sim.create,
+    "moved simulation": lambda head: moved(head),
+    "face": lambda head: FaceScene(),
+    "person's face": lambda head: FaceScene(person()),
+    "sine": lambda head: PlaneScene(),
+    "connectivity": lambda head: refine.connect(head.faces, len(head.vertices)),
+    "welded": lambda head: refine.WeldedRefiner(head.vertices, head.faces),
+    "table": lambda head: CONFIGURATIONS,
+}
+REFINERS: dict[str, tuple[str, dict[str, Any]]] = {
+    "none": ("none", {}),
+    "loop": ("loop", {"levels": 2}),
+    "paper": ("kahler", {}),
+    "coherent": ("kahler", {"coherent": True}),
+    "window": ("kahler", {"scheme": "cubic", "criterion": "displacement+rest+border"}),
+    "card": ("kahler-gl", {}),
+}
+
+
+def moved(head: Head) -> sim.Simulation:
+    """A face whose jaw, lips and head have gone somewhere."""
+    simulation = sim.create(head)
+    simulation.jump({"jaw_open": 0.5, "lips_closed": 0.5, "head_yaw": 0.3})
+    simulation.step(1 / 60)
+    return simulation
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_nothing_of_it_can_be_written(name: str, head: Head) -> None:
+    """Whatever its public attributes lead to."""
+    found = dict(arrays_of(THINGS[name](head), name, {}))
+    assert found
+    assert [way for way, array in found.items() if array.flags.writeable] == []
+
+
+@pytest.mark.parametrize("name", REFINERS)
+def test_nothing_of_a_refiner_can_be_written(name: str, head: Head) -> None:
+    """But for what each frame writes anew."""
+    kind, options = REFINERS[name]
+    refiner = refine.create(kind, head.faces, head.vertices, head.uv, head.face_uv, **options)
+    refiner.refine(head.vertices)
+    found = dict(arrays_of(refiner, "", {}))
+    assert len(found) > 10
+    writable = [way for way, array in found.items() if array.flags.writeable]
+    assert {way.removeprefix(".") for way in writable} <= OF_A_FRAME
+
+
+def test_one_in_place_addition_harms_nobody(head: Head) -> None:
+    """Numbers of vertices that compiled code reads are refused, with numpy's own error."""
+    simulation = sim.create(head)
+    refiner = refine.create("kahler", simulation.faces, simulation.rest_positions, coherent=True)
+    for array in (
+        simulation.faces,
+        refiner.edges,
+        refiner.triangle_edges,
+        refiner.connectivity.corners,  # type: ignore[attr-defined]
+        refiner.connectivity.around.points,  # type: ignore[attr-defined]
+        refiner.history.states,  # type: ignore[attr-defined]
+    ):
+        with pytest.raises(ValueError, match="read-only"):
+            array += 1
