@@ -1,4 +1,4 @@
-"""What is played: a script, a recording made to fit the face, a pose, or the scene's own script."""
+"""Performances: a script, a recording made to fit the face, a pose, or the scene's own script."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def script_for(
     settings: Sequence[str] = (),
     *,
     playback: Playback | None = None,
-    tell: Callable[[Report], None] | None = None,
+    on_report: Callable[[Report], None] | None = None,
 ) -> Script:
-    """What the file at `path` plays, or the pose of `settings`, or the script of the scene.
+    """The script for the file at `path`, or for the pose of `settings`, or the scene's own.
 
-    playback: how a recording is played; tell: is called with what there is to say of it.
+    playback: how a recording is played. on_report: is called with the report of a recording.
     """
     playback = playback or Playback()
     if settings and path is not None:
@@ -44,8 +44,8 @@ def script_for(
         script = held_pose(settings) if settings else load_script(own)
     else:
         script, report = read_performance(path, playback)
-        if report is not None and tell is not None:
-            tell(report)
+        if report is not None and on_report is not None:
+            on_report(report)
     if scene is not None:
         script = replace(script, scene=scene)
     if script.scene not in SCENES:
@@ -56,10 +56,10 @@ def script_for(
 def read_performance(
     path: Path, playback: Playback | None = None, limits: Limits | None = None
 ) -> tuple[Script, Report | None]:
-    """The script in a .toml file, or the one that plays a recording, with what is to be said of it.
+    """The script in a .toml file; or the script that plays a recording, with its report.
 
     limits: of the face, where one is there already. Raises UserError for a file that is neither,
-    and for options of recordings for what is none.
+    and for options of recordings that come with a script.
     """
     playback = playback or Playback()
     if path.suffix.lower() != ".toml":

@@ -80,7 +80,7 @@ def measure(mixtures: int) -> list[Pose]:
     """Put the built-in head into each pose, and into so many random mixtures."""
     head = assets.load("head")
     simulation = sim.create(head)
-    told = PRESETS[FIRST_PRESET]["face"].told("kahler")
+    told = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
     refiner = refine.create("kahler", head.faces, head.vertices, **told)
     poses = []
     for name, values in _values(simulation, mixtures, np.random.default_rng(SEED)):

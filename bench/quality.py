@@ -49,7 +49,7 @@ SCALES = (1e-5, 1e3)  # of thresholds: too many, too few triangles
 LEAST_GAIN = 20.0  # [%] of the error of static
 STATIC = "static"
 BEST = "cubic displacement 2x"
-_TOLD = PRESETS[FIRST_PRESET]["face"].told("kahler")
+_TOLD = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
 
 
 def _sliding(scheme: str, **more: Any) -> tuple[str, dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""The `risorius` command: what it can do is in commands.py, one short function for each."""
+"""The `risorius` command; its sub-commands are in commands.py, one short function for each."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from . import commands
 
 
 class OneLineGroup(click.Group):
-    """A command whose mistakes, of usage and of all that it works on, are told in one line."""
+    """A command that reports every error a user can mend in one line."""
 
     def main(
         self,
@@ -26,7 +26,7 @@ class OneLineGroup(click.Group):
         standalone_mode: bool = True,
         **extra: Any,
     ) -> Any:
-        """Run the command; the exit code is 2 for what the user can mend."""
+        """Run the command; the exit code is 2 for an error that the user can mend."""
         try:
             with report_user_errors():
                 code = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
@@ -48,7 +48,7 @@ class OneLineGroup(click.Group):
 @click.version_option(__version__, prog_name="risorius")
 def main() -> None:
     """Physics-based facial animation with dynamically refined triangle meshes."""
-    if sys.stderr is None:  # closed by whoever started us; progress bars ask it what it is
+    if sys.stderr is None:  # closed by the parent process; progress bars need it
         sys.stderr = open(os.devnull, "w")
     announce_compiling()
 

@@ -20,25 +20,26 @@ from ..stopping import cleaned_up_if_stopped
 from .options import PATH, SILENT
 
 LISTED = ("capture", "export", "convert")  # commands that a line may hold
-OUTPUTS = ("output", "sheet")  # how their parameters for what they write are called
-MOST_TOLD = 20  # lines that are wrong
+OUTPUTS = ("output", "sheet")  # names of their parameters for output files
 
 
 @click.command()
 @click.argument("listing", metavar="LIST", type=PATH)
 @click.option(
-    "--jobs", type=click.IntRange(1, 1024), help="Lines at once; as many as cores unless told."
+    "--jobs", type=click.IntRange(1, 1024), help="Lines at once; by default one for each core."
 )
 @click.option(
-    "--scheduler", metavar="ADDRESS", help="Of a Dask cluster that does the work: tcp://host:8786."
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Address of a Dask cluster that does the work: tcp://host:8786.",
 )
 @click.option(
     "--resume",
     is_flag=True,
-    help="Leave out lines whose outputs are there, and no older than what they are made of.",
+    help="Skip lines whose outputs exist and are no older than their inputs.",
 )
 @click.option(
-    "--logs", type=PATH, help="A folder for what lines print; LIST_logs beside LIST unless told."
+    "--logs", type=PATH, help="Folder for the lines' logs; by default LIST_logs beside LIST."
 )
 @SILENT
 def batch(
@@ -87,7 +88,7 @@ def batch(
 
 
 def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
-    """What the lines of a list ask for; tells what is wrong with which, and ends the program."""
+    """The jobs of a list; where lines are wrong, reports them and ends the program."""
     jobs = []
     wrong = []
     for number, text in lines_of(listing):
@@ -97,10 +98,11 @@ def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
             message = error.format_message() if isinstance(error, click.ClickException) else error
             wrong.append((number, " ".join(str(message).split()).rstrip(".")))
     wrong += clashes(jobs)
-    for number, why in sorted(wrong)[:MOST_TOLD]:
+    most = 20  # that are reported one by one
+    for number, why in sorted(wrong)[:most]:
         click.echo(f"risorius: {in_one_line(f'{listing}:{number}: {why}')}", err=True)
-    if len(wrong) > MOST_TOLD:
-        more = counted(len(wrong) - MOST_TOLD, "more wrong line")
+    if len(wrong) > most:
+        more = counted(len(wrong) - most, "more wrong line")
         click.echo(f"risorius: {in_one_line(listing)}: {more}", err=True)
     if wrong:
         sys.exit(2)
@@ -110,7 +112,7 @@ def jobs_in(listing: Path, logs: Path, *, resume: bool) -> list[Job]:
 
 
 def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
-    """What a line asks for. Raises UserError, or click's errors, for what cannot be done."""
+    """The job of a line. Raises UserError, or click's errors, for a line that cannot be done."""
     name, *arguments = words_of(text)
     command = _listed(name)
     given = _parsed(command, arguments)
@@ -122,7 +124,7 @@ def _job(number: int, text: str, logs: Path, *, resume: bool) -> Job:
     if given.get("overwrite") is False and (resume or not outputs[0].suffix):
         if not resume:
             check_folder(outputs[0], overwrite=False)
-        arguments.insert(0, "--overwrite")  # what is there then, an attempt before has left
+        arguments.insert(0, "--overwrite")  # files there are left by an earlier attempt
     assert command.callback is not None
     return Job(
         number,
@@ -146,7 +148,7 @@ def _listed(name: str) -> click.Command:
 
 
 def _parsed(command: click.Command, arguments: Sequence[str]) -> dict[str, Any]:
-    """What click makes of the arguments, by the names of parameters."""
+    """The arguments as click parses them, by the names of parameters."""
     with contextlib.redirect_stdout(io.StringIO()):  # of --help
         try:
             return command.make_context(f"risorius {command.name}", list(arguments)).params
@@ -157,7 +159,7 @@ def _parsed(command: click.Command, arguments: Sequence[str]) -> dict[str, Any]:
 def _check_files(
     name: str, given: dict[str, Any], inputs: Sequence[Path], outputs: Sequence[Path]
 ) -> None:
-    """UserError for files that are not there, or of no use, and for outputs that cannot be."""
+    """UserError for inputs that do not exist, and for outputs that cannot be written."""
     if not outputs:
         raise UserError("it writes nothing: give -o OUTPUT")
     for path in inputs:

@@ -36,20 +36,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Filming:
-    """What capture alone is told."""
+    """Options of capture alone."""
 
-    size: tuple[int, int] = option(type=Size(), default=(1280, 720), help="1280x720 unless told.")
+    size: tuple[int, int] = option(type=Size(), default=(1280, 720), help="1280x720 by default.")
     fps: float = option(type=FiniteRange(1, 240), default=30.0, show_default=True)
     compare: str | None = option(
         is_flag=False,
         flag_value=STATIC,
         metavar="[NAME,...]",
-        help="Looks or refiners to be seen on the left; without a name the mesh as it is.",
+        help="Looks or refiners to show on the left; without a name the mesh as it is.",
     )
     captions: bool = option(
         "--captions/--no-captions",
         default=True,
-        help="Words under a comparison, and what colours stand for.",
+        help="Names under a comparison, and a legend of colours.",
     )
     camera: str | None = option(help="Named view, or yaw,pitch[,zoom] in degrees.")
     turntable: bool = option(is_flag=True, help="The camera goes round once.")
@@ -58,7 +58,7 @@ class Filming:
         type=FiniteRange(0, 86_400),
         nargs=2,
         metavar="FROM TO",
-        help="The part of the script that is seen [s].",
+        help="The part of the script to draw [s].",
     )
     background: render.Background | None = option(
         type=BackgroundName(),
@@ -70,19 +70,20 @@ class Filming:
         help="Beside each picture: depth, normal, triangle, splits, segmentation, landmarks.",
     )
     alive: bool = option(
-        is_flag=True, help="What the script leaves alone lives: eyes blink and look at the camera."
+        is_flag=True,
+        help="Idle life: eyes blink and look at the camera, unless the script moves them.",
     )
     still_time: float | None = option(
         "--time",
         type=FiniteRange(0, 86_400),
-        help="When a .png is taken [s]: else in the first named pose, or at the end.",
+        help="Time of a .png [s]; by default the first named pose, or else the end.",
     )
     samples: int = option(type=click.IntRange(0, 16), default=4, show_default=True)
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
 
     def options(self, script: Script, drawing: Drawing) -> CaptureOptions:
-        """All that decides the frames of a script; UserError for what cannot be."""
+        """All options that decide a script's frames; UserError for options that cannot be."""
         from ..capture import CaptureOptions
         from ..refining.refiners import parse_comparison
 

@@ -1,6 +1,6 @@
 """The product's sub-commands.
 
-What needs OpenGL or compiled code is imported inside the commands, so that --help comes at once.
+Modules that need OpenGL or compiled code are imported inside the commands: --help comes at once.
 """
 
 from __future__ import annotations
@@ -42,22 +42,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Live:
-    """What a window is told of a face that is sent to it."""
+    """Options of a window that follows a face over the network."""
 
     live: str | None = option(
-        type=click.Choice(list(PROTOCOLS)), help="Follow a face that is sent."
+        type=click.Choice(list(PROTOCOLS)), help="Follow a face over the network, by this protocol."
     )
-    port: int | None = option(
-        type=click.IntRange(1, 65535), help="Unless told, the protocol's own."
-    )
+    port: int | None = option(type=click.IntRange(1, 65535), help="The protocol's own by default.")
     address: str = option(
         default=LOOPBACK,
         show_default=True,
-        help="Of this computer, on which to listen; 0.0.0.0 for its whole network.",
+        help="Address of this computer to listen on; 0.0.0.0 for its whole network.",
     )
 
     def listening(self, playback: Playback) -> Listening | None:
-        """Where to listen, None for nowhere; UserError for what does not go together.
+        """Where to listen, None for nowhere; UserError for options that need --live.
 
         playback: its gains and mirror are those of the live face.
         """
@@ -65,16 +63,16 @@ class Live:
             source = click.get_current_context().get_parameter_source
             for name in ("port", "address"):
                 if source(name) is not ParameterSource.DEFAULT:
-                    raise UserError(f"--{name} goes with --live, which says what is listened to")
+                    raise UserError(f"--{name} goes with --live, which names the protocol")
             return None
         PROTOCOLS[self.live].check()
         return Listening(self.live, self.address, self.port, playback.gains, playback.mirror)
 
 
 @click.command()
-@click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
-@click.option("--scene", type=SCENE_NAMES, help="face, unless told.")
-@click.option("--script", type=PATH, help="What the space key plays: a script or a recording.")
+@click.option("--size", type=Size(), help="Size of the window: as it was last, or 1280x800.")
+@click.option("--scene", type=SCENE_NAMES, help="face by default.")
+@click.option("--script", type=PATH, help="The script or recording that the space key plays.")
 @SOUND
 @QUIET
 @packed(Live)
@@ -92,9 +90,8 @@ def view(
 ) -> None:
     """Open the window: a face with a slider for every muscle.
 
-    With --head alone, the landmarks of that mesh are marked first. With --live the face follows
-    somebody's, which a phone or `risorius send` sends; --gain and --mirror are that
-    face's then.
+    With --head alone, you mark the landmarks of that mesh first. With --live the face follows one
+    that a phone or `risorius send` sends; --gain and --mirror then apply to that face.
     """
     listening = live.listening(playback)
     if listening is not None:
@@ -108,9 +105,11 @@ def view(
 
 @click.command()
 @click.argument("recording", type=PATH, required=False)
-@click.option("--port", type=click.IntRange(1, 65535), help="Unless told, the protocol's own.")
-@click.option("--address", default=LOOPBACK, show_default=True, help="Of the receiving computer.")
-@click.option("--loop", is_flag=True, help="Again and again, until Ctrl-C.")
+@click.option("--port", type=click.IntRange(1, 65535), help="The protocol's own by default.")
+@click.option(
+    "--address", default=LOOPBACK, show_default=True, help="Address of the receiving computer."
+)
+@click.option("--loop", is_flag=True, help="Repeat until Ctrl-C.")
 def send(recording: Path | None, port: int | None, address: str, loop: bool) -> None:
     """Send RECORDING as Live Link Face would.
 
@@ -133,7 +132,7 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
 
 @click.command()
 @click.argument("script", type=PATH)
-@click.option("--size", type=Size(), help="Of the window: as it was last, or 1280x800.")
+@click.option("--size", type=Size(), help="Size of the window: as it was last, or 1280x800.")
 @click.option("--once", is_flag=True, help="Close the window at the end of the script.")
 @SOUND
 @QUIET
@@ -215,9 +214,9 @@ def open_window(
         from ..viewer.session.live_commands import check_scene
 
         check_scene(performance.scene)
-    told_of = (drawing.refinement(), drawing.anatomy_view()) if drawing.is_told else None
-    if told_of is not None:
-        told_of[0].check("face" if performance is None else performance.scene)
+    drawn = (drawing.refinement(), drawing.anatomy_view()) if drawing.is_given else None
+    if drawn is not None:
+        drawn[0].check("face" if performance is None else performance.scene)
     if mesh is None:
         drawing.check_head()
     path = settings_path()
@@ -229,14 +228,14 @@ def open_window(
         from ..viewer.settings import display_of
 
         display = None  # as it was last
-        if told_of is not None:
-            refinement, anatomy = told_of
+        if drawn is not None:
+            refinement, anatomy = drawn
             display = display_of(refinement, script.scene, anatomy, **drawing.style_options)
         viewer = Viewer(script, size, display, head=head, settings_path=path, splash=splash)
         with viewer:
             if listening is not None:
                 line = viewer.live.start(listening)
-                if line and not viewer.messages.text:  # unless there is something wrong to be told
+                if line and not viewer.messages.text:  # an error stays on screen
                     viewer.messages.say(line)
             if mesh is not None:
                 viewer.read(mesh)()
@@ -263,7 +262,7 @@ def controls(scene: str) -> None:
 
 @click.command()
 @click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
-@click.option("--quiet", is_flag=True, help="Say nothing; the exit code tells.")
+@click.option("--quiet", is_flag=True, help="Print nothing; only set the exit code.")
 def doctor(offscreen: bool, quiet: bool) -> None:
     """Say what works here, and the cure for what does not.
 

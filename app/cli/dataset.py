@@ -10,14 +10,19 @@ import click
 from ..errors import counted, in_one_line
 from .options import PATH, SILENT, Size, printing
 
-MOST = 1_000_000  # samples; their names have six digits
-
 
 @click.command()
-@click.option("--count", type=click.IntRange(1, MOST), required=True, help="How many samples.")
+@click.option(
+    "--count",
+    type=click.IntRange(1, 10**6),
+    required=True,
+    help="Number of samples; their names have six digits.",
+)
 @click.option("-o", "--output", type=PATH, required=True, help="The set's folder.")
 @click.option(
-    "--sample", type=PATH, help="Your table of what faces do; --sample-table prints ours."
+    "--sample",
+    type=PATH,
+    help="Your own table of expressions and poses; --sample-table prints ours.",
 )
 @click.option(
     "--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Which samples."
@@ -30,14 +35,12 @@ MOST = 1_000_000  # samples; their names have six digits
     help="Beside each picture: depth, normal, triangle, splits, segmentation; "
     "landmarks are always there.",
 )
-@click.option("--size", type=Size(), default=(512, 512), help="512x512 unless told.")
-@click.option(
-    "--refiner", metavar="NAME", help="Refine plug-in, unless that of the look, as of capture."
-)
+@click.option("--size", type=Size(), default=(512, 512), help="512x512 by default.")
+@click.option("--refiner", metavar="NAME", help="Another refiner than the look's, as in capture.")
 @click.option(
     "--background",
     metavar="COLOUR|FOLDER",
-    help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours unless told.",
+    help="A colour, as '#8090a0' or grey, or a folder of pictures; soft colours by default.",
 )
 @click.option(
     "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes."
@@ -55,8 +58,8 @@ def dataset(
 ) -> None:
     """Make pictures of faces with exact labels.
 
-    Labels are action units, landmarks, head pose, gaze, camera, and the passes that are asked for.
-    Every sample follows from --seed and its number alone, whatever --jobs is.
+    Labels are action units, landmarks, head pose, gaze, camera, and the passes that you choose.
+    Every sample depends on --seed and its number alone, not on --jobs.
     """
     from ..dataset.making import make_set
     from ..dataset.request import request_of

@@ -27,20 +27,20 @@ from .options import (
 
 @dataclass(frozen=True)
 class Exporting:
-    """What export alone is told."""
+    """Options of export alone."""
 
     name: str | None = option(
         "--as",
         type=click.Choice([each.name for each in FORMATS]),
-        help="The format, where a suffix does not tell: obj is a folder of one file a frame.",
+        help="The format, where the name does not show it: obj is a folder of one file a frame.",
     )
     fps: float = option(
         type=FiniteRange(1, 240), default=30.0, show_default=True, help="Frames a second."
     )
     refined: bool = option(
         is_flag=True,
-        help="The skin as it is drawn: other triangles in each frame, as --look, --refiner and "
-        "--option say.",
+        help="Write the refined skin: other triangles in each frame, by --look, --refiner and "
+        "--option.",
     )
     overwrite: bool = option(is_flag=True, help="Replace frames in a folder, or files beside -o.")
     quiet: bool = option(is_flag=True, help="No progress bar.")

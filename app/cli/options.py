@@ -1,4 +1,4 @@
-"""Options that commands share: their kinds, and settings objects that say what they mean."""
+"""Options that commands share: their kinds, and the settings objects that they become."""
 
 from __future__ import annotations
 
@@ -26,12 +26,8 @@ if TYPE_CHECKING:
     from ..recordings.report import Report
     from ..script import Script
 
-if TYPE_CHECKING:
-    from risorius import render
-
-
-LEAST = 16  # [pixels] of a side
-MOST = 8192  # [pixels] of a side
+LEAST_SIDE = 16  # [pixels]
+LONGEST_SIDE = 8192  # [pixels]
 BACKGROUNDS = ("light", "dark", "white", "black")  # of `render`
 PERSON_NAMES = ("ada", "kofi", "maria")  # of `assets.identities`, which is not imported yet
 
@@ -44,28 +40,29 @@ class Size(click.ParamType[tuple[int, int]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[int, int]:
-        """Turn the text into two numbers, or fail with what is allowed."""
+        """Turn the text into two numbers, or fail with the sizes that are allowed."""
         if isinstance(value, tuple):
             return value
         written = re.fullmatch("([0-9]{1,6})x([0-9]{1,6})", str(value).lower())
         if written:
             size = (int(written[1]), int(written[2]))
-            if all(LEAST <= side <= MOST for side in size):
+            if all(LEAST_SIDE <= side <= LONGEST_SIDE for side in size):
                 return size
         self.fail(
-            f"'{value}' is no size; write width x height, each {LEAST} to {MOST}, as in 1280x720"
+            f"'{value}' is no size; write width x height, each {LEAST_SIDE} to {LONGEST_SIDE}, "
+            "as in 1280x720"
         )
 
 
 class BackgroundName(click.ParamType["render.Background | None"]):
-    """What is behind the scene, by name or as a colour; None where nothing is."""
+    """The background of the scene, by name or as a colour; None is transparent."""
 
     name = "COLOUR"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> render.Background | None:
-        """Look the name up, or fail with what is allowed."""
+        """Look the name up, or fail with the names that are allowed."""
         from risorius import render
 
         word = str(value).lower()
@@ -84,12 +81,12 @@ class BackgroundName(click.ParamType["render.Background | None"]):
 
 
 class FiniteRange(click.FloatRange):
-    """A number within limits; unlike its parent it lets no NaN through."""
+    """A number within limits; unlike its parent class it refuses NaN."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
-        """Turn the text into a number, or fail with what is allowed."""
+        """Turn the text into a number, or fail with the limits."""
         number = float(super().convert(value, param, ctx))
         if not math.isfinite(number):
             self.fail(f"{value} is not a finite number", param, ctx)
@@ -117,15 +114,19 @@ Command = Callable[..., Any]
 PATH = click.Path(path_type=Path)
 SCENE_NAMES = click.Choice(["face", "plane"])
 SOUND = click.option(
-    "--sound", type=PATH, help="What is heard: a WAV, MP3, ..., or a film with sound."
+    "--sound", type=PATH, help="Sound to play along: a WAV, MP3, ..., or a film with sound."
 )
-QUIET = click.option("--quiet", is_flag=True, help="Say nothing of a recording.")
+QUIET = click.option("--quiet", is_flag=True, help="Print nothing about a recording.")
 SILENT = click.option("--quiet", is_flag=True, help="No progress bar.")
 SCRIPT = click.argument("script", type=PATH, required=False)
 SETTINGS = click.option(
-    "--set", "settings", multiple=True, metavar="NAME=VALUE", help="Instead of a SCRIPT."
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Hold a control at a value, instead of a SCRIPT.",
 )
-SCENE = click.option("--scene", type=SCENE_NAMES, help="What is animated.")
+SCENE = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
 STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
 ANATOMY_OPTIONS = ("anatomy", "skin_opacity", "dissect")
@@ -133,12 +134,12 @@ STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "skin_maps", "wrinkle
 
 
 def option(*names: str, **about: Any) -> Any:
-    """A field of settings that is an option of the command line, called like it unless named."""
+    """A field of settings that is an option of the command line, with its name unless `names`."""
     return field(metadata={"option": (names, about)})
 
 
 def options_of(settings: type[Any]) -> Iterator[Command]:
-    """The options that the fields of a dataclass are."""
+    """The options of the command line that the fields of a dataclass declare."""
     for each in fields(settings):
         names, about = each.metadata["option"]
         names = names or (f"--{each.name.replace('_', '-')}",)
@@ -146,16 +147,16 @@ def options_of(settings: type[Any]) -> Iterator[Command]:
 
 
 def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Command], Command]:
-    """Give a command an argument that is such a dataclass, called like it, of these options.
+    """Give a command the options of such a dataclass, packed into one argument with its name.
 
-    options: those of its fields, unless told.
+    options: in place of those that the fields declare.
     """
     keys = [each.name for each in fields(settings)]
     name = settings.__name__.lower()
     decorators = list(options or options_of(settings))
 
     def decorate(command: Command) -> Command:
-        """Pack what is given for these options, and call the command."""
+        """Pack the values of these options, and call the command."""
 
         @functools.wraps(command)
         def call(**given: Any) -> Any:
@@ -172,13 +173,13 @@ def packed(settings: type[Any], options: Iterable[Command] = ()) -> Callable[[Co
 
 @dataclass(frozen=True)
 class Subject:
-    """What is told of whose head it is, and how it is refined."""
+    """Options that choose the head, and how its mesh is refined."""
 
     head: Path | None = option(type=PATH, help="A head of your own: any triangle mesh.")
     landmarks: Path | None = option(type=PATH, help="The 68 iBug landmarks of --head, as JSON.")
     person: int | str | None = option(
         type=PersonName(),
-        help="Another person than the built-in head: for each number one, and some by name.",
+        help="Another person than the built-in head: each number is one, some have names.",
     )
     look: str = option(
         type=click.Choice(list(PRESETS)),
@@ -188,19 +189,20 @@ class Subject:
     )
     refiner: str | None = option(
         metavar="NAME",
-        help="Refine plug-in, unless that of the look (risorius doctor lists them); none draws the "
-        "mesh as it is.",
+        help="Another refiner than the look's (risorius doctor lists them); none draws the mesh as "
+        "it is.",
     )
     refiner_settings: tuple[str, ...] = option(
         "--option",
         multiple=True,
         metavar="NAME=VALUE",
-        help="Of the refiner, over the look: scheme=cubic, criterion=displacement, ... "
+        help="An option of the refiner, in place of the look's: scheme=cubic, "
+        "criterion=displacement, ... "
         "(risorius doctor lists schemes and criteria).",
     )
 
     def check_head(self) -> None:
-        """Raise UserError for what does not go together."""
+        """Raise UserError for options that exclude or need each other."""
         if self.person is not None and (self.head is not None or self.landmarks is not None):
             raise UserError("--person makes a head; it goes with neither --head nor --landmarks")
         if (self.head is None) != (self.landmarks is None):
@@ -232,7 +234,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class Drawing(Subject):
-    """What view, replay and capture are told alike: whose head, how refined, in what style."""
+    """Options that view, replay and capture share: the head, its refinement and its style."""
 
     anatomy: str | None = option(
         is_flag=False,
@@ -242,23 +244,23 @@ class Drawing(Subject):
     )
     skin_opacity: float | None = option(
         type=FiniteRange(0, 1),
-        help="With --anatomy: how much of the skin is seen, 0.25 unless told; 0: none.",
+        help="With --anatomy: opacity of the skin, 0.25 by default; 0: invisible.",
     )
     dissect: str | None = option(
         type=click.Choice(["both", "left", "right"]),
-        help="With --anatomy: the subject's side whose skin is translucent; both unless told.",
+        help="With --anatomy: the subject's side with translucent skin; both by default.",
     )
     light: str = option(
         type=click.Choice(LIGHT_NAMES),
         default="studio",
         show_default=True,
-        help="Where light comes from, how strong, and of what colour.",
+        help="The light: its directions, strengths and colours.",
     )
     wrinkles: float = option(
         type=FiniteRange(0, 1),
         default=1.0,
         show_default=True,
-        help="How deep skin wrinkles where it is compressed; 0: not at all.",
+        help="Depth of wrinkles where skin is compressed; 0: none.",
     )
     skin_maps: bool = option(
         "--skin-maps/--no-skin-maps",
@@ -284,14 +286,14 @@ class Drawing(Subject):
         return {name: getattr(self, name) for name in STYLE_OPTIONS}
 
     @property
-    def is_told(self) -> bool:
-        """Whether the command that runs was told anything of how the mesh is to be drawn."""
+    def is_given(self) -> bool:
+        """Whether the command line sets any option of refinement, style or anatomy."""
         source = click.get_current_context().get_parameter_source
         names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS, *ANATOMY_OPTIONS)
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:
-        """The style that these options ask for."""
+        """The style that these options set."""
         from risorius import render
 
         return render.Style(
@@ -306,15 +308,15 @@ class Drawing(Subject):
         )
 
     def anatomy_view(self) -> AnatomyView:
-        """What is seen under the skin; UserError for what is not there."""
+        """The structures that show through the skin; UserError for an unknown one."""
         from ..anatomy import OPACITY, SKIN_ALONE, AnatomyView
 
         if self.anatomy is None:
             for name in ("skin_opacity", "dissect"):
                 if getattr(self, name) is not None:
                     raise UserError(
-                        f"--{name.replace('_', '-')} goes with --anatomy, which says what is under "
-                        "the skin"
+                        f"--{name.replace('_', '-')} goes with --anatomy, which names the "
+                        "structures under the skin"
                     )
             return SKIN_ALONE
         names = self.anatomy.split(",")
@@ -331,8 +333,8 @@ PLAYBACK = (
     click.option(
         "--neutral",
         metavar="HOW",
-        help="The face at rest, which is taken away: first:1, the median of the first second; "
-        "percentile, the 5th of each channel; none. Else as suits the kind of file.",
+        help="The face at rest, to subtract: first:1, the median of the first second; "
+        "percentile, the 5th of each channel; none. By default as suits the kind of file.",
     ),
     click.option(
         "--gain",
@@ -349,14 +351,16 @@ PLAYBACK = (
         show_default=True,
         help="How far muscles are ahead of the recording [s], since skin follows late.",
     ),
-    click.option("--face", metavar="ID", help="Which face, where a file has several."),
-    click.option("--rate", type=FiniteRange(1, 1000), help="Frames a second, for wrong times."),
+    click.option("--face", metavar="ID", help="The face to play, where a file has several."),
+    click.option(
+        "--rate", type=FiniteRange(1, 1000), help="Frames a second, in place of the file's times."
+    ),
 )
 with_playback = packed(Playback, PLAYBACK)
 
 
 def _print_report(report: Report) -> None:
-    """Say on the error stream what a recording was taken for."""
+    """Print on the error stream how a recording was understood."""
     for line in report.lines:
         click.echo(line, err=True)
 
@@ -370,20 +374,20 @@ def played(
     sound: Path | None = None,
     quiet: bool,
 ) -> Script:
-    """What is played, with its sound; what there is to say of it is said, unless `quiet`."""
+    """The script to play, with its sound; a recording's report is printed unless `quiet`."""
     from ..performances import script_for
     from ..sound import with_sound
 
-    tell = None if quiet else _print_report
-    performance = script_for(script, scene, settings, playback=playback, tell=tell)
+    on_report = None if quiet else _print_report
+    performance = script_for(script, scene, settings, playback=playback, on_report=on_report)
     return with_sound(performance, sound)
 
 
 def printing(name: str, package: str, file: str, what: str) -> Command:
-    """An option that prints a file of a package, and ends; what: its help."""
+    """An option that prints a file of a package, and ends the program; what: its help."""
 
     def show(context: click.Context, _: click.Parameter, asked: bool) -> None:
-        """Print it, if that is asked for."""
+        """Print it, if the option is given."""
         if asked:
             click.echo((files(package) / file).read_text("utf-8"), nl=False)
             context.exit()

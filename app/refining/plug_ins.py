@@ -1,7 +1,7 @@
-"""Refinement by somebody else's code: which of it is in use, and which part raised an error.
+"""Refinement by somebody else's code: which plug-ins are in use, and which one raised an error.
 
 A criterion, a scheme or a refiner may come from any package, or be registered by a program. An
-error in it is none of this application: it is reported in one line with the name of the plug-in.
+error in its code is reported in one line, with the name of the plug-in.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ class PlugIn(NamedTuple):
 
 
 class PlugInError(UserError):
-    """A plug-in raised an error, or makes what is of no use; the text names it."""
+    """A plug-in raised an error, or its results cannot be used; the text names the plug-in."""
 
 
 def plug_ins_of(refiner: str, options: Mapping[str, Any]) -> tuple[PlugIn, ...]:
     """The plug-ins that a refiner stands for, with options as `refine.create` takes them.
 
-    Those that cannot be found are left out: `refine.create` says what is wrong with them. Raises
-    PlugInError for a module that ends the program as it is imported.
+    Unknown names are left out: `refine.create` reports them. Raises PlugInError for a module that
+    ends the program as it is imported.
     """
     wanted: list[tuple[str, Any, refine.Registry[Any]]] = [("refiner", refiner, refine.refiners)]
     chosen = options.get("criterion", ())
@@ -74,8 +74,8 @@ def plug_ins_of(refiner: str, options: Mapping[str, Any]) -> tuple[PlugIn, ...]:
 def reported(plug_ins: Sequence[PlugIn]) -> Iterator[None]:
     """Turn an error that one of the plug-ins raises, or causes, into a PlugInError.
 
-    An error that comes from none of their code is one of what they made, unless it can be reported
-    as it is: an array of another size, say.
+    An error outside their code counts as an error in their results (an array of another size, say),
+    unless it can be reported as it is.
     """
     try:
         yield
@@ -90,7 +90,7 @@ def reported(plug_ins: Sequence[PlugIn]) -> Iterator[None]:
         if isinstance(error, SystemExit) or line_for(error) is not None:
             raise
         names = " or ".join(map(str, plug_ins))
-        raise PlugInError(f"{names}: what it makes cannot be used: {_words(error)}") from error
+        raise PlugInError(f"{names}: its results cannot be used: {_words(error)}") from error
 
 
 def culprit_of(error: BaseException, plug_ins: Sequence[PlugIn]) -> PlugIn | None:
@@ -107,7 +107,7 @@ def culprit_of(error: BaseException, plug_ins: Sequence[PlugIn]) -> PlugIn | Non
 
 
 def error_in(plug_in: PlugIn, error: BaseException) -> PlugInError:
-    """The error that says which plug-in raised which, and where."""
+    """An error whose text names the plug-in, the error that it raised, and where."""
     package = _package(plug_in.module)
     where = ""
     for frame in _frames(error):
@@ -118,7 +118,7 @@ def error_in(plug_in: PlugIn, error: BaseException) -> PlugInError:
 
 
 def _factory(kind: str, name: str, registry: refine.Registry[Any]) -> Any:
-    """What makes a plug-in; None where there is none of this name."""
+    """The factory of a plug-in; None where none has this name."""
     try:
         return registry.find(name)
     except ValueError:
@@ -136,7 +136,7 @@ def _words(error: BaseException) -> str:
 
 
 def _frames(error: BaseException) -> list[FrameType]:
-    """What was running when an error was raised, the innermost function first."""
+    """The functions that were running when an error was raised, the innermost first."""
     return [frame for frame, _ in traceback.walk_tb(error.__traceback__)][::-1]
 
 

@@ -1,7 +1,7 @@
 """Refinement presets: how each scene is refined, under names that a user chooses from as looks.
 
-`smooth` looks best, and is what films and the window show unless told; `paper` is the rule of
-Kähler, Haber, Seidel 2003 alone. Whatever is drawn asks here by which refiner, told what.
+`smooth` looks best: films and the window show it by default. `paper` is the rule of Kähler, Haber,
+Seidel 2003 alone. Everything that draws a scene gets its refiner, and that refiner's options, here.
 """
 
 from __future__ import annotations
@@ -14,72 +14,84 @@ from typing import Any
 from ..errors import UserError
 
 STATIC = "none"  # the refiner that leaves the mesh as it is
-CHANGED = ", changed"  # after the name of what has options over its own
-FIRST_PRESET, PAPERS_PRESET = "smooth", "paper"  # the one that is seen unless told, and the paper's
-THRESHOLDS = "threshold_once", "threshold_twice"  # options of this criterion alone:
+CHANGED = ", changed"  # after the name of a preset or refiner whose options a user has changed
+FIRST_PRESET = "smooth"  # the default
+PAPERS_PRESET = "paper"
 PAPERS_CRITERION = "normal"
+THRESHOLDS = ("threshold_once", "threshold_twice")  # options of PAPERS_CRITERION alone
 
 
 @dataclass(frozen=True)
 class Preset:
-    """How one scene is refined: by which refiner, and what each refiner is told there."""
+    """How one scene is refined: by which refiner, and with which options of each refiner."""
 
     refiner: str = "kahler"
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by refiner
 
-    def told(self, refiner: str) -> Mapping[str, Any]:
-        """What a refiner is told where its defaults do not do; nothing, where this knows none."""
+    def options_for(self, refiner: str) -> Mapping[str, Any]:
+        """Options that differ from a refiner's defaults; empty for a refiner without any here."""
         return self.options.get(refiner, {})
 
 
-ON_CARD = "kahler-gl"  # `kahler` on the graphics card, of which it has less
+ON_CARD = "kahler-gl"  # `kahler` on the graphics card, with fewer options
 
 
-def _alike(told: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
-    """Options that `kahler` and its twin on the graphics card both have."""
-    return {"kahler": told, ON_CARD: told}
+def _for_both(options: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """The same options for `kahler` and for its twin on the graphics card."""
+    return {"kahler": options, ON_CARD: options}
 
 
-# By `displacement` alone outlines of crown and chin would stay polygons: edges there are long, turn
-# little. `border` would make an opened mouth rounder, and lids and pursed lips uneven.
-SMOOTH = Preset(options=_alike({"scheme": "cubic", "criterion": "displacement+rest"}))
-PAPER = Preset()
-# A flat mesh needs no slack for bends that it was made with. Found by search, so that the wave
-# makes about as many triangles at most as in Table 1 (1328).
-PLANE = {"threshold_once": 0.001, "threshold_twice": 0.005}
-PAPERS_PLANE = Preset(options=_alike(PLANE))
-SMOOTH_PLANE = Preset(options={**_alike(PLANE), "kahler": {"normals": "refined", **PLANE}})
+# A flat mesh needs no slack, since it is not bent at rest. A search found the values: with them the
+# wave makes about as many triangles at most as in Table 1 (1328).
+PLANE_THRESHOLDS = {"threshold_once": 0.001, "threshold_twice": 0.005}
 
 PRESETS: Mapping[str, Mapping[str, Preset]] = MappingProxyType(  # by name, then by scene
     {
-        FIRST_PRESET: {"face": SMOOTH, "plane": SMOOTH_PLANE},
-        PAPERS_PRESET: {"face": PAPER, "plane": PAPERS_PLANE},
+        FIRST_PRESET: {
+            # By `displacement` alone outlines of crown and chin would stay polygons: edges there
+            # are long and turn little. `border` would make an opened mouth rounder, but lids and
+            # pursed lips uneven.
+            "face": Preset(
+                options=_for_both({"scheme": "cubic", "criterion": "displacement+rest"})
+            ),
+            "plane": Preset(
+                options={
+                    **_for_both(PLANE_THRESHOLDS),
+                    "kahler": {"normals": "refined", **PLANE_THRESHOLDS},
+                }
+            ),
+        },
+        PAPERS_PRESET: {
+            "face": Preset(),
+            "plane": Preset(options=_for_both(PLANE_THRESHOLDS)),
+        },
     }
 )
 
 
 def words_of_presets(option: str) -> list[str]:
-    """What presets tell any refiner by an option that is a word."""
+    """All words that presets set this option to, for any refiner."""
     presets = [preset for by_scene in PRESETS.values() for preset in by_scene.values()]
-    return [told[option] for each in presets for told in each.options.values() if option in told]
+    every = [options for preset in presets for options in preset.options.values()]
+    return [options[option] for options in every if option in options]
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """What a user asks for: a preset, or a refiner as that has it, and options over both."""
+    """A user's choice: a preset, perhaps another refiner, and options that replace the preset's."""
 
     preset: str = FIRST_PRESET
     refiner: str | None = None  # None: the preset's own
-    options: Mapping[str, Any] = field(default_factory=dict)  # over what the preset tells it
+    options: Mapping[str, Any] = field(default_factory=dict)  # in place of the preset's
 
     def on(self, scene: str) -> tuple[str, dict[str, Any]]:
-        """The refiner's name, and all that it is told, on the scene of this name."""
+        """The refiner's name and all its options, for the scene of this name."""
         preset = PRESETS[self.preset][scene]
         name = preset.refiner if self.refiner is None else self.refiner
-        return name, {**preset.told(name), **self.options}
+        return name, {**preset.options_for(name), **self.options}
 
     def has_thresholds(self, scene: str) -> bool:
-        """Whether the criterion is, or has in it, the one that THRESHOLDS are of."""
+        """Whether the criterion is PAPERS_CRITERION, or contains it: then THRESHOLDS count."""
         return PAPERS_CRITERION in self._criterion(scene).split("+")
 
     def check(self, scene: str) -> None:
@@ -97,11 +109,11 @@ class Refinement:
 
     @property
     def label(self) -> str:
-        """What it is called under a picture."""
+        """Its name under a picture."""
         name = "static" if self.refiner == STATIC else self.refiner or self.preset
         return f"{name}{CHANGED}" if self.options else name
 
 
 def named(name: str, preset: str) -> Refinement:
-    """The preset of this name, or else the refiner of it, told what `preset` tells it."""
+    """The preset of this name; or the refiner of this name, with the options of `preset`."""
     return Refinement(name) if name in PRESETS else Refinement(preset, name)

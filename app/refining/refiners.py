@@ -18,7 +18,7 @@ from .presets import PRESETS, STATIC, Refinement, named
 
 LARGEST = 1e30  # of a number in an option: in single precision it is still one
 DETAIL = "detail"  # the one scheme that has to be given a finer mesh, see `finer_mesh`
-AS_IT_SUITS = "automatic"  # what an option is called that is left open
+AS_IT_SUITS = "automatic"  # the word for an option that is left open
 SWITCHES = {"on": True, "true": True, "off": False, "false": False}
 
 
@@ -49,23 +49,23 @@ def refiner_for(scene: Scene, refinement: Refinement) -> refine.Refiner:
             raise error_in(plug_in, error) from error
         if not is_refusal:
             raise
-        told = _of_preset(refinement, options)
-        raise UserError(f"refiner {name}: {error}{told}") from error
+        hint = _presets_share(refinement, options)
+        raise UserError(f"refiner {name}: {error}{hint}") from error
 
 
-def _of_preset(refinement: Refinement, options: Mapping[str, Any]) -> str:
-    """Words for what the preset tells beside the user, who may not know that it does."""
-    told = [
+def _presets_share(refinement: Refinement, options: Mapping[str, Any]) -> str:
+    """Words for the options that come from the preset: a user may not know of them."""
+    settings = [
         f"{name}={('off', 'on')[value] if isinstance(value, bool) else value}"
         for name, value in options.items()
         if name not in refinement.options and name != DETAIL
     ]
-    is_mixed = told and refinement.options
-    return f"; the look {refinement.preset} has {', '.join(told)}" if is_mixed else ""
+    is_mixed = settings and refinement.options
+    return f"; the look {refinement.preset} has {', '.join(settings)}" if is_mixed else ""
 
 
 def options_of(name: str) -> dict[str, Any]:
-    """What a refiner can be told in numbers and words, as it is declared, and its defaults.
+    """The options of a refiner that are numbers or words, with their defaults, as declared.
 
     An option whose default is None is left out, unless it is a choice.
     """
@@ -99,7 +99,8 @@ def _values_of(annotation: object) -> dict[str, bool | str]:
 
 def _check(name: str, options: Mapping[str, Any]) -> None:
     """UserError for an option that the refiner does not offer, or of another kind."""
-    defaults, open_ones = options_of(name), open_choices(name)
+    defaults = options_of(name)
+    open_ones = open_choices(name)
     for option, value in options.items():
         if option not in defaults:
             takes = f"it takes {', '.join(defaults)}" if defaults else "it has no options"
@@ -110,9 +111,11 @@ def _check(name: str, options: Mapping[str, Any]) -> None:
             is_right = any(type(value) is type(each) and value == each for each in values.values())
             wanted = " or ".join(word for word in values if word != AS_IT_SUITS)
         elif isinstance(default, bool):
-            is_right, wanted = isinstance(value, bool), "on or off"
+            is_right = isinstance(value, bool)
+            wanted = "on or off"
         elif isinstance(default, str):
-            is_right, wanted = isinstance(value, str), "a word"
+            is_right = isinstance(value, str)
+            wanted = "a word"
         else:
             is_right = isinstance(value, int | float) and not isinstance(value, bool)
             wanted = "a number"
@@ -134,7 +137,7 @@ def finer_mesh(scene: Scene) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
 
 
 def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any]:
-    """What `--option NAME=VALUE ...` tells a refiner (None: that of the preset).
+    """The options that `--option NAME=VALUE ...` sets for a refiner (None: the preset's).
 
     Numbers, on and off, or words. Raises UserError for an unknown refiner, and where the mesh is
     drawn as it is.

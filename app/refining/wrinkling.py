@@ -19,7 +19,8 @@ Amounts = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
 
 # Chosen by eye. Skin gives way a little before it folds, and a fold does not deepen for ever.
-ONSET, HALF = 0.015, 0.09  # loss of length at which furrows begin, and beyond which they are half
+ONSET = 0.015  # loss of length at which furrows begin
+HALF = 0.09  # loss of length at which they are half as deep as they can be
 FLAT = 0.1  # gain of length at which furrows of age are half as deep: taut skin has none
 
 
@@ -47,7 +48,7 @@ class Compression:
 
 
 def on_rows(amounts: Amounts, refiner: refine.Refiner) -> Amounts | None:
-    """The amounts for what `refiner` made last, shape (N, 2); None where nothing wrinkles."""
+    """The amounts at the rows that `refiner` made last, shape (N, 2); None without wrinkles."""
     if not amounts.any():
         return None
     vertices, weights = refiner.origins()

@@ -84,7 +84,7 @@ class Waving:
         """The picture of a variant, and the number of its triangles."""
         scene = self._wave(phase)
         papers = PRESETS[PAPERS_PRESET][scene.name]
-        options = {**papers.told(variant.refiner), **variant.options}
+        options = {**papers.options_for(variant.refiner), **variant.options}
         refiner = refine.create(variant.refiner, scene.faces, scene.rest_positions, **options)
         image = self._canvas.draw_image(refiner, scene.positions, Drawing(self._camera, style))
         return image, self._canvas.stream_for(refiner).triangle_count

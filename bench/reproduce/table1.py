@@ -77,7 +77,7 @@ PAPER = {
 def _measured(scene: Scene, rounds: int) -> list[Row]:
     """Time the scene's fullest frame in every way."""
     static = refine.create("none", scene.faces, scene.rest_positions)
-    told = PRESETS[PAPERS_PRESET][scene.name].told("kahler")
+    told = PRESETS[PAPERS_PRESET][scene.name].options_for("kahler")
     dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **told)
     positions, count = _fullest_frame(scene, dynamic)
     drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD)

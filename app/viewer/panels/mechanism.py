@@ -139,7 +139,7 @@ class MechanismPanel:
         scene = self._stage.scene
         refiner = self._display.refiner_on(self._stage.scene)
         stored = self._display.options.setdefault(refiner, {})
-        told = PRESETS[self._display.look][scene.name].told(refiner)
+        told = PRESETS[self._display.look][scene.name].options_for(refiner)
         value = stored.get(name, told.get(name, default))
         label = name.replace("_", " ")
         put = partial(stored.__setitem__, name)
