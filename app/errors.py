@@ -1,4 +1,4 @@
-"""What users are told in one line: what they can mend, with exit code 2, and what takes long."""
+"""Messages in one line: errors that users can mend, with exit code 2, and notes of long waits."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LONGEST_LINE = 2000  # [characters] of a message; the middle of a longer one is 
 
 
 def in_one_line(message: object) -> str:
-    """A message, in which whatever a terminal would not show as a character is escaped.
+    """A message, with every code escaped that a terminal does not show as a character.
 
     Names come from files and command lines: a line end in one must not begin a line of ours, nor
     may it steer the terminal.
@@ -46,7 +46,7 @@ def counted(number: int, noun: str) -> str:
 
 
 class UserError(Exception):
-    """Something the user gave cannot be used; the text says what, where, what is allowed.
+    """Something the user gave cannot be used; the text says what, where, and the allowed values.
 
     trace: the traceback of the process in which it was raised, if that was another one.
     """
@@ -84,7 +84,7 @@ def needed(module: str, what: str, extra: str, *, package: str | None = None) ->
 
 
 def line_for(error: Exception) -> str | None:
-    """What the user is told of an error that can be mended; None for a defect."""
+    """The message for an error that the user can mend; None for a defect."""
     from risorius import assets, render  # slow, and not needed where all goes well
 
     if isinstance(error, MemoryError):
@@ -96,10 +96,10 @@ def line_for(error: Exception) -> str | None:
 
 @contextlib.contextmanager
 def report_user_errors() -> Iterator[None]:
-    """Turn what the user can mend into one line on the error stream and exit code 2."""
+    """Turn errors that the user can mend into one line on the error stream and exit code 2."""
     try:
         yield
-    except (BrokenPipeError, click.ClickException):  # nobody reads on; click tells of its own
+    except (BrokenPipeError, click.ClickException):  # nobody reads on; click reports its own
         raise
     except Exception as error:
         line = line_for(error)
@@ -126,7 +126,8 @@ class _CompilingNote(logging.Handler):
 
 
 def announce_compiling() -> None:
-    """From here on tell the user when kernels are compiled, which takes long once."""
+    """From here on print a note when kernels are compiled, which takes long once."""
     log = logging.getLogger("risorius.jit")
-    log.handlers, log.propagate = [_CompilingNote()], False
+    log.handlers = [_CompilingNote()]
+    log.propagate = False
     log.setLevel(logging.INFO)

@@ -36,8 +36,8 @@ class NoSuchFileError(UserError):
 def read_text(path: Path, *, what: str, longest: int) -> str:
     """The text in a file, UTF-8 with or without a byte order mark, of `longest` bytes at most.
 
-    what: what the file is to be, for error texts ("script"). Raises UserError for what is of no
-    use, and NoSuchFileError, which is one, where there is nothing.
+    what: the kind of file, for error texts ("script"). Raises UserError for a file that cannot be
+    used, and its subclass NoSuchFileError where there is none.
     """
     try:
         return read_bytes(path, what=what, longest=longest).decode("utf-8-sig")
@@ -46,7 +46,7 @@ def read_text(path: Path, *, what: str, longest: int) -> str:
 
 
 def read_bytes(path: Path, *, what: str, longest: int, first: int | None = None) -> bytes:
-    """What is in a plain file of `longest` bytes at most, or only the `first` bytes of it.
+    """The content of a plain file of `longest` bytes at most, or only its `first` bytes.
 
     The errors are those of `read_text`.
     """
@@ -109,7 +109,7 @@ def folder_atomically(target: Path, own: re.Pattern[str], *, overwrite: bool) ->
     """Yield a folder whose files come into the folder `target` all at once after the block.
 
     own: names of files that such folders hold. overwrite: those of an earlier time give way;
-    whatever else is there stays. Else UserError if the target holds something already.
+    other files stay. Else UserError if the target holds something already.
     """
     check_folder(target, overwrite=overwrite)
     is_new = not target.exists()
@@ -160,7 +160,7 @@ def temporary_folder(target: Path, parent: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def cannot_be_written(target: Path) -> Iterator[None]:
-    """Turn what the system says against writing `target` into a UserError that names it."""
+    """Turn the system's error at writing `target` into a UserError that names it."""
     try:
         yield
     except OSError as error:

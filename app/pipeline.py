@@ -1,9 +1,9 @@
 """The paper's Figure 1, end to end: simulation, triangle mesh, refinement, rendering.
 
-`Pipeline.step` and `Pipeline.draw` are the figure; whatever is seen of a scene, in the window, in
+`Pipeline.step` and `Pipeline.draw` are the figure; every picture of a scene, in the window, in
 films, in data sets and in the figures of the paper, goes through them. The simulation never learns
 that refinement exists; the refiner reads the mesh and writes only into the buffers that the
-renderer lent; what it wrote is forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
+renderer lent. The refined mesh is forgotten with the frame (Kähler, Haber, Seidel 2003, section 3).
 """
 
 from __future__ import annotations
@@ -26,7 +26,6 @@ from .refining.refiners import refiner_for
 from .refining.wrinkling import Amounts, Compression, on_rows
 from .scenes import Scene
 
-TEXTURED_COLUMNS = 8  # position, normal, u v
 LARGE = 20_000  # triangles from which on a graphics card refines, where it may choose
 Timer = Callable[[str], AbstractContextManager[Any]]
 
@@ -35,16 +34,16 @@ Timer = Callable[[str], AbstractContextManager[Any]]
 class DrawnMesh:
     """The scene's mesh as one refiner has it drawn; two of them make a comparison."""
 
-    label: str  # what it is called under the picture
+    label: str  # its name under the picture
     refiner: refine.Refiner
     stream: render.Stream | render.GpuStream
     style: render.Style = render.Style()  # noqa: RUF009 - frozen; in which it was drawn last
-    mesh: refine.RefinedMesh | None = None  # what was refined last, of:
+    mesh: refine.RefinedMesh | None = None  # the last result, refined from:
     positions: npt.NDArray[np.float64] | None = None
     plug_ins: tuple[PlugIn, ...] = ()  # somebody else's code that refines it
 
     def refine(self, positions: npt.NDArray[np.float64], camera: render.OrbitCamera) -> None:
-        """Fill the lent buffers with refined triangles, for whoever looks through the camera.
+        """Fill the lent buffers with refined triangles, as the camera sees them.
 
         Raises PlugInError where somebody else's code fails.
         """
@@ -58,7 +57,7 @@ class DrawnMesh:
                 self.mesh = self.refiner.refine(positions, self.stream, view)
 
     def upload(self, style: render.Style, wrinkling: Amounts | None = None) -> None:
-        """Hand over what was refined last, and how far the scene's vertices wrinkle."""
+        """Upload the last refined mesh, and how far the scene's vertices wrinkle."""
         assert self.mesh is not None and self.positions is not None
         self.style = style
         with reported(self.plug_ins):
@@ -78,7 +77,8 @@ class DrawnMesh:
     @property
     def has_uv(self) -> bool:
         """Whether rows carry texture coordinates, which a refiner from outside may leave out."""
-        return self.refiner.vertex_columns == TEXTURED_COLUMNS
+        # Position, normal, u and v.
+        return self.refiner.vertex_columns == 8
 
     @property
     def triangle_count(self) -> int:
@@ -87,12 +87,12 @@ class DrawnMesh:
 
     @property
     def caption(self) -> str:
-        """What a picture of it says: what it is, and how many triangles that takes."""
+        """The text under its picture: its name and its number of triangles."""
         return f"{self.label}\n{self.triangle_count} triangles"
 
 
 class Viewport(NamedTuple):
-    """A mesh, and the area [pixels] in which it is drawn; clip: what is seen of that, None: all."""
+    """A mesh, and the area [pixels] in which it is drawn; clip: the visible part, None: all."""
 
     drawn: DrawnMesh
     area: render.Rectangle
@@ -194,7 +194,9 @@ class Pipeline:
         self, drawn: DrawnMesh, view: render.CameraView, style: render.Style, order: DrawOrder
     ) -> None:
         """Draw the skin and all parts of the scene, below it and over it, into one viewport."""
-        stream, renderer, bones = drawn.stream, self.renderer, self.scene.bone_transforms()
+        stream = drawn.stream
+        renderer = self.renderer
+        bones = self.scene.bone_transforms()
         texture = self.texture if drawn.has_uv else None
         values = None
         if style.colour_by is render.ColourBy.SPLITS and drawn.mesh is not None:

@@ -1,4 +1,4 @@
-"""Ctrl-C, a closed terminal, `kill`: what is half written is removed, and the process ends there.
+"""Ctrl-C, a closed terminal, `kill`: half-written files are removed, and the process ends there.
 
 The handlers raise nothing. An exception at a moment nobody chose is lost where C code calls Python
 and drops its errors, so that the signal has no effect, and it crashes moderngl while it compiles.

@@ -2,8 +2,8 @@
 
 A process is started anew for each piece of work and never forked: one that was forked after OpenGL
 was opened hangs. It is in a session of its own, so that Ctrl-C is for the process that started it.
-Work is a function at the top of a module; its arguments and what it hands over are pickled. When
-whoever started it ends, however that happens, it ends, too, and half-written files go.
+Work is a function at the top of a module; its arguments and its messages are pickled. When the
+process that started it ends, for any reason, it ends, too, and half-written files go.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -27,14 +28,19 @@ from .errors import UserError, as_text, in_one_line, line_for, traceback_of
 from .motion import tally
 from .stopping import cleaned_up_if_stopped, handle_signals
 
-Send = Callable[[object], None]  # hands something over to whoever started the work
+Send = Callable[[object], None]  # sends a message to the process that started the work
 LIBRARIES = [f"{name}_NUM_THREADS" for name in ("LP", "OMP", "OPENBLAS", "MKL", "NUMBA")]
-"""Who takes as many threads as there are cores, in each process: OpenGL, BLAS and refinement."""
+"""Each takes as many threads as there are cores, in each process: OpenGL, BLAS and refinement."""
 ATTEMPTS = 3  # at work whose process dies
-AHEAD = 4  # messages that wait while nobody takes them
 GRACE = 5.0  # [s] for a process to clean up, until it is killed
-PAUSE = 0.2  # [s] between two numbers of frames
-TOLD, FAILED, DONE = "told", "failed", "done"
+
+
+class Kind(Enum):
+    """Kinds of answers of a process: messages of its work, then how the work ended."""
+
+    MESSAGE = 1
+    FAILED = 2
+    DONE = 3
 
 
 class DiedError(Exception):
@@ -53,8 +59,8 @@ class Worker:
     ) -> None:
         """Begin `work(*arguments, send)`.
 
-        threads: of each of LIBRARIES. log: what is printed there is added to this file, and else to
-        the error stream.
+        threads: of each of LIBRARIES. log: the file that its prints are added to; None: the error
+        stream.
         """
         code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
         with contextlib.ExitStack() as stack:
@@ -68,12 +74,12 @@ class Worker:
             )
         assert self.process.stdin is not None and self.process.stdout is not None
         self._answers = self.process.stdout
-        with contextlib.suppress(OSError):  # it died, which is told with its messages
+        with contextlib.suppress(OSError):  # it died, as `messages` will report
             self.process.stdin.write(pickle.dumps((work, arguments)))
             self.process.stdin.flush()
 
     def messages(self) -> Iterator[Any]:
-        """What it hands over; UserError for what it raised, DiedError where the process died."""
+        """Messages of the work; UserError for an error in it, DiedError where the process died."""
         while True:
             try:
                 kind, content = pickle.load(self._answers)
@@ -82,11 +88,11 @@ class Worker:
                 code = self.process.returncode
                 why = signal.Signals(-code).name if code < 0 else f"exit code {code}"
                 raise DiedError(why) from None
-            if kind == TOLD:
+            if kind is Kind.MESSAGE:
                 yield content
                 continue
             self.close()
-            if kind == FAILED:
+            if kind is Kind.FAILED:
                 raise UserError(*content)
             return
 
@@ -100,22 +106,23 @@ class Worker:
 
 
 def serve() -> None:
-    """In such a process: do the work that the standard input tells."""
-    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    """In such a process: read the work from the standard input, and do it."""
+    requests = os.fdopen(os.dup(0), "rb")
+    answers = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    os.dup2(2, 1)  # what is printed is no message
+    os.dup2(2, 1)  # prints are no messages
     handle_signals()
-    faulthandler.enable()  # a fault in a driver tells the log where
+    faulthandler.enable()  # for a fault in a driver, the log gets its place
     try:
         request = pickle.load(requests)
-    except EOFError:  # whoever began this process was stopped
+    except EOFError:  # the process that began this one was stopped
         return
 
-    def end_with_whoever_asked() -> None:
+    def end_with_parent() -> None:
         os.read(requests.fileno(), 1)
         os.kill(os.getpid(), signal.SIGTERM)
 
-    waiting: queue.Queue[bytes] = queue.Queue(AHEAD)
+    waiting: queue.Queue[bytes] = queue.Queue(4)  # messages that nobody has taken
 
     def hand_over() -> None:
         """Write what waits while the next is made; where nobody reads, the process is over."""
@@ -128,8 +135,8 @@ def serve() -> None:
 
     writer = threading.Thread(target=hand_over)
     writer.start()
-    threading.Thread(target=end_with_whoever_asked, daemon=True).start()
-    end = _done(*request, send=lambda each: waiting.put(pickle.dumps((TOLD, each))))
+    threading.Thread(target=end_with_parent, daemon=True).start()
+    end = _done(*request, send=lambda each: waiting.put(pickle.dumps((Kind.MESSAGE, each))))
     waiting.put(pickle.dumps(end))
     waiting.put(b"")
     writer.join()
@@ -137,8 +144,8 @@ def serve() -> None:
 
 def _done(
     work: Callable[..., object], arguments: Sequence[Any], *, send: Send
-) -> tuple[str, tuple[str, str]]:
-    """Do the work, and return what became of it: why it failed in a line, and the traceback."""
+) -> tuple[Kind, tuple[str, str]]:
+    """Do the work, and return how it ended: why it failed in a line, and the traceback."""
     try:
         work(*arguments, send)
     except Exception as error:
@@ -146,8 +153,8 @@ def _done(
         if line is None:  # a defect
             traceback.print_exc()
             line = in_one_line(f"{type(error).__name__}: {error}")
-        return FAILED, (line, traceback_of(error))
-    return DONE, ("", "")
+        return Kind.FAILED, (line, traceback_of(error))
+    return Kind.DONE, ("", "")
 
 
 class WorkerPool:
@@ -163,13 +170,13 @@ class WorkerPool:
         self,
         work: Callable[..., object],
         *arguments: Any,
-        tell: Callable[[Any], object] = lambda _: None,
+        on_message: Callable[[Any], object] = lambda _: None,
         log: Path | None = None,
         attempts: int = ATTEMPTS,
     ) -> None:
-        """Do work in a process, again where that dies; tell: is called with what it hands over.
+        """Do work in a process, again where that dies; on_message: is called with each message.
 
-        Raises UserError with what it raised, for its last death, and where all is stopped.
+        Raises UserError for an error in the work, for its last death, and where all is stopped.
         """
         why = ""
         for attempt in range(attempts):
@@ -177,11 +184,11 @@ class WorkerPool:
                 break
             worker = Worker(work, *arguments, threads=self._threads, log=log)
             self._workers.append(worker)
-            if self._is_over:  # told so while it was started
+            if self._is_over:  # stopped while it was started
                 worker.process.terminate()
             try:
                 for message in worker.messages():
-                    tell(message)
+                    on_message(message)
                 return
             except UserError as error:
                 if error.trace:
@@ -198,7 +205,7 @@ class WorkerPool:
         raise UserError(f"the process that worked on it died{times} of {why}")
 
     def stop(self) -> None:
-        """End all processes at once; they remove what they have half written."""
+        """End all processes at once; they remove half-written files."""
         self._is_over = True
         workers = [*self._workers]
         for worker in workers:
@@ -208,7 +215,7 @@ class WorkerPool:
 
 
 def _note(log: Path | None, text: str) -> None:
-    """Add a text to what a process printed, as far as that is kept."""
+    """Add a text to the log of a process, if it has one."""
     if log is not None:
         with contextlib.suppress(OSError), log.open("a", encoding="utf-8") as file:
             file.write(as_text(text))
@@ -217,26 +224,27 @@ def _note(log: Path | None, text: str) -> None:
 def run_all(
     work: Callable[..., object], shares: Sequence[Any], *, log: Path | None = None
 ) -> Iterator[Any]:
-    """Do `work(share, send)` for all shares at once; yield what they hand over, as it comes.
+    """Do `work(share, send)` for all shares at once; yield their messages as they come.
 
-    A share whose process died is begun anew. Whoever stops early, or is stopped, ends all of them.
+    A share whose process died is begun anew. A caller that stops early, or is stopped, ends all.
     Raises UserError for the first that failed.
     """
-    pool, told = WorkerPool(max(len(shares), 1)), queue.SimpleQueue[Any]()
+    pool = WorkerPool(max(len(shares), 1))
+    messages = queue.SimpleQueue[Any]()
     end = object()
 
     def run(share: Any) -> None:
         try:
-            pool.run(work, share, tell=told.put, log=log)
-            told.put(end)
+            pool.run(work, share, on_message=messages.put, log=log)
+            messages.put(end)
         except Exception as error:
-            told.put(error)
+            messages.put(error)
 
     with cleaned_up_if_stopped(pool.stop), ThreadPoolExecutor(max(len(shares), 1)) as threads:
         try:
             left = len([threads.submit(run, share) for share in shares])
             while left:
-                message = told.get()
+                message = messages.get()
                 if isinstance(message, Exception):
                     raise message
                 if message is end:
@@ -252,10 +260,13 @@ class Task:
 
     def __init__(self, work: Callable[[], object], frame_count: int, wake: Callable[[], None]):
         """Begin; wake: called when it has ended, from a thread."""
-        self._frame_count, self._frames = frame_count, 0
+        self._frame_count = frame_count
+        self._frames = 0
         self._pool = WorkerPool(share_of_cores())  # one of them: the others are the window's
         thread = ThreadPoolExecutor(1)
-        self._end = thread.submit(self._pool.run, count_frames, work, tell=self._count, attempts=1)
+        self._end = thread.submit(
+            self._pool.run, count_frames, work, on_message=self._count, attempts=1
+        )
         self._end.add_done_callback(lambda _: wake())
         thread.shutdown(wait=False)
         self._stopping: threading.Thread | None = None
@@ -275,15 +286,15 @@ class Task:
 
     @property
     def is_stopped(self) -> bool:
-        """Whether it was told to end."""
+        """Whether `stop` was called."""
         return self._stopping is not None
 
     def check(self) -> None:
-        """Raise UserError where it failed; of what has ended."""
+        """Raise UserError where it failed; call this once it has ended."""
         self._end.result()
 
     def stop(self, *, waits: bool) -> None:
-        """End it, wherever it is; it removes what it has half written, which takes a while."""
+        """End it at once; it removes half-written files, which takes a while."""
         if self._stopping is None:
             self._stopping = threading.Thread(target=self._pool.stop)
             self._stopping.start()
@@ -292,13 +303,13 @@ class Task:
 
 
 def count_frames(work: Callable[[], object], send: Send) -> None:
-    """In that process: do it, and tell again and again how many frames were played."""
+    """In that process: do it, and send the number of played frames again and again."""
     is_done = threading.Event()
     if hasattr(os, "nice"):
-        os.nice(5)  # whoever waits goes first
+        os.nice(5)  # the waiting process goes first
 
     def report() -> None:
-        while not is_done.wait(PAUSE):
+        while not is_done.wait(0.2):  # [s] between two numbers
             send(tally.frames)
 
     thread = threading.Thread(target=report)
@@ -312,8 +323,8 @@ def count_frames(work: Callable[[], object], send: Send) -> None:
 
 def share_of_cores() -> int:
     """How many cores are for one command: `LP_NUM_THREADS`, which limits OpenGL, limits all."""
-    told = os.environ.get("LP_NUM_THREADS", "")
-    if told.isdecimal():
-        return max(int(told), 1)
+    limit = os.environ.get("LP_NUM_THREADS", "")
+    if limit.isdecimal():
+        return max(int(limit), 1)
     has_affinity = hasattr(os, "sched_getaffinity")
     return len(os.sched_getaffinity(0)) if has_affinity else os.cpu_count() or 1

@@ -22,7 +22,7 @@ def command() -> click.Group:
 
 
 def run() -> None:
-    """Run the command; whoever stops it is heard before anything else is loaded."""
+    """Run the command; signals are handled before anything else is loaded."""
     handle_signals()
     command()()
 

@@ -13,7 +13,7 @@ once. With NUMBA_DISABLE_JIT=1 all kernels run as the Python that they are writt
 debuggers and coverage. There is no fast-math unless a kernel asks for it, so results do not depend
 on how a loop was vectorised.
 
-This file knows nothing of what it compiles. Somebody who lifts `refine/` out takes it along.
+This file does not depend on the code that it compiles. A copy of `refine/` needs it, too.
 """
 
 import functools
@@ -38,14 +38,16 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 """Of all kernels: other threads may run meanwhile, and 1 / 0 is infinite as it is in numpy."""
-KEPT, UNUSED = 8, 24 * 3600.0
-"""Folders of other digests that stay, whatever their age; seconds until the rest may leave."""
+MOST_FOLDERS = 8
+"""Folders of other digests that stay at any age."""
+UNUSED_SECONDS = 24 * 3600.0
+"""Without use, after which other folders may leave."""
 ROOM = 1 << 26
 """Bytes that must be free: numba fails where the disk is full, and all our kernels need a tenth."""
 
 log = logging.getLogger(__name__)
 _lock = threading.Lock()
-_numbas: Any = numba.config  # what is in it by environment variables, type checkers do not know
+_numbas: Any = numba.config  # type checkers do not know its entries
 
 
 @overload
@@ -59,7 +61,7 @@ def njit(*, fastmath: set[str]) -> Callable[[Function], Function]: ...
 def njit(function: Any = None, /, **options: Any) -> Any:
     """Compile a function with numba when it is first called with new types of arguments.
 
-    Code is kept for this package alone: of other programs nobody knows what it depends on.
+    Code is kept for this package alone: the dependencies of other code are unknown.
     `fastmath`: liberties that the compiler may take, as in numba; none if it is left out.
     """
     if function is None:
@@ -93,7 +95,8 @@ def cache_folder() -> Path | None:
         tempfile.TemporaryFile(dir=folder).close()
         os.utime(folder)
     except OSError as error:
-        why, cure = error.strerror or error, "name a folder of your own in NUMBA_CACHE_DIR"
+        why = error.strerror or error
+        cure = "name a folder of your own in NUMBA_CACHE_DIR"
         log.warning("compiled code is not kept (%s: %s); %s", folder, why, cure)
         return None
     if is_new:
@@ -117,13 +120,13 @@ def _remove_old(above: Path) -> None:
     """Remove folders of other digests, but for some that were used last."""
     with suppress(OSError):
         used = {folder: folder.stat().st_mtime for folder in above.glob("compiled-*")}
-        for folder in sorted(used, key=used.__getitem__, reverse=True)[KEPT:]:
-            if used[folder] < time.time() - UNUSED:
+        for folder in sorted(used, key=used.__getitem__, reverse=True)[MOST_FOLDERS:]:
+            if used[folder] < time.time() - UNUSED_SECONDS:
                 shutil.rmtree(folder, ignore_errors=True)
 
 
 class _CompilationLog(event.Listener):
-    """Tells the log which kernels of this package are compiled."""
+    """Logs each kernel of this package that is compiled."""
 
     def on_start(self, event: event.Event) -> None:
         """Numba begins to compile a function of anybody's."""
@@ -132,7 +135,7 @@ class _CompilationLog(event.Listener):
             log.info("compiling %s.%s", function.__module__, function.__qualname__)
 
     def on_end(self, event: event.Event) -> None:
-        """What is compiled is not told of again."""
+        """Do nothing: only the beginning is logged."""
 
 
 event.register("numba:compile", _CompilationLog())

@@ -1,7 +1,7 @@
-"""Tables of files, read into typed records: what is allowed stands in the types of their fields.
+"""Tables of files, read into typed records: the types of their fields say what a file may hold.
 
 A record is a frozen dataclass that is also a `Record`; its fields are the keys of a table. pydantic
-checks; what it finds is told in one line:
+checks; an error is reported in one line:
 
     face.toml, 'muscle', 'frontalis', 'width': was 99, must be a number from 1 to 60
 
@@ -33,7 +33,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 Read = TypeVar("Read")
 
-# What fits instead, by pydantic's names of what can be wrong.
+# The allowed values, by pydantic's names of errors.
 MUST_BE = {
     "bool_type": "true or false",
     "dataclass_type": "a table",
@@ -49,7 +49,8 @@ MUST_BE = {
 }
 LENIENT = "unknown keys are passed by"  # of another version of the program
 OWN = "("  # keys that begin so are put in by readers; no file has them
-REST, HIDDEN = f"{OWN}rest)", f"{OWN}hidden)"
+REST = f"{OWN}rest)"
+HIDDEN = f"{OWN}hidden)"
 
 
 class Record:
@@ -62,7 +63,7 @@ class Record:
     def __get_pydantic_core_schema__(
         cls, source: type[Any], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """The check of pydantic, before which unknown keys are told or go to the rest."""
+        """The check of pydantic; before it, unknown keys are reported or go to the rest."""
         check = partial(_known_keys_of, _keys(cls))
         return core_schema.with_info_before_validator_function(check, handler(source))
 
@@ -102,13 +103,13 @@ class Within:
 
 @dataclass(frozen=True)
 class OneOf:
-    """Exactly one of these, or of what a function gives when the first is read.
+    """Exactly one of these, or of those that a function returns when the first is read.
 
-    told: as errors name them, where they are many.
+    description: names them in errors, where they are many.
     """
 
     allowed: Iterable[Any] | Callable[[], Iterable[Any]]
-    told: str = ""
+    description: str = ""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -126,7 +127,7 @@ class OneOf:
         return core_schema.custom_error_schema(
             core_schema.no_info_plain_validator_function(one),
             "must_be",
-            custom_error_message=self.told or f"one of {', '.join(allowed)}",
+            custom_error_message=self.description or f"one of {', '.join(allowed)}",
         )
 
 
@@ -191,11 +192,11 @@ def read(
     *,
     error: type[Exception] = ValueError,
 ) -> Read:
-    """A record, or any other type, made of what was found in a file.
+    """A record, or any other type, made of the content of a file.
 
-    where: what it is called in errors, a file or a part of one.
+    where: its name in errors, a file or a part of one.
 
-    Raises `error` with one line: where, what it was, what is allowed.
+    Raises `error` with one line: where, the value, and the allowed values.
     """
     try:
         return cast(Read, _adapter(kind).validate_python(document))
@@ -234,12 +235,12 @@ def question(name: str, known: Iterable[str]) -> str:
 
 
 def parsed_toml(text: str) -> dict[str, Any]:
-    """What a TOML file says; ValueError with the reason if it is none."""
+    """The table of a TOML file; ValueError with the reason if it is none."""
     return cast(dict[str, Any], _parsed(tomllib.loads, text, "TOML"))
 
 
 def parsed_json(text: str | bytes) -> Any:
-    """What a JSON file says; ValueError with the reason if it is none."""
+    """The content of a JSON file; ValueError with the reason if it is none."""
     return _parsed(json.loads, text, "JSON")
 
 
@@ -283,14 +284,16 @@ def _known_keys_of(known: tuple[str, ...], table: Any, info: ValidationInfo) -> 
 
 
 def _line(where: str, problem: ErrorDetails) -> str:
-    """Where something is wrong, what it was, and what is allowed."""
+    """The place of an error, the value there, and the allowed values."""
     place = where
     for key in problem["loc"]:
         if isinstance(key, int):
             place += f" {key + 1}"
         elif not key.startswith(OWN) and key != "[key]":
             place += f", {quoted(key)}"
-    place, kind, context = place.removeprefix(", "), problem["type"], problem.get("ctx", {})
+    place = place.removeprefix(", ")
+    kind = problem["type"]
+    context = problem.get("ctx", {})
     if kind == "missing":
         return f"{place}: is missing; it must be there"
     if kind == "value_error":

@@ -1,6 +1,6 @@
-"""What lies under the skin, seen through it: what is asked for, and in which order it is drawn.
+"""Structures under the skin, seen through it: the user's choice of them, and their drawing order.
 
-`AnatomyView` says what is shown. `Anatomy` makes muscles, skull and throat of one face when they
+`AnatomyView` holds the choice. `Anatomy` makes muscles, skull and throat of one face when they
 are first asked for, and sorts them, the face's own parts and the skin into `DrawOrder`.
 """
 
@@ -22,13 +22,13 @@ from .muscle_bands import Muscles
 
 STRUCTURES = ("muscles", "skull")
 SIDES = {"both": 0.0, "left": 1.0, "right": -1.0}  # the subject's, whose skin is translucent
-OPACITY = 0.25  # of the skin unless told
+OPACITY = 0.25  # of the skin, by default
 SOFT = ("oral_cavity", "gums")  # parts that line the mouth, by how their names begin
 
 
 @dataclass(frozen=True)
 class AnatomyView:
-    """What is shown under the skin, and how much of the skin."""
+    """The structures to show under the skin, and the opacity of the skin."""
 
     structures: tuple[str, ...] = ()
     opacity: float = OPACITY
@@ -68,11 +68,11 @@ class Anatomy:
         self._skull: dict[str, Any] = {}
         self._necks: list[Any] = []
         self._muscles: Muscles | None = None
-        self._followed = np.empty(0)  # what they were shaped by
+        self._followed = np.empty(0)  # the values that shaped the muscles last
         self._halves: dict[tuple[float, str], Any] = {}  # of parts, by the side that is opened
 
     def draw_order(self, view: AnatomyView, *, has_hair: bool = True) -> DrawOrder:
-        """What is asked for as it is now, and the scene's parts that do not hide it."""
+        """The chosen structures as they are now, and the scene's parts that do not hide them."""
         scene = self._scene
         if not isinstance(scene, FaceScene) or not view.structures or view.opacity >= 1.0:
             parts = [part for part in scene.parts if has_hair or not part.name.startswith(HAIR)]

@@ -21,15 +21,9 @@ Floats = npt.NDArray[np.float64]
 ROWS = 22  # places along a band
 AROUND = 16  # places around its cross section
 NEAR = 8  # vertices that say where the skin is
-# Measures [mm], chosen by eye after anatomical plates: the share of the rig's width that is flesh,
-# how wide bands are at least and at most, how thick, how deep where they end, and the skin on top.
-FLESH = 0.5
-LEAST = 4.0
-MOST = 17.0
+# Measures [mm], chosen by eye after anatomical plates.
 THICK = 2.8
-DEEP = 3.4
-SKIN = 1.0
-TENDON_ENDS = 0.14  # share of a band's length that is tendon, at both ends
+DEEP = 3.4  # below the skin, at the end of a band
 RELAXED = np.array([0.68, 0.29, 0.245])  # sRGB
 CONTRACTED = np.array([0.50, 0.035, 0.045])  # sRGB
 TENDON = np.array([0.93, 0.87, 0.77])
@@ -44,7 +38,6 @@ RINGS = (  # how names of muscles begin and end; landmarks; bands: how far outwa
     ("orbicularis_oris", "", (48, 59, 58, 57, 56, 55, 54), MOUTH),
 )
 AROUND_OF = {"right": range(36, 42), "left": range(42, 48), "": range(48, 60)}  # landmarks
-HIDDEN = ("platysma",)  # lies on what is not drawn
 
 
 @dataclass(eq=False)
@@ -84,12 +77,13 @@ class Muscles:
             row = scene.head.rig["muscle"].get(
                 name.removesuffix("_left").removesuffix("_right"), {}
             )
-            if name.startswith(HIDDEN):
+            if name.startswith("platysma"):  # it lies on structures that are not drawn
                 continue
             for number, (fibre, _) in enumerate(zip(row.get("fibre", ()), lines, strict=False)):
                 self.names.append((name, number))
-                width = FLESH * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
-                widths.append(np.clip(width, LEAST, MOST))
+                # Half of the rig's width is flesh. Bands are 4 to 17 mm wide.
+                width = 0.5 * row.get("width", 10.0) * fibre.get("width_factor", 1.0)
+                widths.append(np.clip(width, 4.0, 17.0))
         marks = scene.rest_positions[scene.landmarks]
         rings = list[Floats]()
         self._controls: list[list[str]] = [[name] for name, _ in self.names]  # that move each band
@@ -153,7 +147,7 @@ class Muscles:
         for _ in range(2):
             outside, normal, bone_depth = skin.at(rails)
             below = np.minimum(deep, np.maximum(bone_depth - thick, 0.0))
-            below = np.maximum(below, thick + SKIN)
+            below = np.maximum(below, thick + 1.0)  # [mm] of skin on top
             rails = rails - (outside + below)[..., None] * normal
         angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
         a = np.cos(angle)
@@ -166,7 +160,8 @@ class Muscles:
     def _set(self, grid: Floats, active: Floats, u: Floats) -> None:
         """Show sections (b, ROWS, AROUND, 3) of bands that are so active, (b,)."""
         red = RELAXED + np.clip(active, 0.0, 1.0)[:, None] * (CONTRACTED - RELAXED)
-        tendon = np.clip(1.4 - np.minimum(u, 1.0 - u) / TENDON_ENDS, 0.0, 0.92)
+        # This share of a band's length is tendon, at both ends.
+        tendon = np.clip(1.4 - np.minimum(u, 1.0 - u) / 0.14, 0.0, 0.92)
         share = np.tile(tendon, (len(grid), 1))
         share[len(self.names) :] = 0.0
         colour = red[:, None] + share[..., None] * (TENDON - red[:, None])
@@ -175,7 +170,8 @@ class Muscles:
         colours = colour[:, :, None] * light[:, None]
         along = np.gradient(grid, axis=1)
         normals = np.cross(along, np.roll(grid, -1, axis=2) - np.roll(grid, 1, axis=2))
-        normals[:, 0], normals[:, -1] = normals[:, 1], normals[:, -2]  # the ends are points
+        normals[:, 0] = normals[:, 1]  # the ends are points
+        normals[:, -1] = normals[:, -2]
         normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
         self.vertices, self.normals, self.colours = (
             each.reshape(-1, 3).astype(np.float32) for each in (grid, normals, colours)

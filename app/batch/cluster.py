@@ -1,7 +1,7 @@
 """Lines on the workers of a Dask cluster, each of which has processes of its own for them.
 
-Threads of a Dask worker cannot draw, nor can one that crashed be told from one that was killed. So
-what is sent there asks a `WorkerPool`, just as here.
+Threads of a Dask worker cannot draw, and a crash of one looks like a kill. So a Dask worker hands
+its lines to a `WorkerPool`, as this computer does.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _pools: dict[str, WorkerPool] = {}
 def run_on_cluster(
     work: Callable[[WorkerPool, Any], Any], items: Sequence[Any], scheduler: str
 ) -> Iterator[tuple[Any, Any, str]]:
-    """Each item as it ends, with what the work returned, or None and why there is nothing.
+    """Each item as it ends, with the result of its work, or with None and the reason.
 
     Raises UserError where no scheduler answers.
     """
@@ -39,12 +39,12 @@ def run_on_cluster(
         why = getattr(error, "strerror", None) or error or "it does not speak Dask's protocol"
         raise UserError(
             f"--scheduler {scheduler}: no Dask scheduler answers there ({why}); "
-            "write what it says when it starts, as in tcp://host:8786"
+            "write the address that it prints at its start, as in tcp://host:8786"
         ) from None
     run = secrets.token_hex(8)
 
     def end() -> None:
-        """End the run's processes on all workers, whatever they do."""
+        """End the run's processes on all workers, busy or not."""
         with contextlib.suppress(Exception):  # workers, or the scheduler, may be gone
             client.run(_end, run, wait=True, on_error="ignore")
 

@@ -1,4 +1,4 @@
-"""The lines of a list, each a command, and what is wrong with them together."""
+"""The lines of a list, each a command, and the conflicts between them."""
 
 from __future__ import annotations
 
@@ -11,15 +11,13 @@ from pathlib import Path
 from ..errors import UserError
 from ..files import entry_of, read_text
 
-LONGEST = 64 << 20  # [bytes] of a list
-
 
 @dataclass(frozen=True)
 class Job:
     """A line that is to be done.
 
     command: where its click command is, "module:name". folder: where its relative paths begin.
-    inputs, outputs: the files that it reads and writes. log: the file of what it prints.
+    inputs, outputs: the files that it reads and writes. log: the file of its prints.
     """
 
     number: int
@@ -43,7 +41,7 @@ class Job:
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
     """The numbers and texts of lines that hold a command; UserError for what cannot be read."""
-    text = read_text(path, what="list", longest=LONGEST)
+    text = read_text(path, what="list", longest=64 << 20)  # 64 MiB
     for number, line in enumerate(text.splitlines(), 1):
         stripped = line.strip()
         if stripped and not stripped.startswith("#"):

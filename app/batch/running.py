@@ -71,21 +71,21 @@ def do_line(pool: WorkerPool, job: Job) -> Result:
     begin = time.monotonic()
     frames = list[int]()
     try:
-        pool.run(_do, job, tell=frames.append, log=job.log)
+        pool.run(_do, job, on_message=frames.append, log=job.log)
     except UserError as error:
         return Result(job, FAILED, time.monotonic() - begin, error=str(error))
     return Result(job, OK, time.monotonic() - begin, frames[-1])
 
 
 def _do(job: Job, send: Send) -> None:
-    """In that process: do a line, and tell how many frames were played for it."""
+    """In that process: do a line, and send the number of frames that it played."""
     print(f"risorius {job.text}", flush=True)
     try:
         os.chdir(job.folder)
     except OSError as error:
         raise UserError(
-            f"{job.folder}: {error.strerror} on {socket.gethostname()}; whoever works on a list "
-            "needs the folders that it names"
+            f"{job.folder}: {error.strerror} on {socket.gethostname()}; each computer "
+            "that works on a list needs the folders that the list names"
         ) from None
     module, _, name = job.command.partition(":")
     command: click.Command = getattr(import_module(module), name)
@@ -97,12 +97,12 @@ def _do(job: Job, send: Send) -> None:
 
 
 def in_words(results: Sequence[Result], seconds: float) -> str:
-    """What became of all lines, which took so many seconds."""
+    """A summary of all lines, which took so many seconds."""
     counts = {name: sum(each.status == name for each in results) for name in (OK, FAILED, SKIPPED)}
     frames = sum(each.frames for each in results if each.status == OK)
-    told = ", ".join(f"{number} {name}" for name, number in counts.items())
+    outcomes = ", ".join(f"{number} {name}" for name, number in counts.items())
     rate = f", {frames / seconds:.1f} a second" if seconds > 0.0 else ""
-    return f"{counted(len(results), 'line')}: {told}; {counted(frames, 'frame')}{rate}"
+    return f"{counted(len(results), 'line')}: {outcomes}; {counted(frames, 'frame')}{rate}"
 
 
 def save_summary(target: Path, results: Sequence[Result]) -> None:

@@ -17,8 +17,6 @@ from ..files import Image
 INK = (245, 245, 245)
 FAINT = (200, 203, 208)
 SHADE = (24, 26, 30)
-BAR_TITLE = "Splits of a triangle's edges"
-PLATE = 185  # of 255: how far a plate hides what is behind it
 LEAST_CAPTION = 28  # [pixels] below a cell of a contact sheet: text of 15 pixels stays readable
 LANCZOS = PIL.Image.Resampling.LANCZOS
 
@@ -64,7 +62,9 @@ def colour_bar(size: float) -> Image:
         draw.text((numbers, low - 0.5 * step), f"{index + 1}", font=small, fill=INK, anchor="lm")
     title = PIL.Image.new("RGBA", (tall, wide + pad))
     middle = (0.5 * tall, 0.65 * size)
-    ImageDraw.Draw(title).text(middle, BAR_TITLE, font=small, fill=FAINT, anchor="mm")
+    ImageDraw.Draw(title).text(
+        middle, "Splits of a triangle's edges", font=small, fill=FAINT, anchor="mm"
+    )
     page.alpha_composite(title.rotate(90, expand=True), (round(0.45 * size), pad))
     return np.asarray(page.convert("RGBa"))
 
@@ -74,7 +74,8 @@ def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, Im
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
     draw = ImageDraw.Draw(page)
     corners = (0, 0, page.width - 1, page.height - 1)
-    draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, PLATE))
+    # Of 255: a plate hides most of the picture behind a text.
+    draw.rounded_rectangle(corners, 0.35 * size, fill=(*SHADE, 185))
     return page, draw
 
 

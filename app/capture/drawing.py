@@ -23,7 +23,7 @@ from ..scenes import Scene
 from ..script import Script
 from .captions import captioned, labels
 
-DEFAULT_VIEW = "front"  # the face looks at whoever looks at it
+DEFAULT_VIEW = "front"  # the face looks at the viewer
 
 
 MARGIN = 0.05  # of the frame, free on each side of a whole scene
@@ -69,7 +69,7 @@ def check_camera(view: str | None, source: str = "") -> None:
 
 
 def _turn(view: str) -> tuple[float, float, float]:
-    """Yaw and pitch [degrees] and zoom of a camera; UserError for what is none."""
+    """Yaw and pitch [degrees] and zoom of a camera; UserError for a text that names none."""
     try:
         yaw, pitch, zoom = [*map(float, view.split(",")), 1.0][:3]
         if view.count(",") > 2 or not np.isfinite([yaw, pitch, zoom]).all() or zoom <= 0.0:
@@ -83,13 +83,10 @@ def _turn(view: str) -> tuple[float, float, float]:
 
 
 def _framing(scene: Scene, view: str) -> render.OrbitCamera:
-    """A camera that sees what the scene wants framed; the rest of it may go beyond the frame."""
+    """A camera that frames `scene.framed`; the rest of the scene may go beyond the frame."""
     camera = render.OrbitCamera.framing(scene.extent, view=view)
     camera.fit(scene.framed)
     return camera
-
-
-UNSEEN = 0.05  # [pixels] of motion: within that, the last picture is shown once more
 
 
 @dataclass(frozen=True)
@@ -99,7 +96,7 @@ class CaptureOptions:
     size: tuple[int, int] = (1280, 720)  # of the whole picture [pixels]
     frames_per_second: float = 30.0
     refinement: Refinement = Refinement()  # noqa: RUF009 - frozen
-    beside: tuple[Refinement, ...] = ()  # what it is compared with, on its left
+    beside: tuple[Refinement, ...] = ()  # comparisons, on its left
     captions: bool = True  # names and triangle counts under a comparison
     camera: str | render.OrbitCamera | None = None  # a view, or yaw,pitch[,zoom] in degrees
     is_turntable: bool = False  # the camera goes round once, by the last frame
@@ -109,8 +106,8 @@ class CaptureOptions:
     anatomy: AnatomyView = SKIN_ALONE
     samples: int = 4
     head: FittedHead | None = None  # None: the built-in one
-    is_alive: bool = False  # what the script leaves alone moves by itself
-    passes: tuple[str, ...] = ()  # what is written beside pictures, by name
+    is_alive: bool = False  # controls that the script does not name move by themselves
+    passes: tuple[str, ...] = ()  # names of the passes to write beside pictures
 
     @property
     def is_transparent(self) -> bool:
@@ -120,7 +117,7 @@ class CaptureOptions:
 
 @dataclass(frozen=True)
 class Frame:
-    """A picture, what is to lie beside it, and how many triangles its finest mesh has."""
+    """A picture, its labels and passes, and how many triangles its finest mesh has."""
 
     image: Image
     known: Labelled | None
@@ -140,7 +137,7 @@ class Capture:
         self._passes = Passes(self.pipeline, meshes[-1]) if options.passes else None
         self.viewports = side_by_side(self.surface.size, meshes)
         self._frame: Frame | None = None  # the last one
-        self._shown = np.zeros(0)  # what it was drawn of
+        self._shown = np.zeros(0)  # the positions and values that it shows
         if options.tone is not None:
             self.pipeline.set_tone(options.tone)
         view = options.camera
@@ -175,14 +172,14 @@ class Capture:
         self.pipeline.refine(self.camera, self.viewports)
 
     def is_still(self) -> bool:
-        """Whether nothing has moved so far that anybody could see it, since this last said no.
+        """Whether nothing has moved visibly since this was last False.
 
-        What is compared is the scene, not pictures: each process that plays it says the same. What
-        lies beside pictures has to be exact, so with passes nothing is still.
+        Scenes are compared, not pictures, so each process that plays the script agrees. Passes have
+        to be exact: with passes this is always False.
         """
         scene = self.scene
         camera = self.camera
-        # Bones turn what is as far from them as the scene is wide; a control counts as 1 mm.
+        # A turn of a bone counts as far out as the scene is wide; a control counts as 1 mm.
         bones = [
             np.vstack([each[:3, :3] * camera.scene_radius, each[:3, 3]])
             for each in scene.bone_transforms().values()
@@ -193,7 +190,8 @@ class Capture:
         width, height = self.viewports[0].area[2:]
         pixels = camera.focal(width / height, height) / np.linalg.norm(camera.eye - camera.target)
         is_same = len(now) == len(self._shown) and not self.options.passes
-        if is_same and pixels * np.abs(now - self._shown).max() <= UNSEEN:
+        # Within so many pixels of motion the last picture is shown once more.
+        if is_same and pixels * np.abs(now - self._shown).max() <= 0.05:
             return True
         self._shown = now
         return False
@@ -207,7 +205,7 @@ class Capture:
         return self._frame
 
     def draw_frame(self) -> Frame:
-        """Draw the scene as it is now, and say what is known of the picture."""
+        """Draw the scene as it is now, with the labels and passes of the picture."""
         image = self.draw_image()
         known = None
         triangles = max(drawn.triangle_count for drawn, *_ in self.viewports)
@@ -220,7 +218,7 @@ class Capture:
     ) -> Iterator[float]:
         """Play a script and yield the time [s] of each frame, the scene moved to it.
 
-        Frames before the options' span are played, too: what is seen then depends on them.
+        Frames before the options' span are played, too: later ones depend on them.
         """
         options = self.options
         yaw = self.camera.yaw

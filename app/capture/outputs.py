@@ -1,8 +1,8 @@
-"""What takes the frames of a film: a file through ffmpeg, or a folder of numbered pictures.
+"""Outputs for the frames of a film: a file through ffmpeg, or a folder of numbered pictures.
 
-What a film can be is told by the suffix of its name. ffmpeg is a process of its own; its failures
-are told in one line. The writer of `imageio_ffmpeg` takes no notice of how it ends, so a film that
-a full disk cut short would pass as whole.
+The suffix of its name decides the format of a film. ffmpeg is a process of its own; a failure of it
+is reported in one line. The writer of `imageio_ffmpeg` ignores ffmpeg's exit code, so a film that a
+full disk cut short would pass as whole.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from ..sound.decoding import ffmpeg, sound_form, sound_input
 from ..stopping import cleaned_up_if_stopped
 from ..workers import share_of_cores
 
-# AAC and Opus, as players want them, at a quality that nobody tells from the source.
+# AAC and Opus, as players want them, at a quality that sounds like the source.
 AAC = "-acodec aac -b:a 192k"
 OPUS = "-acodec libopus -b:a 160k"
 # H.264; 4:2:0 as every player wants it, which needs even sides, at a quality without blocks. The
@@ -68,7 +68,7 @@ class FilmFormat(NamedTuple):
 FORMATS = {
     ".mp4": FilmFormat(H264, AAC),
     ".webm": FilmFormat(VP9, OPUS),
-    # Frames last whole hundredths of a second; what is shorter than two, players slow down.
+    # Frames last whole hundredths of a second; players slow down frames shorter than two.
     ".gif": FilmFormat(f"{GIF} -loop 0", fastest=50.0),
     ".webp": FilmFormat(f"{WEBP} -loop 0"),
 }
@@ -76,7 +76,7 @@ HEARD = tuple(suffix for suffix, each in FORMATS.items() if each.sound)
 
 
 def format_of(target: Path) -> FilmFormat | None:
-    """What a file of this name is written as; None where it is no film."""
+    """The format for a file of this name; None where it is no film."""
     return FORMATS.get(target.suffix.lower())
 
 
@@ -85,14 +85,14 @@ def check_name(output: Path) -> None:
     suffix = output.suffix.lower()
     if suffix not in (*FORMATS, ".png", "") and not output.is_dir():
         raise UserError(
-            f"{output}: what is '{suffix}'? Allowed are {', '.join(FORMATS)} (a film), "
+            f"{output}: unknown suffix '{suffix}'. Allowed are {', '.join(FORMATS)} (a film), "
             ".png (one picture) and a name without suffix (a folder of frames)"
         )
 
 
 @dataclass(frozen=True)
 class Soundtrack:
-    """What is heard in a film: a sound file from `begin` [s] on, for so many seconds at most."""
+    """The sound of a film: a sound file from `begin` [s] on, for so many seconds at most."""
 
     file: Path
     seconds: float
@@ -156,7 +156,7 @@ class Encoder:
             raise self._failure()
 
     def stop(self) -> None:
-        """End the process and those that it began, whatever they do; nothing after `finish`."""
+        """End the process and those that it began; does nothing after `finish`."""
         if sys.platform == "win32":
             self._process.kill()
         else:
@@ -225,7 +225,7 @@ def film(
 def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     """Numbered PNG files in a folder. Raises UserError if it holds something already.
 
-    overwrite: frames of an earlier film give way to these; whatever else is there stays.
+    overwrite: frames of an earlier film give way to these; other files stay.
     """
     count = 0
     waiting: deque[Future[None]] = deque()

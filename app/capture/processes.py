@@ -1,8 +1,8 @@
 """Processes that draw a film together, each its share of the frames.
 
 Software OpenGL keeps only one core busy all the time. The simulation is cheap and gives the same
-bytes in every process, so each of them plays the whole script and draws every n-th frame. What they
-draw comes through pipes, in order, while they go on with the next frames.
+bytes in every process, so each of them plays the whole script and draws every n-th frame. Their
+pictures come through pipes, in order, while they go on with the next frames.
 """
 
 from __future__ import annotations

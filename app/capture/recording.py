@@ -173,6 +173,6 @@ def _check_passes(script: Script, output: Path | None, options: CaptureOptions) 
 
 
 def soundtrack_of(script: Script, span: tuple[float, float] | None = None) -> Soundtrack | None:
-    """What is heard in a film of a script, or of a span of it [s]: its sound, as far as it goes."""
+    """The sound of a film of a script, or of a span of it [s]; it may end before the film."""
     begin, end = span or (0.0, script.duration)
     return None if script.sound is None else Soundtrack(script.sound, end - begin, begin)

@@ -129,7 +129,6 @@ SETTINGS = click.option(
 SCENE = click.option("--scene", type=SCENE_NAMES, help="The scene to animate.")
 LIGHT_NAMES = ("studio", "side", "overcast", "window", "hard")  # render.LIGHTS, not imported yet
 STRUCTURES = ("muscles", "skull")  # anatomy.STRUCTURES, not imported yet
-ANATOMY_OPTIONS = ("anatomy", "skin_opacity", "dissect")
 STYLE_OPTIONS = ("shading", "wireframe", "splits", "skin", "skin_maps", "wrinkles", "light")
 
 
@@ -289,7 +288,8 @@ class Drawing(Subject):
     def is_given(self) -> bool:
         """Whether the command line sets any option of refinement, style or anatomy."""
         source = click.get_current_context().get_parameter_source
-        names = ("look", "refiner", "refiner_settings", *STYLE_OPTIONS, *ANATOMY_OPTIONS)
+        names = ["look", "refiner", "refiner_settings", *STYLE_OPTIONS]
+        names += ["anatomy", "skin_opacity", "dissect"]
         return any(source(name) is not ParameterSource.DEFAULT for name in names)
 
     def style(self) -> render.Style:

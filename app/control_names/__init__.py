@@ -1,4 +1,4 @@
-"""Names of controls: what a mirror makes of them, and what they are called in plain words.
+"""Names of controls: their names in a mirror, and their names in plain words.
 
 A mirror turns sides and values round, of controls and of the channels of recordings alike. Plain
 words, and other words by which a control is found, are in assets, `words.toml`.
@@ -51,7 +51,7 @@ def twin_of(name: str) -> str:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """What is left becomes right; the middle turns round."""
+    """Left and right change places; values of the middle change their sign."""
     result = dict(values)
     for name, value in values.items():
         if twin_of(name) in values:
@@ -75,7 +75,6 @@ def copied(values: Mapping[str, float], source: str) -> dict[str, float]:
 
 VISEME = "viseme_"
 ENDINGS = ("ing", "ed", "s")  # of a word that is looked for
-LEAST_STEM = 3  # letters before an ending
 
 
 def readable(name: str) -> str:
@@ -114,9 +113,9 @@ def _synonyms() -> tuple[tuple[str, frozenset[str]], ...]:
 
 
 def title_of(name: str, action: str = "") -> tuple[str, str]:
-    """The code that a control is known by, "" for none, and its plain name, "" for a code alone.
+    """A control's code, "" for none, and its plain name, "" for a code alone.
 
-    name: without its side, where both sides are called alike. action: what it does, in words.
+    name: without its side, where both sides have one name. action: of the control, in words.
     """
     stem = parted(name)[0]
     plain = str(_table("names").get(name) or _table("names").get(stem) or "")
@@ -151,4 +150,4 @@ def is_found(words: str, text: str, names: Collection[str]) -> bool:
 def _forms(word: str) -> list[str]:
     """A word as it was typed, and without its ending: chewing, chew."""
     stems = [word.removesuffix(end) for end in ENDINGS if word.endswith(end)]
-    return [word, *(stem for stem in stems if len(stem) >= LEAST_STEM)]
+    return [word, *(stem for stem in stems if len(stem) >= 3)]  # letters

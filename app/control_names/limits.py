@@ -1,9 +1,9 @@
 """Limits of controls, and the one place where values are cut off at them.
 
-Tracks add to poses, gains multiply what was recorded, trackers overshoot: only what all of it comes
-to is cut off, where it becomes the value of a control, that is, in a key made of a recording or in
-the `ControlValues` of a scene. `sim` refuses what is beyond. What somebody wrote and cannot be
-meant is refused where it is read, see `Script.check`.
+Tracks add to poses, gains multiply recorded values, trackers overshoot. Only their sum is cut off,
+where it becomes the value of a control: in a key made of a recording, or in the `ControlValues` of
+a scene. `sim` refuses values beyond the limits. `Script.check` refuses values in a file that nobody
+can have meant.
 
 Names become numbers here, too: a script or a stream has the same in each of its frames, so their
 places are found in its first.

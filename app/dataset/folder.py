@@ -30,7 +30,7 @@ _SAMPLE = re.compile(r"(\d{6})\.json")
 
 
 def name_of(index: int) -> str:
-    """What the files of a sample begin with."""
+    """The first part of the names of a sample's files."""
     return f"{index:06d}"
 
 
@@ -59,7 +59,7 @@ class SetFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             self._check(options, resume=resume)
             unfinished = self.path / UNFINISHED
-            if unfinished.is_symlink():  # what is in the folder behind it is not ours to remove
+            if unfinished.is_symlink():  # the folder behind it may hold the files of others
                 raise UserError(f"{unfinished}: is a link; remove it")
             unfinished.mkdir(exist_ok=True)
             lock = locked(unfinished / "lock")
@@ -145,7 +145,7 @@ class SetFolder:
         return size
 
     def sample(self, index: int) -> dict[str, Any]:
-        """What is in the .json of a sample."""
+        """The labels in the .json of a sample."""
         content = (self.path / f"{name_of(index)}.json").read_bytes()
         labels: dict[str, Any] = json.loads(content)
         return labels

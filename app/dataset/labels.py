@@ -1,4 +1,4 @@
-"""What is known of the face of a sample, beside what `capture --passes` tells of any picture.
+"""Labels of a sample's face, beside those that `capture --passes` writes of any picture.
 
 Unit and convention of every field are in docs/dataset.md.
 """
@@ -41,9 +41,9 @@ def labels_of_face(
 def action_units(scene: FaceScene) -> dict[str, float]:
     """All action units of FACS that the face has, 0..1: AU12_left, AU12_right, and AU12.
 
-    Units that were set count as they were set. Of what else moves muscles (visemes, head and gaze)
-    as much is counted as units can tell. A unit without side is the stronger of its sides, as FACS
-    scores it where sides are not told apart.
+    Units that were set count as they were set. Other controls of muscles (visemes, head and gaze)
+    count as far as units can express them. A unit without side is the stronger of its sides, as
+    FACS scores it without regard to sides.
     """
     sums = _in_one_frame(scene.simulation.controls.sums)
     found = solved(scene, ACTION_UNITS, sums, _in_one_frame(scene.values))

@@ -1,4 +1,4 @@
-"""Making a set: samples in processes, person by person, then what is told of them all."""
+"""Making a set: samples in processes, person by person, then the index and the card of all."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .summary import card_of, write_index
 
 @dataclass(frozen=True)
 class Share:
-    """What a process is to make: samples by their numbers, person after person."""
+    """The samples that one process makes, by their numbers, person after person."""
 
     request: Request
     indices: tuple[int, ...]
@@ -74,7 +74,7 @@ def make_set(
 
 
 def make_samples(share: Share, send: Send) -> None:
-    """Make the samples of a share that are not there, and tell how many bytes each has."""
+    """Make the samples of a share that do not exist yet, and send the size of each [bytes]."""
     studio = Studio(share.request)
     folder = SetFolder(share.request.output)
     for index in share.indices:

@@ -1,7 +1,7 @@
 """How far mouth and eyes are open, as one sees it: the height of the gap between lips or lids.
 
-Distances between landmarks do not tell it: lips that are pressed on each other roll inward, lids
-that are shut lie on each other, and the landmarks of their edges stay millimetres apart.
+Distances between landmarks do not show it: pressed lips roll inward, shut lids lie on each other,
+and the landmarks of their edges stay millimetres apart.
 """
 
 from __future__ import annotations
@@ -18,10 +18,8 @@ LOWER_EDGES = {  # landmarks of a lower lip's inner edge and of lower lids, from
     "eye_right": (36, 41, 40, 39),
     "eye_left": (42, 47, 46, 45),
 }
-PLANES = 40  # vertical ones across an opening that the lines of sight lie in
 END = 1.0  # mm beside a corner that are not looked at: lips and lids are joined there
 WINDOW = 5.0  # mm from the lower edge in which an opening begins that is the one meant
-REACH = 60.0  # mm around an opening in which skin may cover it
 
 
 def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -> dict[str, float]:
@@ -32,7 +30,8 @@ def apertures(positions: Array, triangles: npt.NDArray[Any], landmarks: Array) -
     found = {}
     for name, numbers in LOWER_EDGES.items():
         edge = landmarks[list(numbers)]
-        near = around(positions[triangles], (edge[0] + edge[-1]) / 2.0, REACH)
+        # Skin may cover an opening from so far [mm].
+        near = around(positions[triangles], (edge[0] + edge[-1]) / 2.0, 60.0)
         found[name] = round(opening(near, edge), 3)
     return found
 
@@ -42,9 +41,10 @@ def opening(near: Array, edge: Array) -> float:
 
     near: triangles (m, 3, 3) of the skin around.
     """
-    near = near[to_viewer(near)]  # what is seen from within covers nothing
+    near = near[to_viewer(near)]  # triangles seen from within cover nothing
     left, right = sorted(edge[[0, -1], 0])
-    columns = np.linspace(left + END, right - END, PLANES)
+    # Vertical planes across the opening, in which lines of sight lie.
+    columns = np.linspace(left + END, right - END, 40)
     heights = np.interp(columns, *edge[np.argsort(edge[:, 0]), :2].T)
     return max(
         _widest_opening(near, column, height)

@@ -1,4 +1,4 @@
-"""What a data set is to be: all that decides its samples, but their number."""
+"""The request for a data set: all that decides its samples, but their number."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ class Request:
     """A data set that is asked for; fit to be pickled.
 
     output: the folder of the set. size: of the pictures [pixels]. passes: some of the images of
-    app/passes/passes.py. refiner: None for that of the look. told: the options that say all this.
+    app/passes/passes.py. refiner: None for the look's. arguments: the same, as
+    options of the command line.
     """
 
     output: Path
@@ -33,11 +34,11 @@ class Request:
     table: SampleTable
     backgrounds: Backgrounds = Backgrounds()  # noqa: RUF009 - frozen
     refiner: str | None = None
-    told: str = ""
+    arguments: str = ""
     version: str = version("risorius")
 
     def options(self) -> dict[str, Any]:
-        """What decides the samples, as JSON has it: resumed is what was begun with the same."""
+        """All that decides the samples, for JSON; only a set begun with the same can be resumed."""
         table = asdict(self.table) | {"excluded": sorted(map(sorted, self.table.excluded.pairs))}
         table["expressions"] = {name: row.row for name, row in self.table.expressions.items()}
         options = {
@@ -62,11 +63,11 @@ def request_of(
     background: str | None = None,
     refiner: str | None = None,
 ) -> Request:
-    """What the command line asks for; UserError for what cannot be."""
+    """The request of a command line; UserError for options that cannot be."""
     check_wanted(passes, "face")
     parse_options(refiner, ())
     passes = tuple(name for name in IMAGES if name in passes)
-    told = {
+    settings = {
         "sample": sample,
         "seed": seed,
         "passes": ",".join(passes),
@@ -74,7 +75,7 @@ def request_of(
         "background": background,
         "refiner": refiner,
     }
-    words = [(f"--{name}", as_text(value)) for name, value in told.items() if value is not None]
+    words = [(f"--{name}", as_text(value)) for name, value in settings.items() if value is not None]
     return Request(
         output.absolute(),
         seed,

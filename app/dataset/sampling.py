@@ -21,8 +21,6 @@ from .table import BLINK, LETTERS, SampleTable, Shares, paired_units
 
 MOST_UNITS = 7  # of a mixture
 SIDES = ("_left", "_right")
-BROWS_AND_EYES = ("AU1", "AU2", "AU4", "AU5", "AU6", "AU7")
-TRACE = 0.25  # of the lowest fifth: below it nothing can be seen
 
 
 @dataclass(frozen=True)
@@ -108,7 +106,7 @@ class _Face:
         self.one_sided = table.sides.one_sided  # the chance of each unit
 
     def fill(self, kind: str) -> str:
-        """Make a face of this kind; what it is called."""
+        """Make a face of this kind; return its name."""
         table = self._table
         random = self._random
         if kind == "expression":
@@ -146,7 +144,8 @@ class _Face:
         names = [chosen(random, self._table.speech) for _ in range(2)]
         share = random.uniform(0.2, 0.8) if random.random() < 0.5 else 1.0
         strength = random.uniform(0.5, 1.0)
-        units = {name: self._table.units.get(name, 0.0) for name in BROWS_AND_EYES}
+        brows_and_eyes = ("AU1", "AU2", "AU4", "AU5", "AU6", "AU7")
+        units = {name: self._table.units.get(name, 0.0) for name in brows_and_eyes}
         if random.random() < 0.5 and any(units.values()):
             for name in dict.fromkeys(chosen(random, units) for _ in range(2)):
                 self._add(name, self._intensity())
@@ -156,7 +155,7 @@ class _Face:
         return "+".join(dict.fromkeys(names[: 1 + (share < 1.0)]))
 
     def _add(self, unit: str, value: float) -> bool:
-        """Add a unit unless what is there excludes it."""
+        """Add a unit unless one that is set excludes it."""
         is_possible = self._table.goes_with(unit, self.controls)
         if is_possible:
             self.controls[unit] = min(value, 1.0)
@@ -165,7 +164,8 @@ class _Face:
     def _intensity(self) -> float:
         """A value of a letter's fifth of 0..1."""
         place = LETTERS.index(chosen(self._random, self._table.letters))
-        within = self._random.uniform(0.0 if place else TRACE, 1.0)
+        # Below a quarter of the lowest fifth nothing can be seen.
+        within = self._random.uniform(0.0 if place else 0.25, 1.0)
         return float((place + within) / len(LETTERS))
 
 

@@ -1,8 +1,8 @@
 """The studio: takes the picture and the labels of one sample after the other, in one process.
 
-Nothing of one sample is left for the next: the scene is reset, and what is kept (the context, the
-heads of some persons) is the same whoever came before. So a sample is the same bytes from any
-process, in any order.
+Nothing of one sample is left for the next: the scene is reset, and the objects that stay (the
+context, the heads of some persons) do not depend on earlier samples. So a sample is the same bytes
+from any process, in any order.
 """
 
 from __future__ import annotations
@@ -40,7 +40,6 @@ from .surroundings import laid_over, light_of
 
 SAMPLES = 8  # of each pixel
 PERSONS = 1  # sets their seeds apart from those of samples
-MOST_PERSONS = 4  # that are kept, those that came last
 MARGIN = 0.03  # of the picture, free on each side of the head at zoom 1: the neck ends outside
 CHIN = 8  # the landmark
 BELOW_CHIN = 12.0  # [mm] of the neck that go with the head
@@ -75,7 +74,8 @@ class Studio:
         self._request = request
         self._surface = render.open_offscreen(request.size, samples=SAMPLES)
         self._renderer = render.Renderer(self._surface)
-        self._person = lru_cache(MOST_PERSONS)(self._person_of)
+        # The last persons are kept.
+        self._person = lru_cache(4)(self._person_of)
 
     def shoot(self, index: int) -> Shot:
         """Take sample number `index` of the request's seed."""
@@ -104,7 +104,7 @@ class Studio:
     def _taken(
         self, model: _Model, camera: render.OrbitCamera, sample: Sample
     ) -> tuple[Image, dict[str, Any]]:
-        """The picture of a scene as it is now, and what is told of light and background."""
+        """The picture of a scene as it is now, and the labels of its light and background."""
         request = self._request
         random = np.random.default_rng(sample.surroundings)
         light = light_of(sample.light, random)
@@ -123,8 +123,8 @@ class Studio:
             image = self._surface.read()
         else:
             image = laid_over(picture, self._surface.read_scene(4))
-        told = {"name": sample.light, **asdict(light)}
-        return image, {"light": told, "background": name if colours is None else asdict(colours)}
+        lit = {"name": sample.light, **asdict(light)}
+        return image, {"light": lit, "background": name if colours is None else asdict(colours)}
 
     def _person_of(self, number: int) -> _Model:
         """Person `number` of the set before the frame: head, tone of skin and colour of eyes.

@@ -1,4 +1,4 @@
-"""What is told of a whole set, from its samples' labels: index.csv, and the card, README.md."""
+"""The summary of a whole set, from its samples' labels: index.csv, and the card, README.md."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from .labels import by_number
 from .request import Request
 
 THERE = 0.05  # from which value on a unit counts as there: a quarter of A
-POSE = ("yaw", "pitch", "roll")
 
 
 @dataclass
@@ -27,7 +26,7 @@ class Counts:
 
 
 def write_index(path: Path, samples: Iterable[dict[str, Any]]) -> Counts:
-    """A CSV file with one row for each sample: what it is, the head's pose, every action unit."""
+    """A CSV file with one row for each sample: its kind, the head's pose, every action unit."""
     counts = Counts()
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
@@ -50,7 +49,7 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
         "kind": sample["kind"],
         "name": sample["name"],
         **{f"person_{name}": value for name, value in person.items()},
-        **{f"head_{name}": sample["head"][name] for name in POSE},
+        **{f"head_{name}": sample["head"][name] for name in ("yaw", "pitch", "roll")},
         **{f"aperture_{name}": value for name, value in sample["apertures"].items()},
         "visible": sum(sample["landmarks"]["visible"]),
         **sample["action_units"],
@@ -58,7 +57,7 @@ def _row(sample: dict[str, Any]) -> dict[str, Any]:
 
 
 def card_of(request: Request, counts: Counts) -> str:
-    """The card of a set that was made as requested: how it was made, how often what is in it."""
+    """The card of a requested set: how it was made, and how often each kind and unit occurs."""
     samples = counts.kinds.total()
     persons = len(counts.persons)
     units = [(name, counts.units[name]) for name in sorted(counts.units, key=by_number)]
@@ -66,7 +65,7 @@ def card_of(request: Request, counts: Counts) -> str:
     return text.format(
         count=samples,
         version=request.version,
-        told=request.told,
+        arguments=request.arguments,
         persons=persons,
         samples_each=samples / persons,
         there=THERE,

@@ -1,4 +1,4 @@
-"""What is around the face of a sample: light, and behind it colours or a part of a picture."""
+"""The surroundings of a sample's face: light, and behind it colours or a part of a picture."""
 
 from __future__ import annotations
 
@@ -21,11 +21,7 @@ from risorius.render import LIGHTS, Background, Light
 from ..errors import UserError, as_text
 from ..files import Image
 
-TURN = 18.0  # [degrees] that the key light is moved, standard deviation
-BRIGHTNESS = (0.75, 1.15)  # of all light
-WARMTH = 0.08  # of red over blue light, standard deviation
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
-SMALLEST = 0.6  # share of a picture's shorter side that is seen, at least
 
 
 @dataclass(frozen=True)
@@ -37,11 +33,11 @@ class Backgrounds:
 
     @property
     def options(self) -> Any:
-        """What decides them, for JSON."""
+        """All that decides them, for JSON."""
         if not self.pictures:
             return self.colour if self.colour is None else list(self.colour)
-        told = "".join(f"{path.name} {path.stat().st_size}\n" for path in self.pictures)
-        content = hashlib.sha256(os.fsencode(told)).hexdigest()[:16]  # tells files from others
+        listed = "".join(f"{path.name} {path.stat().st_size}\n" for path in self.pictures)
+        content = hashlib.sha256(os.fsencode(listed)).hexdigest()[:16]  # other files, other digest
         return {"pictures": len(self.pictures), "content": content}
 
     def colours(self, random: np.random.Generator) -> Background:
@@ -59,7 +55,8 @@ class Backgrounds:
         Raises UserError for a file that is no picture.
         """
         path = self.pictures[int(random.integers(len(self.pictures)))]
-        share, across, along = random.uniform([SMALLEST, 0.0, 0.0], 1.0)
+        # At least this share of a picture's shorter side is seen.
+        share, across, along = random.uniform([0.6, 0.0, 0.0], 1.0)
         with _readable(path) as opened:
             whole = PIL.ImageOps.exif_transpose(opened).convert("RGB")
         scale = share * min(whole.width / size[0], whole.height / size[1])
@@ -76,10 +73,12 @@ class Backgrounds:
 def light_of(name: str, random: np.random.Generator) -> Light:
     """One of the renderer's lights: its key moved, all brighter or darker, warmer or cooler."""
     light = LIGHTS[name]
-    to_key = np.array(light.to_key) + np.radians(TURN) * random.standard_normal(3)
+    # The key light is moved, with this standard deviation [degrees].
+    to_key = np.array(light.to_key) + np.radians(18.0) * random.standard_normal(3)
     to_key[2] = max(to_key[2], 0.1)  # not behind the head
-    warmth = WARMTH * np.clip(random.standard_normal(), -2.0, 2.0)
-    tint = random.uniform(*BRIGHTNESS) * np.array([1.0 + warmth, 1.0, 1.0 - warmth])
+    # Of red over blue light, with this standard deviation.
+    warmth = 0.08 * np.clip(random.standard_normal(), -2.0, 2.0)
+    tint = random.uniform(0.75, 1.15) * np.array([1.0 + warmth, 1.0, 1.0 - warmth])
     changed: dict[str, Any] = {
         each: tuple((tint * getattr(light, each)).tolist())
         for each in ("key", "fill", "rim", "sky", "ground")

@@ -21,12 +21,10 @@ from risorius.schema import REST, MadeFrom, OneOf, Record, Within, called, parse
 from ..errors import UserError
 from ..files import NoSuchFileError, read_text
 
-LONGEST_FILE = 2**18  # [bytes]
 KINDS = ("neutral", "expression", "mixture", "speech", "unit")
 LETTERS = ("A", "B", "C", "D", "E")
 BLINK = "AU45"
 OF_EYES_AND_HEAD = {f"AU{number}" for number in range(51, 65)}  # these have their own sections
-FILLED_UP = ("sides", "eyes", "head", "camera", "persons")  # rows that are left out are taken
 Shares = Mapping[str, float]
 Range = tuple[float, float]
 
@@ -123,7 +121,7 @@ class Eyes(Record):
 
 @dataclass(frozen=True)
 class Head(Record):
-    """How far the head turns [degrees], up to half of what the neck can."""
+    """How far the head turns [degrees], up to half of the neck's range."""
 
     yaw: Annotated[float, Within(0.0, 20.0)]
     pitch: Degrees
@@ -188,15 +186,17 @@ def load_table(path: Path | None) -> SampleTable:
     where = str(path or "aus.toml")
     if path is not None:
         try:
-            own = parsed_toml(read_text(path, what="table of samples", longest=LONGEST_FILE))
+            own = parsed_toml(read_text(path, what="table of samples", longest=2**18))
         except NoSuchFileError:
             raise UserError(
                 f"{path}: no such table; `risorius dataset --sample-table > {path.name}` writes one"
             ) from None
         except ValueError as error:
             raise UserError(f"{path}: {error}") from None
+        # Rows that a table leaves out of these sections are taken from ours.
+        filled_up = ("sides", "eyes", "head", "camera", "persons")
         for name, rows in own.items():
-            is_added = name in FILLED_UP and isinstance(rows, dict)
+            is_added = name in filled_up and isinstance(rows, dict)
             sections[name] = {**sections[name], **rows} if is_added else rows
     return read(SampleTable, sections, where, error=UserError)
 

@@ -1,4 +1,4 @@
-"""A clip: all that a scene did in all frames of a script, for whoever writes it to a file.
+"""A clip: all that a scene did in all frames of a script, for the writers of files.
 
 Lengths are millimetres, axes those of the scene (x toward the subject's left, y up, z forward).
 """
@@ -40,7 +40,7 @@ class Surface:
     shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as at rest.
     matrices: what moves the whole of it in each frame, shape (N, 4, 4), float64; None: nothing.
     uv, face_uv: texture coordinates, shape (U, 2), and which of them each corner has, shape (F, 3).
-    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None where a texture tells.
+    colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None where a texture has them.
     shine: 0 dull, 1 wet.
     """
 
@@ -125,7 +125,7 @@ def record(
 ) -> Clip:
     """Play a script on its scene (built unless given) and keep all frames, or those of `span` [s].
 
-    Raises UserError where the scene has not what the script asks for.
+    Raises UserError where the scene lacks a control of the script.
     """
     scene = scene_of(script) if scene is None else scene
     begin, end = span or (0.0, script.duration)

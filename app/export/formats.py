@@ -39,7 +39,7 @@ OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # what such a
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked for beside the clip.
+    """Options of an export, beside the clip.
 
     refinement: the refined skin is to be written, and not the mesh that is simulated.
     overwrite: frames in a folder, and files beside the output, may be replaced.
@@ -111,7 +111,7 @@ def format_for(output: Path, name: str | None) -> Format:
             return each
     allowed = ", ".join(known)
     folders = " or ".join(f"--as {each.name}" for each in FORMATS if not each.suffixes)
-    wrong = f"what is '{suffix}'?" if suffix else "has no suffix."
+    wrong = f"unknown suffix '{suffix}'." if suffix else "has no suffix."
     raise UserError(f"{output}: {wrong} Allowed are {allowed}, and folders with {folders}")
 
 

@@ -23,12 +23,11 @@ COMPONENT_TYPES = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 512
 TYPES: dict[tuple[int, ...], str] = {
     (): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4",
 }  # fmt: skip
-ALIGNMENT = 4  # [bytes] of chunks, and of what is in them
-JPEG_QUALITY = 92  # chosen by eye: no blocks in skin, a sixth of the PNG
+ALIGNMENT = 4  # [bytes] of chunks, and of the arrays in them
 
 
 class Glb:
-    """What goes into one file, in the order in which it is added."""
+    """The content of one file, in the order in which it is added."""
 
     def __init__(self, times: npt.NDArray[np.float64]) -> None:
         """Times of the keyframes [s], shape (N,); between them values change evenly."""
@@ -52,7 +51,7 @@ class Glb:
     ) -> int:
         """Add an array whose rows are numbers, vectors or matrices (their columns first).
 
-        is_bounded: say what the least and greatest are, as positions and times must.
+        is_bounded: add the least and greatest values, which positions and times need.
         """
         accessor: dict[str, Any] = {
             "bufferView": self._view(np.ascontiguousarray(values).tobytes(), target),
@@ -71,7 +70,8 @@ class Glb:
         kind: "png" where every bit counts.
         """
         file = io.BytesIO()
-        PIL.Image.fromarray(image).save(file, kind, quality=JPEG_QUALITY, subsampling=0)
+        # Quality by eye: no blocks in skin, a sixth of the PNG.
+        PIL.Image.fromarray(image).save(file, kind, quality=92, subsampling=0)
         view = self._view(file.getvalue(), None)
         source = self.add("images", {"bufferView": view, "mimeType": f"image/{kind}"})
         return {"index": self.add("textures", {"source": source})}

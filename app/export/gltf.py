@@ -7,9 +7,9 @@ targets. Every frame of the clip is a keyframe.
                      ├─ mandible ── lower teeth, tongue, ...
                      └─ upper teeth, ...
 
-The skin hangs on both cranium and neck, which stays where it is. What the pose of the head does to
-it is taken out of its shapes, since that bone does it again. docs/export.md says what is in a file,
-and what other programs make of it.
+The skin hangs on cranium and neck; the neck does not move. The motion by the head's pose is taken
+out of the skin's shapes, since the bone of the head adds it again. docs/export.md describes the
+content of a file, and how other programs show it.
 """
 
 from __future__ import annotations
@@ -34,12 +34,10 @@ from .formats import Request
 from .glb import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, Glb
 from .morphs import TOLERANCE, Floats, decompose, follow
 
-LONGEST_SHORT = 65535  # vertices that 16 bits can number
 HEAD = "cranium"  # name of a bone
 NECK = "neck"  # name of a bone
 STILL = 1e-7  # [m, or of a quaternion] by which a node that does not move may be off
 # Roughness, chosen by eye; parts go from dull to wet by their shine.
-SKIN_ROUGHNESS = 0.55
 DULL = 0.75
 WET = 0.12
 
@@ -131,7 +129,7 @@ def _packed(clip: Clip, pieces: list[Piece]) -> bytes:
 
 
 def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats | None) -> int:
-    """Add a mesh whose vertices are told from `origin`; return its number.
+    """Add a mesh whose vertices are relative to `origin`; return its number.
 
     share: of each vertex, how far it goes with the head, shape (V,); None: there is no head.
     """
@@ -163,7 +161,8 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
         joints = np.column_stack([none, share > 0.0, none, none]).astype(np.uint8)
         attributes["JOINTS_0"] = of_vertices(joints)
         attributes["WEIGHTS_0"] = of_vertices(np.column_stack([1.0 - share, share, none, none]))
-    short = np.uint16 if len(vertices) <= LONGEST_SHORT else np.uint32
+    # 16 bits can number so many vertices.
+    short = np.uint16 if len(vertices) <= 65535 else np.uint32
     primitive: dict[str, Any] = {
         "attributes": attributes,
         "indices": glb.accessor(faces.astype(short).ravel(), ELEMENT_ARRAY_BUFFER),
@@ -181,8 +180,8 @@ def _add_mesh(glb: Glb, clip: Clip, piece: Piece, origin: Floats, share: Floats 
 
 
 def _add_material(glb: Glb, clip: Clip, surface: Surface) -> int:
-    """Add what a surface looks like; return its number."""
-    rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": SKIN_ROUGHNESS}
+    """Add the material of a surface; return its number."""
+    rough: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.55}  # by eye
     material: dict[str, Any] = {"name": surface.name, "pbrMetallicRoughness": rough}
     if surface.colours is not None:
         rough["roughnessFactor"] = DULL + surface.shine * (WET - DULL)
@@ -226,7 +225,7 @@ class Skeleton:
     """The nodes of the bones that something hangs on.
 
     root: number of the node that they hang on, None where there are none.
-    skin: number of the glTF skin of a face, None for what is none.
+    skin: number of the glTF skin of a face, None for a scene without a face.
     """
 
     def __init__(self, clip: Clip, used: set[str], glb: Glb) -> None:
@@ -251,7 +250,7 @@ class Skeleton:
         self.skin = glb.add("skins", joints)
 
     def pivot(self, bone: str | None) -> Floats:
-        """Where a bone's node stands at rest [mm], shape (3,); the origin unless told."""
+        """Where a bone's node stands at rest [mm], shape (3,); the origin for None."""
         return np.zeros(3) if bone is None else self._pivots.get(bone, np.zeros(3))
 
     def hang(self, node: int, bone: str) -> None:

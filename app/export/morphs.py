@@ -19,12 +19,7 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 TOLERANCE = 0.098  # [mm] off at most; what single precision adds stays below 0.1
-MOST_TARGETS = 250  # some readers count them in a byte
-ROUNDS = 8  # of weighing vertices: more save hardly a shape
-MOST_SAVED = 15  # shapes in one of them
-LEAST_WEIGHING = 0.03  # of a vertex in one round against the one that is farthest off
 NOTHING = 1e-6  # [mm] a target that moves no vertex so far is left out
-LEAST = 3e-7  # of a component against the largest; less is rounding
 
 
 @dataclass(frozen=True)
@@ -41,14 +36,15 @@ class Morphs:
     error: float
 
 
-def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = MOST_TARGETS) -> Morphs:
+def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = 250) -> Morphs:
     """The fewest targets found whose weighted sum is never farther off than `tolerance`.
 
     moved: of each vertex from rest in each frame, shape (N, V, 3), in the unit of `tolerance`.
-    Where `most` targets do not suffice, the error is larger.
+    Where `most` targets do not suffice, the error is larger. Some readers count them in a byte.
     """
     curves, lengths, shapes = np.linalg.svd(moved.reshape(len(moved), -1), full_matrices=False)
-    rank = int((lengths > max(LEAST * lengths.max(initial=0.0), NOTHING)).sum())
+    # A component below this share of the largest is rounding.
+    rank = int((lengths > max(3e-7 * lengths.max(initial=0.0), NOTHING)).sum())
     curves = curves[:, :rank]
     shapes = lengths[:rank, None] * shapes[:rank]
     limit = min(rank, most - 1)
@@ -56,7 +52,8 @@ def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = MOST_TARG
     found: list[Morphs] = []
     low = 0
     high = limit
-    for _ in range(ROUNDS):
+    # More rounds of weighing vertices save hardly a shape.
+    for _ in range(8):
         weighed = shapes * np.repeat(weighing, 3)
         mixing = np.linalg.eigh(weighed @ weighed.T)[1][:, ::-1][:, :limit]
         mixed_curves = curves @ mixing
@@ -68,9 +65,10 @@ def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = MOST_TARG
         found.append(_shifted(moved, mixed_curves[:, :high], mixed_shapes[:high]))
         fewer = max(high - 1, 0)
         left = _farthest(moved, mixed_curves[:, :fewer], mixed_shapes[:fewer])
-        weighing *= np.sqrt(np.maximum(left / max(left.max(), NOTHING), LEAST_WEIGHING))
+        # In each round a vertex counts at least 0.03 of the one that is farthest off.
+        weighing *= np.sqrt(np.maximum(left / max(left.max(), NOTHING), 0.03))
         weighing /= weighing.max()
-        low = max(high - MOST_SAVED, 0)
+        low = max(high - 15, 0)  # a round saves no more shapes
     return min(found, key=lambda each: (max(each.error, tolerance), len(each.targets)))
 
 

@@ -18,8 +18,6 @@ import PIL.Image
 from .clip import METRES, Clip, FrameSurface, Indices, frame_surfaces
 from .formats import FRAME, Request
 
-PC2_HEAD = "<12siiffi"  # signature, version, vertices, first frame, frames a sample, samples
-
 
 def write_obj(clip: Clip, folder: Path, request: Request) -> None:
     """Write an OBJ of each frame, in metres, and the skin's texture beside them.
@@ -44,7 +42,8 @@ def write_pc2(clip: Clip, part: Path, request: Request) -> None:
     vertices = len(points[0])
     with part.open("wb") as file:
         head = (b"POINTCACHE2\0", 1, vertices, 0.0, 1.0, clip.frame_count)
-        file.write(struct.pack(PC2_HEAD, *head))
+        # Signature, version, vertices, first frame, frames a sample, samples.
+        file.write(struct.pack("<12siiffi", *head))
         file.write(np.stack(points).astype("<f4").tobytes())
 
 

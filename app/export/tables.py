@@ -1,7 +1,7 @@
 """Numbers: a clip as numpy arrays [mm], or the shapes of ARKit as Live Link Face's CSV.
 
-Curves tell the face that is seen. Muscles, eyes and head follow late what they are asked, each in
-its own time, so that what was asked of them is written so much later.
+Curves describe the visible face. Muscles, eyes and head follow their controls late, each with its
+own delay, so the values of controls are written so much later.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .clip import Clip, Floats
 from .formats import Request
 
 DECIMALS = 6  # of numbers, whose zeros at the end are left out: three quarters of a table
-TIMECODE_RATE = 60  # Live Link Face counts so many frames a second, whatever the camera does
+TIMECODE_RATE = 60  # Live Link Face counts so many frames a second, at any rate of the camera
 OTHER_ORDER = {  # its columns are in ARKit's order but for these
     "jawLeft": "jawRight",
     "jawRight": "jawLeft",
@@ -45,7 +45,7 @@ ANGLES = {
 
 
 def write_npz(clip: Clip, part: Path, _: Request) -> None:
-    """Write what a clip holds; docs/export.md lists the names."""
+    """Write the arrays of a clip; docs/export.md lists their names."""
     arrays: dict[str, Any] = {"times": clip.times, "frames_per_second": clip.frames_per_second}
     for surface in clip.surfaces:
         is_skin = surface is clip.skin
@@ -91,7 +91,7 @@ def _timecode(time: float) -> str:
 
 
 def _as_seen(clip: Clip, curves: Mapping[str, Floats]) -> dict[str, Floats]:
-    """What was asked of the face, as late as it is seen there."""
+    """Values of controls, as late as the face shows them."""
     return {
         name: np.interp(clip.times - lead_of(name, LEAD), clip.times, values)
         for name, values in curves.items()

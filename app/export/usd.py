@@ -141,7 +141,7 @@ def _primvar(mesh: Any, name: str, kind: Any, interpolation: Any) -> Any:
 
 
 def _add_material(stage: Any, mesh: Any, surface: Surface, *, has_picture: bool) -> None:
-    """What the surface looks like: the picture, or the colours of its vertices."""
+    """Add the material of a surface: its picture, or the colours of its vertices."""
     path = mesh.GetPath().GetParentPath().AppendChild(f"{mesh.GetPrim().GetName()}_material")
     material = UsdShade.Material.Define(stage, path)
     shader = UsdShade.Shader.Define(stage, path.AppendChild("surface"))

@@ -20,7 +20,6 @@ from .formats import Request
 
 h5py = needed("h5py", "VTKHDF", "export")
 
-VERSION = (2, 0)
 OURS = np.array([0, 0, 1, 0])  # of vertices, lines, polygons, strips; polygons alone have cells
 
 
@@ -57,7 +56,7 @@ class _Steps:
         self._steps: dict[str, list[Any]] = defaultdict(list)
         self._meshes: dict[str, list[int]] = defaultdict(list)
         self._begins: dict[str, Any] = {}  # of the mesh that is shown now
-        root.attrs["Version"] = VERSION
+        root.attrs["Version"] = (2, 0)
         root.attrs["Type"] = np.bytes_("PolyData")
 
     def begin_mesh(self, frame: list[FrameSurface]) -> None:
@@ -83,7 +82,7 @@ class _Steps:
         self._meshes["Polygons/NumberOfConnectivityIds"].append(triangles.size)
 
     def add(self, time: float, points: Any, values: dict[str, Any]) -> None:
-        """Add where the vertices of a frame are, and what they have."""
+        """Add the positions of a frame's vertices, and their values."""
         begin = self._length("Points")
         places = {f"PointDataOffsets/{name}": begin for name in values}
         row = {"Values": time, "NumberOfParts": 1, "PointOffsets": begin, **places, **self._begins}
@@ -95,7 +94,7 @@ class _Steps:
         self._root["PointData/Normals"].attrs["Attribute"] = np.bytes_("Normals")
 
     def finish(self, surfaces: list[str]) -> None:
-        """Write what is known at the end."""
+        """Write the tables that are complete only at the end."""
         for name, numbers in self._meshes.items():
             self._root.create_dataset(name, data=numbers, dtype=np.int64)
         none = np.zeros(len(self._meshes["NumberOfPoints"]), np.int64)

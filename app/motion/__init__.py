@@ -1,4 +1,4 @@
-"""Scenes in motion: a script's frames one by one, whoever looks on; life is in life.py."""
+"""Scenes in motion: a script's frames one by one, for every output; idle life is in life.py."""
 
 from __future__ import annotations
 
@@ -49,16 +49,16 @@ def play(
 
     It begins in the script's first pose, as if that had been held for a while.
 
-    until: the last frame's time [s]; the script's end unless told. viewer: where somebody stands
-    [mm], shape (3,), at whom the face looks while what the script leaves alone lives; None: nothing
-    moves by itself. step: lets so many seconds pass; that of the scene unless told.
+    until: the last frame's time [s]; None: the script's end. viewer: the place [mm], shape (3,), of
+    somebody at whom the face looks, while controls that the script does not name live; None:
+    nothing moves by itself. step: lets so many seconds pass; None: the scene's own.
     """
     step = scene.step if step is None else step
     idle = None if viewer is None else Idle(scene)
     moved = frozenset[str]().union(*map(scene.moved_by, script.names))
 
     def pose(time: float) -> None:
-        """Ask for what the script and the life beneath it have at this time."""
+        """Set the values of the script and of the life beneath it at this time."""
         values = script.values(time, scene.limits)
         if idle is not None and viewer is not None:
             values = scene.limits.pose(idle.beneath(moved, viewer, time), over=values)
@@ -77,7 +77,7 @@ def play(
 
 
 def counted_frames(until: float, frames_per_second: float, *, progress: bool) -> Iterator[int]:
-    """The numbers of the frames up to a time [s], with a bar that tells how far they are."""
+    """The numbers of the frames up to a time [s], with a progress bar."""
     frames = range(round(until * frames_per_second) + 1)
     bar = tqdm(frames, unit="frame", disable=not progress or None, leave=False)
     with cleaned_up_if_stopped(bar.close):

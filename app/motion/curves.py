@@ -25,8 +25,6 @@ Floats = npt.NDArray[np.float64]
 
 ACTION_UNITS = "Action units"  # title of a layer
 ARKIT_SHAPES = "ARKit shapes"  # title of a layer
-SMALLNESS = 1e-3  # of values beside the fit: of all that fit alike, those in between are taken
-PARALLEL = 1e-9  # two controls do the same, but one more of it
 
 
 def solved(
@@ -37,12 +35,12 @@ def solved(
 ) -> dict[str, Floats]:
     """The values of a layer's controls that come nearest to these activations, by name.
 
-    layer: its title. activations: what each of the lowest controls comes to in N frames, shape
-    (N,), as `Controls.sums` and `Clip.activations` have it. controls: what was set to make them,
-    shape (N,) each; of this layer's controls that counts as it is, and only the rest is solved for.
+    layer: its title. activations: the sum of each of the lowest controls in N frames, shape (N,),
+    as in `Controls.sums` and `Clip.activations`. controls: the values that were set, shape (N,)
+    each; this layer's own count as they are, and only the rest is solved for.
 
-    A control that has sides (AU12) is told by these alone (AU12_left, AU12_right). Raises UserError
-    for a scene without muscles, or without the layer.
+    A control that has sides (AU12) is given by these alone (AU12_left, AU12_right). Raises
+    UserError for a scene without muscles, or without the layer.
     """
     names = sided(scene, layer)
     assert isinstance(scene, FaceScene)
@@ -75,7 +73,7 @@ def _known(
     count: int,
     highest: Floats,
 ) -> Floats:
-    """What the layer's own controls were set to, as it counts, shape (N, L)."""
+    """The set values of the layer's own controls, as they count, shape (N, L)."""
     set_to = {
         name: controls.get(name, np.zeros(count)) + controls.get(_without_side(name), 0.0)
         for name in names
@@ -88,12 +86,12 @@ def _known(
 
 
 def _without_side(name: str) -> str:
-    """AU12 of AU12_left; nothing of what has no side."""
+    """AU12 of AU12_left; "" for a name without a side."""
     return name.removesuffix(SIDES[0]).removesuffix(SIDES[1]) if name.endswith(SIDES) else ""
 
 
 def _sums(values: Floats, shares: Floats, floors: Floats) -> Floats:
-    """What values of the layer come to, shape (N, C), as sim/controls.py adds them up."""
+    """The sums of the layer's values, shape (N, C), added up as in sim/controls.py."""
     least = np.zeros((len(values), floors.shape[1]))
     for value, floor in zip(values.T, floors, strict=True):
         np.maximum(least, np.outer(value, floor), out=least)
@@ -106,7 +104,8 @@ def _fitted(shares: Floats, highest: Floats, frames: Floats) -> Floats:
     reach = np.array([(np.linalg.norm(shares[ray], axis=1) * highest[ray]).sum() for ray in rays])
     directions = np.stack([shares[ray].sum(axis=0) for ray in rays])
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    matrix = np.vstack([directions.T, SMALLNESS * np.eye(len(rays))])
+    # Values count a little beside the fit: of all that fit alike, those in between are taken.
+    matrix = np.vstack([directions.T, 1e-3 * np.eye(len(rays))])
     values = np.zeros((len(frames), len(shares)))
     for row, frame in zip(values, frames, strict=True):
         wanted = np.concatenate([frame, np.zeros(len(rays))])
@@ -126,7 +125,8 @@ def _rays(shares: Floats) -> list[list[int]]:
     for control in np.argsort(strengths, kind="stable"):
         for ray in rays:
             cosine = shares[control] @ shares[ray[0]] / (strengths[control] * strengths[ray[0]])
-            if cosine > 1.0 - PARALLEL:
+            # Two controls do the same, but one more of it.
+            if cosine > 1.0 - 1e-9:
                 ray.append(int(control))
                 break
         else:

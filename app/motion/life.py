@@ -1,14 +1,13 @@
-"""What a face does while nobody moves it: it blinks, glances about, and its head is never still.
+"""Idle life of a face that nobody moves: it blinks, glances about, and its head is never still.
 
-`Idle` lays that beneath what is asked of a scene, and looks at the viewer: the eyes turn first,
-each on its own, so that they meet there; beyond some degrees the head turns, too. Who stands
-further aside is not followed. Controls that somebody else moves are left to him, together with
-those that belong to them: who sets one way of the gaze has both eyes, who lowers a lid has both
-lids.
+`Idle` lays this life beneath the values of a scene, and looks at the viewer: the eyes turn first,
+each on its own, so that they meet there; beyond some degrees the head turns, too. A viewer further
+aside is not followed. Idle life leaves controls alone that a script or a user moves, together with
+related ones: a set gaze in one direction keeps both eyes, a lowered lid keeps both lids.
 
-Plain functions of time: the same seed and the same time give the same values, in whatever order
-they are asked for, and no clock is read. Time is cut into spans, in each of which one blink and one
-glance begin at a moment that is left to chance; what is slow is a sum of sines.
+Plain functions of time: the same seed and the same time give the same values, in any order of
+calls, and no clock is read. Time is cut into spans. In each span one blink and one glance begin at
+a random moment; slow motion is a sum of sines.
 
 Sources (a head takes part in shifts of gaze of more than some 15 or 20 degrees: Freedman and Sparks
 1997; Stahl 1999), for people at rest who look at somebody:
@@ -56,7 +55,7 @@ HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, which never meet
 
 LID = "orbicularis_oculi_palpebral_upper"
 SIDES = "left", "right"
-BLINKS, GLANCES, PLACES, STRAYS = range(4)  # what is left to chance
+BLINKS, GLANCES, PLACES, STRAYS = range(4)  # separate streams of random numbers
 
 
 class Life:
@@ -67,7 +66,7 @@ class Life:
         self._seed = seed
 
     def parts(self, time: float) -> dict[str, Values]:
-        """What to add to each control at `time` [s] from the start; what is not named is 0.
+        """Amounts to add to controls at `time` [s] from the start; 0 for controls not named.
 
         In parts, each of which is moved together: lids, eyes, head.
         """

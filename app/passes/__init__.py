@@ -1,1 +1,1 @@
-"""What a picture shows, as numbers: depth, normals, classes, landmarks, the camera."""
+"""The content of a picture as numbers: depth, normals, classes, landmarks, the camera."""

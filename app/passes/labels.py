@@ -1,13 +1,13 @@
-"""All that is told of one picture beside its pixels, and the files that lie beside it, by passes.
+"""Labels and passes of one picture, and the files that hold them beside it.
 
 frame_00000.exr         depth, normal, triangle, splits: 32 bits a channel, lossless
 frame_00000_seg.png     segmentation: 8 bits, one class number a pixel
 frame_00000_ldmks.txt   landmarks: x and y of each in a row [pixels]
 frame_00000.json        camera, head, gaze, landmarks, controls: plain numbers
 
-`docs/passes.md` tells of the keys, what a visible landmark is, and of axes and angles: those of the
-camera are OpenCV's, those of the head its own. A head's controls turn it about axes that landmarks
-give, some 2 degrees off these.
+`docs/passes.md` describes the keys, visible landmarks, axes and angles. The camera's axes are
+OpenCV's, the head's are its own. A head's controls turn it about axes that landmarks give, some 2
+degrees off these.
 """
 
 from __future__ import annotations
@@ -33,8 +33,7 @@ from .passes import NAMES, OF_FACES, Passes
 Floats = npt.NDArray[np.float64]
 SIDES = ("right", "left")  # the subject's, in the order of landmarks
 FORWARD = np.array([0.0, 0.0, 1.0])  # of a head and of an eye at rest
-_FACING = np.diag([1.0, -1.0, -1.0])  # the axes of a head that faces the camera, in the camera's
-DIGITS = 8  # behind the point: whoever projects points anew is off by less than 1e-4 pixels
+DIGITS = 8  # behind the point: points projected anew are off by less than 1e-4 pixels
 COUNT = 70
 # [mm] along the camera's axis: the refined skin may pass a landmark by and be steep within a pixel,
 # and over a pupil a lid of a millimetre may close.
@@ -48,10 +47,10 @@ def labels_of(
     size: tuple[int, int],
     depth: npt.NDArray[np.float32] | None = None,
 ) -> dict[str, Any]:
-    """What is known of the picture that `camera` takes of `scene` now, `size` pixels large.
+    """The labels of the picture that `camera` takes of `scene` now, `size` pixels large.
 
-    depth: its depth map, for the landmarks; None leaves them out. `docs/passes.md` tells of the
-    keys. A scene without a face has its camera and controls alone.
+    depth: its depth map, for the landmarks; None leaves them out. `docs/passes.md` describes
+    the keys. A scene without a face has its camera and controls alone.
     """
     placed = CameraLabels.of(camera, size)
     labels: dict[str, Any] = {
@@ -69,7 +68,8 @@ def labels_of(
     cranium = scene.bone_transforms()["cranium"]
     rotation = placed.rotation @ cranium[:3, :3]
     to_head = cranium[:3, :3].T
-    turned = _FACING @ rotation
+    # Against a head that faces the camera: its y and z are opposite to the camera's.
+    turned = np.diag([1.0, -1.0, -1.0]) @ rotation
     turns = {
         "yaw": math.atan2(turned[0, 2], turned[2, 2]),
         "pitch": math.asin(min(max(turned[1, 2], -1.0), 1.0)),
@@ -227,7 +227,7 @@ class Labelled:
 
 
 def save_labelled(picture: Path, image: Image, known: Labelled | None) -> None:
-    """Write a picture and what is known of it, all or nothing; UserError where that cannot be."""
+    """Write a picture, its labels and passes, all or nothing; UserError where that fails."""
     with written_atomically(picture) as part:
         PIL.Image.fromarray(image).save(part, format="PNG")
         if known is not None:
@@ -249,7 +249,7 @@ def check_wanted(wanted: Sequence[str], scene: str) -> None:
 
 
 def labelled(passes: Passes, camera: render.OrbitCamera, wanted: Sequence[str]) -> Labelled:
-    """What is known of the picture that the pipeline of `passes` drew last, by `camera`."""
+    """Labels and passes of the picture that the pipeline of `passes` drew last, by `camera`."""
     has_landmarks = "landmarks" in wanted
     images = passes.draw(camera, {*wanted, "depth"} if has_landmarks else wanted)
     depth = images["depth"] if has_landmarks else None

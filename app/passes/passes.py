@@ -1,10 +1,10 @@
-"""The passes of a picture: arrays that say of each pixel what it shows.
+"""The passes of a picture: arrays that describe each pixel.
 
     depth         how far away along the camera's axis [mm], 0 = nothing        (H, W) float32
     normal        unit normal, x right, y down, z away from the camera          (H, W, 3) float32
     triangle      of the simulated mesh, -1 = nothing or an eye, a tooth, ...   (H, W) int32
     splits        how many splits the edges of that triangle have               (H, W) uint8
-    segmentation  what it is, by the numbers of FaceSynthetics (assets.Segment) (H, W) uint8
+    segmentation  class, by the numbers of FaceSynthetics (assets.Segment)      (H, W) uint8
 
 The top row comes first. Where nothing is drawn all are 0, but `triangle` is -1.
 Source of the numbers: Wood et al. 2021, "Fake it till you make it".
@@ -38,7 +38,7 @@ class Passes:
         self.scene = scene = pipeline.scene
         self._pipeline = pipeline
         self.drawn = drawn
-        # Thin hairs are what is behind them, as in pictures that people label.
+        # Thin hairs get the class of the surface behind them, as in pictures that people label.
         self._parts = [part for part in scene.parts if not part.strand_radius]
         self._part_classes = np.concatenate([np.zeros(0, np.uint8), *map(_classes, self._parts)])
 

@@ -17,8 +17,6 @@ from risorius import refine
 
 from ..errors import UserError, line_for
 
-OWN_PACKAGE = "risorius"
-
 
 class PlugIn(NamedTuple):
     """A criterion, scheme or refiner that is not of this application."""
@@ -65,7 +63,7 @@ def plug_ins_of(refiner: str, options: Mapping[str, Any]) -> tuple[PlugIn, ...]:
         else:
             factory = type(one)
             plug_in = PlugIn(kind, factory.__name__, factory)
-        if factory is not None and _package(plug_in.module) != OWN_PACKAGE:
+        if factory is not None and _package(plug_in.module) != "risorius":
             found.append(plug_in)
     return tuple(found)
 

@@ -1,9 +1,9 @@
 """Animation scripts: keyframes of controls over time, in a TOML file.
 
 A script is a list of poses and, beside them, tracks that are added to these: of single controls,
-for a blink, a glance, or all of what was recorded; `docs/scripts.md` is the page on the file.
+for a blink, a glance, or a whole recording; `docs/scripts.md` is the page on the file.
 Before its first key a channel keeps that key's value, after its last key the last one's.
-Here is what a script is: poses and tracks of keys, and their values at any time.
+This module holds poses, tracks of keys, and their values at any time.
 """
 
 from __future__ import annotations
@@ -230,7 +230,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Pose(Record):
-    """A whole pose at `time` [s]: what it does not name is 0; approached by `easing`."""
+    """A whole pose at `time` [s], approached by `easing`; controls that it does not name are 0."""
 
     time: Moment
     values: Annotated[Mapping[str, Number], called(REST)] = field(default_factory=dict)
@@ -255,7 +255,7 @@ class Script:
     source: str = field(compare=False)  # the file it came from, for error texts
     scene: str = "face"
     camera: str | None = None
-    sound: Path | None = None  # the file of what is heard with it, its whole path
+    sound: Path | None = None  # the whole path of its sound file
     poses: tuple[Pose, ...] = ()  # in the order of time
     tracks: dict[str, Channel] = field(default_factory=dict)
     preface: str = ""  # the lines of comment with which the file begins
@@ -286,7 +286,7 @@ class Script:
         return tuple((self.names.index(name), track) for name, track in self.tracks.items())
 
     def posed(self, time: float) -> dict[str, float]:
-        """What the poses alone make of each control that they name, at `time` [s]."""
+        """The value by poses alone of each control that they name, at `time` [s]."""
         return dict(zip(self.posed_names, self._posed(time).tolist(), strict=True))
 
     def _posed(self, time: float) -> Floats:
@@ -326,10 +326,10 @@ class Script:
         return sums
 
     def check(self, limits: Limits) -> None:
-        """Raise UserError if the script names what the scene does not have, or asks too much.
+        """Raise UserError for controls that the scene lacks, and for values beyond any effect.
 
-        What tracks add to poses may be negative, and is cut off with them; no single key may be
-        further from 0 than can have an effect.
+        Values of tracks may be negative, since they are cut off only after they are added to poses;
+        but no single key may be further from 0 than can have an effect.
         """
         for name in (*self.posed_names, *self.tracks):
             if name not in limits:
@@ -368,7 +368,7 @@ def _between(times: Sequence[float], time: float) -> tuple[int, int, float]:
 
 
 def within(values: npt.ArrayLike, amount: float, low: float, high: float) -> Floats:
-    """Values higher by an amount, within limits; what is beyond these already may stay there."""
+    """Values higher by an amount, within limits; values beyond these already may stay there."""
     now = np.asarray(values, np.float64)
     higher = np.clip(now + amount, np.minimum(now, low), np.maximum(now, high))
     return np.round(higher, DECIMALS)

@@ -139,7 +139,7 @@ def lasting(script: Script, seconds: float) -> Script:
 
 
 def differing(script: Script, time: float, values: ControlValues) -> list[str]:
-    """The controls whose values are not what the script makes of them at `time` [s]."""
+    """The controls whose values differ from the script's at `time` [s]."""
     is_away = np.abs(values.numbers - script.values(time, values.limits).numbers) > SAME
     return [name for name, differs in zip(values, is_away.tolist(), strict=True) if differs]
 
@@ -147,9 +147,9 @@ def differing(script: Script, time: float, values: ControlValues) -> list[str]:
 def keyed(script: Script, time: float, values: ControlValues) -> Script:
     """The script with a key that shows these values at `time` [s].
 
-    The key is a pose, which holds what the tracks do not add; where a pose cannot (a track closes
-    the eye, and it shall be open) the track gets a key, too. In a script of tracks alone, as
-    recordings are, those get keys that differ; all of them where nothing does.
+    The key is a pose: the values less those of the tracks. Where a pose cannot reach a value (a
+    track closes the eye, and it shall be open) the track gets a key, too. In a script of tracks
+    alone, such as a recording, tracks that differ get keys; all of them where none differs.
     """
     time = rounded(time)
     plain = script.posed(time)
@@ -221,7 +221,7 @@ def _picked(columns: Columns, which: npt.NDArray[Any]) -> Columns:
 
 
 def _joined(there: Columns, arriving: Columns) -> Columns:
-    """Both in the order of time; what arrives takes the place of what is there."""
+    """Both in the order of time; an arriving key replaces one at the same time."""
     left = _picked(there, ~among(there[0], arriving[0], SAME))
     if not len(left[0]):
         return arriving

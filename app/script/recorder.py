@@ -18,7 +18,6 @@ from .keyframes import FRAME, differing
 from .thinning import thinned
 
 RELEASE = 0.1  # [s] at the recording's end in which a control goes back to where the script has it
-SAMPLES = 64  # of an eased way between two keys that is cut: straight lines are off by 0.0002
 
 
 class Recorder:
@@ -30,12 +29,12 @@ class Recorder:
     def __init__(
         self, played: Script, start: float, held: Mapping[str, float] | None = None
     ) -> None:
-        """played: what the controls do where nobody moves them. start: [s]. held: from before."""
+        """played: moves the controls that the user does not. start: [s]. held: values before it."""
         self._played = played
         self.held = dict(held or {})
         self._kept = dict[str, float]()  # values that are recorded of those held
         self.start = self.time = rounded(start)
-        # Of each control that has moved: times [s] and what its track has, from the last key on.
+        # Of each control that has moved: times [s] and values of its track, from the last key on.
         self.samples: dict[str, tuple[array[float], array[float]]] = {}
         thinned([0.0, 1.0], [0.0, 1.0])  # if this must be compiled, then before anything moves
 
@@ -48,7 +47,10 @@ class Recorder:
         at_first = self._played.posed(before)
         for name in differing(self._played, time, values):
             if name not in self.samples:
-                first = self._told(name, before) if before else values[name] - at_first.get(name, 0)
+                if before:
+                    first = self._track_value(name, before)
+                else:
+                    first = values[name] - at_first.get(name, 0.0)
                 self.samples[name] = array("d", [before]), array("d", [first])
         for name, (times, track) in self.samples.items():
             value = values[name] - posed.get(name, 0.0)  # a track adds to the poses
@@ -62,11 +64,11 @@ class Recorder:
 
     @property
     def missed(self) -> dict[str, float]:
-        """What is held and was moved since the last time that was recorded."""
+        """The held values that changed since the last recorded time."""
         return {name: each for name, each in self.held.items() if self._kept.get(name) != each}
 
     def script(self) -> Script | None:
-        """The script with what was recorded so far, or None where nothing was."""
+        """The script with the recording so far, or None where nothing was recorded."""
         if not self.samples:
             return None
         tracks = {
@@ -76,13 +78,13 @@ class Recorder:
         end = max(self._played.duration, rounded(self.time))
         return replace(self._played, duration=end, tracks={**self._played.tracks, **tracks})
 
-    def _told(self, name: str, time: float) -> float:
-        """What the script's own track of a control has, 0 where it has none."""
+    def _track_value(self, name: str, time: float) -> float:
+        """The value of the script's own track of a control, 0 where it has none."""
         track = self._played.tracks.get(name)
         return track.value(time) if track is not None else 0.0
 
     def _joined(self, name: str, taken: Channel) -> Channel:
-        """The script's track with what was taken of it, from which it goes back at its end."""
+        """The script's track with the recorded part in it, from whose end it returns to its own."""
         old = self._played.tracks.get(name, Channel([], []))
         start = rounded(taken.times[0])
         end = rounded(self.time)
@@ -94,7 +96,7 @@ class Recorder:
             free = rounded(max(end - RELEASE, 0.5 * (start + end)))
             keys = [key for key in keys if key.time < free]
             keys.append(Key(free, taken.value(free), "linear"))
-            keys.append(Key(end, self._told(name, end), "linear"))
+            keys.append(Key(end, self._track_value(name, end), "linear"))
         if start:
             keys[:1] = _along(old, head[-1].time if head else start, start)
         if tail and len(tail) < len(old):
@@ -109,6 +111,7 @@ def _along(track: Channel, first: float, last: float) -> list[Key]:
     end = Key(last, track.value(last) if len(track) else 0.0, easing)
     if easing in ("linear", "hold") or {first, last} <= set(track.times.tolist()):
         return [end]  # a part of such a way is eased as all of it
-    times = np.linspace(first, last, SAMPLES + 1)
+    # Straight lines between so many samples of an eased way are off by 0.0002.
+    times = np.linspace(first, last, 64 + 1)
     along = thinned(times, [track.value(time) for time in times.tolist()])
     return [*along.keys[1:-1], replace(end, easing="linear")]

@@ -1,6 +1,6 @@
 """A script file -> a Script, or the file and the line or key that is wrong; and back into a file.
 
-What is written reads back as the same script. Tracks of a few keys are written as tables, which
+A written script reads back as the same. Tracks of a few keys are written as tables, which
 explain themselves, those of more keys as lines, which are short and quickly read. A pose by itself
 is a script with one [[pose]] at time 0.
 """
@@ -41,8 +41,6 @@ from . import (
     Script,
     rounded,
 )
-
-SOON_READ = 2**20  # [bytes]; a longer script is said to be read
 
 
 def _channel(entries: Any) -> Channel:
@@ -103,7 +101,7 @@ def _poses(poses: list[Pose]) -> tuple[Pose, ...]:
 
 @dataclass(frozen=True)
 class _File(Record):
-    """What a script file may say."""
+    """The keys of a script file."""
 
     title: str | None = None
     scene: str = "face"
@@ -117,7 +115,8 @@ class _File(Record):
 def load_script(path: Path) -> Script:
     """Read a script file. Raises UserError with the file and the line or key that is wrong."""
     text = read_text(path, what="script", longest=LONGEST_FILE)
-    if len(text) > SOON_READ and sys.stderr.isatty():
+    # A longer script takes a while to read, so a line says so.
+    if len(text) > 2**20 and sys.stderr.isatty():
         click.echo(f"... reading {in_one_line(path)}, {len(text) >> 20} MB", err=True)
     return parse_script(text, source=str(path))
 
@@ -170,7 +169,6 @@ def preface_of(text: str) -> str:
 
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-MOST_TABLES = 24  # keys of a track that are written as tables; those of more as lines
 
 
 def save_script(target: Path, script: Script) -> None:
@@ -185,7 +183,7 @@ def save_script(target: Path, script: Script) -> None:
 
 
 def script_text(script: Script, folder: Path | None = None) -> str:
-    """The TOML text of a script; folder: where it will be, for what it names beside it.
+    """The TOML text of a script; folder: of the file, for paths relative to it.
 
     Raises UserError for a sound whose name is no UTF-8, as TOML is.
     """
@@ -212,7 +210,7 @@ def script_text(script: Script, folder: Path | None = None) -> str:
 
 
 def pose_script(values: Mapping[str, float], *, title: str, scene: str) -> Script:
-    """A script that is nothing but one pose; what is 0 is left out."""
+    """A script of one pose alone; controls at 0 are left out."""
     pose = Pose(0.0, {name: rounded(value) for name, value in values.items() if rounded(value)})
     return Script(title, POSE_SECONDS, source=title, scene=scene, poses=(pose,))
 
@@ -248,7 +246,8 @@ def _pose(pose: Pose) -> str:
 
 
 def _track(name: str, channel: Channel) -> str:
-    if len(channel) > MOST_TABLES:
+    # Tables of more keys would be too long to read.
+    if len(channel) > 24:
         names = ["", *(f" {easing}" for easing in EASING_NAMES[1:])]  # linear is not said
         parts = (each.tolist() for each in (channel.times, channel.values, channel.easings))
         keys = "\n".join(f"{t!r} {v!r}{names[e]}" for t, v, e in zip(*parts, strict=True))

@@ -11,7 +11,7 @@ from risorius.jit import njit
 
 from . import DECIMALS, Channel, Floats
 
-TOLERANCE = 2e-3  # of a value: what a straight line between keys may be off; nobody sees it
+TOLERANCE = 2e-3  # of a value: the largest error of a line between keys; it is invisible
 
 
 def thinned(times: npt.ArrayLike, values: npt.ArrayLike, tolerance: float = TOLERANCE) -> Channel:

@@ -40,7 +40,6 @@ class Sound:
 
 
 BLOCK = 512  # samples of which the lowest and the highest are known
-LEAST = 4  # blocks of a stretch, so that its edges are right; of shorter ones samples are read
 
 
 class Peaks:
@@ -63,7 +62,8 @@ class Peaks:
         seen, too. 0 where there is no sound. start: not below 0.
         """
         edges = np.linspace(start, end, count + 1) * self._rate
-        length = BLOCK if edges[-1] - edges[0] >= count * LEAST * BLOCK else 1
+        # Stretches of four blocks and more have right edges; of shorter ones samples are read.
+        length = BLOCK if edges[-1] - edges[0] >= count * 4 * BLOCK else 1
         low, high = self._levels[length]
         places = np.floor(edges / length).astype(np.int64)
         begins = places[:-1][places[:-1] < len(low)]
@@ -143,7 +143,7 @@ def _samples(wav: bytes) -> npt.NDArray[np.int16]:
 
 
 def with_sound(script: Script, file: Path | None) -> Script:
-    """The script with this sound file beside it; None leaves what it has. UserError for no file."""
+    """The script with this sound file beside it; None keeps its own. UserError for no file."""
     if file is None:
         return script
     load_sound(file)

@@ -3,8 +3,8 @@
 Through miniaudio: MIT, wheels of half a megabyte for Linux, macOS and Windows, for each Python that
 we support, with nothing to install beside them (sounddevice needs PortAudio on Linux, pygame and
 pyglet bring windows of their own, soundcard knows PulseAudio alone there). It asks for samples when
-the device needs them. So what was asked for tells the time of the device's own clock, which the
-picture can follow, and going to another place is to answer with other samples.
+the device needs them. So the requested samples count the time of the device's own clock, which the
+picture can follow, and a jump to another place is an answer with other samples.
 """
 
 from __future__ import annotations
@@ -25,12 +25,11 @@ from .decoding import Sound
 
 try:
     import miniaudio
-except ImportError:  # no wheel for this machine; whatever else there is works without
+except ImportError:  # no wheel for this machine; everything else works without
     miniaudio = None
 
 PERIOD = 0.04  # [s] of samples that are asked for at once
-STUCK = 0.5  # [s] without a request, after which a device is taken for lost
-PERIODS = 3  # that the device holds: what it is given now is heard after the others
+PERIODS = 3  # that the device holds: new samples are heard after these
 Samples = npt.NDArray[np.int16]
 
 
@@ -40,7 +39,7 @@ class NoDeviceError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """What is to be heard: from a time of the sound [s] on, so fast, to another time [s]."""
+    """A part to play: from a time of the sound [s] on, at a speed, to another time [s]."""
 
     start: float
     speed: float
@@ -52,7 +51,7 @@ class Player:
     """Plays one sound on the device that the system prefers; NoDeviceError where there is none."""
 
     def __init__(self, sound: Sound, clock: Callable[[], float] = time.perf_counter) -> None:
-        """clock: tells seconds, as the device counts them too, if not just as many."""
+        """clock: counts seconds; the device's own clock may run a little faster or slower."""
         self._sound = sound
         self._clock = clock
         self._device = open_device(sound.rate, sound.samples.shape[1])
@@ -81,7 +80,8 @@ class Player:
         """Whether the device asks for nothing any more, as one that was unplugged."""
         part = self._part
         when = self._asked[0]
-        return part is not None and self._clock() - max(when, part.since) > STUCK
+        # A device that asks for nothing for so long [s] is taken for lost.
+        return part is not None and self._clock() - max(when, part.since) > 0.5
 
     @property
     def is_heard(self) -> bool:
@@ -90,7 +90,7 @@ class Player:
         return part is not None and self.position < part.end and not self.is_stuck
 
     def play(self, start: float, speed: float = 1.0, seconds: float = math.inf) -> None:
-        """Play from a time of the sound [s] on, in place of what is played.
+        """Play from a time of the sound [s] on, in place of the part that plays now.
 
         speed: other than 1 it is higher or lower, as a tape would be. seconds: for so long at most.
         """
@@ -165,6 +165,6 @@ def backends() -> list[Any]:
     kinds = miniaudio.Backend
     unwanted = {kinds.NULL, kinds.CUSTOM, kinds.JACK}  # a server that is rarely the only way
     if sys.platform == "linux" and not os.path.exists("/dev/snd"):
-        unwanted.add(kinds.ALSA)  # like JACK it would complain at length of what it does not find
+        unwanted.add(kinds.ALSA)  # like JACK it would complain at length of missing devices
     found = miniaudio.get_enabled_backends() - unwanted
     return sorted(found, key=lambda backend: int(backend.value))

@@ -30,9 +30,9 @@ list(run_all(working.write_slowly, [folder / "a", folder / "b"]))
 
 def run(work: Callable[..., object], *arguments: Any, jobs: int = 1, **options: Any) -> list[Any]:
     """What a piece of work hands over."""
-    told = list[Any]()
-    WorkerPool(jobs).run(work, *arguments, tell=told.append, **options)
-    return told
+    messages = list[Any]()
+    WorkerPool(jobs).run(work, *arguments, on_message=messages.append, **options)
+    return messages
 
 
 def wait_until(is_so: Callable[[], bool]) -> None:
@@ -115,8 +115,8 @@ def test_libraries_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LP_NUM_THREADS", "7")
     assert share_of_cores() == 7
     assert run(working.library_threads, jobs=2) == ["3"]
-    for told, share in (("0", 1), ("many", len(os.sched_getaffinity(0)))):
-        monkeypatch.setenv("LP_NUM_THREADS", told)
+    for limit, share in (("0", 1), ("many", len(os.sched_getaffinity(0)))):
+        monkeypatch.setenv("LP_NUM_THREADS", limit)
         assert share_of_cores() == share
 
 

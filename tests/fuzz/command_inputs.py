@@ -73,7 +73,7 @@ REFUSED = {
     "capture --set joy=2 -o x.png": "must be from 0 to 1",
     "capture --set Joy=1 -o x.png": "unknown name 'Joy'; did you mean joy",
     # Outputs.
-    "capture good.toml -o x.avi": "what is '.avi'",
+    "capture good.toml -o x.avi": "unknown suffix '.avi'",
     "capture good.toml -o good.toml": "is read and would be written",
     "capture good.toml -o full": "is there and not empty",
     "capture good.toml -o folder.png": "is a folder",
