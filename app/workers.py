@@ -44,7 +44,7 @@ class Kind(Enum):
 
 
 class DiedError(Exception):
-    """The process died; the text says of what."""
+    """The process died; the text names the cause."""
 
 
 class Worker:
@@ -125,7 +125,7 @@ def serve() -> None:
     waiting: queue.Queue[bytes] = queue.Queue(4)  # messages that nobody has taken
 
     def hand_over() -> None:
-        """Write what waits while the next is made; where nobody reads, the process is over."""
+        """Write waiting messages while the next is made; where nobody reads, end the process."""
         try:
             while content := waiting.get():
                 answers.write(content)

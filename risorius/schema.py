@@ -1,4 +1,4 @@
-"""Tables of files, read into typed records: the types of their fields say what a file may hold.
+"""Tables of files, read into typed records: the types of fields are the rules for a file.
 
 A record is a frozen dataclass that is also a `Record`; its fields are the keys of a table. pydantic
 checks; an error is reported in one line:
@@ -133,7 +133,7 @@ class OneOf:
 
 @dataclass(frozen=True)
 class MadeFrom:
-    """Of any type: made by a function, which may raise ValueError, from what files have for it."""
+    """Of any type: made from the value in a file by a function, which may raise ValueError."""
 
     table: Any
     make: Callable[[Any], Any]
@@ -207,7 +207,7 @@ def read(
 def read_what_fits(kind: type[Read], document: Any) -> tuple[Read, list[str]]:
     """A record of those entries of a table that are allowed, and a line for each that is not.
 
-    For settings: what another version of the program wrote, or a hand, must not stop this one.
+    For settings: a file by another version of the program, or by hand, must not stop this one.
     Every field has a default; an entry is a key of the table, or of a table within it.
     """
     found: list[str] = []
@@ -256,7 +256,7 @@ def _parsed(loads: Callable[[Any], Any], text: str | bytes, language: str) -> An
 
 
 def _keys(record: type[Any]) -> tuple[str, ...]:
-    """What files call the fields of a record."""
+    """The names of a record's fields in files."""
     hints = get_type_hints(record, include_extras=True)
     names = []
     for each in fields(record):

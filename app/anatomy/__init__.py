@@ -118,7 +118,7 @@ class Anatomy:
         return self._muscles
 
     def _soft(self, scene: FaceScene, view: AnatomyView) -> list[Any]:
-        """What lines the mouth; where there are bones alone, only on the side that is whole."""
+        """The parts that line the mouth; with bones alone, only those on the side of whole skin."""
         if "muscles" not in view.structures:
             return self._whole(scene, view, SOFT)
         return [part for part in scene.parts if part.name.startswith(SOFT)]

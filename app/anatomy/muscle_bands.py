@@ -68,7 +68,7 @@ class Muscles:
         return made
 
     def _build(self, scene: Any) -> None:
-        """What stays as it is: which bands there are, how long at rest, their faces."""
+        """Set up everything constant: the bands, their lengths at rest, their faces."""
         simulation = scene.simulation.clone()
         simulation.reset()
         self.names: list[tuple[str, int]] = []  # of linear muscles, and the number of a fibre
@@ -209,7 +209,7 @@ class _Skin:
         """How far outside points (..., 3) are, which way is out, and how deep the bone is there."""
         away, near = self.tree.query(points, k=NEAR)
         normals = self.normals[near]
-        # What turns away, as the inner side of lips, lids and nostrils does, is not meant.
+        # Skin that turns away, such as the inner side of lips, lids and nostrils, is left out.
         out = (points - self._middle) * (1.0, 0.25, 1.0)
         is_faced = np.einsum("...kc,...c->...k", normals, out) > 0.0
         reach = 0.35 * away.max(axis=-1, keepdims=True) ** 2

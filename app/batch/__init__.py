@@ -1,1 +1,1 @@
-"""Many commands, done one beside the other: a list of lines, its journal, what became of them."""
+"""Many commands, done side by side: a list of lines, its journal, their results."""

@@ -40,7 +40,7 @@ class Job:
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
-    """The numbers and texts of lines that hold a command; UserError for what cannot be read."""
+    """The numbers and texts of lines that hold a command; UserError for an unreadable file."""
     text = read_text(path, what="list", longest=64 << 20)  # 64 MiB
     for number, line in enumerate(text.splitlines(), 1):
         stripped = line.strip()

@@ -1,4 +1,4 @@
-"""The lines that are to be done, and what became of them: in words, and as a file."""
+"""The lines of a list, done; and their results, in words and as a file."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SKIPPED = "skipped"
 
 @dataclass(frozen=True)
 class Result:
-    """What became of a line; `error` says in one line why it failed, and is empty otherwise."""
+    """The result of a line; `error` says in one line why it failed, and is empty otherwise."""
 
     job: Job
     status: str
@@ -40,7 +40,7 @@ class Result:
 def run_lines(
     jobs: Sequence[Job], *, processes: int, scheduler: str | None, resume: bool
 ) -> Iterator[Result]:
-    """Do the lines, and yield what became of each as it ends; with `resume` not those done."""
+    """Do the lines, and yield the result of each as it ends; with `resume` skip those done."""
     done = {job for job in jobs if resume and job.is_done()}
     waiting = [job for job in jobs if job not in done]
     yield from (Result(job, SKIPPED) for job in done)

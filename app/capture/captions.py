@@ -45,7 +45,7 @@ def plate(text: str, size: float) -> Image:
 
 @functools.lru_cache(maxsize=8)
 def colour_bar(size: float) -> Image:
-    """What colours of splits stand for: an upright bar, its numbers and its title, on a plate."""
+    """A legend of the colours of splits: an upright bar, its numbers and its title, on a plate."""
     small = font(0.82 * size)
     count = len(render.SPLIT_PALETTE)
     pad = round(0.65 * size)
@@ -70,7 +70,7 @@ def colour_bar(size: float) -> Image:
 
 
 def _page(width: float, height: float, size: float) -> tuple[PIL.Image.Image, ImageDraw.ImageDraw]:
-    """A dark plate with round corners, and what draws on it."""
+    """A dark plate with round corners, and an object that draws on it."""
     page = PIL.Image.new("RGBA", (math.ceil(width), math.ceil(height)), (*SHADE, 0))
     draw = ImageDraw.Draw(page)
     corners = (0, 0, page.width - 1, page.height - 1)

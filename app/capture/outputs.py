@@ -184,7 +184,7 @@ class Encoder:
 FRAME_NAME = re.compile(rf"frame_\d{{5,}}(\.png|{'|'.join(map(re.escape, ENDS))})")
 
 
-FrameSink = Callable[..., None]  # takes pictures one after the other, and what lies beside each
+FrameSink = Callable[..., None]  # takes pictures one by one, each with its labels and passes
 
 
 @contextlib.contextmanager
@@ -244,7 +244,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     ):
 
         def add(image: Image, beside: Labelled | None = None) -> None:
-            """Have the next frame written; raises what went wrong with earlier ones."""
+            """Have the next frame written; raises errors of earlier ones."""
             nonlocal count
             picture = temporary / f"frame_{count:05d}.png"
             waiting.append(threads.submit(write, picture, image, beside))

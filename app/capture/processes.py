@@ -26,7 +26,7 @@ MOST = 8  # more of them than one encoder can follow
 
 @dataclass(frozen=True)
 class Share:
-    """What one process draws of the frames up to a time [s]: number `first`, and every n-th."""
+    """The frames that one process draws up to a time [s]: number `first`, and every n-th."""
 
     script: Script
     options: CaptureOptions
@@ -49,9 +49,9 @@ def worthwhile(options: CaptureOptions, frame_count: int) -> int:
 def drawing(
     script: Script, options: CaptureOptions, until: float, count: int, *, progress: bool
 ) -> Generator[tuple[float, Callable[[], Frame]]]:
-    """Let `count` processes play a script; yield each frame's time [s] and what hands it over.
+    """Let `count` processes play a script; yield the time [s] of each frame, and a getter.
 
-    Each frame of the span has to be taken. What goes wrong in a process is raised there.
+    The caller has to call the getter for each frame of the span. It raises errors of a process.
     """
     drawers: list[Worker] = []
     shown: list[Frame] = []

@@ -31,7 +31,7 @@ def capture(
     """Play `script` into `output`, by its suffix, and its named poses into the picture `sheet`.
 
     time: of a picture [s]; else it is of the first pose that has a name, or of the end.
-    Returns the largest number of triangles of a frame. Raises UserError on what cannot be.
+    Returns the largest number of triangles of a frame. Raises UserError for outputs that cannot be.
     """
     _check(script, options, output, sheet, time)
     _check_passes(script, output, options)
@@ -99,7 +99,7 @@ def _draw_film(
 def _played(
     script: Script, options: CaptureOptions, until: float, progress: bool, count: int = 1
 ) -> Generator[tuple[float, Callable[[], Frame]]]:
-    """The time [s] of each frame, and what draws it: this process, or as many as `count` says."""
+    """The time [s] of each frame, and a function that draws it, by `count` processes."""
     if count > 1:
         yield from processes.drawing(script, options, until, count, progress=progress)
         return

@@ -119,7 +119,7 @@ def send(recording: Path | None, port: int | None, address: str, loop: bool) -> 
     from ..live.sender import Sender
     from ..recordings.reading import read_take
 
-    if recording is None:  # what `risorius export` makes of scripts/speech.toml
+    if recording is None:  # made by `risorius export` from scripts/speech.toml
         recording = Path(str(files("risorius.assets") / "data" / "speech.csv"))
     take = read_take(recording)
     with Sender(address, port, recording.stem) as sender:
@@ -181,8 +181,8 @@ def convert(
     if not quiet:
         keys = sum(len(channel) for channel in script.tracks.values())
         tracks = counted(len(script.tracks), "track")
-        what = f"{tracks} with {counted(keys, 'key')}" if keys else "a pose"
-        click.echo(f"{in_one_line(output)}: {what}")
+        content = f"{tracks} with {counted(keys, 'key')}" if keys else "a pose"
+        click.echo(f"{in_one_line(output)}: {content}")
 
 
 def open_window(
@@ -264,7 +264,7 @@ def controls(scene: str) -> None:
 @click.option("--offscreen", is_flag=True, help="Only ask for offscreen OpenGL.")
 @click.option("--quiet", is_flag=True, help="Print nothing; only set the exit code.")
 def doctor(offscreen: bool, quiet: bool) -> None:
-    """Say what works here, and the cure for what does not.
+    """Report which commands work here, and the cure for those that do not.
 
     Exit code 0: everything is there. 1: some commands work. 2: nothing can be drawn.
     """

@@ -1,4 +1,4 @@
-"""`risorius doctor`: what works on this machine, and the cure for what does not."""
+"""`risorius doctor`: the commands that work on this machine, and the cure for the others."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ EXTRAS = {
     "passes": ("OpenEXR",),
     "cluster": ("distributed",),
 }
-"""What `pip install '.[EXTRA]'` brings, as modules."""
+"""The modules that `pip install '.[EXTRA]'` brings."""
 
 
 class Health(enum.IntEnum):
-    """What works here; the values are exit codes."""
+    """How much works here; the values are exit codes."""
 
     WHOLE = 0
     PARTLY = 1  # it draws, but has no window, no offscreen frames or no films
@@ -36,7 +36,7 @@ class Health(enum.IntEnum):
 
 
 def examine(*, offscreen_only: bool = False) -> tuple[Health, list[str]]:
-    """Return what works here, and the lines of the report.
+    """Return how much works here, and the lines of the report.
 
     offscreen_only: ask for offscreen frames alone, and report on nothing else.
     """
@@ -74,7 +74,7 @@ def _card(findings: list[render.Finding]) -> str:
 
 
 def _names() -> list[str]:
-    """What can be named in options of refinement."""
+    """The names that options of refinement take."""
     from risorius import refine  # slow, and not needed for offscreen frames alone
 
     known: dict[str, refine.Registry[Any]] = {
@@ -86,7 +86,7 @@ def _names() -> list[str]:
 
 
 def _extras() -> str:
-    """Which extras are installed, and what installs the others."""
+    """Which extras are installed, and the command that installs the others."""
     missing = [name for name, modules in EXTRAS.items() if not all(map(_is_there, modules))]
     there = ", ".join(name for name in EXTRAS if name not in missing) or "none"
     cure = (

@@ -40,7 +40,7 @@ class Limits(dict[str, tuple[float, float]]):
         return np.array([self.place[name] for name in names], np.intp)
 
     def cut_off(self, sums: Floats, places: Places) -> Floats:
-        """What controls asked for these sums have as values; both of shape (n,), or (T,) of one."""
+        """Values of controls that are set to these sums; both of shape (n,), or (T,) of one."""
         return np.asarray(np.minimum(np.maximum(sums, self._low[places]), self._high[places]))
 
     def pose(self, sums: Mapping[str, float], over: ControlValues | None = None) -> ControlValues:

@@ -42,14 +42,14 @@ class SetFolder:
 
     @property
     def log(self) -> Path:
-        """What processes print; it goes when the set is made."""
+        """The file for prints of processes; it is removed when the set is made."""
         return self.path / UNFINISHED / "log"
 
     @contextlib.contextmanager
     def held(self, options: Mapping[str, Any], *, resume: bool) -> Iterator[None]:
         """Begin a set in an empty folder, or resume one, and keep others out meanwhile.
 
-        options: all that decides what samples are, as JSON has it. Raises UserError where the
+        options: all that decides the samples, for JSON. Raises UserError where the
         folder holds something else, or a set that was begun with other options.
         """
         check_links(self.path)
@@ -128,7 +128,7 @@ class SetFolder:
     def write_sample(self, index: int, write: Callable[[Path], object]) -> int:
         """Put the files of a sample in place, .json last; how many bytes they have.
 
-        write: writes a picture of the name that it is given, and what lies beside it.
+        write: writes a picture to the path that it gets, and the sample's other files beside it.
         """
         name = name_of(index)
         with cannot_be_written(self.path / name):

@@ -28,7 +28,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Made:
-    """What became of a set: how many samples it has, how many of them are new, and their bytes."""
+    """A made set: how many samples it has, how many of them are new, and their bytes."""
 
     samples: int
     new: int

@@ -59,7 +59,7 @@ def around(triangles: Array, middle: Array, reach: float) -> Array:
 
 
 def _widest_opening(triangles: Array, x: float, middle: float) -> float:
-    """Greatest height of what no triangle covers [mm], looked at along z in the plane at x.
+    """Greatest height [mm] of a gap between triangles, looked at along z in the plane at x.
 
     It begins within WINDOW of the height `middle`; triangles: corners, shape (n, 3, 3).
     """

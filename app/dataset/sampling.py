@@ -1,4 +1,4 @@
-"""Sampling: what sample number n of a seed is, in plain numbers, before anything is built or drawn.
+"""Sampling: sample number n of a seed, in plain numbers, before anything is built or drawn.
 
     table, seed, n  ->  Sample: expression, head, eyes, camera, person, looks
 
@@ -38,11 +38,11 @@ class View:
 class Sample:
     """One sample.
 
-    kind, name: what sort of face, and which: "expression", "happiness".
-    controls: all that the face is asked for but its gaze.
+    kind, name: sort of face, and which: "expression", "happiness".
+    controls: all values of the face but its gaze.
     gaze: where it looks within the head, to its left and up [degrees]; None: into the camera.
     person: number of the one whose head it is. light: name of one of the renderer's.
-    surroundings: what light and background are drawn from.
+    surroundings: seed of light and background.
     """
 
     seed: int

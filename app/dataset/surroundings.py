@@ -96,7 +96,7 @@ def laid_over(picture: Image, premultiplied: Image) -> Image:
 
 
 def backgrounds_of(text: str | None) -> Backgrounds:
-    """What `--background` says: a colour, a folder of pictures, or nothing; UserError else."""
+    """The value of `--background`: a colour, a folder of pictures, or None; UserError else."""
     if text is None:
         return Backgrounds()
     folder = Path(text)

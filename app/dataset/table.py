@@ -1,6 +1,6 @@
 """The table that samples are drawn from: aus.toml, or one that a user copied and edited.
 
-Sources of what stands in it are named there. This reads and checks it.
+The table names its own sources. This module reads and checks it.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ class Persons(Record):
 
 @dataclass(frozen=True)
 class SampleTable(Record):
-    """What aus.toml says, section by section; its comments are the documentation."""
+    """The content of aus.toml, section by section; its comments are the documentation."""
 
     kinds: Annotated[Shares, _drawn_from(KINDS)]
     letters: Annotated[Shares, _drawn_from(LETTERS)]

@@ -38,7 +38,7 @@ class Surface:
     rest: vertices where nothing moves, shape (V, 3), float64.
     faces: counter-clockwise from the visible side, shape (F, 3), int32.
     shapes: vertices in each frame, before `matrices`, shape (N, V, 3), float32; None: as at rest.
-    matrices: what moves the whole of it in each frame, shape (N, 4, 4), float64; None: nothing.
+    matrices: move the whole of it in each frame, shape (N, 4, 4), float64; None: not moved.
     uv, face_uv: texture coordinates, shape (U, 2), and which of them each corner has, shape (F, 3).
     colours: sRGB 0..1 of the vertices, shape (V, 3), float32; None where a texture has them.
     shine: 0 dull, 1 wet.
@@ -70,8 +70,8 @@ class Clip:
 
     surfaces: the skin (or the scene's one mesh) first.
     bones: the matrices of each bone, shape (N, 4, 4): "cranium", "mandible", "eye_left", ...
-    controls: what each control was set to, shape (N,).
-    activations: what that came to for each muscle, jaw, gaze, ..., shape (N,); {} without muscles.
+    controls: the set values of each control, shape (N,).
+    activations: the sums for each muscle, jaw, gaze, ..., shape (N,); {} without muscles.
     """
 
     scene: Scene

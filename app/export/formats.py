@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 Item = TypeVar("Item")
 
 FRAME = "frame_{:05d}"  # how files of a sequence are called, without their suffix
-OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # what such a folder holds
+OWN = re.compile(r"frame_\d{5,}\.obj|frame\.mtl|frame_skin\.png")  # files in such a folder
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Request:
             yield from bar
 
 
-# Writes the whole file, or raises UserError; returns what there is to say of it, if anything.
+# Writes the whole file, or raises UserError; returns a remark for the user, if any.
 Writer = Callable[["Clip", Path, Request], str | None]
 
 
@@ -66,7 +66,7 @@ Writer = Callable[["Clip", Path, Request], str | None]
 class Format:
     """One kind of file.
 
-    name: what `--as` calls it. suffixes: of its files; () for a folder of one file a frame.
+    name: for `--as`. suffixes: of its files; () for a folder of one file a frame.
     writer: "module:function" in this room, imported when it is used. refines: whether it can carry
     a refined skin. beside: how files end that lie beside the one that is named.
     """
@@ -149,7 +149,7 @@ def check_request(output: Path, chosen: Format, request: Request) -> None:
 
 
 def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | None:
-    """Write a clip, whole or not at all; return what there is to say of the file, if anything.
+    """Write a clip, whole or not at all; return a remark on the file for the user, if any.
 
     Sums of many numbers are rounded otherwise by two threads than by one. One writes the same bytes
     here, within a batch, and on a machine of more cores.

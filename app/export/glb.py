@@ -65,7 +65,9 @@ class Glb:
         return self.add("accessors", accessor)
 
     def texture(self, image: npt.NDArray[np.uint8], kind: str = "jpeg") -> dict[str, int]:
-        """Add a picture (H, W) or (H, W, 3), top row first, as a texture; what materials say of it.
+        """Add a picture (H, W) or (H, W, 3), top row first, as a texture.
+
+        Returns the reference to it for a material.
 
         kind: "png" where every bit counts.
         """

@@ -46,9 +46,9 @@ WET = 0.12
 class Piece:
     """A surface with its morph targets.
 
-    bone: what moves the whole of it; None: nothing, or the skin's own weights.
+    bone: moves the whole of it; None: no bone, or the skin's own weights.
     normals: at rest, of unit length, shape (V, 3).
-    targets, bends: what each target adds to vertices [mm] and normals, shape (K, V, 3).
+    targets, bends: changes of vertices [mm] and normals by each target, shape (K, V, 3).
     weights: of each target in each frame, shape (N, K).
     """
 
@@ -61,7 +61,7 @@ class Piece:
 
 
 def write_gltf(clip: Clip, part: Path, request: Request) -> str | None:
-    """Write the file; return what there is to say of how near it comes to the clip."""
+    """Write the file; return a remark where it differs visibly from the clip."""
     pieces, error = moving_pieces(clip)
     part.write_bytes(_packed(clip, pieces))
     if error <= TOLERANCE:
@@ -272,7 +272,7 @@ class Skeleton:
             canonical=True
         )
         if np.abs(rotations[:, :3]).max() > STILL:
-            # q and -q turn alike, but not what lies between two keyframes.
+            # q and -q turn alike, but values between two keyframes do not.
             is_opposite = (rotations[1:] * rotations[:-1]).sum(axis=1) < 0.0
             rotations[1:] *= np.cumprod(np.where(is_opposite, -1.0, 1.0))[:, None]
             self._glb.animate(node, "rotation", rotations)

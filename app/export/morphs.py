@@ -1,8 +1,8 @@
 """Motion as morph targets: few shapes, whose weighted sum is where the vertices are in each frame.
 
-A singular value decomposition gives the shapes that leave the least error on average. What counts
-is the largest, so vertices that are farthest off count more, and it is done again, which saves a
-third of the shapes (after Lawson 1961, "Contributions to the theory of linear least maximum
+A singular value decomposition gives the shapes that leave the least error on average. The largest
+error counts, so the vertices farthest off get more weight, and it is done again. This saves a third
+of the shapes (after Lawson 1961, "Contributions to the theory of linear least maximum
 approximation").
 
 Readers such as Blender cut weights off at 0, and their sliders at 1. Weights are brought between
@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
-TOLERANCE = 0.098  # [mm] off at most; what single precision adds stays below 0.1
+TOLERANCE = 0.098  # [mm] off at most; with single precision it stays below 0.1
 NOTHING = 1e-6  # [mm] a target that moves no vertex so far is left out
 
 
@@ -73,7 +73,7 @@ def decompose(moved: Floats, tolerance: float = TOLERANCE, most: int = 250) -> M
 
 
 def follow(weights: Floats, changes: Floats) -> Floats:
-    """What other values of the vertices add at weight 1, such as normals, as near as it gets.
+    """Targets of other values of the vertices, such as normals, for the same weights.
 
     weights: shape (N, K). changes: from rest, shape (N, V, 3). Returns shape (K, V, 3).
     """

@@ -1,4 +1,4 @@
-"""USD: every surface as a mesh under one root, with time samples of what moves. Millimetres.
+"""USD: every surface as a mesh under one root, in millimetres; motion is time samples.
 
 The file is a package (.usdz) of a layer and the picture of the skin.
 

@@ -19,7 +19,7 @@ from .life import Idle
 
 @dataclass
 class Tally:
-    """What this process has played."""
+    """The number of frames that this process has played."""
 
     frames: int = 0
 
@@ -29,7 +29,7 @@ SETTLING = 1.0  # [s] after which the face rests in a pose
 
 
 def scene_of(script: Script, head: FittedHead | None = None) -> Scene:
-    """The scene that a script is written for; UserError if it asks for what that has not."""
+    """The scene that a script is written for; UserError if the script does not fit it."""
     scene = build_scene(script.scene, head)
     script.check(scene.limits)
     return scene

@@ -1,4 +1,4 @@
-"""From what muscles do to the controls of a layer: action units, ARKit's shapes.
+"""From activations of muscles to the controls of a layer: action units, ARKit's shapes.
 
 `solved(scene, ACTION_UNITS, activations)` is the way back through the tables of sim/layers.py. A
 layer's controls add up, so it is a bounded least squares problem in each frame:

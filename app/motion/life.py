@@ -48,7 +48,7 @@ AWAY_MOST = 12.0
 # A saccade takes 21 ms and 2.2 ms more for each degree. The eye's own lag is the former.
 SECONDS_PER_DEGREE = 0.0022
 
-# The head at rest: most that it strays [degrees], and what its controls stand for at 1.
+# The head at rest: most that it strays [degrees], and the angle of its controls at 1.
 HEAD_STRAYS = {"head_yaw": 1.2, "head_pitch": 0.7, "head_roll": 0.6}
 HEAD_RANGES = {"head_yaw": 45.0, "head_pitch": 30.0, "head_roll": 30.0}
 HEAD_PERIODS = np.array([4.7, 7.9, 13.3])  # [s] of the sines, which never meet
@@ -119,7 +119,7 @@ class Life:
         return size * math.cos(angle), 0.5 * size * math.sin(angle)
 
     def _drifts(self, time: float) -> list[float]:
-        """Where what strays slowly is, each between -1 and 1: sines of other phases."""
+        """Slow motions of the head, each between -1 and 1: sines of other phases."""
         phases = self._chance(STRAYS, 0).uniform(0.0, 7.0, (len(HEAD_STRAYS), len(HEAD_PERIODS)))
         drifts = np.sin(2.0 * math.pi * time / HEAD_PERIODS + phases).mean(axis=1)
         return [float(each) for each in drifts]
@@ -137,7 +137,7 @@ def lid(age: float) -> float:
 
 
 EYES_ALONE = 10.0  # [degrees] off straight ahead that are left to the eyes
-SHARE_OF_HEAD = 0.5  # of what lies beyond
+SHARE_OF_HEAD = 0.5  # of the angle beyond
 EYES_MOST = 25.0  # [degrees] that eyes turn without strain
 # [degrees] aside, and above or below: as far the viewer is looked at; and not at all.
 FOLLOWED = (45.0, 32.0)
@@ -159,10 +159,10 @@ class Idle:
         *,
         is_still: bool = False,
     ) -> Values:
-        """What to add to the scene's controls at `time` [s] of its life.
+        """Amounts to add to the scene's controls at `time` [s] of its life.
 
-        moved: lowest controls that are left alone. viewer: where he stands [mm], shape (3,).
-        is_still: that it looks at the viewer is all.
+        moved: lowest controls that are left alone. viewer: place of the viewer [mm], shape (3,).
+        is_still: the face looks at the viewer, and does nothing else.
         """
         if not isinstance(self.scene, FaceScene):
             return {}

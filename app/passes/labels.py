@@ -160,7 +160,7 @@ class CameraLabels:
 
     @classmethod
     def of(cls, camera: render.OrbitCamera, size: tuple[float, float]) -> CameraLabels:
-        """What `camera` sees in a picture of `size`."""
+        """The labels of `camera` for a picture of `size`."""
         width, height = size
         focal = camera.focal(width / height, height)
         right, up, back = camera.axes()
@@ -205,7 +205,7 @@ def beside(picture: Path) -> list[Path]:
 class Labelled:
     """All that is known of one picture.
 
-    images: passes by their names (passes.py). labels: what its JSON file holds (`labels_of`).
+    images: passes by their names (passes.py). labels: the content of its JSON file (`labels_of`).
     """
 
     images: dict[str, npt.NDArray[Any]]

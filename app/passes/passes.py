@@ -26,7 +26,7 @@ from ..pipeline import DrawnMesh, Pipeline
 from ..scenes import FaceScene
 
 IMAGES = ("depth", "normal", "triangle", "splits", "segmentation")
-OF_FACES = ("segmentation", "landmarks")  # what other scenes have not
+OF_FACES = ("segmentation", "landmarks")  # other scenes lack these
 NAMES = (*IMAGES, "landmarks")
 Bytes = npt.NDArray[np.uint8]
 

@@ -162,7 +162,7 @@ def parse_options(refiner: str | None, settings: Sequence[str]) -> dict[str, Any
 
 
 def parse_comparison(names: str | None, refinement: Refinement) -> tuple[Refinement, ...]:
-    """What `--compare NAME,...` sets beside a refinement, left to right: looks and refiners.
+    """The looks and refiners that `--compare NAME,...` sets beside a refinement, left to right.
 
     None is nothing. Raises UserError for a name that is neither, and where two would be the same.
     """

@@ -248,7 +248,7 @@ class Pose(Record):
 
 @dataclass(frozen=True)
 class Script:
-    """A performance: what each control does over `duration` seconds."""
+    """A performance: the values of each control over `duration` seconds."""
 
     title: str
     duration: float
@@ -277,7 +277,7 @@ class Script:
 
     @functools.cached_property
     def _pose_rows(self) -> Floats:
-        """What each pose has of the `posed_names`, a row for each."""
+        """The values of the `posed_names`, a row for each pose."""
         return np.array([[p.values.get(n, 0.0) for n in self.posed_names] for p in self.poses])
 
     @functools.cached_property
@@ -314,11 +314,11 @@ class Script:
         return dict(zip(self.names, self._sums(time).tolist(), strict=True))
 
     def values(self, time: float, limits: Limits) -> ControlValues:
-        """What all controls of a scene come to at `time` [s], within their limits."""
+        """The values of all controls of a scene at `time` [s], within their limits."""
         return limits.posed(limits.places(self.names), self._sums(time))
 
     def _sums(self, time: float) -> Floats:
-        """What poses and tracks add up to, in the order of the `names`."""
+        """The sums of poses and tracks, in the order of the `names`."""
         sums = np.zeros(len(self.names))
         sums[: len(self.posed_names)] = self._posed(time)
         for place, track in self._placed_tracks:

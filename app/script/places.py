@@ -36,7 +36,7 @@ class Places(Set[KeyPlace]):
 
     @classmethod
     def _from_iterable(cls, places: Iterable[Any]) -> Places:  # type: ignore[override]
-        return cls.of(*places)  # for what Set makes of other sets
+        return cls.of(*places)  # for the results of Set's operators
 
     def __contains__(self, place: object) -> bool:
         return isinstance(place, KeyPlace) and place.time in self.times.get(place.track, NOTHING)

@@ -1,7 +1,7 @@
 """Movements of controls over time, put into the script that played meanwhile.
 
-A control is taken from the moment on in which it leaves the script, until the recording ends. What
-was not moved, and all keys before and after, stay as they are.
+A control is taken from the moment on in which it leaves the script, until the recording ends.
+Controls that were not moved, and all keys before and after, stay as they are.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ RELEASE = 0.1  # [s] at the recording's end in which a control goes back to wher
 class Recorder:
     """Takes the value of every control at every step, from a time of a script on.
 
-    held: what hands hold against the script, which is for others to know.
+    held: values that the user holds against the script; the caller sets it.
     """
 
     def __init__(

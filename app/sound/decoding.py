@@ -17,7 +17,7 @@ from ..errors import UserError, needed
 from ..files import read_bytes
 from ..script import Script
 
-RATE = 48_000  # [samples/s] of sounds; what devices and films have, too
+RATE = 48_000  # [samples/s] of sounds; devices and films have it, too
 LONGEST = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo
 PATIENCE = 300.0  # [s] for ffmpeg to read a file
 
@@ -90,7 +90,7 @@ def ffmpeg() -> str:
 def sound_form() -> tuple[str, ...]:
     """Options for a sound at `RATE`; of both sides, where it has them.
 
-    What begins late in its file (the sound of a film, say) begins as late here.
+    A sound that begins late in its file (that of a film, say) begins as late here.
     """
     form = f"aformat=sample_rates={RATE}:channel_layouts=mono|stereo"
     return "-af", f"aresample=async=1:first_pts=0,{form}"
