@@ -1,4 +1,4 @@
-"""What lies under the skin of a face now: to draw and to measure; nothing of it moves the face."""
+"""The parts under the skin of a face now, to draw and to measure; they do not move the face."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ from .state import State
 
 
 class Anatomy:
-    """Contracted muscles, the tongue, and how deep skin sits in what is under it."""
+    """Contracted muscles, the tongue, and how deep skin sits in the parts under it."""
 
     def __init__(
         self, model: FaceModel, state: State, controls: Controls, bones: Bones, drive: MuscleDrive
     ) -> None:
-        self._model, self._state, self._bones, self._drive = model, state, bones, drive
+        self._model = model
+        self._state = state
+        self._bones = bones
+        self._drive = drive
         self._controls = controls
         self._tongue = controls.places_in_reached(("tongue_out", "tongue_up"))
         if model.tongue is not None:
@@ -43,7 +46,8 @@ class Anatomy:
         """Contracted muscle fibres now, control name -> polylines (n, 3) [head units], to draw."""
         pull = self._drive.pull(self._drive.activation())
         lines = self._model.muscles.lines(pull, self._bones.mandible, self._state)
-        space, head = self._model.space, self._bones.head
+        space = self._model.space
+        head = self._bones.head
         return {
             name: [space.to_head(line + head.displacements(line)) for line in found]
             for name, found in lines.items()
@@ -61,12 +65,14 @@ class Anatomy:
         return name if nearest.get(name, np.inf) <= reach else None
 
     def penetrations(self) -> dict[str, float]:
-        """How deep skin sits in what it must not enter, at most, less than at rest [mm].
+        """Greatest depth of skin in the other lip, eyeballs and teeth, less that at rest [mm].
 
         Names: "lips" (in the other lip, more than sealed lips are pressed together), "lids" (in an
         eyeball), "teeth".
         """
-        skin, x, bones = self._model.skin, self._state.x, self._bones
+        skin = self._model.skin
+        x = self._state.x
+        bones = self._bones
         grip = self._model.grip(self._drive.activation(), bones.jaw, bones.lips_closed)
         return {
             "lips": skin.lips.deepest(x, skin.rest, grip.overlap),

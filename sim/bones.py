@@ -12,7 +12,7 @@ from .skull import HEAD_CONTROLS, REST
 
 
 class Bones:
-    """Cranium, mandible and eyeballs; what did not move is not worked out anew.
+    """Cranium, mandible and eyeballs; only those that moved are computed again.
 
     mandible_weight, head_weight: how far each vertex goes with the mandible, given or guessed, and
     with the head's pose, which fades to 0 down the neck; 0 to 1, shape (V,).
@@ -21,16 +21,20 @@ class Bones:
     """
 
     def __init__(self, model: FaceModel, controls: Controls) -> None:
-        self._skull, self._space = model.skull, model.space
+        self._skull = model.skull
+        self._space = model.space
         self.mandible_weight = read_only(model.skull.mandible_weight)
         self._closed_weight = model.closed_weight
         self.head_weight = read_only(model.turns[:, 0])
         sides = [ball.side.value for ball in model.skull.eyeballs]
         ways = [f"gaze_{way}_{side}" for side in sides for way in ("horizontal", "vertical")]
-        self._controls, places = controls, controls.places_in_reached
+        self._controls = controls
+        places = controls.places_in_reached
         self._mouth = places(("jaw_open", "jaw_forward", "jaw_sideways", "lips_closed"))
-        self._head, self._gaze = places(HEAD_CONTROLS), places(ways)
-        self.jaw, self._head_values = (0.0, 0.0, 0.0), [0.0, 0.0, 0.0]
+        self._head = places(HEAD_CONTROLS)
+        self._gaze = places(ways)
+        self.jaw = (0.0, 0.0, 0.0)
+        self._head_values = [0.0, 0.0, 0.0]
         self.mandible = self.head = REST  # seen from the cranium, and from the neck
         self.turn: Array = read_only(np.eye(4))  # of the head, for column vectors [head units]
 
@@ -68,7 +72,7 @@ class Bones:
         return transforms
 
     def pivots(self) -> dict[str, Array]:
-        """What each bone turns about at rest, name of `transforms` -> (3,) [head units]."""
+        """The pivot of each bone at rest, name of `transforms` -> (3,) [head units]."""
         middle = self._skull.condyles.mean(axis=0)
         points = {"cranium": middle + self._skull.head.joint, "mandible": middle}
         points.update({f"eye_{ball.side.value}": ball.centre for ball in self._skull.eyeballs})

@@ -1,6 +1,6 @@
-"""What callers hand in, checked at the door: numbers, arrays and names, or a ValueError.
+"""Checks of the arguments of callers: numbers, arrays and names, or a ValueError.
 
-Every text says which argument it was, what it was, and what is allowed. numpy alone would take
+Every message names the argument, its value, and the values that are allowed. numpy alone would take
 strings for numbers, cut 0.7 down to vertex 0, and raise one of three other errors.
 """
 

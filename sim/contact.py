@@ -1,5 +1,4 @@
-"""What skin must not pass through: the eyeballs and the other lip. And the seal that keeps closed
-lips closed.
+"""Contact of skin with the eyeballs and the other lip, and the seal that keeps closed lips closed.
 
 Each vertex of the lower lip's edge is paired with a point on the edge of the upper lip. A spring
 holds the pair together as long as nothing opens the mouth (moist lips stick; without it a smile
@@ -144,7 +143,9 @@ class EyeContact(NamedTuple):
 
 def watch_eyeballs(surface: Surface, eyeballs: tuple[Eyeball, ...]) -> EyeContact:
     """Find the vertices that could touch an eyeball; one that starts inside may not sink deeper."""
-    vertices, centres, least = [], [], []
+    vertices = []
+    centres = []
+    least = []
     for ball in eyeballs:
         distance = np.linalg.norm(surface.positions - ball.centre, axis=1)
         near = np.flatnonzero(distance < ball.radius + EYE_REACH)

@@ -1,7 +1,7 @@
-"""Controls: the named values a caller sets, how the face follows them, and what each muscle feels.
+"""Controls: the named values a caller sets, and how the face and each muscle follow them.
 
 Lowest are muscles, jaw and gaze; controls of the layers above (layers.py) are set in the same way
-and add to them. What is `wanted` of a lowest control is that sum, cut off at its limits.
+and add to them. The `wanted` value of a lowest control is that sum, clamped to its limits.
 
 A muscle does not jump to a new activation: each control follows its value as a critically damped
 oscillator (90 % after some 90 ms, no overshoot). The oscillator is solved exactly for every tick,
@@ -32,7 +32,8 @@ from .rig import Rig
 
 MUSCLE_RATE = 45.0  # rad/s
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
-SETTLED, SETTLED_SPEED = 1e-6, 1e-4  # away from the value and per second: as good as there
+SETTLED = 1e-6  # a distance from the wanted value that counts as none
+SETTLED_SPEED = 1e-4  # per second: a speed that counts as rest
 SLACK = 1e-6  # beyond a limit by rounding is not an error
 
 
@@ -45,14 +46,14 @@ class Control:
     low: float = 0.0
     high: float = 1.0
     rate: float = MUSCLE_RATE
-    action: str = ""  # what it does, in words
+    action: str = ""  # its effect, in words
 
 
 class Controls:
-    """All inputs of a face: values asked for, and the activations that follow them.
+    """All inputs of a face: the values that are set, and the activations that follow them.
 
-    Values beyond their limits are refused, and only sums are cut off: who does not know whether
-    a value is within limits has reasons of his own for what becomes of it.
+    A value beyond its limits raises ValueError; a caller with such values clamps them itself. Only
+    sums are clamped here.
 
     The first C of all N controls are the lowest; only they have a wanted sum and an activation.
     """
@@ -68,9 +69,9 @@ class Controls:
     groups: Mapping[str, tuple[str, ...]]
     """Control names by the title under which a panel may list them, layers last."""
     actions: Mapping[str, str]
-    """What each control does, in words; "" where its file does not say."""
+    """The effect of each control, in words; "" where its file has none."""
     tables: Layers
-    """What each control of the layers adds to the C lowest ones, in their order."""
+    """The shares that each control of the layers adds to the C lowest ones, in their order."""
     reached: Array
     """Activations of the lowest controls now, and a 0 behind them, shape (C + 1,), read only."""
     wanted: Array
@@ -79,7 +80,8 @@ class Controls:
     """What follows them, shape (C,), read only."""
 
     def __init__(self, controls: tuple[Control, ...], layers: Layers = NO_LAYERS) -> None:
-        self.lowest, self.tables = tuple(control.name for control in controls), layers
+        self.lowest = tuple(control.name for control in controls)
+        self.tables = layers
         self.names = (*self.lowest, *layers.shares)
         self.limits = MappingProxyType(_limits(controls, layers))
         groups: dict[str, tuple[str, ...]] = {}
@@ -90,7 +92,8 @@ class Controls:
         self.actions = MappingProxyType({**{c.name: c.action for c in controls}, **layers.actions})
         self._places = {name: n for n, name in enumerate(self.names)}
         bounds = np.array([*self.limits.values()], np.float64).reshape(-1, 2)
-        self._least, self._most = bounds[:, 0] - SLACK, bounds[:, 1] + SLACK
+        self._least = bounds[:, 0] - SLACK
+        self._most = bounds[:, 1] + SLACK
         self._low, self._high = bounds[: len(controls)].T.copy()
         self._rate = np.array([c.rate for c in controls], dtype=np.float64)
         self._shares = np.array([layers.shares[name] for name in layers.shares])  # (N - C, C)
@@ -131,7 +134,7 @@ class Controls:
 
     @property
     def sums(self) -> dict[str, float]:
-        """What each lowest control adds up to: its own value and those of the layers above it."""
+        """The sum of each lowest control: its own value and those of the layers above it."""
         return dict(zip(self.lowest, self.wanted.tolist(), strict=True))
 
     def places_in_reached(self, names: Iterable[str]) -> npt.NDArray[np.intp]:
@@ -141,7 +144,7 @@ class Controls:
 
     def set(self, name: str, value: float) -> None:
         """Set one control; ValueError for an unknown name, a value not finite or out of limits."""
-        self.place(name)  # what is no name may not even be a key
+        self.place(name)  # a wrong name may not even be hashable
         self.set_all({name: value})
 
     def set_all(self, values: Mapping[str, float]) -> None:
@@ -168,7 +171,8 @@ class Controls:
         is_beyond = (wanted < self._least) | (wanted > self._most)
         if is_beyond.any():
             place = int(is_beyond.argmax())
-            name, (low, high) = self.names[place], self.limits[self.names[place]]
+            name = self.names[place]
+            low, high = self.limits[name]
             raise ValueError(
                 f"control '{name}': was {wanted[place]:g}, allowed is {low:g} to {high:g}; "
                 "clamp it first"
@@ -191,12 +195,15 @@ class Controls:
 
     def arrive(self) -> None:
         """Let activations be where their values are, at once."""
-        self._activation[:], self._speed[:] = self._wanted, 0.0
+        self._activation[:] = self._wanted
+        self._speed[:] = 0.0
 
     def copy_from(self, other: Controls) -> None:
         """Take on values and activations of controls of the same face."""
-        self._values[:], self._wanted[:] = other._values, other._wanted
-        self._activation[:], self._speed[:] = other._activation, other._speed
+        self._values[:] = other._values
+        self._wanted[:] = other._wanted
+        self._activation[:] = other._activation
+        self._speed[:] = other._speed
 
     def reset(self) -> None:
         """All values and activations to zero at once."""
@@ -233,7 +240,7 @@ class MuscleDrive:
         return np.minimum(np.maximum(reached[self._own] + reached[self._whole], 0.0), 1.0)
 
     def pull(self, activation: Array) -> Array:
-        """What the fibres feel: a power that makes the skin's motion about linear, shape (M,)."""
+        """The pull of the fibres: a power that makes the skin's motion about linear, shape (M,)."""
         return activation**self._power
 
 

@@ -60,7 +60,8 @@ class FaceSpace:
     @classmethod
     def from_bounds(cls, vertices: Array) -> FaceSpace:
         """The space for a mesh without landmarks: its own axes, its box scaled to a head's."""
-        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        low = vertices.min(axis=0)
+        high = vertices.max(axis=0)
         diagonal = float(np.linalg.norm(high - low))
         scale = diagonal / STANDARD_DIAGONAL if diagonal > 0.0 else 1.0
         return cls((low + high) / 2.0, np.eye(3), scale)
@@ -92,7 +93,9 @@ def to_posed_head(x, rest, axes, head_rest, turn, share, out):  # type: ignore[n
     """
     broken = 0
     for i in range(len(x)):
-        dx, dy, dz = x[i, 0] - rest[i, 0], x[i, 1] - rest[i, 1], x[i, 2] - rest[i, 2]
+        dx = x[i, 0] - rest[i, 0]
+        dy = x[i, 1] - rest[i, 1]
+        dz = x[i, 2] - rest[i, 2]
         if not np.isfinite(dx + dy + dz):
             broken += 1
             continue

@@ -47,8 +47,8 @@ class SimulationUnstable(RuntimeError):  # noqa: N818, the name the whole projec
 class Simulation:
     """A face that follows its controls; made by `sim.create`.
 
-    controls: what moves it: muscles, jaw, gaze, and the layers above. bones: where these and the
-    eyeballs are. anatomy: what lies under the skin now. touch: what hands do to the skin.
+    controls: muscles, jaw, gaze, and the layers above. bones: where the jaw and the eyeballs are.
+    anatomy: the parts under the skin now. touch: blows and pulls on the skin.
     positions, rest_positions: of the vertices now and at rest [head units], shape (V, 3); `step`
     rewrites the first. faces: triangles, shape (F, 3). areas: skin that belongs to each vertex at
     rest [mm2 of the standard face], shape (V,). All of them are read only.
@@ -57,11 +57,13 @@ class Simulation:
     def __init__(self, model: FaceModel) -> None:
         surface = model.surface
         self._state = State.at_rest(surface, len(model.muscles.bundle.muscle))
-        self._model, self._grip = model, SEALED
+        self._model = model
+        self._grip = SEALED
         self._positions = model.vertices.copy()
         self.positions = read_only(self._positions)
         self.rest_positions = read_only(model.vertices.copy())
-        self.faces, self.areas = read_only(surface.faces), read_only(surface.areas)
+        self.faces = read_only(surface.faces)
+        self.areas = read_only(surface.areas)
         self._axes = model.space.axes * model.space.scale
         self.controls = Controls(model.controls, model.layers)
         self.bones = Bones(model, self.controls)
@@ -90,7 +92,8 @@ class Simulation:
         if not isinstance(other, Simulation) or other._model is not self._model:
             raise ValueError(f"other: was {quoted(other)}, must be a clone of this face")
         self.controls.copy_from(other.controls)
-        self._state.x[:], self._state.v[:] = other._state.x, other._state.v
+        self._state.x[:] = other._state.x
+        self._state.v[:] = other._state.v
         self._positions[:] = other._positions
 
     def jump(self, values: Mapping[str, float]) -> None:
@@ -110,7 +113,9 @@ class Simulation:
                 f"dt: was {dt!r} s, must be above 0 and at most {LONGEST_FRAME:g} s; "
                 "take several steps for a longer time"
             )
-        model, state, bones = self._model, self._state, self.bones
+        model = self._model
+        state = self._state
+        bones = self.bones
         ticks = ticks_in(dt)
         tick = dt / ticks
         count = substeps_in(tick)
@@ -131,9 +136,13 @@ class Simulation:
 
     def _place_targets(self) -> None:
         """Bones, lids and muscles for the activations reached: where each spring pulls to."""
-        model, bones, state, muscles = self._model, self.bones, self._state, self._model.muscles
+        model = self._model
+        bones = self.bones
+        state = self._state
+        muscles = self._model.muscles
         bones.follow()
-        rest, normals = model.surface.positions, model.surface.normals
+        rest = model.surface.positions
+        normals = model.surface.normals
         carry(state, rest, normals, bones.weight, bones.mandible)
         state.hold[:] = model.passive_hold
         state.pull[:] = 0.0

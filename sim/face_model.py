@@ -1,7 +1,7 @@
 """From a mesh to everything a simulation needs: checks the head, places bones, lids, muscles and
 springs.
 
-A head may be any object with `vertices` and `faces`; what else it brings makes it more of a face.
+A head may be any object with `vertices` and `faces`; optional attributes add the parts of a face.
 
 Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
 """
@@ -56,22 +56,23 @@ SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
 SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper turns inside out
 NECK = 45.0  # mm below the chin; the turn of the head fades evenly, or the throat turns over
 LIPS_MEET_AT = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
-LIPS_WHOLE, LIPS_END = 7.0, 32.0  # mm from the mouth line: skin that goes along, in full and at all
+LIPS_WHOLE = 7.0  # mm from the mouth line, up to which skin goes along in full
+LIPS_END = 32.0  # mm from the mouth line, from which on skin stays
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
 LARGEST = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
 
 
 class Given(NamedTuple):
-    """What a head may have beside its mesh, and what that makes; None for what it has not."""
+    """The optional attributes of a head; None where the head has no such attribute."""
 
-    landmarks: Any  # size, lips, lids; without them a plain spring mesh, still stable
-    rig: Any  # muscles, where there are landmarks
-    layers: Any  # action units, expressions, ... above the muscles (layers.py)
-    jaw_axis: Any  # a jaw, with its weight; guessed from landmarks where one is missing
-    mandible_weight: Any
-    eyes: Any  # gaze and contact; guessed from landmarks
-    parts: Any  # teeth (named "teeth_..."), which lips and cheeks rest on, and a "tongue"
+    landmarks: Any  # give size, lips and lids; without them the face is a plain spring mesh
+    rig: Any  # gives muscles, where there are landmarks
+    layers: Any  # give action units, expressions, ... above the muscles (layers.py)
+    jaw_axis: Any  # gives a jaw; guessed from landmarks if it is None
+    mandible_weight: Any  # of each vertex; guessed from landmarks if it is None
+    eyes: Any  # give gaze and contact; guessed from landmarks if they are None
+    parts: Any  # teeth (named "teeth_..."), on which lips and cheeks rest, and a "tongue"
 
 
 class SkinModel(NamedTuple):
@@ -87,7 +88,7 @@ class SkinModel(NamedTuple):
 
 
 class Tick(NamedTuple):
-    """What holds during one tick."""
+    """Values that stay constant during one tick."""
 
     substeps: int
     h: float  # s, length of each
@@ -228,7 +229,7 @@ def _optional(name: str, given: Any, shape: tuple[int, ...]) -> Array | None:
 def _skull(
     head: Given, rig: Rig, space: FaceSpace, surface: Surface, landmarks: Array | None, side: Array
 ) -> Skull:
-    """Bones from what the head brings, the rest guessed from landmarks; without either no jaw."""
+    """Bones from the head's attributes, else from landmarks; without either there is no jaw."""
     axis = _optional("jaw_axis", head.jaw_axis, (2, 3))
     weight = _optional("mandible_weight", head.mandible_weight, (surface.vertex_count,))
     condyles = None if axis is None else space.to_standard(axis)
@@ -238,7 +239,8 @@ def _skull(
         if weight is None and rig.jaw.seeds:
             weight = mandible_weight_from_landmarks(surface, landmarks, rig.jaw, side)
     if condyles is None or weight is None:
-        weight, condyles = np.zeros(surface.vertex_count), np.array([[-1.0, 0, 0], [1.0, 0, 0]])
+        weight = np.zeros(surface.vertex_count)
+        condyles = np.array([[-1.0, 0, 0], [1.0, 0, 0]])
     # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
     weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
     weight[weight < LEAST_MANDIBLE] = 0.0

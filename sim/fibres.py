@@ -4,8 +4,8 @@ A fibre is FIBRE_POINTS points p_0 (origin) .. p_n (insertion). Its skin is atta
 t in 0..1. Contracted by c, the point at t moves to where t (1 - c) was: skin slides along the
 fibre's own arc towards the origin. A muscle whose origin is no bone (frontalis: the scalp) stays
 still at t = f instead, and both ends slide to it: t moves to f + (t - f)(1 - c). All fibres share
-one table of displacements at SAMPLES places along them, filled again each tick; the skin, and what
-lies on the fibre, read it by linear interpolation.
+one table of displacements at SAMPLES places along them, filled again each tick; the skin, and
+muscles that lie on the fibre, read it by linear interpolation.
 
                       t = 0                t (1 - c)   t                 t = 1
     origin on bone      o-------.-------.----*<--------o-------.-----------o  insertion in the skin
@@ -83,7 +83,8 @@ def build_fibre(
 ) -> Array:
     """Points of one fibre [mm], shape (FIBRE_POINTS, 3), bent to the skin by the muscle's wrap."""
     along = np.linspace(0.0, 1.0, FIBRE_POINTS)[:, None]
-    origin, insertion = fibre.origin.on(landmarks, side), fibre.insertion.on(landmarks, side)
+    origin = fibre.origin.on(landmarks, side)
+    insertion = fibre.insertion.on(landmarks, side)
     points = origin * (1.0 - along) + insertion * along
     return points if muscle.wrap == 0.0 else bent_to_skin(points, surface, muscle.wrap)
 
@@ -127,7 +128,8 @@ def fibre_coordinates(
     points: Array, positions: Array, *, width: float, beyond: float
 ) -> FibreCoordinates:
     """Relate places (n, 3) to a fibre (k, 3): Gaussian falloff across it and past its end."""
-    start, segment = points[:-1], np.diff(points, axis=0)
+    start = points[:-1]
+    segment = np.diff(points, axis=0)
     length = np.maximum(np.linalg.norm(segment, axis=1), 1e-9)
     arc_start = np.concatenate([[0.0], np.cumsum(length)])
     t = np.einsum("nkx,kx->nk", positions[:, None] - start, segment) / length**2
@@ -135,7 +137,8 @@ def fibre_coordinates(
     feet = start + t[:, :, None] * segment
     away = positions[:, None] - feet
     squared = np.einsum("nkx,nkx->nk", away, away)
-    row, best = np.arange(len(positions)), squared.argmin(axis=1)
+    row = np.arange(len(positions))
+    best = squared.argmin(axis=1)
     foot = feet[row, best]
     arc = (arc_start[best] + t[row, best] * length[best]) / arc_start[-1]
     past = (positions - points[-1]) @ (segment[-1] / length[-1])
@@ -156,8 +159,13 @@ def move_lines(bundle, stack, activation, mandible, motion):  # type: ignore[no-
 
     activation: of each muscle, (M,); mandible: its RigidMotion. Fills `motion`.
     """
-    muscle, contraction, rows, lines = bundle.muscle, bundle.contraction, stack.rows, stack.line
-    is_carried, carried, contracted = motion.is_carried, motion.carried, motion.contracted
+    muscle = bundle.muscle
+    contraction = bundle.contraction
+    rows = stack.rows
+    lines = stack.line
+    is_carried = motion.is_carried
+    carried = motion.carried
+    contracted = motion.contracted
     moved = np.empty(bundle.points.shape[1:])
     for b in range(len(muscle)):
         is_carried[b] = False
@@ -178,18 +186,29 @@ def move_lines(bundle, stack, activation, mandible, motion):  # type: ignore[no-
 
 @njit
 def carry_line(bundle, stack, activation, turn, motion, b):  # type: ignore[no-untyped-def]
-    """Fill `motion.carried[b]` with what the lines beneath carry line b by."""
-    muscle, contraction, mandible = bundle.muscle, bundle.contraction, bundle.mandible[b]
-    point, line, steady = stack.point, stack.line, stack.steady
-    sample, place, share = stack.sample, stack.place, stack.share
-    contracted, carried, is_carried = motion.contracted, motion.carried, motion.is_carried
+    """Fill `motion.carried[b]` with the displacement of line b by the lines beneath it."""
+    muscle = bundle.muscle
+    contraction = bundle.contraction
+    mandible = bundle.mandible[b]
+    point = stack.point
+    line = stack.line
+    steady = stack.steady
+    sample = stack.sample
+    place = stack.place
+    share = stack.share
+    contracted = motion.contracted
+    carried = motion.carried
+    is_carried = motion.is_carried
     own = carried[b]
     own[:] = 0.0
     for row in range(stack.rows[b], stack.rows[b + 1]):
-        c, p = line[row], point[row]
+        c = line[row]
+        p = point[row]
         a = activation[muscle[c]]
         if a > 0.0:
-            sx, sy, sz = a * steady[row, 0], a * steady[row, 1], a * steady[row, 2]
+            sx = a * steady[row, 0]
+            sy = a * steady[row, 1]
+            sz = a * steady[row, 2]
             w = mandible[p]
             own[p, 0] += sx + w * (turn[0, 0] * sx + turn[0, 1] * sy + turn[0, 2] * sz - sx)
             own[p, 1] += sy + w * (turn[1, 0] * sx + turn[1, 1] * sy + turn[1, 2] * sz - sy)
@@ -211,9 +230,12 @@ def carry_line(bundle, stack, activation, turn, motion, b):  # type: ignore[no-u
 @njit
 def follow_bones(points, share, mandible, moved):  # type: ignore[no-untyped-def]
     """Carry the points of a line by its bones; `share`: of the mandible's motion, by point."""
-    turn, shift = mandible.rotation, mandible.shift
+    turn = mandible.rotation
+    shift = mandible.shift
     for p in range(len(points)):
-        x, y, z = points[p, 0], points[p, 1], points[p, 2]
+        x = points[p, 0]
+        y = points[p, 1]
+        z = points[p, 2]
         for k in range(3):
             to = turn[k, 0] * x + turn[k, 1] * y + turn[k, 2] * z + shift[k]
             moved[p, k] = points[p, k] + share[p] * (to - points[p, k])
@@ -222,7 +244,8 @@ def follow_bones(points, share, mandible, moved):  # type: ignore[no-untyped-def
 @njit
 def contract(moved, lost, fixed_at, displacement):  # type: ignore[no-untyped-def]
     """Fill `displacement` (SAMPLES, 3) along a fibre that loses a share of itself."""
-    samples, count = len(displacement), len(moved)
+    samples = len(displacement)
+    count = len(moved)
     arc = np.empty(count)
     arc[0] = 0.0
     for p in range(1, count):
@@ -233,7 +256,8 @@ def contract(moved, lost, fixed_at, displacement):  # type: ignore[no-untyped-de
     remaining = max(1.0 - lost, LEAST_ARC)
     fixed = fixed_at * arc[count - 1]
     # `there` and `here` only grow, so both find their segment by walking on.
-    near, far = 1, 1
+    near = 1
+    far = 1
     for s in range(samples):
         here = arc[count - 1] * s / (samples - 1)
         there = fixed + remaining * (here - fixed)

@@ -28,7 +28,8 @@ LANDMARK_COUNT = 68
 UPPER_LIP = (50, 51, 52)
 LOWER_LIP = (56, 57, 58)
 INNER_CORNERS = (60, 64)
-UPPER_INNER, LOWER_INNER = (60, 61, 62, 63, 64), (60, 67, 66, 65, 64)  # lines of the inner lips
+UPPER_INNER = (60, 61, 62, 63, 64)  # the inner line of the upper lip
+LOWER_INNER = (60, 67, 66, 65, 64)  # the inner line of the lower lip
 
 
 class Side(Enum):
@@ -53,7 +54,8 @@ def _mirror_table() -> npt.NDArray[np.int64]:
     pairs += [(48, 54), (49, 53), (50, 52), (55, 59), (56, 58), (60, 64), (61, 63), (65, 67)]
     table = np.arange(LANDMARK_COUNT)
     for right, left in pairs:
-        table[right], table[left] = left, right
+        table[right] = left
+        table[left] = right
     return table
 
 
@@ -73,7 +75,7 @@ class LandmarkPoint:
     def on(self, landmarks: Array, side: Side) -> Array:
         """Position [mm, standard space], shape (3,), on a head with these landmarks (68, 3).
 
-        The right side is the mirror image of what the rig says.
+        The right side is the mirror image of the position in the rig.
         """
         mirrored = side is Side.RIGHT
         point = np.zeros(3)
@@ -84,7 +86,8 @@ class LandmarkPoint:
 
 def polyline_distance(points: Array, corners: Array) -> Array:
     """Distance [mm] of points (N, 3) to the polyline through `corners` (K, 3), shape (N,)."""
-    start, along = corners[:-1], np.diff(corners, axis=0)
+    start = corners[:-1]
+    along = np.diff(corners, axis=0)
     t = ((points[:, None] - start) * along).sum(axis=2) / np.maximum(
         (along * along).sum(axis=1), 1e-12
     )

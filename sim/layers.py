@@ -1,10 +1,10 @@
-"""Layers of controls: tables that speak of what lies below them, down to the muscles.
+"""Layers of controls: tables whose rows move the layers below them, down to the muscles.
 
     muscles, jaw, gaze  <  both sides  <  action units  <  expressions  <  visemes  <  ARKit shapes
 
 A layer is a table of rows; a row is a control of its own, named by its key. Each entry of a row is
 a share: the row at 1 adds so much to the control that the entry names, which must stand in a layer
-below. Five keys of a row are no entries. `action` says in words what it does. `pair = true` makes
+below. Five keys of a row are no entries. `action` describes its effect. `pair = true` makes
 three controls of one row, for both sides, `..._left` and `..._right`; `pair = "Left Right"` makes
 two, `...Left` and `...Right`, the way ARKit spells them:
 
@@ -36,12 +36,12 @@ much of that one's it makes good, and counts as value / the other's value, at mo
     action = "lip funneler"
     at_least = { jaw_open = 0.22 }  # lips need room for a funnel: nothing where the jaw is open
 
-How layers combine: everything adds up, whatever was set first. A muscle's value is its own plus,
+How layers combine: everything adds up, in any order of setting. A muscle's value is its own plus,
 for each control above it, that control's value times its share; then at least the greatest of what
 rows make sure of; cut off at the muscle's limits once, at the end.
 
-Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (what an action unit is); Apple,
-ARFaceAnchor.BlendShapeLocation (what an ARKit shape is); the tables themselves are files of assets.
+Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (its action units); Apple,
+ARFaceAnchor.BlendShapeLocation (its shapes); the tables themselves are files of assets.
 Differs from FACS: units add, where some of theirs exclude each other.
 """
 
@@ -67,17 +67,17 @@ ENDINGS: Mapping[bool | str, tuple[str, ...]] = MappingProxyType(  # of the name
 GREATEST_SHARE = 2.0  # a share beyond it is a slip of the pen
 Share = Annotated[float, Within(-GREATEST_SHARE, GREATEST_SHARE)]
 Floor = Annotated[float, Within(0.0, GREATEST_SHARE)]
-LEAST_WHOLE = 0.08  # of what a control is a share of: below it the share fades instead of jumping
+LEAST_WHOLE = 0.08  # of the control in `share_of`: below it the share fades instead of jumping
 
 
 @dataclass(frozen=True)
 class Layers:
-    """All controls above the lowest ones, with what each of them does to those.
+    """All controls above the lowest ones, with the effect of each on those.
 
     groups: title of the layer -> its names, from the lowest layer up.
-    actions: name -> what it does, in words; "" where the table does not say.
-    shares: name -> what it adds to each of the C lowest controls at value 1, shape (C,).
-    floors: name -> the least that it makes of each lowest control at value 1, 0 for none, (C,).
+    actions: name -> its effect, in words; "" where the table has none.
+    shares: name -> the amount that it adds to each of the C lowest controls at value 1, shape (C,).
+    floors: name -> the least value of each lowest control at value 1, 0 for none, shape (C,).
     share_of: name -> the control whose value its own is a share of, where there is one.
     """
 
@@ -99,7 +99,7 @@ def share_of_whole(value: float, whole: float) -> float:
 def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     """Turn tables into shares of the lowest controls.
 
-    given: from the bottom up, objects with `title`, `source` (what errors call the table: its file)
+    given: from the bottom up, objects with `title`, `source` (the name in errors: its file)
     and `rows`, {row: {key: value}}; lowest: names of the lowest controls.
 
     Raises ValueError that names file and row for a name that no layer below has, a share that is
@@ -108,7 +108,7 @@ def read_layers(given: Sequence[Any], lowest: Sequence[str]) -> Layers:
     reader = _Reader(lowest)
     reader.add_both_sides()
     for layer in several("head.layers", given, ("title", "source", "rows")):
-        below = dict(reader.shares)  # what a row of this layer may name
+        below = dict(reader.shares)  # the controls that a row of this layer may name
         names: list[str] = []
         for name, row in read(dict[str, _Row], layer.rows, str(layer.source)).items():
             names += reader.add(f"{layer.source}, '{name}'", name, row, below)
@@ -179,7 +179,9 @@ class _Reader:
                 raise ValueError(
                     f"{where}: there is a control called '{each}' already; rename the row"
                 )
-            self.shares[each], self.floors[each], self.actions[each] = share, floor, row.action
+            self.shares[each] = share
+            self.floors[each] = floor
+            self.actions[each] = row.action
             if row.share_of is not None:
                 self.share_of[each] = row.share_of
         return list(made)
@@ -207,8 +209,8 @@ class _Reader:
         """ValueError unless a layer below has all controls, and they can be part of a row."""
         for control in (*row.entries, *row.at_least):
             if control not in below:
-                told = f"no layer below has a control called '{control}'{question(control, below)}"
-                raise ValueError(f"{where}: {told}")
+                guess = question(control, below)
+                raise ValueError(f"{where}: no layer below has a control called '{control}'{guess}")
             if control in self.share_of:
                 raise ValueError(
                     f"{where}, '{control}': is a share of '{self.share_of[control]}', which only a "
@@ -216,9 +218,10 @@ class _Reader:
                 )
 
     def _sums(self, row: _Row, side: str, below: Mapping[str, Array]) -> tuple[Array, Array]:
-        """What a row adds and what it makes sure of, shape (C,) each; `side` of a pair, or "".
+        """Shares and floors of a row, shape (C,) each; `side`: of a pair, or "".
 
-        A side takes its side of each entry. Of what has none it adds half, and makes sure of all.
+        A side takes its side of each entry. Of an entry without sides it adds half the share, and
+        takes the whole floor.
         """
         share, floor = (np.zeros(len(next(iter(below.values()), ()))) for _ in range(2))
         for control, part in row.entries.items():

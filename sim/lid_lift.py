@@ -19,7 +19,8 @@ from .contact import EYE_CLEARANCE
 from .landmarks import Array
 from .skull import Eyeball
 
-CORNEA_WIDTH, CORNEA_RISE = 0.49, 0.085  # radii of the ball: half width, and height above it
+CORNEA_WIDTH = 0.49  # radii of the ball: half its width
+CORNEA_RISE = 0.085  # radii of the ball: its height above it
 STEPS = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
 PASSES = 30  # until corners that triangles share are out of the way for all of them
 NEAR_ENOUGH = 1e-3  # mm
@@ -31,15 +32,16 @@ def lift_off(
 ) -> Array:
     """How far each vertex must come outward [mm], shape (V,), where a lid is closed.
 
-    x, rest: of the vertices with the lid closed and at rest (V, 3); what lay in the ball may do so.
-    moves: 1 for those of the upper lid, else 0, shape (V,).
+    x, rest: of the vertices with the lid closed and at rest (V, 3); skin that lay in the ball at
+    rest may stay in it. moves: 1 for those of the upper lid, else 0, shape (V,).
     """
     away = x - ball.centre
     ways = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), NEAR_ENOUGH)
     faces = faces[moves[faces].any(axis=1)]
     outward = (cross_products(away, faces) * away[faces].sum(axis=1)).sum(axis=1)
     faces = faces[outward > 0.0]  # not the inner side of a lid
-    shares, lift = _shares(), np.zeros(len(x))
+    shares = _shares()
+    lift = np.zeros(len(x))
     before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)
     kept[moves[faces] @ shares.T < LEAST_SHARE] = -np.inf

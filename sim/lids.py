@@ -7,8 +7,8 @@ in the motion of the open lid (`fold`); it turns by
 
     close closing + (1 - close) fold (raise + gaze)
 
-so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. What
-lies between the front edges of the lids comes to lie in one line: a margin is as thick as skin,
+so that at close = 1 the lids meet on every eye, however wide, and wherever the lower lid is. The
+skin between the front edges of the lids comes to lie in one line: a margin is as thick as skin,
 and lids that meet with a slanted margin leave a groove, out of which the cornea looks.
 The open lid takes the fold under the brow along, as levator palpebrae ends in both; the fold is
 held only while it is moved, so that the brow can come down on it. A shut upper lid is held twice
@@ -206,18 +206,24 @@ class _LidAxes(NamedTuple):
 def _one_eye(
     eyes: Eyes, surface: Surface, landmarks: Array, ball: Eyeball, up: Array, forward: Array
 ) -> _OneEye:
-    """Find the lids of one eye and what each of their vertices does."""
+    """Find the lids of one eye and the turn of each of their vertices."""
     outer, upper_outer, upper_inner, inner, lower_inner, lower_outer = EYE_LANDMARKS[ball.side]
     side = lid_side(surface, landmarks, ball.side)
     x = surface.positions
     axes = _LidAxes(ball.centre, up, forward, landmarks[outer], landmarks[inner] - landmarks[outer])
-    column, angle = axes.column(x), axes.angle(x)
+    column = axes.column(x)
+    angle = axes.angle(x)
     lines = {
         True: landmarks[[outer, upper_outer, upper_inner, inner]],
         False: landmarks[[outer, lower_outer, lower_inner, inner]],
     }
-    where, slide = np.linspace(0.0, 1.0, COLUMNS), np.zeros(surface.vertex_count)
-    fronts, depths, weights, folds, near = {}, {}, {}, {}, {}
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    slide = np.zeros(surface.vertex_count)
+    fronts = {}
+    depths = {}
+    weights = {}
+    folds = {}
+    near = {}
     for upper, line in lines.items():
         on_lid = side > 0.0 if upper else side < 0.0
         edge = _front_edge(surface, line, axes)
@@ -252,7 +258,8 @@ def _one_eye(
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
     at_middle = AT_CORNERS + (1.0 - AT_CORNERS) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
     fold = before * (folds[True] + folds[False]) * at_middle
-    weight, closing = before * weight, before * closing
+    weight = before * weight
+    closing = before * closing
     sink = np.interp(column, where, depths[True] - depths[False]) - PROUD
     sink *= (side > 0.0) * weight
     lid = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > LEAST_TURN)
@@ -304,13 +311,20 @@ def _lid_muscles(
 def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
-    Adds what holds moved folds to `state.hold`. drive: of each eye, shape (eyes, 3), see
-    Lids.drive; gaze: angles of each to the subject's left and up [rad], shape (eyes, 2).
+    Adds the stiffness that holds moved folds to `state.hold`. drive: of each eye, shape
+    (eyes, 3), see Lids.drive; gaze: angles of each to the subject's left and up [rad], shape
+    (eyes, 2).
     """
-    carried, normals = state.carried, state.normals
-    centres, up, forward = lids.centres, lids.up, lids.forward
+    carried = state.carried
+    normals = state.normals
+    centres = lids.centres
+    up = lids.up
+    forward = lids.forward
     for row in range(len(lids.vertex)):
-        i, e, alpha, fold = lids.vertex[row], lids.eye[row], lids.opening[row], lids.fold[row]
+        i = lids.vertex[row]
+        e = lids.eye[row]
+        alpha = lids.opening[row]
+        fold = lids.fold[row]
         close = min(drive[e, 0], 1.0)
         free = fold * min(alpha * drive[e, 1] + lids.lower_follows * gaze[e, 1], alpha)
         inward = max(close, drive[e, 1]) * lids.slide[1]
@@ -327,8 +341,12 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
         state.hold[i] += lids.shut_hold[row] * close
         aside = gaze[e, 0] * lids.inward[e, 0] * lids.radii[e]
         inward = lids.along[row] * (inward + lids.sideways_follow * aside)
-        c, s = np.cos(angle) - 1.0, np.sin(angle)
-        high, far, normal_high, normal_far = 0.0, 0.0, 0.0, 0.0
+        c = np.cos(angle) - 1.0
+        s = np.sin(angle)
+        high = 0.0
+        far = 0.0
+        normal_high = 0.0
+        normal_far = 0.0
         for k in range(3):
             high += (rest[i, k] - centres[e, k]) * up[e, k]
             far += (rest[i, k] - centres[e, k]) * forward[e, k]
@@ -338,19 +356,22 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             high = min(high, STEEPEST * far)
         nearer = close * lids.sink[row] / max(np.sqrt(high * high + far * far), 1.0)
         for k in range(3):
-            u, f = up[e, k], forward[e, k]
+            u = up[e, k]
+            f = forward[e, k]
             carried[i, k] += (high * c + far * s) * u + (far * c - high * s) * f
             carried[i, k] -= nearer * ((high * (c + 1.0) + far * s) * u)
             carried[i, k] -= nearer * ((far * (c + 1.0) - high * s) * f)
             normals[i, k] += (normal_high * c + normal_far * s) * u
             normals[i, k] += (normal_far * c - normal_high * s) * f
         if inward != 0.0:
-            side, far = 0.0, 0.0
+            side = 0.0
+            far = 0.0
             for k in range(3):
                 side += (carried[i, k] - centres[e, k]) * lids.inward[e, k]
                 far += (carried[i, k] - centres[e, k]) * forward[e, k]
             angle = inward / np.sqrt(side * side + far * far)
-            c, s = np.cos(angle) - 1.0, np.sin(angle)
+            c = np.cos(angle) - 1.0
+            s = np.sin(angle)
             for k in range(3):
                 carried[i, k] += (side * c + far * s) * lids.inward[e, k]
                 carried[i, k] += (far * c - side * s) * forward[e, k]

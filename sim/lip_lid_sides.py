@@ -1,7 +1,7 @@
 """Which side of the mouth and of an eye each vertex lies on.
 
-Closed lips and lids are a millimetre apart, so distance in space cannot tell upper from lower;
-the way along the skin can: from a vertex of the upper lip the upper lip's landmarks are near and
+Closed lips and lids are a millimetre apart, so distance in space does not part upper from lower;
+the way along the skin does: from a vertex of the upper lip the upper lip's landmarks are near and
 the lower lip's are only reached around the mouth corner.
 
 Source: our own; the gates of Kähler et al. 2001 are painted by hand.

@@ -7,8 +7,8 @@ and its far end is displaced:
     force = k A (p + (1 - p) a) [ w (r - x) + a d + sum_f w_f u_f(a) ]
 
 r is the vertex at rest carried by the bones, u_f the pull of fibre f at the vertex (fibres.py), d
-what is linear in a (rings, bulge, convergence to the fibre line). Where a muscle lies on others, r
-is also carried by them: by the mean of what carries its fibres, w_f their weights
+the displacement that is linear in a (rings, bulge, convergence to the fibre line). Where a muscle
+lies on others, r is also carried by them: by the mean displacement of its fibres, weighted by w_f
 (muscle_stack.py). A tick sums this into one stiffness and one pull per vertex, so substeps cost the
 same for one muscle and for fifty.
 
@@ -159,7 +159,9 @@ def _bundle(
     Origins are on their bone; insertions and sphincters are carried like the skin there.
     """
     lines = [(n, placed[n].muscle, line) for n in order for line in placed[n].lines]
-    carried, contraction, fixed_at = [], [], []
+    carried = []
+    contraction = []
+    fixed_at = []
     for _, muscle, line in lines:
         if isinstance(muscle, LinearMuscle):
             start = 1.0 if muscle.bone == "mandible" else 0.0
@@ -179,7 +181,7 @@ def _bundle(
 
 
 def _gain(line: Line) -> float:
-    """What a line pulls by; a sphincter pulls on no line."""
+    """The gain of a line's pull; a sphincter pulls on no line."""
     return 0.0 if line.fibre is None else line.fibre.gain
 
 
@@ -237,16 +239,19 @@ def _attachments(parts: list[tuple[Array, Array]], least: Array, empty: Array) -
 
 @njit
 def gather(state, activation, skin, turn, weight):  # type: ignore[no-untyped-def]
-    """Add what all active muscles do to `state.hold` and `state.pull`."""
+    """Add stiffness and pull of all active muscles to `state.hold` and `state.pull`."""
     gather_holds(state, activation, skin, turn, weight)
     gather_lines(state.pull, activation, skin, state.lines)
 
 
 @njit(fastmath={"contract"})
 def gather_holds(state, activation, skin, turn, weight):  # type: ignore[no-untyped-def]
-    """Sum what is linear in the activation into one stiffness and one force per vertex."""
-    passive, holds = skin.passive, skin.holds
-    hold, force, steady = state.hold, state.pull, state.work
+    """Sum the terms linear in the activation into one stiffness and one force per vertex."""
+    passive = skin.passive
+    holds = skin.holds
+    hold = state.hold
+    force = state.pull
+    steady = state.work
     steady[:] = 0.0
     for m in range(len(activation)):
         a = activation[m]
@@ -261,7 +266,9 @@ def gather_holds(state, activation, skin, turn, weight):  # type: ignore[no-unty
                 steady[i, k] += scale * holds.value[row, k]
     # Displacements that belong to the mandible turn with it: once per vertex, not per attachment.
     for i in range(len(steady)):
-        sx, sy, sz = steady[i, 0], steady[i, 1], steady[i, 2]
+        sx = steady[i, 0]
+        sy = steady[i, 1]
+        sz = steady[i, 2]
         for k in range(3):
             turned = turn[k, 0] * sx + turn[k, 1] * sy + turn[k, 2] * sz
             force[i, k] += steady[i, k] + weight[i] * (turned - steady[i, k])
@@ -270,8 +277,13 @@ def gather_holds(state, activation, skin, turn, weight):  # type: ignore[no-unty
 @njit
 def gather_lines(force, activation, skin, motion):  # type: ignore[no-untyped-def]
     """Add the pull of all lines that contract, and of all that others carry, to `force` (V, 3)."""
-    muscle, passive, pulls, carries = skin.muscle, skin.passive, skin.pulls, skin.carries
-    contracted, carried, is_carried = motion.contracted, motion.carried, motion.is_carried
+    muscle = skin.muscle
+    passive = skin.passive
+    pulls = skin.pulls
+    carries = skin.carries
+    contracted = motion.contracted
+    carried = motion.carried
+    is_carried = motion.is_carried
     for b in range(len(muscle)):
         a = max(activation[muscle[b]], 0.0)
         scale = passive[muscle[b]] + (1.0 - passive[muscle[b]]) * a

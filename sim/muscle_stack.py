@@ -1,9 +1,11 @@
-"""Muscles that lie on other muscles: control points carried and lifted by what contracts beneath.
+"""Muscles that lie on other muscles: control points carried and lifted by the muscles beneath.
 
-A row of the rig says what a muscle lies on (`lies_on`). Each control point of its lines hangs on
-each of those muscles as skin does (muscles.py), but on one line only, the one that holds it most.
+A row of the rig names the muscles that a muscle lies on (`lies_on`). Each control point of its
+lines hangs on each of those muscles as skin does (muscles.py), but on one line only, the one that
+holds it most.
 With w that hold, u the displacement along the contracting line at its foot, s the bulge there and
-what else is linear in the activation a, and o' what the line is itself carried by, the point moves
+the other terms that are linear in the activation a, and o' the displacement of that line by those
+beneath it, the point moves by
 
     o = sum over muscles beneath of w (u + a s + o')  /  max(1, sum over muscles beneath of w)
 
@@ -13,7 +15,7 @@ carried by o (muscle_forces.py): the relaxed zygomaticus does not hold the cheek
 buccinator bulges under it. A muscle at rest carries nothing. Lines are moved from below, each after
 those that it lies on; rig.py refuses circles.
 
-Source: Kähler et al. 2001, section 4 (muscles attached to muscles). Who lies on whom: the four
+Source: Kähler et al. 2001, section 4 (muscles attached to muscles). The order of muscles: the four
 layers of Freilinger et al. 1987, "Surgical anatomy of the mimic muscle system".
 Differs from it: a point hangs on a muscle by a smooth weight, which fades toward its border.
 """
@@ -55,12 +57,14 @@ def stack_muscles(
     landmarks: Array,
     lip_side: Array,
 ) -> Stack:
-    """Find what each point of each line lies on; lines are numbered muscle by muscle in `order`."""
-    numbers, count = {}, 0
+    """Find the lines under each point of each line; numbered muscle by muscle in `order`."""
+    numbers = {}
+    count = 0
     for n in order:
         numbers[n] = count
         count += len(placed[n].lines)
-    rows, found = [0], list[Entry]()
+    rows = [0]
+    found = list[Entry]()
     for n in order:
         beneath = {numbers[m]: placed[m] for m in numbers if _is_under(placed[m], placed[n])}
         for line in placed[n].lines:
@@ -86,16 +90,18 @@ def _is_under(below: PlacedMuscle, above: PlacedMuscle) -> bool:
 def _entries(
     beneath: dict[int, PlacedMuscle], landmarks: Array, places: AttachedPoints
 ) -> list[Entry]:
-    """What the points of a line lie on, with shares that are at most 1 in all for each point.
+    """The lines under the points of a line, with shares that sum to at most 1 for each point.
 
     beneath: the muscles, by the number of their first line.
     """
-    entries, held = list[Entry](), np.zeros(FIBRE_POINTS)
+    entries = list[Entry]()
+    held = np.zeros(FIBRE_POINTS)
     for first, placed in beneath.items():
         holds = [attach(placed, line, landmarks, places) for line in placed.lines]
         strongest = np.argmax([hold.weight for hold in holds], axis=0)
         for f, hold in enumerate(holds):
-            sample, place = hold.arc * (SAMPLES - 1), points_along(placed.lines[f], hold.arc)
+            sample = hold.arc * (SAMPLES - 1)
+            place = points_along(placed.lines[f], hold.arc)
             for p in np.flatnonzero(strongest == f).tolist():
                 weight = float(hold.weight[p])
                 row = p, first + f, float(sample[p]), float(place[p]), weight, hold.steady[p]
@@ -115,7 +121,7 @@ def points_along(line: Line, arc: Array) -> Array:
 
 
 def _stack_of(rows: Sequence[int], found: Sequence[Entry]) -> Stack:
-    """Arrays of what was found."""
+    """Arrays of the entries that were found."""
     point, line, sample, place, share, steady = zip(*found, strict=True) if found else [()] * 6
     return Stack(
         rows=np.array(rows, dtype=np.uint32),

@@ -2,8 +2,8 @@
 
 Linear muscles attach the skin around each of their fibres (fibres.py). Sphincters draw skin on an
 elliptic ring to a centre, q = p* + (1 - c a)(p - p*); a centre in front of the lips makes them
-protrude, and upper and lower half are separate muscles. Both bulge the skin as they contract. What
-lies on a muscle instead of the skin is attached to it in the same way (muscle_stack.py).
+protrude, and upper and lower half are separate muscles. Both bulge the skin as they contract. A
+muscle that lies on another is attached to it in the same way (muscle_stack.py).
 
 Source: Kähler et al. 2001, section 4: linear muscles, sphincters, bulging.
 Differs from it: skin hangs on fibre points by smooth weights instead of on the nearest ellipsoid,
@@ -117,7 +117,8 @@ def attach(
     placed: PlacedMuscle, line: Line, landmarks: Array, places: AttachedPoints
 ) -> Attachment:
     """Hang places on one line of a muscle in a face."""
-    muscle, side = placed.muscle, placed.side
+    muscle = placed.muscle
+    side = placed.side
     if isinstance(muscle, RingMuscle):
         return attach_to_ring(muscle, line.points, landmarks, side, places)
     assert line.fibre is not None
@@ -194,9 +195,9 @@ def attach_to_ring(
 def _round_mouth(muscle: RingMuscle, x: Array, landmarks: Array) -> Array:
     """Where lips lie, seen from the front, around an oval opening, shape (n, 2) [mm].
 
-    What lies at a share u of the way from the middle to the corner goes to (sin(u 90 deg),
+    Skin at a share u of the way from the middle to the corner goes to (sin(u 90 deg),
     sqrt(1 - u^2)) half axes: a little fuller than an ellipse beside the middle, as corners lag
-    behind. The lip keeps its height, and what lies beside the corner its distance from it.
+    behind. The lip keeps its height, and skin beside the corner its distance from it.
     """
     seam = landmarks[[62, 66], 1].mean()
     corner = abs(landmarks[54, 0])

@@ -7,15 +7,16 @@ work and the rest of the face left alone. Over the controls u, within their limi
         + d^2 sum_c (PRICE |u_c - u_c(0)| + EFFORT (u_c - u_c(0))^2)
 
 i runs over the vertices under the finger, with shares s that add up to 1 and targets t, drawn by d
-on average; j over all others, with areas a against that under the finger. A counts less what lies
-along the line of sight, of which a mouse says nothing. Prices keep controls moderate; few they are
-because the one that mends most is taken first, then what mends most beside it, by slopes at the
-start. So targets alone tell which, not the way that a finger took: what is seen while it moves is
-what stays. Targets farther than the few strongest controls reach that way are brought in to there:
-prices are in proportion to d, and beyond that nothing would be worth them any more.
+on average; j over all others, with areas a against that under the finger. A weakens
+distances along the line of sight, which a mouse does not set. Prices keep controls moderate. They
+are few: the one that mends most is taken first, then the one that mends most beside it, by slopes
+at the start. So targets alone decide which, not the way of the finger: the pose that is seen while
+it moves is the pose that stays. Targets farther than the few strongest controls reach that way are
+brought in to there: prices are in proportion to d, and beyond that no control would be worth them.
 
 Prices, and skin that is to stay, keep the skin from coming all the way to the mouse. So each round
-adds to all targets what is left in the finger's middle, until nothing is or muscles are at limits.
+adds to all targets the distance that is left in the finger's middle, until none is left or muscles
+are at their limits.
 
 Solved by Gauss and Newton. p is a clone of the face, at rest; its slopes are measured on a second
 clone, by moving one control a little and letting the skin come to rest. A clone's muscles have no
@@ -24,7 +25,7 @@ that stick and part, lids on their eyeballs, muscles that stiffen the skin.
 
 Source: own; Sifakis, Neverov, Fedkiw 2005 solve for muscles from dense markers. Prices make it the
 elastic net (Zou, Hastie 2005), solved along one control after the other (Friedman et al. 2007);
-what is left is added back as by Bregman's iteration (Osher et al. 2005).
+the rest is added back as by Bregman's iteration (Osher et al. 2005).
 """
 
 from __future__ import annotations
@@ -43,22 +44,24 @@ STEPS_TO_REST = 6  # of a clone after a small change; less than a twentieth of i
 MOST = 16  # controls that are looked at: those that move the finger's skin most
 MEANT = 0.1  # of how far a control moves any skin: one that moves the finger's less is not meant
 PROBE = 0.25  # of a control's range, to measure its slope
-ALONG = 0.05  # what a distance along the line of sight counts
-REST = 0.0051  # what the rest of the face counts, against as large an area under the finger
+ALONG = 0.05  # weight of a distance along the line of sight
+REST = 0.0051  # weight of the rest of the face, against an equal area under the finger
 PRICE = 0.0041  # of a control at its limit, against skin that does not come along at all
 EFFORT = 0.034  # the same, as the square of its share: two that do the same share it
-FEW = 3  # controls at most are used; and so many strongest tell how far targets can be
-SWEEPS, STILL = 60, 1e-4  # through all controls at most, and a change that is none
-MIDDLE = 6  # power of the firmness: what lies next to the mouse
-ROUNDS, NEAR = 12, 0.01  # of Gauss and Newton at most, and a change that is none
-WORTH = 0.015  # of the squared distances: what mends less beside others is left alone
+FEW = 3  # controls at most are used; and so many strongest decide how far targets can be
+SWEEPS = 60  # through all controls at most
+STILL = 1e-4  # a change that counts as none, between sweeps
+MIDDLE = 6  # power of the firmness, for the skin next to the mouse
+ROUNDS = 12  # of Gauss and Newton at most
+NEAR = 0.01  # a change that counts as none, between rounds
+WORTH = 0.015  # of the squared distances: a control that mends less beside others is not used
 ALIKE = 0.2  # of that: whose worth differs by less come together, as both sides of a muscle
-MEAGRE = 0.25  # of the squared distances: who mends less does not pull that way at all
+MEAGRE = 0.25  # of the squared distances: an answer that mends less is no answer
 Names = tuple[str, ...]
 
 
 class Pull:
-    """A finger on the skin, and the controls that do what it does."""
+    """A finger on the skin, and the controls that move the skin as it does."""
 
     targets: Array  # where the finger draws each of its vertices [head units], shape (n, 3)
 
@@ -76,7 +79,8 @@ class Pull:
         controls that may be used, in one tuple those that go together, as both sides of a muscle
         do. sight: direction in which the finger is seen, shape (3,).
         """
-        self._base, self._probe = face.clone(), face.clone()
+        self._base = face.clone()
+        self._probe = face.clone()
         self._vertices = np.asarray(vertices, np.int64)
         share = np.asarray(firmness, np.float64)
         self._share = share / share.sum()
@@ -84,20 +88,25 @@ class Pull:
         axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
         self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
         _rest(self._base, {})
-        self._home, self._from = self._base.clone(), self._base.positions.copy()
+        self._home = self._base.clone()
+        self._from = self._base.positions.copy()
         self.targets = self._aims = self._from[self._vertices]
         self._area = face.areas / face.areas[self._vertices].sum()
         self._area[self._vertices] = 0.0
-        self._given, self.candidates = candidates, list[Names]()
+        self._given = candidates
+        self.candidates = list[Names]()
         self._value = self._start = np.zeros(0)
         self._drawn = 0.0  # mean square of the way to the aims
 
     def _look(self) -> bool:
         """Before the first answer, find the controls that matter, and slopes; whether any does."""
         if self._given:
-            self.candidates, self._given = self._near(self._given), ()
-            controls, firsts = self._home.controls, [names[0] for names in self.candidates]
-            values, limits = controls.values, [controls.limits[first] for first in firsts]
+            self.candidates = self._near(self._given)
+            self._given = ()
+            controls = self._home.controls
+            firsts = [names[0] for names in self.candidates]
+            values = controls.values
+            limits = [controls.limits[first] for first in firsts]
             self._low, self._high = np.array(limits, np.float64).reshape(-1, 2).T
             self._value = self._start = np.array([values[first] for first in firsts], np.float64)
             self._slope = np.zeros((len(firsts), *self._from.shape))
@@ -105,7 +114,8 @@ class Pull:
             here = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
             is_meant = here > MEANT * np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
-            self._low, self._high = self._low[is_meant], self._high[is_meant]
+            self._low = self._low[is_meant]
+            self._high = self._high[is_meant]
             self._value = self._start = self._start[is_meant]
             self._slope = self._slope[is_meant]
             self._first = self._slope.copy()
@@ -120,7 +130,7 @@ class Pull:
 
     @property
     def mends(self) -> bool:
-        """Whether what was found comes nearer by more than a trace."""
+        """Whether the answer comes nearer by more than a trace."""
         return self._off(self._base.positions) < (1.0 - MEAGRE) * self._drawn
 
     @property
@@ -134,13 +144,15 @@ class Pull:
         return np.asarray(self._middle @ (targets - positions[self._vertices]) @ self._seen)
 
     def solve(self) -> None:
-        """The answer for these targets, whatever the finger did on its way."""
+        """Find the answer for these targets; the way of the finger does not matter."""
         if not self._look():
             return
         self._base.copy_from(self._home)
-        self._slope[:], self._value = self._first, self._start
+        self._slope[:] = self._first
+        self._value = self._start
         self._aim()
-        goal, needed = self._aims, self._more(np.zeros(len(self._start), np.bool_))
+        goal = self._aims
+        needed = self._more(np.zeros(len(self._start), np.bool_))
         while (more := self._more(needed)).sum() > needed.sum():
             needed = more
         for _ in range(ROUNDS):
@@ -203,10 +215,11 @@ class Pull:
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
     def _more(self, needed: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-        """These controls and what mends most beside them, by slopes here; FEW at most, (C,)."""
+        """These controls and the one that mends most beside them, by slopes here; at most FEW."""
         if needed.sum() >= FEW:
             return needed
-        system, worth = self._system(), WORTH * self._drawn
+        system = self._system()
+        worth = WORTH * self._drawn
         costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
         best = needed | (np.arange(len(costs)) == costs.argmin())
         alike = needed | (costs <= costs.min() + ALIKE * worth)
@@ -217,7 +230,8 @@ class Pull:
 
     def _system(self) -> _Lasso:
         """The problem as it looks from here."""
-        now, count = self._base.positions, len(self._value)
+        now = self._base.positions
+        count = len(self._value)
         root = np.sqrt(self._share)[:, None]
         under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
         off = (((self._aims - now[self._vertices]) @ self._seen) * root).ravel()
@@ -254,7 +268,8 @@ class _Lasso(NamedTuple):
 
         usable: the others go back to where they were, shape (C,).
         """
-        total, downhill = self.changed.copy(), self.right.copy()
+        total = self.changed.copy()
+        downhill = self.right.copy()
         downhill += self.gram[:, ~usable] @ total[~usable]
         total[~usable] = 0.0
         for _ in range(SWEEPS):
@@ -273,7 +288,7 @@ class _Lasso(NamedTuple):
         return total - self.changed
 
     def cost(self, usable: npt.NDArray[np.bool_]) -> float:
-        """What is least with these controls alone, but for a constant."""
+        """The least value of the sum with these controls alone, but for a constant."""
         x = self.least(usable)
         spent = self.price @ np.abs(self.changed + x)
         return float(x @ self.gram @ x - 2.0 * self.right @ x + 2.0 * spent)

@@ -1,4 +1,4 @@
-"""The muscle rig: what a rig file may say, as frozen dataclasses with a range for every key.
+"""The muscle rig: the tables of a rig file, as frozen dataclasses with a range for every key.
 
 A rig names tissue, jaw, eyes and muscles in terms of the 68 landmarks (see landmarks.py), in
 millimetres of a head whose outer eye corners are 89.2 mm apart; `sim.create` scales it to the
@@ -14,8 +14,8 @@ head at hand. Muscles are written for the subject's left side and mirrored.
     [[muscle.<name>.fibre]]  one table per fibre of a linear muscle: class Fibre
 
 A point is a table {landmarks = {45 = 0.6, 14 = 0.4}, offset = [-4.5, -17.6, -5.6]}: a mix of
-landmarks (or `landmark = 54`) and an offset lateral, up, forward. Every key has a range; what is
-outside is refused with the muscle, the key and the allowed range.
+landmarks (or `landmark = 54`) and an offset lateral, up, forward. Every key has a range; a
+value outside is refused with the muscle, the key and the allowed range.
 
 Source: Kähler et al. 2001 (fibres, linear muscles and sphincters), 2002 (landmarks carry the
 muscles to another head).
@@ -45,7 +45,7 @@ from .landmarks import LANDMARK_COUNT, LandmarkPoint
 
 BONES = ("cranium", "mandible")
 GATES = ("none", "upper_lip", "lower_lip")
-LIDS = ("upper_close", "lower_raise", "upper_raise")  # what a lid muscle does
+LIDS = ("upper_close", "lower_raise", "upper_raise")  # actions of lid muscles
 
 MOUTH = LandmarkPoint(((62, 0.5), (66, 0.5)))  # where the lips meet
 
@@ -149,7 +149,7 @@ class Eyes(Record):
     fold_plateau: Annotated[float, Within(0.0, 30.0)] = 2.0
     # goes with it in full and at all, if open
     fold_reach: Annotated[float, Within(2.0, 40.0)] = 8.0
-    # of what is not lid, while it moves
+    # of the skin beyond the lid, while it moves
     fold_stiffness: Annotated[float, Within(0.0, 1000.0)] = 0.0
 
 
@@ -179,10 +179,10 @@ class Fibre(Record):
 
 @dataclass(frozen=True)
 class Muscle(Record):
-    """What all kinds of muscle share."""
+    """The keys that all kinds of muscle share."""
 
     name: Hidden[str] = field(default="", kw_only=True)  # the key of its table
-    action: str  # what it does to the face, with the action units
+    action: str  # its effect on the face, with the action units
     group: str  # title under which a panel lists it
     stiffness: Annotated[float, Within(0.0, 500.0)] = 30.0  # of its hold on the skin, per area
     pair: Flag = True  # one on each side, or one in the middle
@@ -224,7 +224,7 @@ class RingMuscle(Muscle):
     bulge: Annotated[float, Within(0.0, 40.0)] = 0.0  # mm outward along the skin's normal
     # mm up for the upper, down for the lower lip
     flare: Annotated[float, Within(-30.0, 30.0)] = 0.0
-    # about the centre: what lies above it goes forward, what lies before it to the side
+    # about the centre: skin above it goes forward, skin before it to the side
     turn_deg: Annotated[Pair, Within(-90.0, 90.0)] = (0.0, 0.0)
     # mm, half width and half height of the oval mouth drawn to; both 0: to the centre
     opening: Annotated[Pair, Within(0.0, 30.0)] = (0.0, 0.0)

@@ -3,7 +3,7 @@
 Skin is simulated in coordinates of the cranium; head pose moves the result as a whole about the
 joint with the spine. The mandible turns about the axis through both condyles and glides with
 them; skin hangs on both by a weight. Eyeballs turn in place. These are rigid degrees of freedom
-beside the muscles: no spring moves a bone. What is moved now is in bones.py.
+beside the muscles: no spring moves a bone. Their poses now are in bones.py.
 
 Source: Kähler et al. 2001, section 3 (skull and rotating jaw under the skin).
 Differs from it: the condyles also glide (a real jaw opens by turning and sliding), and the jaw
@@ -32,7 +32,9 @@ BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
 BACKWARD = 0.15  # of the way forward: nobody draws the jaw back by more than two millimetres
 HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late
-LATERAL, UP, FORWARD = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+LATERAL = (1.0, 0.0, 0.0)
+UP = (0.0, 1.0, 0.0)
+FORWARD = (0.0, 0.0, 1.0)
 SEED_HOLD = 3.0  # seeds are advice, not nails: a soft hold gives a smooth border
 
 
@@ -125,13 +127,22 @@ class Skull:
 def rotation(axis, angle):  # type: ignore[no-untyped-def]
     """Rotation matrix (3, 3) by `angle` [rad] about `axis` (Rodrigues)."""
     length = math.sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])
-    x, y, z = axis[0] / length, axis[1] / length, axis[2] / length
-    c, s = math.cos(angle), math.sin(angle)
+    x = axis[0] / length
+    y = axis[1] / length
+    z = axis[2] / length
+    c = math.cos(angle)
+    s = math.sin(angle)
     d = 1.0 - c
     turn = np.empty((3, 3))
-    turn[0, 0], turn[0, 1], turn[0, 2] = c + d * x * x, d * x * y - s * z, d * x * z + s * y
-    turn[1, 0], turn[1, 1], turn[1, 2] = d * x * y + s * z, c + d * y * y, d * y * z - s * x
-    turn[2, 0], turn[2, 1], turn[2, 2] = d * x * z - s * y, d * y * z + s * x, c + d * z * z
+    turn[0, 0] = c + d * x * x
+    turn[0, 1] = d * x * y - s * z
+    turn[0, 2] = d * x * z + s * y
+    turn[1, 0] = d * x * y + s * z
+    turn[1, 1] = c + d * y * y
+    turn[1, 2] = d * y * z - s * x
+    turn[2, 0] = d * x * z - s * y
+    turn[2, 1] = d * y * z + s * x
+    turn[2, 2] = c + d * z * z
     return turn
 
 
@@ -173,7 +184,8 @@ def move_mandible(condyles, ways, angles, values):  # type: ignore[no-untyped-de
 
     angles: of full opening and of full sideways motion [rad].
     """
-    right, left = condyles[0], condyles[1]
+    right = condyles[0]
+    left = condyles[1]
     opened = rotation(left - right, angles[0] * values[0])
     pivot = (right + left) / 2.0
     shift = pivot - turned(opened, pivot)

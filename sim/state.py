@@ -1,9 +1,9 @@
-"""What changes while a face is simulated, as arrays that the kernels share.
+"""The state of a face while it is simulated, as arrays that the kernels share.
 
 One `State` belongs to one simulation and is allocated once; kernels take it whole and write into
 its arrays. Coordinates are the standard space of coordinates.py [mm, mm/s].
 
-Source: Kähler et al. 2001: point masses at the vertices, moved by what they hang on.
+Source: Kähler et al. 2001: point masses at the vertices, moved by the springs that they hang on.
 """
 
 from __future__ import annotations
@@ -30,14 +30,15 @@ class State(NamedTuple):
     force: Array  # (V, 3) sum of all forces
     decay: Array  # (V,) share of the velocity that damping leaves in a substep
     gain: Array  # (V,) velocity gained per force in a substep
-    work: Array  # (V, 3) work space: nobody finds there what another left
+    work: Array  # (V, 3) work space; its content does not outlive a kernel
     tension: Array  # (E,) of each edge spring, per its length
     lines: LineMotion  # of the muscles
 
     @classmethod
     def at_rest(cls, surface: Surface, line_count: int = 0) -> State:
         """A face that lies still, and whose muscles have so many lines."""
-        scalar, vector = surface.vertex_count, (surface.vertex_count, 3)
+        scalar = surface.vertex_count
+        vector = (surface.vertex_count, 3)
         return cls(
             x=surface.positions.copy(),
             v=np.zeros(vector),

@@ -76,8 +76,9 @@ def advance(state, skin, tick):  # type: ignore[no-untyped-def]
 
 @njit
 def damp(state, skin, h):  # type: ignore[no-untyped-def]
-    """Prepare what damping leaves of a velocity, and what a force adds to it, for this tick."""
-    mass, tissue = skin.mass, skin.tissue
+    """Prepare the decay of velocities by damping, and their gain by a force, for this tick."""
+    mass = skin.mass
+    tissue = skin.tissue
     for i in range(len(mass)):
         rate = np.sqrt((tissue.tangential[i] + state.hold[i]) / mass[i])
         damping = tissue.damping + 2.0 * tissue.damping_ratio * rate
@@ -88,15 +89,25 @@ def damp(state, skin, h):  # type: ignore[no-untyped-def]
 @njit
 def tissue_forces(state, springs):  # type: ignore[no-untyped-def]
     """Set `state.force` to the pull of bone and of muscles, and `state.offset` on the way."""
-    x, carried, normals = state.x, state.carried, state.normals
-    hold, pull, offset, force = state.hold, state.pull, state.offset, state.force
-    tangential, normal = springs.tangential, springs.normal
+    x = state.x
+    carried = state.carried
+    normals = state.normals
+    hold = state.hold
+    pull = state.pull
+    offset = state.offset
+    force = state.force
+    tangential = springs.tangential
+    normal = springs.normal
     for i in range(len(x)):
         dx = x[i, 0] - carried[i, 0]
         dy = x[i, 1] - carried[i, 1]
         dz = x[i, 2] - carried[i, 2]
-        offset[i, 0], offset[i, 1], offset[i, 2] = dx, dy, dz
-        nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+        offset[i, 0] = dx
+        offset[i, 1] = dy
+        offset[i, 2] = dz
+        nx = normals[i, 0]
+        ny = normals[i, 1]
+        nz = normals[i, 2]
         across = (normal[i] - tangential[i]) * (dx * nx + dy * ny + dz * nz)
         along = tangential[i] + hold[i]
         force[i, 0] = pull[i, 0] - along * dx - across * nx
@@ -112,12 +123,20 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
     processor as long as nothing is scattered between them, and the third loads one end of each
     edge once for all edges that begin there.
     """
-    x, offset, force, tension = state.x, state.offset, state.force, state.tension
-    edges, rows, rest_length = springs.edges, springs.rows, springs.rest_length
-    stiffness, shear = springs.stiffness, springs.shear
-    strain_limit, extra = springs.strain_limit, springs.stiffening - 1.0
+    x = state.x
+    offset = state.offset
+    force = state.force
+    tension = state.tension
+    edges = springs.edges
+    rows = springs.rows
+    rest_length = springs.rest_length
+    stiffness = springs.stiffness
+    shear = springs.shear
+    strain_limit = springs.strain_limit
+    extra = springs.stiffening - 1.0
     for e in range(len(edges)):
-        i, j = edges[e, 0], edges[e, 1]
+        i = edges[e, 0]
+        j = edges[e, 1]
         dx = x[j, 0] - x[i, 0]
         dy = x[j, 1] - x[i, 1]
         dz = x[j, 2] - x[i, 2]
@@ -128,11 +147,19 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
         beyond = max(extension - strain_limit * rest_length[e], 0.0)
         tension[e] = stiffness[e] * (extension + extra * beyond) / length
     for i in range(len(x)):
-        ax, ay, az = x[i, 0], x[i, 1], x[i, 2]
-        bx, by, bz = offset[i, 0], offset[i, 1], offset[i, 2]
-        sx, sy, sz = 0.0, 0.0, 0.0
+        ax = x[i, 0]
+        ay = x[i, 1]
+        az = x[i, 2]
+        bx = offset[i, 0]
+        by = offset[i, 1]
+        bz = offset[i, 2]
+        sx = 0.0
+        sy = 0.0
+        sz = 0.0
         for e in range(rows[i], rows[i + 1]):
-            j, t, s = edges[e, 1], tension[e], shear[e]
+            j = edges[e, 1]
+            t = tension[e]
+            s = shear[e]
             fx = t * (x[j, 0] - ax) + s * (offset[j, 0] - bx)
             fy = t * (x[j, 1] - ay) + s * (offset[j, 1] - by)
             fz = t * (x[j, 2] - az) + s * (offset[j, 2] - bz)
@@ -150,9 +177,11 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
 @njit
 def accelerate(state):  # type: ignore[no-untyped-def]
     """First half of semi-implicit Euler: velocities from forces and damping."""
-    v, force = state.v, state.force
+    v = state.v
+    force = state.force
     for i in range(len(v)):
-        decay, gain = state.decay[i], state.gain[i]
+        decay = state.decay[i]
+        gain = state.gain[i]
         for k in range(3):
             v[i, k] = decay * v[i, k] + gain * force[i, k]
 
@@ -164,14 +193,21 @@ def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
     An implicit spring on the distance c of a pair, growing at speed s, with inverse mass w:
     s' = (s - h k w c) / (1 + h^2 k w), stable for any stiffness k.
     """
-    rest, mass, lips = skin.rest, skin.mass, skin.lips
-    grip, h = tick.grip, tick.h
+    rest = skin.rest
+    mass = skin.mass
+    lips = skin.lips
+    grip = tick.grip
+    h = tick.h
     if grip.stiffness <= 0.0:
         return
-    x, v, change = state.x, state.v, state.work
+    x = state.x
+    v = state.v
+    change = state.work
     change[:] = 0.0
     for p in range(len(lips.lower)):
-        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
+        i = lips.lower[p]
+        a = lips.upper[p, 0]
+        b = lips.upper[p, 1]
         w = lips.share[p]
         inverse = 1.0 / mass[i] + w * w / mass[a] + (1.0 - w) * (1.0 - w) / mass[b]
         for k in range(3):
@@ -195,7 +231,8 @@ def hold_lips(state, skin, tick):  # type: ignore[no-untyped-def]
 @njit
 def move(state, h):  # type: ignore[no-untyped-def]
     """Second half: positions from the new velocities."""
-    x, v = state.x, state.v
+    x = state.x
+    v = state.v
     for i in range(len(x)):
         for k in range(3):
             v[i, k] = min(max(v[i, k], -FASTEST), FASTEST)
@@ -205,12 +242,17 @@ def move(state, h):  # type: ignore[no-untyped-def]
 @njit
 def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
     """Project lips that cross by more than `overlap` [mm] back and stop their approach."""
-    rest, mass, lips = skin.rest, skin.mass, skin.lips
-    x, v = state.x, state.v
+    rest = skin.rest
+    mass = skin.mass
+    lips = skin.lips
+    x = state.x
+    v = state.v
     change = state.work  # of each vertex, columns: height, speed upward
     crossed = False
     for p in range(len(lips.lower)):
-        i, a, b = lips.lower[p], lips.upper[p, 0], lips.upper[p, 1]
+        i = lips.lower[p]
+        a = lips.upper[p, 0]
+        b = lips.upper[p, 1]
         w = lips.share[p]
         gap = w * x[a, 1] + (1.0 - w) * x[b, 1] - x[i, 1]
         deep = lips.least_gap[p] - overlap - gap
@@ -247,15 +289,25 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
 
     The lower arch is where the mandible is.
     """
-    x, v, turn, shift = state.x, state.v, mandible.rotation, mandible.shift
+    x = state.x
+    v = state.v
+    turn = mandible.rotation
+    shift = mandible.shift
     arch = teeth.arch
     for c in range(len(teeth.vertex)):
         i = teeth.vertex[c]
-        width, depth, axis = arch[c, 0], arch[c, 1], arch[c, 2]
-        low, high = arch[c, 3], arch[c, 4]
-        px, py, pz = x[i, 0], x[i, 1], x[i, 2]
+        width = arch[c, 0]
+        depth = arch[c, 1]
+        axis = arch[c, 2]
+        low = arch[c, 3]
+        high = arch[c, 4]
+        px = x[i, 0]
+        py = x[i, 1]
+        pz = x[i, 2]
         if teeth.lower[c]:  # into the mandible's own space
-            dx, dy, dz = px - shift[0], py - shift[1], pz - shift[2]
+            dx = px - shift[0]
+            dy = py - shift[1]
+            dz = pz - shift[2]
             px = turn[0, 0] * dx + turn[1, 0] * dy + turn[2, 0] * dz
             py = turn[0, 1] * dx + turn[1, 1] * dy + turn[2, 1] * dz
             pz = turn[0, 2] * dx + turn[1, 2] * dy + turn[2, 2] * dz
@@ -268,12 +320,16 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
         if sunk <= 0.0 or share < LEAST_SHARE:
             continue
         out = sunk / share
-        dx, dy, dz = out * px, 0.0, out * ahead
+        dx = out * px
+        dy = 0.0
+        dz = out * ahead
         if teeth.lower[c]:
             ax = turn[0, 0] * dx + turn[0, 2] * dz
             ay = turn[1, 0] * dx + turn[1, 2] * dz
             az = turn[2, 0] * dx + turn[2, 2] * dz
-            dx, dy, dz = ax, ay, az
+            dx = ax
+            dy = ay
+            dz = az
         x[i, 0] += dx
         x[i, 1] += dy
         x[i, 2] += dz
@@ -288,8 +344,11 @@ def keep_out_of_teeth(state, teeth, mandible):  # type: ignore[no-untyped-def]
 @njit
 def keep_out_of_eyeballs(state, eyes):  # type: ignore[no-untyped-def]
     """Project skin out of the eyeballs and stop its approach."""
-    x, v = state.x, state.v
-    vertex, centre, least_distance = eyes.vertex, eyes.centre, eyes.least_distance
+    x = state.x
+    v = state.v
+    vertex = eyes.vertex
+    centre = eyes.centre
+    least_distance = eyes.least_distance
     for c in range(len(vertex)):
         i = vertex[c]
         dx = x[i, 0] - centre[c, 0]

@@ -34,7 +34,7 @@ SEED_FLOOR = 1e-6  # pulls components without a seed to zero instead of leaving 
 
 @dataclass(frozen=True)
 class Surface:
-    """A triangle mesh at rest, and what the springs need of it."""
+    """A triangle mesh at rest, with the lengths and areas that the springs need."""
 
     positions: Array  # (V, 3) mm
     faces: Indices  # (F, 3)
@@ -94,7 +94,8 @@ class Surface:
         self, vertices: npt.ArrayLike, values: npt.ArrayLike, *, hold: float = SEED_WEIGHT
     ) -> Array:
         """Smoothest field, shape (V,), that takes `values` at the seed `vertices`."""
-        weight, right = np.zeros(self.vertex_count), np.zeros(self.vertex_count)
+        weight = np.zeros(self.vertex_count)
+        right = np.zeros(self.vertex_count)
         seeds = np.asarray(vertices, dtype=np.int64)
         np.add.at(weight, seeds, hold)
         np.add.at(right, seeds, hold * np.asarray(values, dtype=np.float64))

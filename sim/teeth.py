@@ -36,7 +36,7 @@ class Teeth(NamedTuple):
     least: Array  # (C,) how near to the axis it may come, 1 = the arch
 
     def deepest(self, x: Array, mandible: RigidMotion) -> float:
-        """How deep skin at `x` (V, 3) sits in the teeth at most, less what it did at rest [mm]."""
+        """Greatest depth of skin at `x` (V, 3) in the teeth, less that at rest [mm]."""
         if not len(self.vertex):
             return 0.0
         points = x[self.vertex]
@@ -85,7 +85,8 @@ def _arch(teeth: Array) -> Array:
     half_width = np.abs(teeth[:, 0]).max()
     back = teeth[np.abs(teeth[:, 0]) > 0.9 * half_width, 2].mean()
     depth = teeth[:, 2].max() - back
-    low, high = teeth[:, 1].min(), teeth[:, 1].max()
+    low = teeth[:, 1].min()
+    high = teeth[:, 1].max()
     return np.array([half_width + LIP_THICKNESS, depth + LIP_THICKNESS, back, low, high])
 
 

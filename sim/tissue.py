@@ -1,4 +1,4 @@
-"""Skin and tissue: what holds each vertex to the bone under it and to the next, and its weight.
+"""Skin and tissue: the springs from each vertex to the bone and to its neighbours, and its mass.
 
 Kähler ties each skin vertex to a bone or muscle point by a spring and adds its mirror image
 outside the skin, so that skin slides sideways but neither sinks in nor lifts off. With anchor
@@ -112,12 +112,18 @@ def masses_for_step(areas: Array, stiffness: Array, step: float) -> Array:
 @njit
 def carry(state, rest, normals, weight, mandible):  # type: ignore[no-untyped-def]
     """Move the far ends of the tissue springs with the mandible, each vertex by its share."""
-    carried, carried_normals = state.carried, state.normals
-    turn, shift = mandible.rotation, mandible.shift
+    carried = state.carried
+    carried_normals = state.normals
+    turn = mandible.rotation
+    shift = mandible.shift
     for i in range(len(rest)):
         w = weight[i]
-        x, y, z = rest[i, 0], rest[i, 1], rest[i, 2]
-        nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+        x = rest[i, 0]
+        y = rest[i, 1]
+        z = rest[i, 2]
+        nx = normals[i, 0]
+        ny = normals[i, 1]
+        nz = normals[i, 2]
         if w == 0.0:
             for k in range(3):
                 carried[i, k] = rest[i, k]

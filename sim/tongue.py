@@ -28,22 +28,25 @@ from .coordinates import FaceSpace
 from .landmarks import Array, smoothstep
 from .skull import RigidMotion
 
-PARTS = ("tongue", "teeth_lower", "teeth_upper")  # what a tongue needs, and what is around it
+PARTS = ("tongue", "teeth_lower", "teeth_upper")  # the tongue, and the teeth around it
 LIPS = (62, 66, 57, 65, 67)  # landmarks: upper; middle, lower edge and both sides of the lower lip
 SAMPLES = 65  # points of the spine
 DEGREE = 4  # of the polynomial that is the spine at rest
 SLICES = 24  # in which its thickness is measured
-SHORTEST = 5.0  # mm: what is shorter cannot bend
+SHORTEST = 5.0  # mm: a shorter tongue cannot bend
 INCISORS = 5.0  # mm beside the middle: the incisors' edges
 ROOT_FORWARD = 10.0  # mm that the root comes forward
 BODY = 5.0, 4.0  # mm that its middle comes forward and up
 BEHIND = 10.0  # mm behind the lower incisors' edges, where the path over them begins
 RISING = 0.25  # of tongue_out, by which the tip has risen from behind the incisors onto the path
-FILLED, THICKEST = 0.8, 8.5  # of the room between teeth and lips, and at most [mm]
-LEAST_ROOM, FREE_ROOM = 1.0, 3.5  # mm between teeth and lips: nothing comes through, anything does
+FILLED = 0.8  # of the room between teeth and lips: thickness of the tongue there
+THICKEST = 8.5  # mm: its thickness there at most
+LEAST_ROOM = 1.0  # mm between teeth and lips: with less the tongue stays in
+FREE_ROOM = 3.5  # mm between teeth and lips: with more the tongue comes out as far as it is set
 CLEARANCE = 0.6  # mm above teeth and lip
 LIP_FRONT = 4.2  # mm that the lip's most forward skin is in front of its landmarks
-OVERHANG, DROP = 4.0, 9.0  # mm that the tip is in front of the lip and below its edge at the end
+OVERHANG = 4.0  # mm that the tip is in front of the lip at the end
+DROP = 9.0  # mm that the tip is below the edge of the lip at the end
 PALATE = (5.0, -6.0)  # mm up and forward from the upper incisors' edges: where a risen tip is
 FARTHEST_UP = 24.0  # mm that the tip rises
 SUNK = 0.25  # of the way to where it lies on the lip
@@ -120,7 +123,8 @@ class Tongue:
         lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
         tip = lengths[2] + out * (lengths[-1] - lengths[2])
         # Its root is drawn long, its tip keeps its shape.
-        place, rest = np.linspace(0.0, 1.0, SAMPLES), _length(self.spine)
+        place = np.linspace(0.0, 1.0, SAMPLES)
+        rest = _length(self.spine)
         way = tip - rest * place - (tip - rest) * place**2
         on_path: Array = scipy.interpolate.PchipInterpolator(lengths, path)(way)
         return on_path
@@ -141,7 +145,8 @@ def place_tongue(
     if landmarks is None or any(not len(found.get(name, ())) for name in PARTS):
         return None
     rest, lower, upper = (space.to_standard(found[name]) for name in PARTS)
-    tip, root = rest[:, 2].max(), rest[:, 2].min()
+    tip = rest[:, 2].max()
+    root = rest[:, 2].min()
     if len(rest) < SLICES or tip - root < SHORTEST:
         return None
     along = (tip - rest[:, 2]) / (tip - root)

@@ -1,4 +1,4 @@
-"""What hands do to the skin: they strike it, and draw at it by springs."""
+"""Hands on the skin: they strike it, and draw at it by springs."""
 
 from __future__ import annotations
 
@@ -19,14 +19,16 @@ class Touch:
 
     def __init__(self, model: FaceModel, state: State, positions: Array, bones: Bones) -> None:
         """positions: of the skin now [head units], shape (V, 3)."""
-        self._model, self._state, self._positions = model, state, positions
+        self._model = model
+        self._state = state
+        self._positions = positions
         self._bones = bones
         self.end_drag()
 
     def kick(self, velocities: npt.ArrayLike) -> None:
         """Add velocities [head units / s], shape (V, 3): a blow.
 
-        Raises ValueError for another shape, and for what is not finite.
+        Raises ValueError for another shape, and for values that are not finite.
         """
         added = checked.numbers("velocities", velocities, self._positions.shape)
         self._state.v[:] += self._in_standard_space(added)
@@ -40,7 +42,8 @@ class Touch:
         units], shape (n, 3). firmness: of each spring, 0 (none) .. 1 (holds against any muscle),
         shape (n,). Raises ValueError where they do not fit together.
         """
-        wanted, count = "different vertex numbers, shape (n,)", len(self._positions)
+        wanted = "different vertex numbers, shape (n,)"
+        count = len(self._positions)
         numbers = checked.vertex_numbers("vertices", vertices, (None,), count, wanted)
         points = checked.numbers("targets", targets, (len(numbers), 3))
         share = checked.numbers("firmness", firmness, (len(numbers),))
@@ -51,16 +54,18 @@ class Touch:
         if len(np.unique(numbers)) < len(numbers):
             raise ValueError(f"vertices: some are there twice, must be {wanted}")
         away = self._in_standard_space(points - self._positions[numbers])
-        self._vertices, self._to = numbers, self._state.x[numbers] + away
+        self._vertices = numbers
+        self._to = self._state.x[numbers] + away
         self._stiffness = share * self._model.skin.mass[numbers] * FINGER_RATE**2
 
     def end_drag(self) -> None:
         """End every `drag`; the skin swings back."""
-        self._vertices, self._to = np.zeros(0, np.int64), np.zeros((0, 3))
+        self._vertices = np.zeros(0, np.int64)
+        self._to = np.zeros((0, 3))
         self._stiffness = np.zeros(0)
 
     def add_to(self, state: State) -> None:
-        """Add the springs to what holds and pulls the skin."""
+        """Add the springs to `state.hold` and `state.pull`."""
         if len(self._vertices):
             drawn = self._to - state.carried[self._vertices]
             state.hold[self._vertices] += self._stiffness

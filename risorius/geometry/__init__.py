@@ -1,4 +1,4 @@
-"""What several rooms compute on triangles and colours, below all of them; numpy and numba only.
+"""Computations on triangles and colours that several rooms share; numpy and numba only.
 
 closest.py      the closest points of a triangle mesh
 normals.py      cross products of triangles, normals of vertices

@@ -1,8 +1,8 @@
 """The closest points of a triangle mesh, exactly, or those that look the same way.
 
 Triangles are sorted along a curve that fills space and boxed in pairs, pairs of pairs and so on; a
-search goes down the nearer box first and skips boxes farther than what it has found. So the boxes
-are as deep where triangles cluster as where they do not.
+search goes down the nearer box first and skips boxes farther than the nearest triangle so far. So
+the boxes are as deep where triangles cluster as where they do not.
 
 Source: Morton 1966 for the curve; Ericson 2005, "Real-time collision detection", section 5.1.5, for
 one triangle.
@@ -69,7 +69,8 @@ def closest_points(
     queries = np.ascontiguousarray(points, dtype=np.float64)
     wanted = np.zeros_like(queries) if normals is None else np.array(normals, dtype=np.float64)
     distances = np.empty(len(queries))
-    triangles, weights = np.empty(len(queries), np.int64), np.empty((len(queries), 3))
+    triangles = np.empty(len(queries), np.int64)
+    weights = np.empty((len(queries), 3))
     boxes = _boxes(corners)
     _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triangles, weights)
     triangles = order[triangles]
@@ -121,14 +122,18 @@ def _box_distance(box, point):  # type: ignore[no-untyped-def]
 
 @njit
 def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triangles, weights):  # type: ignore[no-untyped-def]
-    """Write what is closest to each query: distance, triangle, barycentric coordinates."""
+    """Write the closest place to each query: distance, triangle, barycentric coordinates."""
     leaf_count = boxes.shape[0] // 2
-    stack, reach = np.empty(STACK, np.int64), np.empty(STACK)
+    stack = np.empty(STACK, np.int64)
+    reach = np.empty(STACK)
     for q in range(queries.shape[0]):
-        point, way = queries[q], wanted[q]
+        point = queries[q]
+        way = wanted[q]
         any_way = way[0] == 0.0 and way[1] == 0.0 and way[2] == 0.0
         least = np.inf
-        depth, stack[0], reach[0] = 1, 1, 0.0
+        depth = 1
+        stack[0] = 1
+        reach[0] = 0.0
         while depth > 0:
             depth -= 1
             node = stack[depth]
@@ -147,29 +152,45 @@ def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triang
                     turned = 0.0 if any_way else min(max(SAME_WAY - facing, 0.0), 1.0)
                     if distance + wrong_side * turned < least:
                         least = distance + wrong_side * turned
-                        distances[q], triangles[q] = distance, t
-                        weights[q, 0], weights[q, 1], weights[q, 2] = u, v, w
+                        distances[q] = distance
+                        triangles[q] = t
+                        weights[q, 0] = u
+                        weights[q, 1] = v
+                        weights[q, 2] = w
                 continue
             left = _box_distance(boxes[2 * node], point)
             right = _box_distance(boxes[2 * node + 1], point)
             far = 0 if left > right else 1  # the nearer one comes on top of the stack
-            stack[depth], reach[depth] = 2 * node + far, max(left, right)
-            stack[depth + 1], reach[depth + 1] = 2 * node + 1 - far, min(left, right)
+            stack[depth] = 2 * node + far
+            reach[depth] = max(left, right)
+            stack[depth + 1] = 2 * node + 1 - far
+            reach[depth + 1] = min(left, right)
             depth += 2
 
 
 @njit
 def closest_on_triangle(point, a, b, c):  # type: ignore[no-untyped-def]
     """Barycentric coordinates of the place on triangle a, b, c that is closest to a point."""
-    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
-    wx, wy, wz = point[0] - a[0], point[1] - a[1], point[2] - a[2]
-    d1, d2 = ux * wx + uy * wy + uz * wz, vx * wx + vy * wy + vz * wz
+    ux = b[0] - a[0]
+    uy = b[1] - a[1]
+    uz = b[2] - a[2]
+    vx = c[0] - a[0]
+    vy = c[1] - a[1]
+    vz = c[2] - a[2]
+    wx = point[0] - a[0]
+    wy = point[1] - a[1]
+    wz = point[2] - a[2]
+    d1 = ux * wx + uy * wy + uz * wz
+    d2 = vx * wx + vy * wy + vz * wz
     if d1 <= 0.0 and d2 <= 0.0:
         return 1.0, 0.0, 0.0
-    uu, uv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz
+    uu = ux * ux + uy * uy + uz * uz
+    uv = ux * vx + uy * vy + uz * vz
     vv = vx * vx + vy * vy + vz * vz
-    d3, d4, d5, d6 = d1 - uu, d2 - uv, d1 - uv, d2 - vv
+    d3 = d1 - uu
+    d4 = d2 - uv
+    d5 = d1 - uv
+    d6 = d2 - vv
     if d3 >= 0.0 and d4 <= d3:
         return 0.0, 1.0, 0.0
     if d6 >= 0.0 and d5 <= d6:

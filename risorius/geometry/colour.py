@@ -13,6 +13,6 @@ def to_linear(screen: npt.ArrayLike) -> Doubles:
 
 
 def to_screen(light: npt.ArrayLike) -> Doubles:
-    """Linear light of any shape as screen colours; what is brighter than white is white."""
+    """Linear light of any shape as screen colours; colours brighter than white become white."""
     values = np.clip(np.asarray(light, dtype=np.float64), 0.0, 1.0)
     return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1.0 / 2.4) - 0.055)

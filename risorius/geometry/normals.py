@@ -1,6 +1,6 @@
 """Cross products of triangles, and normals of vertices, in double precision.
 
-What refiners need in every frame, in single precision, is a kernel of theirs
+Refiners find normals in every frame by a kernel of their own, in single precision
 (refine/mesh/normals.py).
 """
 
@@ -18,7 +18,8 @@ def cross_products(vertices: Doubles, faces: npt.NDArray[np.integer]) -> Doubles
 
 def vertex_normals(vertices: Doubles, faces: npt.NDArray[np.integer]) -> Doubles:
     """Unit normals of the vertices, faces weighted by area, shape (V, 3); zero where none is."""
-    cross, corners = cross_products(vertices, faces), faces.T.ravel()
+    cross = cross_products(vertices, faces)
+    corners = faces.T.ravel()
     total = np.stack(
         [np.bincount(corners, np.tile(each, 3), len(vertices)) for each in cross.T], axis=1
     )

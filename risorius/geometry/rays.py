@@ -20,12 +20,17 @@ def crossings(origins: Doubles, directions: Doubles, corners: Doubles) -> tuple[
     and triangle, above 0 where the line comes from outside; the rest is 0 where it is PARALLEL.
     The triangle is met where u, v and 1 - u - v are not negative. Four arrays (n,).
     """
-    a, ab, ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    across, from_a = np.cross(directions, ac), origins - a
-    turned, volume = np.cross(from_a, ab), (ab * across).sum(axis=1)
+    a = corners[:, 0]
+    ab = corners[:, 1] - corners[:, 0]
+    ac = corners[:, 2] - corners[:, 0]
+    across = np.cross(directions, ac)
+    from_a = origins - a
+    turned = np.cross(from_a, ab)
+    volume = (ab * across).sum(axis=1)
     is_met = np.abs(volume) > PARALLEL
     share = np.divide(1.0, volume, out=np.zeros_like(volume), where=is_met)
-    u, v = (from_a * across).sum(axis=1), (turned * directions).sum(axis=1)
+    u = (from_a * across).sum(axis=1)
+    v = (turned * directions).sum(axis=1)
     return volume, u * share, v * share, (ac * turned).sum(axis=1) * share
 
 

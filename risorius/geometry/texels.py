@@ -34,7 +34,7 @@ class Texels:
         """Those in triangles with `corners` (F, 3, 2), or within a margin [texels] beside them.
 
         corners: texture coordinates, from the left and from below, 0..1. size: height and width.
-        What lies deepest in its triangle comes last, so that it is drawn over margins. Raises
+        Texels deepest in their triangles come last, so that they are drawn over margins. Raises
         ValueError where triangles cover the picture many times over.
         """
         height, width = size
@@ -44,9 +44,11 @@ class Texels:
         boxes = np.concatenate([low, high.astype(np.int64)], axis=1)
         if np.maximum(boxes[:, 2:] - boxes[:, :2] + 1, 0).prod(axis=1).sum() > MOST_TRIED:
             raise ValueError("texture coordinates cover the picture many times over")
-        found, weights = np.empty((0, 3), np.int64), np.empty((0, 3))
+        found = np.empty((0, 3), np.int64)
+        weights = np.empty((0, 3))
         count = _walk(places, boxes, margin, found, weights)
-        found, weights = np.empty((count, 3), np.int64), np.empty((count, 3))
+        found = np.empty((count, 3), np.int64)
+        weights = np.empty((count, 3))
         _walk(places, boxes, margin, found, weights)
         order = np.argsort(weights.min(axis=1), kind="stable")
         inside = np.maximum(weights[order], 0.0)
@@ -54,7 +56,7 @@ class Texels:
         return cls(rows, columns, faces, inside / inside.sum(axis=1, keepdims=True))
 
     def interpolate(self, values: npt.NDArray[np.floating]) -> Doubles:
-        """What corners have, (F, 3, ...), at the texels, shape (n, ...)."""
+        """Values of corners, (F, 3, ...), at the texels, shape (n, ...)."""
         found: Doubles = np.einsum("nc,nc...->n...", self.weights, values[self.faces])
         return found
 
@@ -66,7 +68,8 @@ def rates(corners: npt.NDArray[np.floating], values: npt.NDArray[np.floating]) -
     """
     steps, changes = (np.diff(each, axis=1).astype(np.float64) for each in (corners, values))
     is_flat = np.abs(np.linalg.det(steps)) < 1e-14
-    steps[is_flat], changes[is_flat] = np.eye(2), 0.0
+    steps[is_flat] = np.eye(2)
+    changes[is_flat] = 0.0
     return np.asarray(np.linalg.solve(steps, changes))
 
 
@@ -92,7 +95,11 @@ def _walk(
                 of_a = 1.0 - of_b - of_c
                 if of_a > -slack_a and of_b > -slack_b and of_c > -slack_c:
                     if count < found.shape[0]:
-                        found[count, 0], found[count, 1], found[count, 2] = y, x, t
-                        weights[count, 0], weights[count, 1], weights[count, 2] = of_a, of_b, of_c
+                        found[count, 0] = y
+                        found[count, 1] = x
+                        found[count, 2] = t
+                        weights[count, 0] = of_a
+                        weights[count, 1] = of_b
+                        weights[count, 2] = of_c
                     count += 1
     return count

@@ -43,6 +43,7 @@ def test_finds_what_looks_the_same_way() -> None:
     count = len(grid.vertices)
     vertices = np.concatenate([grid.vertices, grid.vertices - [0.0, 0.0, 0.01]])
     faces = np.concatenate([grid.faces, grid.faces[:, ::-1] + count])
-    points, ways = np.tile([[3.3, 2.2, -0.005]], (2, 1)), np.array([[0, 0, 1.0], [0, 0, -1.0]])
+    points = np.tile([[3.3, 2.2, -0.005]], (2, 1))
+    ways = np.array([[0, 0, 1.0], [0, 0, -1.0]])
     found = closest_points(points, vertices, faces, ways, wrong_side=1.0)
     assert found.triangles[0] < len(grid.faces) <= found.triangles[1]

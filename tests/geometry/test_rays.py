@@ -9,7 +9,7 @@ from risorius.geometry.rays import crossings, exits
 
 
 def test_weights_and_distance_name_one_point() -> None:
-    """On the triangle as on the line; the volume tells from which side, 0 for from its edge."""
+    """On the triangle as on the line; the sign of the volume gives the side, 0 from the edge."""
     random = np.random.default_rng(0)
     origins, directions = random.normal(size=(2, 200, 3))
     corners = random.normal(size=(200, 3, 3))

@@ -9,7 +9,9 @@ from risorius import sim
 from risorius.assets.model import Head
 from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement, without
 
-NOSE_TIP, CHIN, INNER_LIPS = 30, 8, (62, 66)
+NOSE_TIP = 30
+CHIN = 8
+INNER_LIPS = (62, 66)
 
 
 @pytest.mark.parametrize(
@@ -46,7 +48,8 @@ def test_mouths_that_are_open_at_rest_play(
     """A mesh may come with its lips apart: all controls are there, and lips stay so far apart."""
     opened = head.vertices + settled_displacement(simulation, {"jaw_open": opening})
     parts = without(head)
-    parts.vertices, parts.layers = opened, head.layers
+    parts.vertices = opened
+    parts.layers = head.layers
     other = sim.create(parts)
     assert set(other.controls.names) == set(simulation.controls.names)
     apart = lip_gap(other, head)

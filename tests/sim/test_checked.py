@@ -13,7 +13,8 @@ from risorius.sim.layers import read_layers
 from tests.meshes import open_grid
 
 HUGE = 10**400
-NAN, INF = float("nan"), float("inf")
+NAN = float("nan")
+INF = float("inf")
 # What is no number, no array of numbers and no name at any of the doors.
 NONSENSE = (None, "0.5", b"1", [], [[1], [1, 2]], object(), 1j, [None], "x" * 10**6, len, {1: 2})
 NO_NUMBER = (*NONSENSE, NAN, INF, -INF, HUGE, -HUGE, 10**5000, [0.5], np.array([0.5]))
@@ -174,10 +175,13 @@ def test_what_is_no_head_is_told(head: object) -> None:
 )
 def test_arrays_of_any_layout_are_taken(layout: Callable[[Any], Any]) -> None:
     """Columns first, every second row, another byte order, small whole numbers, lists: the same."""
-    plain, mesh = sim.create(grid()), grid()
-    mesh.vertices, mesh.faces = layout(mesh.vertices), layout(mesh.faces)
+    plain = sim.create(grid())
+    mesh = grid()
+    mesh.vertices = layout(mesh.vertices)
+    mesh.faces = layout(mesh.faces)
     other = sim.create(mesh)
-    push, rows = np.arange(3.0 * COUNT).reshape(COUNT, 3), np.array([1, 2])
+    push = np.arange(3.0 * COUNT).reshape(COUNT, 3)
+    rows = np.array([1, 2])
     plain.touch.kick(push)
     other.touch.kick(layout(push))
     plain.touch.drag(rows, push[:2], [1.0, 1.0])

@@ -56,7 +56,8 @@ def test_muscle_pulls_its_landmark(
 def test_joy(simulation: sim.Simulation, head: Head) -> None:
     """Mouth corners up and out, cheeks up."""
     moved = settled_displacement(simulation, head.expressions["joy"])
-    right, left = moved_landmarks(head, moved, 48), moved_landmarks(head, moved, 54)
+    right = moved_landmarks(head, moved, 48)
+    left = moved_landmarks(head, moved, 54)
     assert left[1] > 5.0
     assert right[1] > 5.0
     assert left[0] > 3.0 > -3.0 > right[0]

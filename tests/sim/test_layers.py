@@ -73,7 +73,8 @@ def test_rows_share_into_the_layers_below() -> None:
 def test_sides_of_a_pair_add_up_to_the_whole() -> None:
     """A side takes its own muscles and half of one in the middle."""
     subject = controls(UNITS)
-    left, right = wanted(subject, A_left=1.0), wanted(subject, A_right=1.0)
+    left = wanted(subject, A_left=1.0)
+    right = wanted(subject, A_right=1.0)
     assert left == pytest.approx(
         {"puller_left": 0.8, "puller_right": 0.0, "middle": 0.3, "slide": 0.0}
     )
@@ -140,7 +141,8 @@ def test_what_rows_make_sure_of_does_not_add() -> None:
 
 def test_sums_are_cut_off_once_and_in_any_order() -> None:
     """Own value and contributions add up, opposite ones cancel, and limits hold at the end."""
-    subject, other = controls(UNITS, FACES), controls(UNITS, FACES)
+    subject = controls(UNITS, FACES)
+    other = controls(UNITS, FACES)
     values = {"puller_left": 0.5, "A": 0.9, "both": 1.0, "B_left": 1.0, "B_right": 0.4}
     for name, value in values.items():
         subject.set_all({name: value})
@@ -216,7 +218,8 @@ def test_each_row_of_the_shipped_tables_does_something(controls: Controls) -> No
 
 def mirrored(sums: dict[str, float]) -> dict[str, float]:
     """The same on the other side."""
-    other, found = {"left": "right", "right": "left"}, {}
+    other = {"left": "right", "right": "left"}
+    found = {}
     for name, value in sums.items():
         stem, mark, side = name.rpartition("_")
         is_turned = name.startswith("gaze_horizontal") or name == "jaw_sideways"

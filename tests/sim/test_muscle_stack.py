@@ -13,7 +13,8 @@ from risorius.sim.fibres import FIBRE_POINTS, SAMPLES, move_lines
 from tests.sim.poses import settled_displacement, without
 
 Array = npt.NDArray[np.float64]
-ABOVE, BENEATH = "zygomaticus_major", "buccinator"
+ABOVE = "zygomaticus_major"
+BENEATH = "buccinator"
 
 
 def stacked(head: Head, stack: dict[str, list[str]], **changes: float) -> SimpleNamespace:
@@ -59,17 +60,21 @@ def test_nothing_is_carried_by_what_does_not_lie_beneath(head: Head) -> None:
 
 def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
     """Each point moves by shares of what is beneath, in plain numpy; they are at most 1 in all."""
-    muscles, mandible = simulation._model.muscles, simulation._model.skull.mandible_motion
+    muscles = simulation._model.muscles
+    mandible = simulation._model.skull.mandible_motion
     pose = mandible(0.5, 0.3, 0.2)
     activation = np.linspace(-0.2, 1.0, len(muscles.names))
-    stack, bundle, motion = muscles.stack, muscles.bundle, simulation._state.lines
+    stack = muscles.stack
+    bundle = muscles.bundle
+    motion = simulation._state.lines
     move_lines(bundle, stack, activation, pose, motion)
     active = np.maximum(activation, 0.0)[bundle.muscle]
     carried = np.zeros_like(motion.carried)
     shares = np.zeros(carried.shape[:2])
     owner = np.repeat(np.arange(len(carried)), np.diff(stack.rows))
     for row, b in enumerate(owner):
-        p, c = int(stack.point[row]), int(stack.line[row])
+        p = int(stack.point[row])
+        c = int(stack.line[row])
         assert c < b
         steady = active[c] * stack.steady[row]
         steady = steady + bundle.mandible[b, p] * (pose.rotation @ steady - steady)

@@ -10,8 +10,14 @@ from tests.sim.poses import FRAME
 
 Array = npt.NDArray[np.float64]
 FINGER = 16.0  # mm
-RIGHT_CORNER, LEFT_CORNER, LEFT_BROW, NOSE, CHIN = 48, 54, 24, 30, 8
-LEFT_LID, INNER_BROW, LEFT_WING = 44, 22, 35
+RIGHT_CORNER = 48
+LEFT_CORNER = 54
+LEFT_BROW = 24
+NOSE = 30
+CHIN = 8
+LEFT_LID = 44
+INNER_BROW = 22
+LEFT_WING = 35
 
 
 def candidates(face: sim.Simulation) -> list[tuple[str, ...]]:

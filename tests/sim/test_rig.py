@@ -145,7 +145,8 @@ def test_built_in_rig_is_complete(head: Head) -> None:
 def test_points_are_mirrored() -> None:
     """On the right a point uses the mirrored landmark and the mirrored offset."""
     landmarks = np.zeros((68, 3))
-    landmarks[54], landmarks[48] = (30.0, -60.0, 5.0), (-30.0, -60.0, 5.0)
+    landmarks[54] = (30.0, -60.0, 5.0)
+    landmarks[48] = (-30.0, -60.0, 5.0)
     point = LandmarkPoint(((54, 1.0),), (2.0, 3.0, 4.0))
     assert np.array_equal(point.on(landmarks, Side.LEFT), [32.0, -57.0, 9.0])
     assert np.array_equal(point.on(landmarks, Side.RIGHT), [-32.0, -57.0, 9.0])

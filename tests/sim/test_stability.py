@@ -37,7 +37,8 @@ def test_clones_do_not_disturb_each_other(simulation: sim.Simulation) -> None:
     """In two threads at once each moves, to the bit, as it does alone."""
 
     def film(name: str) -> list[np.ndarray]:
-        clone, frames = simulation.clone(), []
+        clone = simulation.clone()
+        frames = []
         for frame in range(240):
             clone.controls.set(name, float(frame // 20 % 2))
             clone.step(FRAME)
@@ -131,9 +132,15 @@ def _moved(simulation: sim.Simulation) -> np.ndarray:
 
 def _energy(simulation: sim.Simulation) -> float:
     """What moves and what springs hold, muscles at rest, in skin mass units times (mm/s)^2."""
-    skin, state, grip = simulation._model.skin, simulation._state, simulation._grip
-    away, tissue, edges, lips = state.x - state.carried, skin.tissue, skin.edges, skin.lips
-    across, beside = (away * state.normals).sum(axis=1), (away**2).sum(axis=1)
+    skin = simulation._model.skin
+    state = simulation._state
+    grip = simulation._grip
+    away = state.x - state.carried
+    tissue = skin.tissue
+    edges = skin.edges
+    lips = skin.lips
+    across = (away * state.normals).sum(axis=1)
+    beside = (away**2).sum(axis=1)
     stored = (tissue.tangential + state.hold) * beside
     stored += (tissue.normal - tissue.tangential) * across**2
     i, j = edges.edges.T
@@ -141,7 +148,9 @@ def _energy(simulation: sim.Simulation) -> float:
     beyond = np.maximum(longer - edges.strain_limit * edges.rest_length, 0.0)
     stretched = edges.stiffness * (longer**2 + (edges.stiffening - 1.0) * beyond**2)
     stretched += edges.shear * ((away[j] - away[i]) ** 2).sum(axis=1)
-    (a, b), w, moved = lips.upper.T, lips.share[:, None], state.x - skin.rest
+    (a, b) = lips.upper.T
+    w = lips.share[:, None]
+    moved = state.x - skin.rest
     apart = moved[lips.lower] - w * moved[a] - (1.0 - w) * moved[b] - (0.0, grip.overlap, 0.0)
     sealed = grip.stiffness * lips.seal * (apart**2 @ np.array(SEAL_AXES))
     kinetic = skin.mass[:, None] * state.v**2

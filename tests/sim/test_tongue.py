@@ -9,7 +9,8 @@ from risorius.assets.model import Head, Part
 from tests.sim.poses import FRAME, settled_displacement, without
 
 Array = npt.NDArray[np.float64]
-LOWER_LIP, UPPER_LIP = 66, 62
+LOWER_LIP = 66
+UPPER_LIP = 62
 POSES = (
     {"tongueOut": 0.3}, {"tongueOut": 0.7}, {"tongueOut": 1.0},
     {"tongue_out": 0.5, "jaw_open": 0.35}, {"tongue_out": 1.0, "jaw_open": 0.5},
@@ -71,7 +72,8 @@ def test_the_tongue_comes_out_over_the_lip(
     simulation: sim.Simulation, head: Head, jaw: float
 ) -> None:
     """Farther and farther; at the end it hangs in front of the lower lip."""
-    tip, reach = part(head, "tongue").vertices[:, 2].argmax(), []
+    tip = part(head, "tongue").vertices[:, 2].argmax()
+    reach = []
     for out in (0.0, 0.25, 0.5, 0.75, 1.0):
         settled_displacement(simulation, {"jaw_open": jaw, "tongue_out": out})
         reach.append(tongue_now(simulation)[:, 2].max())
@@ -112,7 +114,8 @@ def test_the_tongue_pierces_nothing(
 ) -> None:
     """No skin in front of the teeth and no front tooth is in the tongue."""
     settled_displacement(simulation, pose)
-    tongue, faces = tongue_now(simulation), part(head, "tongue").faces
+    tongue = tongue_now(simulation)
+    faces = part(head, "tongue").faces
     skin = with_middles(simulation.positions, head.faces)
     skin = skin[(np.abs(skin[:, 0]) < 30.0) & (skin[:, 2] > 88.0) & (skin[:, 1] < -40.0)]
     assert not is_within(skin, tongue, faces).any()
@@ -136,7 +139,8 @@ def test_the_measure_sees_what_is_pierced(head: Head) -> None:
 def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
     """It needs some frames, even as the lips burst open, and is back half a second later."""
     simulation.controls.pose({"jaw_open": 0.4, "tongue_out": 1.0})
-    before, steps = tongue_now(simulation), []
+    before = tongue_now(simulation)
+    steps = []
     for frame in range(60):
         if frame == 30:
             simulation.controls.pose({"jaw_open": 0.4})

@@ -30,7 +30,8 @@ def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.S
 
 def test_edge_forces(stirred: sim.Simulation) -> None:
     """Biphasic tension along each edge plus shear on the difference of the ends' offsets."""
-    edges, state = stirred._model.skin.edges, stirred._state
+    edges = stirred._model.skin.edges
+    state = stirred._state
     x = state.x
     state.offset[:] = x - state.carried
     state.force[:] = 0.0
@@ -53,7 +54,8 @@ def test_edge_forces(stirred: sim.Simulation) -> None:
 
 def test_tissue_forces(stirred: sim.Simulation) -> None:
     """Anchors are soft along the skin and stiff across it; muscles add hold and pull."""
-    springs, state = stirred._model.skin.tissue, stirred._state
+    springs = stirred._model.skin.tissue
+    state = stirred._state
     tissue_forces(state, springs)
     away = state.x - state.carried
     across = (away * state.normals).sum(axis=1, keepdims=True) * state.normals
@@ -67,8 +69,12 @@ def test_seal_is_an_implicit_spring(
     stirred: sim.Simulation, generator: np.random.Generator
 ) -> None:
     """A pair on its own ends a substep at the speed that the spring's force at its end explains."""
-    skin, h, grip = stirred._model.skin, 0.002, Grip(3.0, 0.4)
-    rest, mass, lips = skin.rest, skin.mass, skin.lips
+    skin = stirred._model.skin
+    h = 0.002
+    grip = Grip(3.0, 0.4)
+    rest = skin.rest
+    mass = skin.mass
+    lips = skin.lips
     for pair in (0, 7, 11):
         alone = lips._replace(
             averaging=np.where(np.arange(len(lips.lower)) == pair, 1.0, 0.0),
@@ -78,7 +84,9 @@ def test_seal_is_an_implicit_spring(
         )
         before = state.v.copy()
         hold_lips(state, skin._replace(lips=alone), Tick(1, h, grip, REST))
-        i, (a, b), w = lips.lower[pair], lips.upper[pair], lips.share[pair]
+        i = lips.lower[pair]
+        (a, b) = lips.upper[pair]
+        w = lips.share[pair]
         ends = state.x + h * state.v - rest
         apart = ends[i] - w * ends[a] - (1.0 - w) * ends[b] - (0.0, grip.overlap, 0.0)
         force = grip.stiffness * lips.seal[pair] * apart * SEAL_AXES
@@ -92,8 +100,11 @@ def test_seal_is_an_implicit_spring(
 def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     """Velocities after the seal has acted on all pairs at once, each share averaged."""
     skin = face._model.skin
-    lips, mass, rest = skin.lips, skin.mass, skin.rest
-    state, grip = face._state, face._grip
+    lips = skin.lips
+    mass = skin.mass
+    rest = skin.rest
+    state = face._state
+    grip = face._grip
     w = lips.share[:, None]
 
     def difference(of: Array) -> Array:
@@ -103,7 +114,8 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     light = inverse[lips.lower] + w**2 * inverse[lips.upper[:, 0]]
     light = light + (1.0 - w) ** 2 * inverse[lips.upper[:, 1]]
     give = h * light * grip.stiffness * lips.seal[:, None] * SEAL_AXES
-    apart, speed = difference(state.x - rest), difference(state.v)
+    apart = difference(state.x - rest)
+    speed = difference(state.v)
     apart[:, 1] -= grip.overlap
     change = (speed - give * apart) / (1.0 + h * give) - speed
     impulse = lips.averaging[:, None] * change / light
@@ -116,7 +128,8 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
 
 def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
     """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw."""
-    muscles, mandible = stirred._model.muscles, stirred.bones.mandible
+    muscles = stirred._model.muscles
+    mandible = stirred.bones.mandible
     bundle = muscles.bundle
     activation = np.linspace(0.0, 1.0, len(bundle.muscle))
     table = np.zeros_like(stirred._state.lines.contracted)
@@ -137,16 +150,22 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
 
 def test_muscle_pull(stirred: sim.Simulation) -> None:
     """Attachment and pull of all muscles, summed muscle by muscle and line by line."""
-    anatomy, mandible = stirred._model, stirred.bones.mandible
-    muscles, weight = anatomy.muscles, anatomy.skull.mandible_weight
+    anatomy = stirred._model
+    mandible = stirred.bones.mandible
+    muscles = anatomy.muscles
+    weight = anatomy.skull.mandible_weight
     activation = np.linspace(-0.1, 1.0, len(muscles.names))
-    hold, force = np.zeros(len(weight)), np.zeros((len(weight), 3))
+    hold = np.zeros(len(weight))
+    force = np.zeros((len(weight), 3))
     muscles.add(activation, mandible, weight, stirred._state._replace(hold=hold, pull=force))
-    a, skin, motion = np.maximum(activation, 0.0), muscles.skin, stirred._state.lines
+    a = np.maximum(activation, 0.0)
+    skin = muscles.skin
+    motion = stirred._state.lines
     assert 0.0 in skin.passive
     tight = skin.passive + (1.0 - skin.passive) * a
     owner = np.repeat(np.arange(len(a)), np.diff(skin.holds.rows))
-    i, steady = skin.holds.vertex, skin.holds.value
+    i = skin.holds.vertex
+    steady = skin.holds.value
     expected_hold = np.zeros_like(hold)
     np.add.at(expected_hold, i, ((1.0 - skin.passive) * a)[owner] * skin.holds.weight)
     turned = steady + weight[i, None] * (steady @ mandible.rotation.T - steady)
@@ -171,8 +190,11 @@ def test_muscle_pull(stirred: sim.Simulation) -> None:
 
 def testbones_carry_anchors(stirred: sim.Simulation) -> None:
     """Anchors blend between cranium and mandible by weight; their normals stay unit."""
-    anatomy, mandible, state = stirred._model, stirred.bones.mandible, stirred._state
-    surface, weight = anatomy.surface, anatomy.skull.mandible_weight
+    anatomy = stirred._model
+    mandible = stirred.bones.mandible
+    state = stirred._state
+    surface = anatomy.surface
+    weight = anatomy.skull.mandible_weight
     carry(state, surface.positions, surface.normals, weight, mandible)
     moved = mandible.displacements(surface.positions)
     assert np.abs(moved).max() > 5.0
@@ -182,9 +204,11 @@ def testbones_carry_anchors(stirred: sim.Simulation) -> None:
 
 def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
     """Lids keep their distance to the eyeball's centre but for how far they sink; margins meet."""
-    anatomy, state = simulation._model, simulation._state
+    anatomy = simulation._model
+    state = simulation._state
     assert anatomy.lids is not None
-    lids, rest = anatomy.lids.vertices, anatomy.surface.positions
+    lids = anatomy.lids.vertices
+    rest = anatomy.surface.positions
     closed = np.array([[1.0, 0.4, 0.0]] * len(lids.centres))
     gaze = np.array([[0.1, 0.3], [0.0, -0.2]])
     centre = lids.centres[lids.eye]
@@ -210,11 +234,15 @@ def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
 
 def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
     """Raised and looking up, the fold is held and goes up; at rest nothing holds it."""
-    anatomy, state = simulation._model, simulation._state
+    anatomy = simulation._model
+    state = simulation._state
     assert anatomy.lids is not None
-    lids, rest = anatomy.lids.vertices, anatomy.surface.positions
-    still, up = np.zeros((len(lids.centres), 2)), np.array([[0.0, 0.3]] * len(lids.centres))
-    drive, held = np.zeros((len(lids.centres), 3)), state.hold.copy()
+    lids = anatomy.lids.vertices
+    rest = anatomy.surface.positions
+    still = np.zeros((len(lids.centres), 2))
+    up = np.array([[0.0, 0.3]] * len(lids.centres))
+    drive = np.zeros((len(lids.centres), 3))
+    held = state.hold.copy()
     turn_lids(state, rest, lids, drive, still)
     assert np.array_equal(state.hold, held)
     turn_lids(state, rest, lids, drive, up)
@@ -232,7 +260,8 @@ def test_a_step_is_its_substeps(head: Head) -> None:
         eyes=watch_eyeballs(anatomy.surface, ()),
     )
     free = replace(anatomy, skin=without_contact)
-    fast, plain = sim.Simulation(free), sim.Simulation(free)
+    fast = sim.Simulation(free)
+    plain = sim.Simulation(free)
     values = {"zygomaticus_major_left": 1.0, "frontalis_medial_right": 1.0}
     fast.controls.set_all(values)
     plain.controls.set_all(values)
@@ -249,8 +278,11 @@ def test_a_step_is_its_substeps(head: Head) -> None:
 
 def _plain_substep(face: sim.Simulation, h: float) -> None:
     """Forces by their kernels, which are tried above; then velocity, then position."""
-    skin, state = face._model.skin, face._state
-    springs, x, v = skin.tissue, state.x, state.v
+    skin = face._model.skin
+    state = face._state
+    springs = skin.tissue
+    x = state.x
+    v = state.v
     tissue_forces(state, springs)
     edge_forces(state, skin.edges)
     stiff = (springs.tangential + state.hold) / skin.mass
