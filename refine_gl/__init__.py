@@ -2,23 +2,23 @@
 
 Kähler, Haber, Seidel, "Dynamically refining animated triangle meshes for rendering", The Visual
 Computer 2003. Positions go up in every frame, six passes of compute shaders turn them into
-triangles where they are drawn from, and nothing comes back unless somebody asks for it.
+triangles where they are drawn from, and nothing comes back unless it is read.
 
     refiner = refine.create("kahler-gl", faces, rest_positions)
     mesh = refiner.refine(positions)          # arrays are fetched when they are read
 
 It joins as a plug-in of anybody's would, by an entry point of the group `risorius.refiners`, and
 needs `risorius.refine`, numpy and moderngl. OpenGL 4.3 or newer runs it, software too; where there
-is none the log says so once, and the processor does the same by the rules of `kahler`.
+is none, the log says so once, and the processor does the same by the rules of `kahler`.
 
-    tables.py     what is handed over once per mesh
+    tables.py     arrays that are handed over once per mesh
     shaders/      the passes; common.glsl is part of each
     frames.py     buffers, programs, and the order of the passes
     context.py    OpenGL where no caller brings any
-    refined.py    what a frame hands out
+    refined.py    the mesh of a frame
     refiner.py    the refiner
 
-docs/refinement_on_the_card.md tells it with a picture, and what was compared with what.
+docs/refinement_on_the_card.md explains it with a picture, and lists the comparisons.
 """
 
 from .context import LEAST_VERSION, GpuError

@@ -1,8 +1,8 @@
 """OpenGL where no caller brings any: a context of this process, in a thread of its own.
 
 A context is current in one thread, and a thread has one that is current. So ours gets its own, and
-whatever a caller has current stays so, be it of EGL, GLX or a window library. Calls are handed over
-and waited for, which takes tens of microseconds; frames that are read back take longer.
+a context that a caller has current stays so, be it of EGL, GLX or a window library. Calls are
+handed over and waited for, which takes tens of microseconds; frames that are read back take longer.
 """
 
 import functools
@@ -37,7 +37,7 @@ class OwnContext:
             raise GpuError(f"no OpenGL 4.3 without a window ({reason})") from None
 
     def run(self, call: Callable[..., Result], *arguments: Any) -> Result:
-        """Call something where the context is current, and wait for what it returns."""
+        """Call something where the context is current, and wait for its result."""
         return self._thread.submit(call, *arguments).result()
 
 

@@ -28,8 +28,9 @@ from .tables import Tables, groups_of
 
 MOST_GROUPS = 65535
 """Of a dispatch, that OpenGL promises."""
-VECTOR, NUMBER, DOUBLE = 16, 4, 8
-"""Bytes."""
+VECTOR = 16  # bytes
+NUMBER = 4  # bytes
+DOUBLE = 8  # bytes
 _STREAM = {4: "vertex_buffer", 5: "index_buffer", 6: "source_buffer", 7: "command_buffer"}
 
 
@@ -64,7 +65,7 @@ class Frames:
     def run(self, positions: Doubles, metric: Floats | None, stream: GpuStream) -> None:
         """Refine a frame into the buffers of a stream.
 
-        `positions`: shape (V, 3); `metric`: what the processor measured, shape (E,).
+        `positions`: shape (V, 3); `metric`: measured by the processor, shape (E,).
         """
         self._frame += 1
         self._bind()
@@ -156,7 +157,7 @@ def _text(name: str) -> str:
 def _compile(gl: moderngl.Context, tables: Tables, name: str) -> moderngl.ComputeShader:
     """The program of a pass; all meshes of a context share it."""
     if gl.extra is None:
-        gl.extra = {}  # of whoever uses a context
+        gl.extra = {}  # shared by all users of a context
     known: dict[str, moderngl.ComputeShader] = gl.extra.setdefault(__name__, {})
     texts = [f"#line 1\n{_text(each)}" for each in ("common", name)]
     source = "\n".join(["#version 430 core", tables.head, *texts])

@@ -1,4 +1,4 @@
-"""What a frame hands out: a `refine.RefinedMesh` whose arrays are fetched when they are read."""
+"""The mesh of a frame: a `refine.RefinedMesh` whose arrays are fetched when they are read."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -22,7 +22,7 @@ Columns = tuple[Floats | None, Mapping[str, Floats]]
 
 
 class GpuBuffers:
-    """A stream without anybody who draws it: the buffers of `refine.GpuStream`, made here."""
+    """A stream that nobody draws: the buffers of `refine.GpuStream`, made here."""
 
     def __init__(
         self, gl: moderngl.Context, columns: int, vertex_capacity: int, triangle_capacity: int

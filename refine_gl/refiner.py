@@ -37,7 +37,7 @@ from risorius.refine.mesh.arrays import Small
 from .context import GpuError, OwnContext, own_context
 from .frames import VECTOR, Frames, programs_of
 from .refined import GpuBuffers, GpuMesh, Run
-from .rules import SCHEMES, Rules, Told
+from .rules import SCHEMES, Rules, Settings
 from .tables import tables_of
 
 log = logging.getLogger(__name__)
@@ -68,7 +68,7 @@ def create_kahler_gl(
     - `values`: `uv`, `face_uv` and `attributes`, as `refine.create` takes them.
 
     Where there is no OpenGL 4.3, too little room for the mesh, or a driver that refuses a shader,
-    the log says so, once, and what comes back is the refiner `kahler`, told the same.
+    the log says so once, and the refiner `kahler` with the same options is returned.
     """
     for name, flag in (("blend", blend), ("coherent", coherent)):
         if flag not in (None, True, False):
@@ -80,16 +80,16 @@ def create_kahler_gl(
     if blend is None:
         blend = scheme == "cubic" and not coherent
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
-    told = Told(scheme, decides, blend, bool(coherent))
+    settings = Settings(scheme, decides, blend, bool(coherent))
     try:
-        return KahlerGl(faces, rest_positions, own=own_context(), told=told, **values)
+        return KahlerGl(faces, rest_positions, own=own_context(), settings=settings, **values)
     except GpuError as error:
-        _tell(f"kahler-gl: {error}; the processor refines instead (kahler)")
-    return create_kahler(faces, rest_positions, **told._asdict(), **values)
+        _warn_once(f"kahler-gl: {error}; the processor refines instead (kahler)")
+    return create_kahler(faces, rest_positions, **settings._asdict(), **values)
 
 
 @functools.cache
-def _tell(text: str) -> None:
+def _warn_once(text: str) -> None:
     log.warning(text)
 
 
@@ -102,7 +102,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         rest_positions: npt.ArrayLike,
         *,
         own: OwnContext,
-        told: Told,
+        settings: Settings,
         **values: Unpack[Values],
     ) -> None:
         """Bind to a mesh; see `create_kahler_gl`. `own`: OpenGL for frames that bring none.
@@ -110,9 +110,9 @@ class KahlerGl(BaseRefiner, GpuRefiner):
         Raises GpuError where the driver refuses a shader, or a mesh of this size.
         """
         super().__init__(faces, rest_positions, **values)
-        self._own(told.criterion, *told.criterion.parts)
+        self._own(settings.criterion, *settings.criterion.parts)
         self.find_normals()
-        self._rules = Rules(self.connectivity, self.rest_positions, self.normals, told)
+        self._rules = Rules(self.connectivity, self.rest_positions, self.normals, settings)
         none = np.zeros((len(self.rest_positions), 0), np.float32)
         table = none if self._values is None else self._values.values
         self._tables = tables_of(self.connectivity, table, self._rules)
@@ -151,7 +151,8 @@ class KahlerGl(BaseRefiner, GpuRefiner):
 
     def origins(self) -> Origins:
         """Say for every vertex of the last frame where it lies on the input mesh; fetched."""
-        mesh, splits = self.connectivity, self.splits
+        mesh = self.connectivity
+        splits = self.splits
         origins = super().origins().followed_by(*points_on_edges(mesh, splits))
         if not self._rules.blends or self._frames is None:
             return origins
@@ -183,7 +184,8 @@ class KahlerGl(BaseRefiner, GpuRefiner):
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Refine in a context of our own, and copy the frame into arrays that were lent."""
         mesh = self._refine_own(view)
-        vertex_count, triangle_count = mesh.vertex_count, mesh.triangle_count
+        vertex_count = mesh.vertex_count
+        triangle_count = mesh.triangle_count
         out = self.reserve(stream, vertex_count, triangle_count)
         out.vertices[:vertex_count] = mesh.vertices
         out.triangles[:triangle_count] = mesh.triangles
@@ -192,7 +194,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
 
     def _refine_own(self, view: View | None) -> GpuMesh:
         own = self._own_context
-        own.run(own.gl.gc)  # what nobody holds any more
+        own.run(own.gl.gc)  # objects without references
         if self._own_buffers is None:
             room = self.vertex_columns, self.vertex_capacity, self.triangle_capacity
             self._own_buffers = own.run(GpuBuffers, own.gl, *room)

@@ -1,6 +1,6 @@
-"""What `kahler-gl` is told, and what shaders make of it: which passes, switches and numbers.
+"""The settings of `kahler-gl`, and the passes, switches and numbers of its shaders.
 
-Two schemes: `loop`, the paper's, and `cubic` with the normals of its own surface, which is what
+Two schemes: `loop`, the paper's, and `cubic` with the normals of its own surface, which
 films and the window show. Criteria `normal`, `rest` and `displacement` are decided on the card;
 others are measured by the processor, four bytes an edge, and handed over in every frame.
 """
@@ -48,13 +48,13 @@ THREADS: Mapping[str, tuple[str, ...]] = {
     "quarters": ("attribute_edge_count",),
     "place_centres": ("face_count",),
 }
-"""What each pass has threads for. Passes are dispatches; their shaders have their names."""
+"""The elements that each pass has threads for. Passes are dispatches, named as their shaders."""
 CURVES = "steepen", "displace", "centres", "surface_vertices", "surface_edges", "place_centres"
 """Passes of cubic edges alone."""
 
 
-class Told(NamedTuple):
-    """What a refiner was told; the names are those of `refine.create_kahler`."""
+class Settings(NamedTuple):
+    """The settings of a refiner, named as in `refine.create_kahler`."""
 
     scheme: Literal["loop", "cubic"]
     criterion: Criterion
@@ -63,16 +63,17 @@ class Told(NamedTuple):
 
 
 class Rules:
-    """That, bound to a mesh."""
+    """Settings bound to a mesh."""
 
     def __init__(
-        self, mesh: Connectivity, rest_positions: Doubles, rest_normals: Floats, told: Told
+        self, mesh: Connectivity, rest_positions: Doubles, rest_normals: Floats, settings: Settings
     ) -> None:
         """Raise ValueError for criteria that the card has not."""
-        self._mesh, self._rest = mesh, rest_positions
-        self.scheme, self.criterion, self.blends, self.coherent = told
+        self._mesh = mesh
+        self._rest = rest_positions
+        self.scheme, self.criterion, self.blends, self.coherent = settings
         parts = _parts(self.criterion)
-        if told.scheme == "loop" and any(isinstance(each, Displacement) for each in parts):
+        if settings.scheme == "loop" and any(isinstance(each, Displacement) for each in parts):
             raise ValueError('criterion "displacement" needs scheme="cubic" in kahler-gl')
         if silent := [type(each).__name__ for each in parts if not each.measures]:
             raise ValueError(
@@ -90,13 +91,13 @@ class Rules:
             if bound is not None:
                 bound.bind(mesh, rest_positions, rest_normals)
         self.still = np.full(len(mesh.edges), -np.inf, np.float32)
-        """What those measure that do not change, shape (E,)."""
+        """The metric of the criteria that do not change, shape (E,)."""
         metric = np.zeros_like(self.still)
         for each in still:
             each.measure(rest_positions, rest_normals, metric)
             np.maximum(self.still, metric, out=self.still)
-        self._patterns = FANS if told.blend else CONFIGURATIONS
-        if told.coherent:
+        self._patterns = FANS if settings.blend else CONFIGURATIONS
+        if settings.coherent:
             self._patterns = sequence_tables().patterns
 
     @property
@@ -108,7 +109,7 @@ class Rules:
 
     @property
     def switches(self) -> list[str]:
-        """What shaders are compiled for."""
+        """The defines that shaders are compiled with."""
         chosen = {
             "CURVED": self.scheme == "cubic",
             "BLENDED": self.blends,
@@ -122,7 +123,8 @@ class Rules:
     @property
     def limits(self) -> dict[str, float]:
         """Numbers that are not whole, as shaders name them."""
-        by, unit = self._displacement, mean_length(self._mesh, self._rest)
+        by = self._displacement
+        unit = mean_length(self._mesh, self._rest)
         limits = _limits("drop", None if self._drop is None else self._drop.thresholds)
         limits |= _limits("size", None if by is None else by.thresholds, unit)
         soon = np.float32(0.0)
@@ -133,8 +135,9 @@ class Rules:
         return limits | {"turning": 0.0 if by is None else float(np.float32(by.turning))}
 
     def arrays(self) -> Arrays:
-        """What the scheme, the criteria and the table hand over once per mesh."""
-        patterns, corners = self._patterns, self._patterns.subtriangles.astype(np.uint32)
+        """The arrays of scheme, criteria and table, handed over once per mesh."""
+        patterns = self._patterns
+        corners = self._patterns.subtriangles.astype(np.uint32)
         found: dict[str, npt.NDArray[np.generic]] = {
             "counts": patterns.counts,
             "patterns": corners[..., 0] | corners[..., 1] << 8 | corners[..., 2] << 16,
@@ -147,7 +150,9 @@ class Rules:
     def fields(self) -> dict[str, int]:
         """Vectors that passes hand on, by name, and how many."""
         mesh = self._mesh
-        vertices, edges, faces = mesh.vertex_count, len(mesh.edges), len(mesh.faces)
+        vertices = mesh.vertex_count
+        edges = len(mesh.edges)
+        faces = len(mesh.faces)
         fields = {"points": vertices, "normals": vertices, "middles": edges}
         if self.scheme == "cubic":
             fields |= dict.fromkeys(
@@ -166,7 +171,7 @@ class Rules:
         return np.asarray(undefined[self._mesh.edges].any(axis=1))
 
     def measure_others(self, positions: Doubles, normals: Floats, view: View | None) -> Floats:
-        """What the processor measures of a frame: the metric of every edge, shape (E,)."""
+        """Measure a frame on the processor: the metric of every edge, shape (E,)."""
         assert self.others is not None
         metric = np.empty(len(self._mesh.edges), np.float32)
         self.others.set_view(view)
@@ -179,7 +184,7 @@ class Rules:
         return np.maximum(metric, self.still)
 
     def _ring(self) -> Arrays:
-        """What the paper's rule for vertices asks for."""
+        """The arrays of the paper's rule for vertices."""
         rings = vertex_rings(self._mesh)
         return {
             "wings": self._mesh.around.wings,
@@ -191,7 +196,7 @@ class Rules:
         }
 
     def _curves(self) -> Arrays:
-        """What cubic edges and the normals of their surface ask for."""
+        """The arrays of cubic edges and of the normals of their surface."""
         mesh = self._mesh
         ends = mesh.edges.ravel()
         valences = np.bincount(ends, minlength=mesh.vertex_count)

@@ -1,8 +1,8 @@
-"""What shaders are handed once per mesh: index arrays and weights, one behind the other.
+"""The arrays that shaders get once per mesh: indices and weights, one behind the other.
 
 A storage buffer is one array, and OpenGL 4.3 promises a pass no more than eight of them. So all
 arrays of one kind lie in one buffer, and a shader reads `faces(k)`, a macro that adds where `faces`
-begins. Where that is, and how many there are of what, are the numbers of a uniform block.
+begins. These places, and the lengths of all arrays, are the numbers of a uniform block.
 """
 
 from typing import NamedTuple
@@ -30,7 +30,7 @@ class Tables(NamedTuple):
     limits: dict[str, float]
     """Its other numbers, which may be infinite."""
     head: str
-    """What shaders begin with: switches, the uniform block, a macro for each array."""
+    """The first lines of shaders: switches, the uniform block, a macro for each array."""
     field_count: int
     """Vectors that passes hand on."""
     work_count: int
@@ -40,7 +40,8 @@ class Tables(NamedTuple):
 def tables_of(mesh: Connectivity, values: Floats, rules: Rules) -> Tables:
     """Lay out a mesh. `values`: of corners, shape (A, k)."""
     arrays = {**_arrays(mesh, values), **rules.arrays()}
-    sizes, views = _counts(mesh, values.shape[1], arrays, rules), {}
+    sizes = _counts(mesh, values.shape[1], arrays, rules)
+    views = {}
     words = [np.zeros(0, np.uint32)]
     for name, array in arrays.items():
         sizes[f"{name}_at"] = sum(map(len, words))
@@ -49,7 +50,8 @@ def tables_of(mesh: Connectivity, values: Floats, rules: Rules) -> Tables:
         views[name] = f"mesh[{name}_at + (k)]"
         if kind is np.float32:
             views[name] = f"uintBitsToFloat({views[name]})"
-    fields, work = rules.fields(), _work(mesh, sizes)
+    fields = rules.fields()
+    work = _work(mesh, sizes)
     for buffer, parts in (("fields", fields), ("work", work)):
         for place, name in enumerate(parts):
             sizes[f"{name}_at"] = sum(list(parts.values())[:place])
@@ -77,7 +79,7 @@ def groups_of(threads: int) -> int:
 
 
 def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) -> dict[str, int]:
-    """How many there are of what; of rows and subtriangles, at most."""
+    """The number of elements of each kind; of rows and subtriangles, at most."""
     rows = len(mesh.wedge_vertices) + 3 * len(mesh.attribute_edges)
     return {
         "vertex_count": mesh.vertex_count,
@@ -97,7 +99,8 @@ def _counts(mesh: Connectivity, value_count: int, arrays: Arrays, rules: Rules) 
 
 def _work(mesh: Connectivity, sizes: dict[str, int]) -> dict[str, int]:
     """Numbers that passes hand on, by name, and how many; some passes have no use for some."""
-    edges, faces = len(mesh.edges), len(mesh.faces)
+    edges = len(mesh.edges)
+    faces = len(mesh.faces)
     return {
         "splits": len(mesh.attribute_edges),
         "first_points": len(mesh.attribute_edges),

@@ -3,8 +3,8 @@
 A `CameraView` is one camera that looks into a viewport.
 
 World: x to the subject's left (the viewer's right), y up, z toward the viewer of the front view.
-Matrices are pyrr's: float64, shape (4, 4), row vectors times matrix, so their bytes are what OpenGL
-wants, and `projection * view * Vector4` reads as in a book.
+Matrices are pyrr's: float64, shape (4, 4), row vectors times matrix, so their bytes have the order
+of OpenGL, and `projection * view * Vector4` reads as in a book.
 """
 
 import math
@@ -47,7 +47,7 @@ class OrbitCamera:
     field_of_view: top to bottom [degrees].
     narrowest_aspect: a frame narrower than this (width / height) shows no less of the scene's
         width, but more of its height; framing sets it.
-    scene_centre, scene_radius: a sphere that holds what is framed; sets the clipping planes.
+    scene_centre, scene_radius: a sphere that holds the framed scene; sets the clipping planes.
     """
 
     target: FloatArray

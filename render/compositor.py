@@ -1,4 +1,4 @@
-"""What lies under the scene, a background, and what a window shows of it, with panels over it.
+"""The background under a scene, and the picture of the scene in a window, under its panels.
 
 Software OpenGL pays for every sample, so a scene that moves may be drawn with fewer (`Detail`) and
 is enlarged here, or smoothed. The scene's own pixels stay as they are: when only a panel changes,
@@ -68,7 +68,7 @@ class Compositor:
         gl.scissor = None
 
     def lay(self, x: int, y: int, image: Any) -> None:
-        """Lay a label on what is bound; see `WindowSurface.labels`."""
+        """Lay a label on the bound framebuffer; see `WindowSurface.labels`."""
         gl = self._gl
         (height, width, _) = image.shape
         gl.texture((width, height), 4, image[::-1].tobytes()).use(_UNIT)

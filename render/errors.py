@@ -33,15 +33,17 @@ _DIAGNOSES: tuple[tuple[str, str, str], ...] = (
 
 
 class GLError(RuntimeError):
-    """OpenGL is missing, too old or refuses; one line says what, why, the raw text and the cure."""
+    """OpenGL is missing, too old or refuses; one line names attempt, reason, raw text and cure."""
 
 
-def diagnose(what: str, raw: object) -> GLError:
-    """Return the GLError for a failed attempt: `what` was tried, `raw` is what the library said."""
+def diagnose(attempt: str, raw: object) -> GLError:
+    """Return the GLError for a failed attempt; raw: the message of the library."""
     text = " ".join(str(raw).split()) or "no reason given"
     set_by_hand = [name for name in os.environ if name.startswith("GLCONTEXT_")]
-    unset = f"unset {', '.join(set_by_hand)}" if what.startswith(OFFSCREEN) and set_by_hand else ""
+    unset = ""
+    if attempt.startswith(OFFSCREEN) and set_by_hand:
+        unset = f"unset {', '.join(set_by_hand)}"
     for pattern, why, cure in _DIAGNOSES:
         if re.search(pattern, text):
-            return GLError(f'{what} failed: {why} ("{text}"). Cure: {unset or cure}')
-    return GLError(f'{what} failed ("{text}"). Cure: `risorius doctor` shows what there is')
+            return GLError(f'{attempt} failed: {why} ("{text}"). Cure: {unset or cure}')
+    return GLError(f'{attempt} failed ("{text}"). Cure: `risorius doctor` shows what there is')

@@ -1,4 +1,4 @@
-"""What each pixel of a picture shows, as numbers: how far away, turned where, which triangle.
+"""The surface in each pixel of a picture, as numbers: its distance, its normal, its triangle.
 
 Drawn by the same matrices from the same buffers as the colours are, but with one sample in the
 middle of each pixel, so that no number is a mean of two things.
@@ -56,7 +56,7 @@ class GeometryBuffer:
         view: CameraView,
         maps: Mapping[BumpMap, float],
     ) -> Geometry:
-        """Draw what `stream` last uploaded, and parts; see `Renderer.draw_geometry`."""
+        """Draw the last upload of `stream`, and parts; see `Renderer.draw_geometry`."""
         gl = self._gl
         program = self._program_of({})
         self._target.use()

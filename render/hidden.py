@@ -1,10 +1,10 @@
-"""Which triangles are hidden behind what was drawn: software need not shade them.
+"""Which triangles are hidden behind others: software need not shade them.
 
-Software OpenGL shades whatever it multisamples, and tests depth without using the answer to save
-work: the back of a head costs as much as its front. So the depths of what turns to the eye are
-read back, the farthest of each tile of 8 x 8 pixels, and triangles that lie behind these in all
-tiles that they touch are left out. That changes no pixel: each of their samples would fail its
-depth test. (Measured 2026-11-22, two heads of 640 x 720, 4 samples: 185 -> 152 ms of processor.)
+Software OpenGL shades all that it multisamples, and does not save work by its depth tests: the back
+of a head costs as much as its front. So the depths of front faces are read back, the farthest of
+each tile of 8 x 8 pixels, and triangles that lie behind these in all tiles that they touch are left
+out. That changes no pixel: each of their samples would fail its depth test. (Measured 2026-11-22,
+two heads of 640 x 720, 4 samples: 185 -> 152 ms of processor.)
 Source: Greene, Kass, Miller 1993, "Hierarchical Z-buffer visibility".
 """
 
@@ -29,7 +29,7 @@ _UNIT = 1  # texture unit: the one of the layer
 
 
 class Occluder:
-    """The farthest depths, in tiles of a target, of what was drawn on its layer so far."""
+    """The farthest depths, in tiles of a target, of all that was drawn on its layer so far."""
 
     def __init__(self, gl: moderngl.Context, target: RenderTarget) -> None:
         self.target = target
@@ -44,7 +44,7 @@ class Occluder:
         self._layer_number = -1
 
     def is_of(self, view: CameraView, target: RenderTarget) -> bool:
-        """Whether what it saw, through this view, is still on the target's layer."""
+        """Whether the depths that it took, through this view, are still on the target's layer."""
         return (
             self._view is view
             and self.target is target
@@ -109,7 +109,7 @@ class Occluder:
         assert self._view is not None
         matrix = self._view.world_to_clip.astype(np.float32)
         left, bottom, width, height = self._view.viewport
-        with np.errstate(all="ignore"):  # what is not finite is not surely hidden
+        with np.errstate(all="ignore"):  # a corner that is not finite is not surely hidden
             x, y, z, w = np.ascontiguousarray(
                 (vertices.astype(np.float32, copy=False) @ matrix[:3] + matrix[3]).T
             )
@@ -138,7 +138,7 @@ class Occluder:
     ) -> npt.NDArray[np.float32]:
         """The farthest depth of all tiles between two places [tiles]; 1 between distant ones."""
         rows, columns = self._farthest[0].shape
-        # What is no number may be in any tile.
+        # A corner that is not finite may be in any tile.
         (left, right), (bottom, top) = (
             [np.fmin(np.fmax(at[axis], 0.0), count - 1).astype(np.intp) for at in (low, high)]
             for axis, count in enumerate((columns, rows))
@@ -164,10 +164,10 @@ def draw_sides(
     *,
     blends: bool = False,
 ) -> None:
-    """Draw shares of a mesh with software: what turns to the eye goes first.
+    """Draw shares of a mesh with software: front faces first.
 
-    What turns away is mostly hidden: drawn last, it is not shaded at all, if nothing is
-    multisampled. Else it is left out where that is certain, which needs an occluder.
+    Back faces are mostly hidden: drawn last, the hidden ones are not shaded at all if nothing is
+    multisampled. Else an occluder leaves out those that are certainly hidden.
     """
     flags = moderngl.CULL_FACE | (moderngl.BLEND if blends else moderngl.NOTHING)
     gl.enable(flags)
@@ -182,7 +182,7 @@ def draw_sides(
         stream.choose(occluder.may_be_seen(positions, stream.frame.triangles, away=True))
         occluder.target.use_layer(view.viewport, covered)
         gl.enable(flags)
-        # What turns away shows no bumps, so the last program does for it.
+        # Back faces show no bumps, so the last program draws them.
         shares = [(shares[-1][0], Share.CHOSEN)]
     gl.cull_face = "front"
     for program, share in shares:

@@ -10,7 +10,7 @@ from .style import Colour
 
 
 class Lines(NamedTuple):
-    """Polylines, which shine through what hides them."""
+    """Polylines, which shine through surfaces that hide them."""
 
     polylines: Sequence[npt.NDArray[Any]]
     """Points of each line, shape (n, 3)."""

@@ -1,4 +1,4 @@
-"""How meshes and parts take light and colours: what surface.glsl asks of each."""
+"""How meshes and parts take light and colours: the uniforms of surface.glsl."""
 
 from collections.abc import Iterable
 
@@ -64,7 +64,7 @@ def set_mesh(program: moderngl.Program, style: Style, view: CameraView, line_sca
 def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: CameraView) -> None:
     """From dull (broad and faint) to wet (small and bright) highlights.
 
-    `set_light` comes first; of it, light from behind does not reach what is enclosed, or fibres.
+    `set_light` comes first; its light from behind does not reach enclosed parts, or fibres.
     """
     kind = part.kind
     shine = part.shine
@@ -75,10 +75,10 @@ def set_part(program: moderngl.Program, part: PartBuffers, light: Light, view: C
     program["rim_light"] = (0.0, 0.0, 0.0) if is_rimless else light.rim
     program["subsurface"] = 0.3
     program["gloss"] = 0.04 + 0.9 * shine * shine
-    # What is wet is dark by itself, not for want of light; so is what is not enclosed.
+    # A wet part is dark by itself, not for want of light; so is a part that is not enclosed.
     program["least_mirrored"] = shine * shine if part.is_enclosed else 1.0
     program["sharpness"] = 20.0 * 40.0**shine
-    if kind == "STRANDS":  # half their thickness, and what it is at least at distance 1
+    if kind == "STRANDS":  # half their thickness, and the least half at distance 1
         _, _, width, height = view.viewport
         program["half_strand"] = part.strand_radius
         program["least_half"] = 0.5 * STRAND_PIXELS / view.camera.focal(width / height, height)

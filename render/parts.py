@@ -14,7 +14,7 @@ from .camera import CameraView, box_corners
 from .translucency import blending
 
 OF_SHELLS = "in_strand", "in_way", "in_dense"
-# What is striped: by the columns of its striation its kind, and layout and attributes in OpenGL.
+# Striped parts: by the columns of their striation their kind, layout and attributes in OpenGL.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
 LAYERS = 9  # of shells; with more a picture takes longer, with fewer one sees between
 FEWEST = 2  # shells
@@ -24,7 +24,7 @@ TIP = 0.4  # of that way, from vertices
 
 
 class Part(Protocol):
-    """What is read of a part.
+    """The attributes that are read of a part.
 
     name: for messages. vertices, normals: shape (n, 3), float32. A part that is not rigid hands out
         other arrays of the same shape whenever its shape has changed.
@@ -71,7 +71,7 @@ class PartBuffers:
         self.shine = part.shine
         self.is_enclosed = part.is_enclosed
         self.strand_radius = part.strand_radius
-        # What it is drawn with: a define of surface.glsl, or SHELLS for shells.glsl.
+        # The program that draws it: a define of surface.glsl, or SHELLS for shells.glsl.
         self.kind, layout, *more = "STRANDS" if part.strand_radius else "RIGID", ""
         columns = 0 if part.striation is None else np.shape(part.striation)[1]
         if columns:
@@ -80,7 +80,7 @@ class PartBuffers:
         if self._way is not None:
             self._thick = float(np.abs((self._way * part.normals).sum(axis=1)).max())
         self._layout = (f"3f 3f 3f{layout}", "in_position", "in_normal", "in_colour", *more)
-        # Over what was drawn before, by its opacity.
+        # Blended over earlier drawings by its opacity.
         self.is_mixed = self.kind in ("STRANDS", "SHELLS")
         self._vertices = gl.buffer(reserve=4 * (9 + columns) * len(part.vertices))
         self._uploaded: npt.NDArray[np.float32] | None = None
@@ -156,8 +156,8 @@ PlacedPart = tuple[PartBuffers, npt.NDArray[np.float64]]  # and the matrix of it
 class PartStore:
     """The buffers of the parts that were drawn and still exist.
 
-    A renderer may draw one person after the other: what a part had on the graphics card goes
-    when nobody holds that part any more.
+    A renderer may draw one person after the other: the buffers of a part on the graphics card go
+    when the last reference to that part goes.
     """
 
     def __init__(self, gl: moderngl.Context) -> None:

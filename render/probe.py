@@ -1,4 +1,4 @@
-"""What OpenGL this machine offers, found out without risk to the caller.
+"""The OpenGL of this machine, found without risk to the caller.
 
 A broken driver may crash the process that loads it, so each try runs in a Python of its own, which
 writes one JSON object.
@@ -44,7 +44,7 @@ class Finding:
 
 
 def probe(*, offscreen_only: bool = False) -> list[Finding]:
-    """Return what was found for offscreen frames and for windows; never raises."""
+    """Return the findings for offscreen frames and for windows; never raises."""
     names = ("offscreen",) if offscreen_only else ("offscreen", "window")
     return [_probe_in_process(name) for name in names]
 

@@ -54,7 +54,7 @@ class RenderTarget:
 
     def release(self) -> None:
         """Give back everything to OpenGL; nothing can be drawn here any more."""
-        # moderngl binds what was bound last again whenever it makes a framebuffer.
+        # moderngl binds the last bound framebuffer again whenever it makes one.
         self._gl.detect_framebuffer(0).use()
         self.frame.release()
         self.colour.release()

@@ -2,7 +2,7 @@
 
 Every call takes a view: a camera in a viewport, (x, y, width, height) in pixels from the lower left
 corner, whose aspect it takes on. All other pixels stay as they are. A `clip` draws only a part of
-what the viewport shows: two clips make one image of two meshes.
+the viewport: two clips make one image of two meshes.
 Programs are compiled on first use, one per combination of shading and options.
 Source: Kähler et al. 2003, Fig. 1 (the rendering stage) and section 5 (how the figures are shaded).
 """
@@ -82,7 +82,7 @@ class Renderer:
         viewport: Rectangle | None = None,
         clip: Rectangle | None = None,
     ) -> CameraView:
-        """What a camera sees in a viewport, all of the frame unless told; drawing calls take it.
+        """The view of a camera in a viewport, by default the whole frame; drawing calls take it.
 
         clip: the part of the viewport in which anything is drawn.
         """
@@ -111,16 +111,16 @@ class Renderer:
         cut: Plane | None = None,
         fade: Plane | None = None,
     ) -> None:
-        """Draw what `stream` last uploaded.
+        """Draw the last upload of `stream`.
 
-        values: what each triangle is coloured by, as `ColourBy` says, shape (M,), uint8; needed
+        values: the number that colours each triangle, see `ColourBy`, shape (M,), uint8; needed
             unless that is NONE. Raises ValueError where it does not fit.
         texture: the albedo of the front side, unless the style is not textured, and its fine shape;
             needs a stream of 8 columns, ValueError else.
         bumps: fine shape, as far as the style and the amounts that were uploaded let it show;
             per-pixel shading alone has it. Needs 8 columns, too.
-        cut: in front of it the mesh is opaque. Draw before it what is to be seen through it.
-        fade: what a x + b y + c z + d is at a place of the mesh, from 0 to 1, shows of it there.
+        cut: in front of it the mesh is opaque. Parts that are seen through it are drawn before it.
+        fade: a x + b y + c z + d, from 0 to 1, is the share of the mesh that shows at (x, y, z).
         """
         if texture is not None or bumps is not None:
             stream.check_uv()
@@ -151,7 +151,7 @@ class Renderer:
                     stream.draw(program, share)
 
     def _target_occluder(self) -> Occluder | None:
-        """What leaves hidden triangles out where pixels have several samples; else the last one."""
+        """The occluder of the target where pixels have several samples; else the last one."""
         target = self.surface.target
         occluder = self._occluder
         if target.samples and (occluder is None or occluder.target is not target):
@@ -268,10 +268,11 @@ class Renderer:
         *,
         maps: Mapping[BumpMap, float] = MappingProxyType({}),
     ) -> Geometry:
-        """Numbers of what is seen, for each pixel of the surface; nothing on it changes.
+        """Numbers for each pixel of the surface, whose picture stays as it is.
 
-        maps: fine shape that tilts normals, and how much of each, 0 to 1; what needs amounts counts
-            for nothing where none were uploaded. Raises ValueError for a bone without transform.
+        maps: fine shape that tilts normals, and how much of each, 0 to 1; a map that needs amounts
+            counts for nothing where none were uploaded. Raises ValueError for a bone without
+            transform.
         """
         if self._geometry_buffer is None or self._geometry_buffer.size != self.surface.target.size:
             self._geometry_buffer = GeometryBuffer(self._gl, self.surface.target.size)
@@ -317,7 +318,7 @@ class Renderer:
     def _use_layer(
         self, view: CameraView, corners: npt.NDArray[np.float64], padding: float = 2.0
     ) -> bool:
-        """Set the drawing area for what the hull of corners holds; False where it is not seen."""
+        """Set the drawing area to the hull of corners; False where the view does not see it."""
         covered = view.covered_pixels(corners, padding)
         if is_seen := min(covered[2:]) > 0:
             self.surface.target.use_layer(view.viewport, covered)

@@ -1,7 +1,7 @@
 """The shadow that a mesh and parts throw in the key light, on themselves and on parts.
 
 A depth map, taken from the key light, which hangs on the camera. Of both sides of a mesh: it is
-thin, and what lies behind its lit side, in the mouth, has to be dark. It spans the whole
+thin, and the mouth behind its lit side has to be dark. It spans the whole
 scene and depends on nothing that moves, so shadows do not crawl with the face. Its texels are
 coarse on purpose: the look-up blends 4 x 4 of them, and that is how soft the shadow is.
 Source: Williams 1978, "Casting curved shadows on curved surfaces"; filtering of depth tests as in
@@ -54,7 +54,7 @@ class ShadowMap:
         frame_number: int,
         to_key: Vector,
     ) -> None:
-        """Take the depth map of what streams uploaded, and of parts, in the frame of that number.
+        """Take the depth map of uploaded streams, and of parts, in the frame of that number.
 
         to_key: unit vector toward the key light, in view space.
         """

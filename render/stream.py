@@ -1,4 +1,4 @@
-"""Triangles that change every frame: arrays lent to whoever makes them, and the buffers behind.
+"""Triangles that change every frame: arrays lent to their maker, and the buffers behind.
 
 The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) with whatever
 program it likes; `upload` hands exactly those rows to OpenGL. Nothing is allocated per frame. Or
@@ -22,7 +22,7 @@ class Share(Enum):
     ALL = "all"  # in their order
     BUMPED = "bumped"  # those with a corner where the bump map shows
     SMOOTH = "smooth"  # all others
-    CHOSEN = "chosen"  # those that `choose` was told of
+    CHOSEN = "chosen"  # those given to `choose`
 
 
 NUMBER = 4  # bytes
@@ -31,7 +31,7 @@ _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buff
 
 
 class Frame(Protocol):
-    """What was made last; of one that lies on the graphics card all is fetched when it is read."""
+    """The last frame; if it lies on the graphics card, all of it is fetched when it is read."""
 
     @property
     def vertex_count(self) -> int:
@@ -69,7 +69,7 @@ class MeshBuffers:
     """One mesh of at most so many vertices and triangles, rewritten every frame, to be drawn.
 
     columns: of its rows, 6 (position, normal) or 8 (and texture u, v).
-    frame: what it was last rewritten with.
+    frame: the last frame that was written into it.
     has_bumps: whether its last frame came with amounts of a bump map.
     corners: of a box that holds its vertices, shape (8, 3), float64.
     places: where its vertices are, or some near them, shape (n, 3).
@@ -116,7 +116,7 @@ class MeshBuffers:
         return self.frame.triangle_count
 
     def _rewrite(self, name: str, array: npt.NDArray[Any]) -> None:
-        """Hand over what is there once for each vertex, or for each triangle (uint32)."""
+        """Hand over an array with a row for each vertex, or a number for each triangle (uint32)."""
         if name not in self._more:
             room = self._room[array.dtype == np.uint32] * array.shape[1]
             self._more[name] = self.context.buffer(reserve=NUMBER * room, dynamic=True)
@@ -171,7 +171,7 @@ class MeshBuffers:
     def _vertex_array(
         self, program: moderngl.Program, indices: moderngl.Buffer
     ) -> moderngl.VertexArray:
-        """What a program reads of a buffer of triangles; the same one each time."""
+        """The vertex array of a program and a buffer of triangles; the same one each time."""
         array = self._vertex_arrays.get((program, indices))
         if array is None:
             names = ("in_position", "in_normal")
@@ -190,7 +190,7 @@ class MeshBuffers:
 
 
 class Stream(MeshBuffers):
-    """Arrays of such a mesh, lent to whoever makes it, and uploaded.
+    """Arrays of such a mesh, lent to its maker, and uploaded.
 
     vertices: x y z, nx ny nz[, u v], shape (vertex_capacity, 6 or 8), float32; the borrower writes.
     triangles: vertex numbers, shape (triangle_capacity, 3), uint32; the borrower writes.
@@ -251,8 +251,8 @@ class GpuStream(MeshBuffers):
     """Buffers of such a mesh, lent to a program on the graphics card that makes it there.
 
     It is drawn by the command that this program writes, without anybody on this side learning how
-    much there is. What needs rows or triangles here fetches them, and waits: bumps,
-    colours by triangle, and software that leaves hidden triangles out.
+    much there is. Bumps, colours by triangle, and software that
+    leaves hidden triangles out need rows or triangles here: they fetch them, and wait.
 
     vertex_buffer, index_buffer: rows and triangles, as in a `Stream`.
     source_buffer: the triangle that each comes from, int32.
@@ -278,7 +278,7 @@ class GpuStream(MeshBuffers):
         positions: npt.NDArray[np.floating],
         bump_amounts: npt.NDArray[np.float32] | None = None,
     ) -> None:
-        """Draw from now on what was made in these buffers.
+        """Draw the content of these buffers from now on.
 
         frame: fetches it. positions: of the mesh that it was made of, (V, 3), near its vertices.
         bump_amounts: as `Stream.upload` takes them.

@@ -27,7 +27,7 @@ class Shading(Enum):
 
 
 class ColourBy(Enum):
-    """What decides the colour of a triangle."""
+    """The quantity that decides the colour of a triangle."""
 
     NONE = "none"  # the texture, or the albedo of the style
     SPLITS = "splits"  # how many splits the edges of its source triangle have: 0..6
@@ -101,7 +101,7 @@ class Style:
     wireframe: bool = False
     colour_by: ColourBy = ColourBy.NONE
     albedo: Colour = SKIN  # of the front side
-    opacity: float = 1.0  # of the skin, over what was drawn before it
+    opacity: float = 1.0  # of the skin, over earlier drawings
     textured: bool = True  # a texture, where there is one, takes the place of the albedo
     gloss: float = 0.5  # strength of the skin's highlight, 0..1
     shadows: bool = True  # of the key light

@@ -1,7 +1,7 @@
-"""What is drawn on: an offscreen frame or a window, behind one interface.
+"""The surface of drawings: an offscreen frame or a window, behind one interface.
 
 Both kinds draw the scene into a target of their own (`render_target.py`), which a window then lays
-under its panels (`compositor.py`). So `read` gives what is seen for both, even while a window is
+under its panels (`compositor.py`). So `read` gives the picture of both, even while a window is
 hidden or covered, and a panel that is drawn after `resolve` is part of it.
     surface.begin();  ...draw...;  [surface.resolve(); ...draw a panel on top...;]  surface.end()
 """
@@ -26,7 +26,7 @@ OLDEST = 330  # OpenGL, times 100: all drawing needs it
 class Surface:
     """The interface of both kinds; made by `open_offscreen` and `open_window`.
 
-    gl: the OpenGL context; what nobody holds any more is given back to it when a frame begins.
+    gl: the OpenGL context; objects without references are given back to it when a frame begins.
     samples: per pixel, 0 = none. target: where the Renderer draws.
     pixel_scale: pixels per unit of line width: 1, or 2 on a dense screen.
     scale: pixels of the target per pixel of the surface; below 1 only in a window in a hurry.
@@ -64,14 +64,14 @@ class Surface:
         self.target.start()
 
     def _collect(self) -> None:
-        """Give back to OpenGL what nobody holds any more, here where its context is current."""
+        """Give objects without references back to OpenGL, while its context is current."""
         while self.gl.objects:
             lost = self.gl.objects.popleft()
-            if not isinstance(lost, moderngl.InvalidObject):  # released by whoever held it
+            if not isinstance(lost, moderngl.InvalidObject):  # released by its owner
                 lost.release()
 
     def resolve(self) -> None:
-        """End the scene: what is drawn from here on (a panel) lies on top, not multisampled."""
+        """End the scene: later drawings (a panel) lie on top, not multisampled."""
         self.make_current()
         self.target.use_frame()
 
@@ -206,8 +206,8 @@ def _offscreen_context() -> moderngl.Context:
 def _new_context() -> moderngl.Context:
     """One of the newest OpenGL that we have a use for, else of the oldest that will do.
 
-    By EGL on Linux, elsewhere the native way. Some drivers give what they are asked for and no
-    more.
+    By EGL on Linux, elsewhere the native way. Some drivers give exactly the version that is
+    requested.
     """
     is_linux = sys.platform.startswith("linux")
     how: dict[str, Any] = {"standalone": True, **({"backend": "egl"} if is_linux else {})}

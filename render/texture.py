@@ -3,8 +3,8 @@
 The albedo comes as sRGB and is kept as square roots of linear light, which shaders square: eight
 bits hold either as finely. Software OpenGL reads and blends such bytes as they are, in two thirds
 of the time that it takes to decode sRGB texel by texel, and neighbours blend almost as light does.
-The smaller versions are means of light itself: that of black and white is what the eye sees from
-afar, not a darker grey.
+The smaller versions are means of light itself: that of black and white looks as they do from
+afar, not like a darker grey.
 """
 
 import moderngl
@@ -15,8 +15,8 @@ from risorius.geometry.colour import to_linear
 
 from .surface import Image, Surface, is_software
 
-Slopes = tuple[Image, float]  # a map (H, W, 2), and what 255 in it is, see `BumpMap`
-_SAMPLED_TEXELS = 10_000  # about so many texels decide what is red
+Slopes = tuple[Image, float]  # a map (H, W, 2), and the slope of 255 in it, see `BumpMap`
+_SAMPLED_TEXELS = 10_000  # of an image, about, for the median of its redness
 LIGHTNESS = 0.3, 0.6, 0.1  # how light red, green and blue look
 # Texture units; 4 is for a window's enlargement.
 _BUMP_UNIT = 5
@@ -27,7 +27,7 @@ ANISOTROPY = 8.0  # most texels that one sample averages along its longest axis
 
 
 class _Mipmaps:
-    """Bytes for each texel on the graphics card, and smaller versions for what is far away.
+    """Bytes for each texel on the graphics card, and smaller versions for distant surfaces.
 
     size: width and height [texels].
     """
@@ -108,10 +108,10 @@ class Texture(_Mipmaps):
 
 
 class BumpMap(_Mipmaps):
-    """The fine shape of a surface: furrows that come and go, or, of two bytes, what always shows.
+    """The fine shape of a surface: furrows that come and go, or relief (2 bytes) that always shows.
 
     steepest: slope of a full byte [scene's unit for one unit of the texture coordinates].
-    define: what programs that look it up are compiled with.
+    define: for programs that look it up.
     """
 
     def __init__(self, surface: Surface, texels: Image, steepest: float, channels: int = 4) -> None:

@@ -1,4 +1,4 @@
-"""What lies over other things and lets them show: its nearest layer, blended over what is there."""
+"""Translucent meshes: their nearest layer, blended over the picture so far."""
 
 import contextlib
 from collections.abc import Iterator, Sequence
@@ -25,7 +25,10 @@ _PREMULTIPLYING_BLEND: Any = (
 
 @contextlib.contextmanager
 def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
-    """What this block draws lies over what is there, by its opacity; whether it hides the rest."""
+    """Blend the drawings of this block over the picture by their opacity.
+
+    hides: whether they hide later drawings behind them.
+    """
     gl.enable(moderngl.BLEND)
     gl.blend_func = _PREMULTIPLYING_BLEND
     gl.fbo.depth_mask = hides
@@ -40,9 +43,9 @@ def blending(gl: moderngl.Context, *, hides: bool = False) -> Iterator[None]:
 def draw_nearest(
     gl: moderngl.Context, stream: MeshBuffers, shares: Sequence[tuple[moderngl.Program, Share]]
 ) -> None:
-    """Blend the nearest layer of a mesh alone: its depths first, then what lies at them.
+    """Blend the nearest layer of a mesh alone: its depths first, then the colours at them.
 
-    Before them the inner side of what is whole.
+    Before them comes the inner side of opaque parts.
     """
     gl.enable(moderngl.CULL_FACE)
     gl.cull_face = "front"
@@ -62,7 +65,7 @@ def draw_nearest(
 def set_translucency(
     program: moderngl.Program, style: Style, view: CameraView, cut: Plane | None
 ) -> None:
-    """How far skin lets what is under it show, and behind which plane; None: everywhere."""
+    """Set the opacity of skin, and the plane behind which it has it; None: everywhere."""
     program["opacity"] = style.opacity
     set_cut(program, view, cut or (0.0, 0.0, 0.0, -1.0), CUT_WIDTH)
 

@@ -39,7 +39,7 @@ class WindowSurface(Surface):
         self.labels: Sequence[tuple[int, int, Image]] = ()
         self._compositor = Compositor(gl, size)
         self._is_resolved = False  # in this frame: panels may have been drawn
-        self._is_laid = False  # what `_compositor` has of the scene is what is seen
+        self._is_laid = False  # the compositor has the scene as it is now
         self.pixel_scale = max(glfw.get_window_content_scale(handle))
 
     @property
@@ -208,7 +208,7 @@ def open_window(
 
 
 def _fit(glfw: ModuleType, handle: Any) -> None:
-    """Make a window no larger than what its desktop has room for, its frame included."""
+    """Make a window no larger than its desktop has room for, its frame included."""
     if not (monitor := glfw.get_primary_monitor()):
         return
     left, top, right, bottom = glfw.get_window_frame_size(handle)
@@ -227,7 +227,7 @@ def _hint(glfw: ModuleType, is_scaled: bool, version: int) -> None:
     glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)  # macOS refuses 3.3 core without it
     glfw.window_hint(glfw.VISIBLE, False)
     glfw.window_hint(glfw.SCALE_TO_MONITOR, is_scaled)
-    # What is shown is multisampled already; the window needs neither samples nor depth.
+    # The scene is multisampled already; the window needs neither samples nor depth.
     glfw.window_hint(glfw.SAMPLES, 0)
     glfw.window_hint(glfw.DEPTH_BITS, 0)
     glfw.window_hint(glfw.STENCIL_BITS, 0)
@@ -243,11 +243,11 @@ def _import_glfw() -> ModuleType:
 
 @contextlib.contextmanager
 def _complaints(glfw: ModuleType) -> Iterator[list[str]]:
-    """Collect what GLFW reports, instead of its Python warnings."""
+    """Collect the reports of GLFW, instead of its Python warnings."""
     texts: list[str] = []
 
     def note(code: int, text: bytes | str) -> None:
-        """What GLFW calls."""
+        """Take a report of GLFW."""
         texts.append(text.decode(errors="replace") if isinstance(text, bytes) else text)
 
     previous = glfw.set_error_callback(note)

@@ -1,4 +1,4 @@
-// What all passes share: the buffers, and arithmetic that rounds as that of refine/ does.
+// Shared by all passes: the buffers, and arithmetic that rounds as that of refine/ does.
 //
 // Eight storage buffers, as many as OpenGL 4.3 promises; no pass takes more than six. Arrays lie in
 // them one behind the other: `faces(k)` is a macro made by tables.py for `mesh[faces_at + (k)]`.
@@ -7,8 +7,8 @@
 layout(local_size_x = GROUP) in;
 layout(std430, binding = 0) readonly buffer Mesh { uint mesh[]; };  // once per mesh
 layout(std430, binding = 1) readonly buffer Positions { double positions[]; };  // once per frame
-layout(std430, binding = 2) buffer Fields { vec4 fields[]; };  // what passes hand on, in vectors
-layout(std430, binding = 3) buffer Work { uint work[]; };  // and in numbers
+layout(std430, binding = 2) buffer Fields { vec4 fields[]; };  // vectors that passes hand on
+layout(std430, binding = 3) buffer Work { uint work[]; };  // numbers that passes hand on
 layout(std430, binding = 4) buffer Rows { float rows[]; };  // the output
 layout(std430, binding = 5) writeonly buffer Triangles { uint triangles[]; };
 layout(std430, binding = 6) writeonly buffer Source { uint source[]; };
@@ -16,7 +16,7 @@ layout(std430, binding = 7) buffer Command { uint command[]; };  // how much of 
 
 const uint NONE = 0xffffffffu;
 
-// What a thread does, where it has one of `count`: FOR_EACH(v, vertex_count) { ... }
+// The work of a thread, where it has one of `count`: FOR_EACH(v, vertex_count) { ... }
 #define FOR_EACH(k, count) \
     void each(uint k); \
     void main() { if (gl_GlobalInvocationID.x < count) each(gl_GlobalInvocationID.x); } \
@@ -38,7 +38,7 @@ uint scanned(uint value) {
     return sums[k];
 }
 
-// What those before this thread count in its group; its block gets the sum of the group.
+// The sum over the threads before this one in its group; its block gets the sum of the group.
 uint counted_before(uint count, uint first_block) {
     uint sum = scanned(count);
     if (gl_LocalInvocationIndex == GROUP - 1) blocks(first_block + gl_WorkGroupID.x) = sum;

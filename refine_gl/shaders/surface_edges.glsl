@@ -1,5 +1,5 @@
-// An edge: the normal in its middle on the surface where every edge is split, and what a split would
-// change (refine/beyond/surface_normals.py, displacement.py).
+// An edge: the normal in its middle on the surface where every edge is split, and the change by a
+// split (refine/beyond/surface_normals.py, displacement.py).
 const float STEADY = 0.02;
 
 FOR_EACH(e, edge_count) {

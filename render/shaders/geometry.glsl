@@ -1,4 +1,4 @@
-// What each pixel shows, as numbers: no light, no blending, one sample.
+// The surface in each pixel, as numbers: no light, no blending, one sample.
 // BUMPS, FINE: of the skin, as in surface.glsl.
 
 #define SURFACE vec3 normal; float depth; vec2 uv; vec3 position; vec2 bump_amounts; float dense;
@@ -11,7 +11,7 @@ in vec2 in_uv;      // of the skin; parts have none
 #if defined(BUMPS)
 in vec2 in_bumps;
 #endif
-in vec3 in_way;     // of shells; whatever has none is solid
+in vec3 in_way;     // of shells; a part without it is solid
 in float in_dense;
 uniform mat4 model_view;
 uniform mat4 projection;
@@ -41,7 +41,7 @@ uniform float first;  // number of the first triangle of this drawing call, coun
 layout(location = 0) out vec4 normal_and_depth;
 layout(location = 1) out vec4 number_side_uv;
 
-const float HALF = 0.5;  // of the strands: where fewer are there, a pixel shows what is behind
+const float HALF = 0.5;  // of the strands: where fewer are there, a pixel shows the surface behind
 const float LEAST_FACING = 0.05;  // from which on, as in shells.glsl
 
 void main() {

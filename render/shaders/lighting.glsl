@@ -12,17 +12,17 @@ uniform vec3 ground;
 const vec3 TO_RIM = vec3(0.6200, 0.3600, -0.6972);
 // How far each colour of light travels in skin: red past the terminator, blue hardly.
 const vec3 SCATTER = vec3(0.19, 0.13, 0.098);
-// The same within the edge of a cast shadow, and what comes back from lit skin nearby, of the key.
+// The same within the edge of a cast shadow, and the key light that lit skin nearby throws back.
 const vec3 BLEED = vec3(0.30, 0.10, 0.04);
 const vec3 BOUNCE = vec3(0.20, 0.105, 0.075);
-const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // of what folds take away
+const vec3 OCCLUDED_BOUNCE = vec3(0.55, 0.15, 0.05);  // of the light that folds take away
 const float OCCLUDED_KEY = 0.35;  // how much folds take of the key: an area light, not a point
 const float SHEEN = 0.9;  // of the narrow lobe of skin, beside the wide one
 const vec3 WARMTH = vec3(1.25, 0.955, 0.82);  // of the ambient light, from skin nearby
 
 struct Lit {
     vec3 key;       // of the key light, straight: times albedo and lightness
-    vec3 rest;      // all other light, and what of the key gets around edges: times albedo
+    vec3 rest;      // all other light, and the key light around edges: times albedo
     vec3 specular;  // added, times lightness
 };
 
@@ -44,7 +44,7 @@ Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float glo
     float narrow = highlight * highlight;
     highlight *= mix(1.0, 0.8 + SHEEN * narrow * narrow, subsurface);
     Lit lit;
-    // What the key scatters past the terminator has no shadow, and what it shines straight fades
+    // Key light that is scattered past the terminator has no shadow, and straight key light fades
     // out toward the terminator: so the errors of a shadow map, largest there, are never seen.
     float facing = dot(normal, to_key);
     lit.key = key_light / (1.0 + scatter) * max(facing, 0.0);
@@ -60,14 +60,14 @@ Lit studio(vec3 normal, vec3 to_eye, float openness, float subsurface, float glo
 // `lightness` is 1 in the key's light and 0 in its full shadow; `ambient_occlusion` 1 where all light comes
 // in from all around, 0 where none does.
 vec3 lit_colour(Lit lit, vec3 albedo, float lightness, float subsurface, float ambient_occlusion) {
-    // What skin nearby takes away it gives back in part, redder.
+    // Light that skin nearby takes away it gives back in part, redder.
     vec3 open = ambient_occlusion * (vec3(1.0) + (1.0 - ambient_occlusion) * subsurface * OCCLUDED_BOUNCE);
     vec3 glow = subsurface * (1.0 - lightness) * (lightness * BLEED + BOUNCE * open);
     return albedo * (lit.key * (lightness * mix(1.0, ambient_occlusion, OCCLUDED_KEY) + glow) + lit.rest * open)
         + lit.specular * (0.25 + 0.75 * lightness) * ambient_occlusion;
 }
 
-// The inner side of the skin: only what the hemisphere and a bounce of the key bring in.
+// The inner side of the skin: lit by the hemisphere and a bounce of the key alone.
 vec3 inside(vec3 normal) {
     return 0.8 * hemisphere(normal) + 0.22 * max(dot(normal, to_key), 0.0);
 }

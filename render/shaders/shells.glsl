@@ -1,5 +1,5 @@
 // Short hair: one surface, drawn LAYERS times, from the skin to the tips of its strands; each layer
-// shows what of the strands is as long. What changes slowly is worked out at corners.
+// shows the strands that are as long. Values that change slowly are computed at corners.
 // Source: Lengyel, Praun, Finkelstein, Hoppe 2001, "Real-time fur over arbitrary surfaces"; light
 // after Kajiya, Kay 1989, "Rendering fur with three dimensional textures", with two highlights, one
 // of the hair's colour, as in Scheuermann 2004, "Practical real-time hair rendering and shading".
@@ -55,7 +55,7 @@ const float THIN = 0.5, THICK = 2.2;     // [mm] widths of strands, and of locks
 const float LONG = 11.0;                 // [mm] after which a strand is another one
 const float TILT = 0.10, UNEVEN = 0.22;  // of the two highlights from each other, and by strands
 const float SHARPNESS = 70.0, SOFTNESS = 14.0;
-const vec2 SIDEWAYS = vec2(0.45, 0.75);  // how far to the front single strands are told apart
+const vec2 SIDEWAYS = vec2(0.45, 0.75);  // facing, from which on single strands are seen
 const vec2 RAGGED = vec2(0.7, 0.15);     // of density, by strands: so hems are no lines
 const vec2 CRISP = vec2(1.5, 3.0);       // how abruptly hems end: where locks are seen, and single strands
 const float LEAST_FACING = 0.05;        // from which on all of a layer is passed

@@ -1,8 +1,8 @@
 // A picture over the whole viewport: a label, a scene of fewer pixels, which is enlarged, or one that
 // has a single sample in each pixel (SMOOTH): its edges become smooth.
 //
-// Source: Timothy Lottes, "FXAA" (NVIDIA, 2009), the short version: where light changes, what lies
-// along the edge is averaged, unless that reaches beyond it.
+// Source: Timothy Lottes, "FXAA" (NVIDIA, 2009), the short version: where light changes, pixels
+// along the edge are averaged, unless that reaches beyond it.
 
 #if defined(VERTEX_STAGE)
 

@@ -3,7 +3,7 @@
 // stage), SPLITS (colour by a count per triangle), COLOURED (vertex colours), TEXTURED (skin's albedo
 // from a picture), SHADOWS (of the key), BUMPS, FINE (of the skin; with PIXEL), STRANDS (thin cones,
 // never drawn thinner than a pixel: they fade instead), FIBRES (striation), TRANSLUCENT (skin that
-// shows what is under it), SUNK (what is under it, hidden where skin is whole), FADED (skin that fades
+// shows the parts under it), SUNK (those parts, hidden where skin is opaque), FADED (skin that fades
 // toward a plane).
 
 #include "lighting.glsl"
@@ -93,7 +93,7 @@ uniform float cut_width;
 #endif
 #if defined(STRANDS)
 uniform float half_strand;   // of a strand's thickness
-uniform float least_half;  // of what it is drawn with at least, at distance 1
+uniform float least_half;  // half the least drawn thickness, at distance 1
 #endif
 out Surface { VARYINGS } surface;
 
@@ -323,8 +323,8 @@ void main() {
     // Lips are redder than the skin around, and moist. Chosen by eye: not yet at red cheeks.
     float excess = front.r / (max(front.g, 1e-3) * redness);
     lit.specular *= 1.0 + 2.4 * clamp(5.0 * excess - 6.0, 0.0, 1.0);
-    // Pores and hairs, darker than what is around them, break the highlight; and it lies in hollows
-    // less than on what stands out. On dark skin a plain one would be all that is seen.
+    // Pores and hairs, darker than the skin around them, break the highlight; and it is weaker in
+    // hollows than on raised skin. On dark skin only a plain highlight would be seen.
     float shown_here = dot(front, lightness_weights);
     float around = texture(around_texture, surface.uv).r;
     float relief = clamp(shown_here / max(around, 1e-3), 0.5, 1.4);
@@ -344,7 +344,7 @@ void main() {
 #if defined(COLOURED)
     // Deep in a mouth parts are painted dark: no more light gets there to be mirrored.
     lit.specular *= max(front.r, least_mirrored);
-    // Lids and lips are thin, and what they shade is small: light of a large lamp gets around them.
+    // Lids and lips are thin, and shade a small area: light of a large lamp gets around them.
     lightness = mix(0.6, 1.0, lightness);
 #endif
     vec3 light = lit_colour(lit, front, lightness, subsurface, ambient_occlusion);

@@ -1,4 +1,4 @@
-"""The refiner on the graphics card beside that of the processor, which is what it is held to."""
+"""The refiner on the graphics card beside that of the processor, with which it must agree."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ RULES: dict[str, dict[str, Any]] = {
 def bound_twice(
     faces: npt.ArrayLike, rest: npt.ArrayLike, **options: Any
 ) -> tuple[refine.Refiner, KahlerGl]:
-    """The refiners `kahler` and `kahler-gl` of one mesh, told the same."""
+    """The refiners `kahler` and `kahler-gl` of one mesh, with the same options."""
     on_card = refine.create("kahler-gl", faces, rest, **options)
     assert isinstance(on_card, KahlerGl), "no OpenGL 4.3: apt install libegl1 libgl1-mesa-dri"
     return refine.create("kahler", faces, rest, **options), on_card
@@ -33,7 +33,8 @@ def assert_same(
     view: refine.View | None = None,
 ) -> refine.RefinedMesh:
     """Refine a frame by both; splits, triangles, rows and attributes are the same to the bit."""
-    wanted, got = processor.refine(positions, view=view), card.refine(positions, view=view)
+    wanted = processor.refine(positions, view=view)
+    got = card.refine(positions, view=view)
     np.testing.assert_array_equal(card.splits, processor.splits)
     assert (got.vertex_count, got.triangle_count) == (wanted.vertex_count, wanted.triangle_count)
     np.testing.assert_array_equal(got.triangles, wanted.triangles)

@@ -1,4 +1,4 @@
-"""What the graphics card makes is what the processor makes: splits, triangles and rows.
+"""The graphics card makes the same frames as the processor: splits, triangles and rows.
 
 To the bit on Mesa's software OpenGL, which rounds as the processor does.
 """
@@ -143,7 +143,8 @@ def random_mesh(seed: int) -> tuple[meshes.Mesh, dict[str, Any]]:
     if seed % 2:
         mesh = meshes.irregular(seed, *generator.integers(2, 14, 2), holes=seed % 4)
     else:
-        count, face_count = generator.integers(3, 60), generator.integers(1, 200)
+        count = generator.integers(3, 60)
+        face_count = generator.integers(1, 200)
         faces = generator.integers(0, count, (face_count, 3)).astype(np.int32)
         mesh = meshes.Mesh(generator.normal(size=(count, 3)), faces)
     options: dict[str, Any] = {"threshold_once": 0.1, "threshold_twice": 0.6} if seed % 3 else {}

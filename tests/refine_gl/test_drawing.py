@@ -49,7 +49,7 @@ def pipeline(request: pytest.FixtureRequest, scene: FaceScene) -> Iterator[Pipel
 
 
 def image(pipeline: Pipeline, drawn: DrawnMesh, style: render.Style) -> npt.NDArray[np.uint8]:
-    """What is seen of it."""
+    """The picture of it."""
     surface = pipeline.renderer.surface
     camera = render.OrbitCamera.framing(pipeline.scene.rest_positions, view="three-quarter")
     surface.begin()
@@ -70,7 +70,8 @@ def test_a_card_takes_large_meshes_by_itself(
     pipeline: Pipeline, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where a look is asked for, the driver is hardware and the mesh large; to the same picture."""
-    smooth, count = Refinement("smooth"), len(pipeline.scene.faces)
+    smooth = Refinement("smooth")
+    count = len(pipeline.scene.faces)
     monkeypatch.setattr(app_pipeline, "LARGE", count)
     before = pipeline.bind(smooth)
     monkeypatch.setattr(render.Surface, "is_software", property(lambda _: False))

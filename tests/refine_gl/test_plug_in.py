@@ -1,4 +1,4 @@
-"""How the refiner on the graphics card is bound, lent to and asked; and what is done without."""
+"""How the refiner on the graphics card is bound, lent to and asked; and its fallback without."""
 
 import logging
 import re
@@ -21,7 +21,7 @@ BENT = meshes.wrinkled(MESH, 3, 0.5)
 
 
 def bound(**options: Any) -> tuple[refine.Refiner, KahlerGl]:
-    """Both refiners of a small mesh, told the same."""
+    """Both refiners of a small mesh, with the same options."""
     return bound_twice(MESH.faces, MESH.vertices, **options)
 
 
@@ -59,9 +59,10 @@ def lent(card: refine.Refiner) -> Any:
 
 
 def test_lent_arrays_are_filled() -> None:
-    """Whoever lends arrays gets the frame in them."""
+    """Lent arrays get the frame."""
     processor, card = bound()
-    stream, wanted = lent(card), processor.refine(BENT)
+    stream = lent(card)
+    wanted = processor.refine(BENT)
     mesh = card.refine(BENT, out=stream)
     assert np.shares_memory(mesh.positions, stream.vertices)
     np.testing.assert_array_equal(bits(mesh.positions), bits(wanted.positions))
@@ -83,7 +84,8 @@ def test_buffers_of_another_context(surface: render.Surface) -> None:
     processor, card = bound()
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
     stream = GpuBuffers(surface.gl, *room)
-    mesh, wanted = card.refine_on_card(BENT, stream), processor.refine(BENT)
+    mesh = card.refine_on_card(BENT, stream)
+    wanted = processor.refine(BENT)
     assert not {"vertices", "triangles", "source", "_counts"} & set(vars(mesh))
     assert mesh.triangle_count == wanted.triangle_count
     assert "vertices" not in vars(mesh)
@@ -124,10 +126,10 @@ def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
     """OpenGL that is too old."""
 
     def fails() -> None:
-        """What `own_context` does then."""
+        """Fail as `own_context` does then."""
         raise GpuError("no OpenGL 4.3 without a window (it has 4.1)")
 
-    refiner._tell.cache_clear()
+    refiner._warn_once.cache_clear()
     monkeypatch.setattr(refiner, "own_context", fails)
 
 
@@ -151,12 +153,12 @@ def test_a_driver_that_refuses_a_shader(
 ) -> None:
     """Then the processor refines as well, and the line has the driver's complaint."""
     whole = frames._text
-    refiner._tell.cache_clear()
+    refiner._warn_once.cache_clear()
     monkeypatch.setattr(frames, "_text", lambda name: whole(name) + "?" * (name == "mark"))
     with caplog.at_level(logging.WARNING):
         assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
-    (told,) = caplog.messages
-    assert told.startswith("kahler-gl: the driver refuses mark.glsl: ") and "error" in told
+    (line,) = caplog.messages
+    assert line.startswith("kahler-gl: the driver refuses mark.glsl: ") and "error" in line
 
 
 def test_shaders_take_eight_buffers() -> None:

@@ -16,7 +16,8 @@ SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from anot
 PLAIN = render.Style(background=render.WHITE, shadows=False)
 """Skin before pure white, so that what is not white is drawn."""
 
-LIGHT_SKIN, DARK_SKIN = (0.88, 0.75, 0.685), (0.47, 0.325, 0.255)
+LIGHT_SKIN = (0.88, 0.75, 0.685)
+DARK_SKIN = (0.47, 0.325, 0.255)
 """Albedos."""
 
 STILL = {"cranium": np.eye(4), "eye_left": np.eye(4)}
@@ -60,7 +61,8 @@ def joined(first: Shape, second: Shape) -> Shape:
 def lent(renderer: render.Renderer, shape: Shape, *, columns: int = 6) -> render.Stream:
     """A stream that just holds the shape, uploaded."""
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), columns)
-    stream.vertices[:, :3], stream.vertices[:, 3:6] = shape.positions, shape.normals
+    stream.vertices[:, :3] = shape.positions
+    stream.vertices[:, 3:6] = shape.normals
     stream.triangles[:] = shape.triangles
     stream.upload(len(shape.positions), len(shape.triangles))
     return stream

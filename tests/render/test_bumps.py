@@ -10,7 +10,8 @@ from risorius import render
 
 from .scenes import PLAIN, at, facing, fresh_frame, lent, sphere, square
 
-LEVEL, STEEP = (128, 128, 0, 0), 100.0  # a slope of 1 over a square of 100 mm
+LEVEL = (128, 128, 0, 0)  # a slope of 1 over a square of 100 mm
+STEEP = 100.0
 
 
 def furrowed(
@@ -60,7 +61,8 @@ def test_furrows_are_darker(surface: render.Surface) -> None:
 def test_a_texel_follows_its_own_amount(surface: render.Surface) -> None:
     """Alpha 0 the first, 255 the second."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
-    first, second = (190, 190, 90, 0), (190, 190, 90, 255)
+    first = (190, 190, 90, 0)
+    second = (190, 190, 90, 255)
     for texel, amounts in ((first, (0.0, 1.0)), (second, (1.0, 0.0))):
         assert (at(furrowed(surface, texel, amounts), 25, 0) == plain).all()
     for texel, amounts in ((first, (1.0, 0.0)), (second, (0.0, 1.0))):

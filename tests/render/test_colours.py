@@ -31,7 +31,8 @@ def test_split_colours_are_where_the_values_say(
     """A triangle with splits has its palette's hue, its neighbour keeps the skin."""
     style = replace(SPLITS, shading=shading, wireframe=wireframe)
     frame = draw_image(surface, square(), style, values=np.array([0, 4], np.uint8))
-    lower, upper = at(frame, 20.0, -20.0), at(frame, -20.0, 20.0)
+    lower = at(frame, 20.0, -20.0)
+    upper = at(frame, -20.0, 20.0)
     assert lower[0] > lower[2] + 20
     assert upper[2] > upper[0] + 60
     swapped = draw_image(surface, square(), style, values=np.array([4, 0], np.uint8))
@@ -45,7 +46,8 @@ def test_split_colours_of_many_triangles(surface: render.Surface) -> None:
     values = np.where(centres[:, 1] > 0.0, 5, 0).astype(np.uint8)
     assert len(values) > 2 * 1024
     frame = draw_image(surface, shape, SPLITS, values=values)
-    upper, lower = frame[30, 30:66], frame[66, 30:66]
+    upper = frame[30, 30:66]
+    lower = frame[66, 30:66]
     assert (upper[:, 2] > upper[:, 0]).all() and (lower[:, 0] > lower[:, 2]).all()
 
 

@@ -49,9 +49,11 @@ def test_a_sphere_is_as_far_away_as_it_should_be(
     shape = sphere(5)
     with render.open_offscreen(size) as surface:
         found = drawn(surface, shape, camera)
-    ways, eye = rays(camera, size), camera.eye
+    ways = rays(camera, size)
+    eye = camera.eye
     # |eye + s way| = 50, the nearer one
-    a, b = (ways**2).sum(-1), ways @ eye
+    a = (ways**2).sum(-1)
+    b = ways @ eye
     under_root = b * b - a * (eye @ eye - 2500.0)
     is_hit = under_root > 0.0
     expected = (-b - np.sqrt(np.maximum(under_root, 0.0))) / a
@@ -84,10 +86,13 @@ def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface: render.
 
 def test_what_is_nearer_hides_what_is_behind(surface: render.Surface) -> None:
     """Of two squares and a ball the nearest counts, whichever is drawn first."""
-    far, near = square(50.0, z=-30.0), square(10.0, z=40.0)
+    far = square(50.0, z=-30.0)
+    near = square(10.0, z=40.0)
     for shape in (joined(far, near), joined(near, far)):
         found = drawn(surface, shape, facing(), parts=(Ball(),))
-        middle, beside, corner = (48, 48), (48, 62), (10, 10)
+        middle = (48, 48)
+        beside = (48, 62)
+        corner = (10, 10)
         is_near = shape.positions[shape.triangles[:, 0], 2] > 0.0
         assert is_near[found.triangle[middle]]
         assert found.triangle[beside] >= len(shape.triangles)  # of the ball
@@ -97,7 +102,8 @@ def test_what_is_nearer_hides_what_is_behind(surface: render.Surface) -> None:
 
 def test_triangles_are_numbered_through_all_parts(surface: render.Surface) -> None:
     """Those of the mesh first, then of each part in turn; nothing is -1."""
-    shape, ball = square(10.0, z=45.0), Ball()
+    shape = square(10.0, z=45.0)
+    ball = Ball()
     found = drawn(surface, shape, facing(70.0), parts=(ball,))
     assert found.triangle[0, 0] == -1 and found.depth[0, 0] == 0.0
     assert set(found.triangle[(found.triangle >= 0) & (found.triangle < 2)]) == {0, 1}
@@ -119,8 +125,11 @@ def test_the_back_of_the_mesh_is_told_from_its_front(surface: render.Surface) ->
 
 def test_a_picture_is_the_same_before_and_after(surface: render.Surface) -> None:
     """Drawing numbers leaves the colours of a frame alone, and those of the next."""
-    renderer, style, camera = render.Renderer(surface), render.Style(), facing()
-    stream, ball = lent(renderer, sphere()), Ball(shape=sphere(3, 60.0))
+    renderer = render.Renderer(surface)
+    style = render.Style()
+    camera = facing()
+    stream = lent(renderer, sphere())
+    ball = Ball(shape=sphere(3, 60.0))
     pictures = []
     for is_between in (False, True, False):
         with fresh_frame(renderer, style):

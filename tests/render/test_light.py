@@ -30,7 +30,8 @@ NO_RIM = replace(render.Light(), rim=(0.0, 0.0, 0.0))
 
 def swapped(light: render.Light) -> render.Light:
     """The same light with left and right exchanged."""
-    (a, b, c), (d, e, f) = light.to_key, light.to_fill
+    (a, b, c) = light.to_key
+    (d, e, f) = light.to_fill
     return replace(light, to_key=(-a, b, c), to_fill=(-d, e, f))
 
 
@@ -43,7 +44,8 @@ def scene(surface: render.Surface, light: render.Light) -> SignedImage:
 def test_light_of_the_other_side_makes_the_mirror_image(surface: render.Surface) -> None:
     """Shading and the cast shadow follow the key, and nothing else in the picture has a side."""
     for light in (NO_RIM, replace(render.LIGHTS["window"], rim=(0.0, 0.0, 0.0))):
-        here, there = scene(surface, light), scene(surface, swapped(light))
+        here = scene(surface, light)
+        there = scene(surface, swapped(light))
         assert np.abs(here - here[:, ::-1]).max() > 60
         off = np.abs(here - there[:, ::-1])
         assert off.mean() < 0.3 and np.percentile(off, 99.0) <= 4

@@ -39,7 +39,8 @@ def test_parts_move_with_their_bones(surface: render.Surface) -> None:
 
 def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) -> None:
     """Other arrays of the same part are uploaded, whatever was drawn before."""
-    renderer, pixels = render.Renderer(surface), []
+    renderer = render.Renderer(surface)
+    pixels = []
     ball = Ball()
     part = reshaped(ball)
     for scale in (1.0, 0.5):
@@ -132,7 +133,8 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
 def test_hair_is_dense_up_to_its_outline(surface: render.Surface) -> None:
     """It covers what is under it, no veil stands off its outline; it is away where none grows."""
     renderer = render.Renderer(surface)
-    ball, covers = Ball(colour=(0.1, 0.1, 0.1)), []
+    ball = Ball(colour=(0.1, 0.1, 0.1))
+    covers = []
     for dense in (1.0, 0.0):
         out = ball.normals
         striation = np.column_stack([3.0 * ball.vertices[:, :2], 10.0 * out, 0.0 * out[:, 0]])

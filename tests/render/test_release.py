@@ -48,9 +48,11 @@ def counting(monkeypatch: pytest.MonkeyPatch) -> Callable[[], Counter[str]]:
 def draw_all(surface: render.Surface) -> np.ndarray:
     """A picture that needs every program and buffer; nobody holds anything after it."""
     renderer = render.Renderer(surface)
-    shape, camera = sphere(), facing()
+    shape = sphere()
+    camera = facing()
     stream = renderer.lend_stream(len(shape.positions), len(shape.triangles), 8)
-    stream.vertices[:, :3], stream.vertices[:, 3:6] = shape.positions, shape.normals
+    stream.vertices[:, :3] = shape.positions
+    stream.vertices[:, 3:6] = shape.normals
     stream.triangles[:] = shape.triangles
     amounts = np.linspace(0.0, 1.0, 2 * len(shape.positions), dtype=np.float32).reshape(-1, 2)
     stream.upload(len(shape.positions), len(shape.triangles), amounts)
@@ -89,7 +91,8 @@ def test_a_lost_renderer_leaves_nothing(samples: int, monkeypatch: pytest.Monkey
 
 def test_a_lost_part_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """A renderer that draws one person after the other holds the parts of the last one alone."""
-    camera, left = facing(), list[Counter[str]]()
+    camera = facing()
+    left = list[Counter[str]]()
     style = replace(PLAIN, shadows=True)
     with render.open_offscreen((96, 96), samples=4) as surface:
         renderer = render.Renderer(surface)

@@ -38,7 +38,8 @@ def test_only_pixel_shading_lights_the_middle_of_a_facet(surface: render.Surface
 def test_light_comes_from_the_upper_left(surface: render.Surface) -> None:
     """The sphere is brightest up left of its middle, and its dark side is not black."""
     frame = draw_image(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
-    upper_left, lower_right = frame[32, 32], frame[64, 64]
+    upper_left = frame[32, 32]
+    lower_right = frame[64, 64]
     assert upper_left > 1.5 * lower_right
     assert lower_right > 3 * 30
 

@@ -94,7 +94,9 @@ def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(
     frames = []
     for is_cast in (True, False):
         with fresh_frame(renderer, style):
-            view, hair, bones = renderer.view(facing()), [HairyBall()], {"cranium": before_wall}
+            view = renderer.view(facing())
+            hair = [HairyBall()]
+            bones = {"cranium": before_wall}
             if is_cast and shadows:
                 renderer.cast_shadows(hair, bones, view, style, stream=wall)
             renderer.draw_mesh(wall, view, style)

@@ -37,7 +37,8 @@ def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
     stream.vertices[:] = np.nan
     stream.triangles[:] = 999
     shape = square()
-    stream.vertices[:4, :3], stream.vertices[:4, 3:] = shape.positions, shape.normals
+    stream.vertices[:4, :3] = shape.positions
+    stream.vertices[:4, 3:] = shape.normals
     stream.triangles[:2] = shape.triangles
     stream.upload(4, 2)
     with fresh_frame(renderer):
@@ -86,7 +87,8 @@ def test_positions_that_are_not_finite_are_survived(surface: render.Surface) -> 
     """A simulation that blew up still gives a frame."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, sphere())
-    stream.vertices[3, 0], stream.vertices[4, 1] = np.inf, np.nan
+    stream.vertices[3, 0] = np.inf
+    stream.vertices[4, 1] = np.nan
     stream.upload(len(stream.vertices), len(stream.triangles))
     surface.begin()
     renderer.draw_mesh(stream, renderer.view(facing()), render.Style(wireframe=True))

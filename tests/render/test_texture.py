@@ -46,8 +46,10 @@ def plain_image(colour: tuple[int, int, int], size: tuple[int, int] = (8, 8)) ->
 def quarters() -> render.Image:
     """Red up left, green up right, blue down left, grey down right."""
     image = np.zeros((48, 64, 3), np.uint8)
-    image[:24, :32], image[:24, 32:] = (200, 30, 30), (30, 200, 30)
-    image[24:, :32], image[24:, 32:] = (30, 30, 200), (90, 90, 90)
+    image[:24, :32] = (200, 30, 30)
+    image[:24, 32:] = (30, 200, 30)
+    image[24:, :32] = (30, 30, 200)
+    image[24:, 32:] = (90, 90, 90)
     return image
 
 
@@ -104,7 +106,8 @@ def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shadin
     image = quarters()
     frame = textured(surface, image, counted, values=np.array([0, 4], np.uint8))
     without = textured(surface, image, style)
-    lower, upper = (72, 84), (12, 24)  # rows and columns of points below and above the diagonal
+    lower = (72, 84)  # rows and columns of points below and above the diagonal
+    upper = (12, 24)
     assert (frame[lower] == without[lower]).all()
     assert frame[upper][2] > frame[upper][0] + 40  # red before
     assert without[upper][0] > without[upper][2] + 100
@@ -162,14 +165,17 @@ def test_bad_images(surface: render.Surface, image: npt.NDArray[np.uint8], messa
 @pytest.mark.parametrize("shading", render.Shading)
 def test_less_light_where_it_is_less_open(surface: render.Surface, shading: render.Shading) -> None:
     """It is darker by how open the texture says it is, where all light comes in not at all."""
-    image, occlusion = plain_image((180, 140, 120)), np.full((8, 8), 255, np.uint8)
-    occlusion[:, :4], occlusion[4:, :4] = 128, 0
+    image = plain_image((180, 140, 120))
+    occlusion = np.full((8, 8), 255, np.uint8)
+    occlusion[:, :4] = 128
+    occlusion[4:, :4] = 0
     style = replace(PLAIN, shading=shading)
     plain = textured(surface, image, style)
     folded = textured(surface, image, style, occlusion=occlusion)
     height, width = plain.shape[:2]
     lost = (plain - folded)[..., 1]
-    right, upper = np.s_[height // 4, 5 * width // 8], np.s_[3 * height // 8, 3 * width // 8]
+    right = np.s_[height // 4, 5 * width // 8]
+    upper = np.s_[3 * height // 8, 3 * width // 8]
     lower = np.s_[5 * height // 8, 3 * width // 8]
     assert lost[right] == 0
     assert 5 < lost[upper] < lost[lower]
@@ -186,7 +192,8 @@ def test_fine_shape_tilts_what_each_pixel_shows(
     """What rises to the right faces the key; level skin, other shadings and without: as it was."""
     slopes = np.full((32, 32, 2), 128, np.uint8)
     slopes[:, 16:] = 190, 128
-    image, style = plain_image((180, 140, 120)), replace(PLAIN, shading=shading)
+    image = plain_image((180, 140, 120))
+    style = replace(PLAIN, shading=shading)
     style = replace(style, textured=is_textured)
     plain = textured(surface, image, style)
     shown = textured(surface, image, style, fine_shape=(slopes, 100.0))

@@ -10,7 +10,8 @@ from .scenes import PLAIN, STILL, Ball, facing, lent, sphere
 @pytest.mark.parametrize("samples", [0, 4])
 def test_viewports_are_apart(samples: int) -> None:
     """Two halves show the same, and one alone leaves every pixel of the other empty."""
-    left, right = (0, 0, 60, 50), (60, 0, 60, 50)
+    left = (0, 0, 60, 50)
+    right = (60, 0, 60, 50)
     with render.open_offscreen((120, 50), samples=samples) as surface:
         renderer = render.Renderer(surface)
         stream = lent(renderer, sphere())
