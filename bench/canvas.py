@@ -26,7 +26,7 @@ POSITION_AND_NORMAL = 6  # columns of a vertex without texture coordinates
 
 @dataclass(frozen=True)
 class Drawing:
-    """What is drawn beside the mesh, and from where."""
+    """The camera and style of a picture, and its parts and lines beside the mesh."""
 
     camera: render.OrbitCamera
     style: render.Style
@@ -36,7 +36,7 @@ class Drawing:
 
 
 class _Shown(Scene):
-    """What is before the camera just now; nothing moves it."""
+    """The scene before the camera now; nothing moves it."""
 
     drawing: Drawing
     positions = np.zeros((0, 3))

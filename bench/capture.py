@@ -1,8 +1,8 @@
-"""What `risorius bench capture` prints: frames a second of a film.
+"""The report of `risorius bench capture`: frames a second of a film.
 
 The film is the face's script, as the mesh is and refined, side by side. Where the face is still, it
-shows its last picture again. Where the time of a frame goes, `bench window` tells, which draws by
-the same pipeline.
+shows its last picture again. `bench window` reports the time of each stage of a frame, by the same
+pipeline.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The group `risorius bench`: measurements. What is slow to import, commands import inside."""
+"""The group `risorius bench`: measurements. Commands import slow modules inside."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MESHES = ("face", "2k", "20k", "200k", "1M")
 needed_reference = click.option(
     "--reference", type=FOLDER, required=True, help="A folder of `risorius bench reference`."
 )
-size_option = click.option("--size", type=Size(), default=(1280, 720), help="1280x720 unless told.")
+size_option = click.option("--size", type=Size(), default=(1280, 720), help="By default 1280x720.")
 
 
 @click.group()
@@ -32,7 +32,7 @@ def bench() -> None:
     "sizes",
     type=click.Choice(MESHES),
     multiple=True,
-    help="Only this mesh; may be given several times. Unless told: all but 2k.",
+    help="Only this mesh; may be given several times. By default all but 2k.",
 )
 @click.option(
     "--seconds",
@@ -52,8 +52,9 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str) -> None:
     """Time refinement on the face and on meshes of up to a million triangles."""
     from . import refine
 
-    told = sizes or refine.SIZES, seconds, say_progress
-    click.echo(refine.report(refine.measure(*told, on_card=refiner == "kahler-gl")))
+    on_card = refiner == "kahler-gl"
+    rows = refine.measure(sizes or refine.SIZES, seconds, say_progress, on_card=on_card)
+    click.echo(refine.report(rows))
 
 
 @bench.command("quality")
@@ -62,7 +63,7 @@ def bench_refine(sizes: tuple[str, ...], seconds: float, refiner: str) -> None:
     "--expression", "expressions", multiple=True, help="Only this one; may be given several times."
 )
 def bench_quality(reference: Path | None, expressions: tuple[str, ...]) -> None:
-    """Measure how near every scheme comes to a dense face and its picture, for what it spends.
+    """Measure how near every scheme comes to a dense face and its picture, for its triangles.
 
     The face is the built-in head, with --reference a scan.
     """
@@ -96,7 +97,7 @@ def bench_motion(reference: Path) -> None:
     "--head", "head_file", type=FILE, help="The head.npz of another head than the built-in one."
 )
 def bench_human(reference: Path, head_file: Path | None) -> None:
-    """Measure how human the head's form is: what no person of a reference explains of it."""
+    """Measure how human the head's form is: its distance from all persons of a reference."""
     from . import human
 
     found = human.measure(reference, head_file)

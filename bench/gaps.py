@@ -1,17 +1,17 @@
 """Do closed lips stay closed, do lids close, and does the skin tear?
 
-Looked at is every row of each layer alone at full strength, and hundreds of random mixtures of
-muscles, settled on the built-in head. Of each are counted the inverted triangles, those that turned
-by more than a right angle against the skin around them, and how deep skin sits in the other lip, an
-eyeball or the teeth.
+The benchmark sets every row of each layer alone to full strength, and hundreds of random mixtures
+of muscles, and settles the built-in head in each. It counts the inverted triangles, those that
+turned by more than a right angle against the skin around them. It measures how deep skin sits in
+the other lip, an eyeball or the teeth.
 
-Of action units and the expressions in which the mouth or an eye is shut are told, besides, the
-widest slit between the lips, where nothing opens them, and the greatest height at which one sees
-each eyeball that is shut, or past it. Looked at from the whole front, 60 degrees to either side and
-40 up and down, at the mesh and at what refinement makes of it, because smoothing thins a folded lip
-a little; whichever is worse. Measured by lines of sight, not by distances between vertices: a gap
-that nobody can look through is none, and one between two vertices that lie on each other may be
-one.
+For action units, and expressions in which the mouth or an eye is shut, it also reports two gaps:
+the widest slit between the lips where nothing opens them, and the greatest height at which a shut
+eyeball is seen, or the space past it. The views cover the whole front, 60 degrees to either side
+and 40 up and down. Both the mesh and the refined mesh are measured, because smoothing thins a
+folded lip a little; the worse of the two counts. Gaps are measured by lines of sight, not by
+distances between vertices: a gap that nobody can look through is none, and a gap may lie between
+two vertices that touch.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
 class Pose(NamedTuple):
-    """What is wrong with one pose; None where nothing ought to be shut."""
+    """The faults of one pose; None where nothing ought to be shut."""
 
     name: str
     slit: float | None  # mm, widest between the lips
@@ -80,8 +80,8 @@ def measure(mixtures: int) -> list[Pose]:
     """Put the built-in head into each pose, and into so many random mixtures."""
     head = assets.load("head")
     simulation = sim.create(head)
-    told = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
-    refiner = refine.create("kahler", head.faces, head.vertices, **told)
+    options = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
+    refiner = refine.create("kahler", head.faces, head.vertices, **options)
     poses = []
     for name, values in _values(simulation, mixtures, np.random.default_rng(SEED)):
         now = settled_positions(simulation, values, SETTLE)
@@ -178,9 +178,9 @@ def eyeballs_of(head: Any, simulation: sim.Simulation) -> dict[str, Array]:
 def lid_gaps(
     positions: Array, triangles: Triangles, landmarks: Array, eyeballs: Mapping[str, Array]
 ) -> dict[str, float]:
-    """Greatest height [mm] at which one sees each eyeball, or past it, from any of VIEWS.
+    """Greatest height [mm] at which each eyeball, or the space past it, is seen from any of VIEWS.
 
-    Seen is what has no skin in front of it, be it between the lids or through them: the cornea
+    A place is seen if no skin is in front of it, between the lids or through them: the cornea
     stands out of the ball and may pierce a lid. `landmarks`: where the 68 are now (68, 3);
     `eyeballs`: see `eyeballs_of`. The result is by the eye's side.
     """
@@ -197,7 +197,7 @@ def lid_gaps(
 def _lid_gap(near: Array, ends: Array, ball: Array) -> float:
     """Greatest height [mm] without skin between the corners of an eye (2, 3), along z.
 
-    What has skin above and below it counts.
+    A gap with skin above and below it counts.
     """
     near = near[to_viewer(near)]
     left, right = np.sort(ends[:, 0])
@@ -247,16 +247,16 @@ def _inverted(rest: Array, now: Array, faces: Triangles) -> int:
     return count
 
 
-def _worst(poses: Sequence[Pose], what: str) -> tuple[float, str]:
+def _worst(poses: Sequence[Pose], column: str) -> tuple[float, str]:
     """The greatest value of a column, and the pose that has it."""
-    values = [(getattr(pose, what), pose.name) for pose in poses]
+    values = [(getattr(pose, column), pose.name) for pose in poses]
     return max((value for value in values if value[0] is not None), key=lambda pair: pair[0])
 
 
 def report(poses: Sequence[Pose]) -> str:
     """The text to print: how many poses, and which is the worst in each way."""
     torn = [pose for pose in poses if pose.inverted]
-    rows = [(what, *_worst(poses, what)) for what in Pose._fields[1:]]
+    rows = [(column, *_worst(poses, column)) for column in Pose._fields[1:]]
     return "\n".join(
         [
             f"{len(poses)} poses: every row of the layers, and random mixtures of muscles;",
@@ -273,10 +273,10 @@ def report(poses: Sequence[Pose]) -> str:
 
 
 def targets(poses: Sequence[Pose]) -> list[Target]:
-    """What skin and contacts are held to; a triangle turns over in a wink or a yawn."""
+    """The targets of skin and contacts; a triangle turns over in a wink or a yawn."""
     torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
     return [
         at_most("poses with a triangle turned", 100.0 * torn, MOST_TORN, " %"),
         at_most("triangles turned in one pose", _worst(poses, "inverted")[0], MOST_IN_A_POSE),
-        *(at_most(what, _worst(poses, what)[0], most, " mm") for what, most in MOST.items()),
+        *(at_most(name, _worst(poses, name)[0], most, " mm") for name, most in MOST.items()),
     ]

@@ -1,10 +1,10 @@
-"""How human a head's form is: what no weights of people's modes explain of it, region by region.
+"""How human a head's form is: its distance from the nearest person of a reference, by region.
 
 The mean person of a reference is turned, moved and bent along the modes until
-it lies on the head as well as such a person can. What is left is told as the distance along the
-head's normals (RMS) and the angle between normals (median): distances between landmarks do not see
-form, normals do. Weights that are large tell of a head that only somebody odd could have. People
-whom half of the modes had to explain are left with 0.33 to 0.48 mm and 2.6 to 3.7 degrees.
+it lies on the head as well as such a person can. The rest is reported as the distance along the
+head's normals (RMS) and the angle between normals (median): distances between landmarks do not show
+form, normals do. Large weights mean a head that few people could have. People who were fitted by
+half of the modes have a rest of 0.33 to 0.48 mm and 2.6 to 3.7 degrees.
 
 Vertices in nostrils and between lips are left out, since either mesh has insides of its own.
 Source of the fit: Amberg, Knothe, Vetter 2008, "Expression invariant 3D face recognition with a
@@ -44,7 +44,7 @@ LANDMARK_WEIGHT = 0.3  # of 1/mm^2
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
 OPPOSITE = 12.0  # [mm] on a line of sight within which skin hides a vertex
 FARTHEST = 12.0  # [mm] that points may be apart
-INDEPENDENT = 600  # points, as many as tell something of their own: neighbours err alike
+INDEPENDENT = 600  # points that count as independent: neighbours err alike
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class IdentitySpace:
         return np.asarray(self.mean + np.tensordot(weights, self.modes, 1), dtype=np.float64)
 
     def regions(self) -> Labels:
-        """The name of the region that each vertex is in, "" for what is hidden or no face, (V,)."""
+        """The name of the region that each vertex is in, "" where hidden or no face, (V,)."""
         x, y, z = self.mean.T
         marks = self.mean[self.landmarks]
         aside = np.abs(x)
@@ -135,7 +135,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Rest:
-    """What people's modes leave of a surface."""
+    """The rest of a surface beside people's modes."""
 
     weights: Points
     """Of the modes, shape (k,), in standard deviations."""
@@ -146,7 +146,7 @@ class Rest:
 
 
 def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
-    """Measure both the coarse and the finest mesh of a head, of the built-in one unless told.
+    """Measure both the coarse and the finest mesh of a head, by default of the built-in one.
 
     Raises UserError for a broken folder, AssetError for a broken head.
     """
@@ -164,9 +164,9 @@ def measure(folder: Path, head_file: Path | None = None) -> dict[str, Rest]:
 
 
 def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
-    """What is left of a surface when the space explains it as well as it can.
+    """The rest of a surface beside the nearest person of the space.
 
-    labels: the region of each of the space's vertices, "" where it is not asked.
+    labels: the region of each of the space's vertices, "" where it does not count.
     """
     asked = np.flatnonzero(labels != "").astype(np.int32)
     count = len(space.modes)
@@ -248,8 +248,8 @@ def report(found: Mapping[str, Rest]) -> str:
         for region in (*REGIONS, "all")
     ]
     lines = [
-        "What no human weights explain of the head: RMS distance along its normals [mm] and median",
-        "angle between normals, of its own mesh and of the finest one.",
+        "Distance of the head from the nearest person: RMS along its normals [mm] and median angle",
+        "between normals, of its own mesh and of the finest one.",
         "",
         *table(f"region:<9|{columns}", rows),
         "",
@@ -264,7 +264,7 @@ def report(found: Mapping[str, Rest]) -> str:
 
 
 def targets(found: Mapping[str, Rest]) -> list[Target]:
-    """What the form of a head is held to."""
+    """The targets of the form of a head."""
     fine = found["finer"]
     return [
         *(at_most(f"finer, {n}", fine.distances[n], most, " mm") for n, most in MOST.items()),

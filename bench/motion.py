@@ -2,7 +2,7 @@
 
 Takes a folder of scans (subjects.py), fits the rig to that head as to anybody's, and compares its
 fields, weighted by area. A field has the name of one of ARKit's shapes in any spelling, a pair of
-them without side, and is compared with what the head's rows of that name do at 1.
+them without side, and is compared with the displacement by the head's rows of that name at 1.
 
     cosine      1 = same directions and proportions          magnitude   |simulated| / |scanned|
     residual    |simulated - scanned|^2 / |scanned|^2        blob        cosine of a smooth bump
@@ -80,7 +80,7 @@ def _shapes(name: str, simulation: sim.Simulation) -> list[str]:
 
 
 def _moved(simulation: sim.Simulation, shapes: list[str]) -> Points:
-    """How far shapes at 1 move the skin [mm], (V, 3), beyond what they make good of another."""
+    """Displacement by shapes at 1 [mm], (V, 3), from the shapes that they are shares of, at 1."""
     share_of = simulation.controls.tables.share_of
     base = {share_of[each]: 1.0 for each in shapes if each in share_of}
     start = settled_positions(simulation, base, SETTLE) if base else simulation.rest_positions
@@ -148,7 +148,7 @@ def report(rows: list[Row], left_out: list[str]) -> str:
 
 
 def targets(rows: list[Row], _: list[str]) -> list[Target]:
-    """What the muscles are held to: the mean, the shape that is least alike, and every blob."""
+    """The targets of the muscles: the mean, the shape that is least alike, and every blob."""
     worst = min(rows, key=lambda row: row.cosine)
     below = [row for row in rows if not row.residual < 1.0 - row.blob**2]
     nearest = max(rows, key=lambda row: row.residual / (1.0 - row.blob**2))

@@ -1,4 +1,4 @@
-"""How near a refined mesh comes to the true surface, and to its picture, for what it spends.
+"""How near a refined mesh comes to the true surface, and to its picture, for its triangles.
 
 A coarse face moves with a dense one (subjects.py): the built-in head with one of 16 times its
 triangles, or a decimated scan with the scan. It is refined by all methods of METHODS:
@@ -130,20 +130,20 @@ def measure(
 
 
 def _bound(subject: Subject, refiner: str, options: Mapping[str, Any]) -> Callable[[Points], Mesh]:
-    """What makes the mesh of a method of positions (V, 3)."""
-    told = dict(options)
-    if told.get("scheme") == "detail":
-        told["detail"] = subject.rest.dense, subject.dense_faces
+    """The function that makes the mesh of a method from positions (V, 3)."""
+    own = dict(options)
+    if own.get("scheme") == "detail":
+        own["detail"] = subject.rest.dense, subject.dense_faces
     if refiner == "sliding":
-        told["criterion"] = told["criterion"]()
+        own["criterion"] = own["criterion"]()
     if refiner == "everywhere":
-        splits = told.pop("splits")
-        told |= {"criterion": Everywhere(splits), "blend": splits == 2}
+        splits = own.pop("splits")
+        own |= {"criterion": Everywhere(splits), "blend": splits == 2}
     kind = refiner if refiner in ("none", "loop") else "kahler"
-    bound = refine.create(kind, subject.coarse_faces, subject.rest.coarse, **told)
+    bound = refine.create(kind, subject.coarse_faces, subject.rest.coarse, **own)
     if refiner == "sliding":
         most = BUDGET * len(subject.coarse_faces)
-        return lambda positions: _slid(bound, told["criterion"], positions, most)
+        return lambda positions: _slid(bound, own["criterion"], positions, most)
     return bound.refine
 
 
@@ -231,12 +231,13 @@ def report(scores: Sequence[Score]) -> str:
     )
 
 
-def _gain(found: Score, static: Score, what: str) -> float:
-    return 100.0 * (1.0 - float(getattr(found, what)) / float(getattr(static, what)))
+def _gain(found: Score, static: Score, name: str) -> float:
+    return 100.0 * (1.0 - float(getattr(found, name)) / float(getattr(static, name)))
 
 
 def targets(scores: Sequence[Score]) -> list[Target]:
-    """What the scheme `cubic` is held to where `displacement` splits, at twice the triangles."""
+    """The targets of the scheme `cubic` where `displacement` splits, at twice the triangles."""
     average = means(scores)
-    gains = {what: _gain(average[BEST], average[STATIC], what) for what in ("distance", "picture")}
-    return [at_least(f"{w}: less than static", g, LEAST_GAIN, " %") for w, g in gains.items()]
+    names = ("distance", "picture")
+    gains = {name: _gain(average[BEST], average[STATIC], name) for name in names}
+    return [at_least(f"{n}: less than static", g, LEAST_GAIN, " %") for n, g in gains.items()]

@@ -51,7 +51,7 @@ LANDMARKS = re.compile(r"\b\d+(?:\s*,\s*\d+){67}\b")
 
 
 def make(checkout: Path, folder: Path) -> list[str]:
-    """Write the files into `folder`; returns a line for each of them, and for what is missing.
+    """Write the files into `folder`; returns a line for each of them, and for each missing file.
 
     Raises UserError for a checkout that is none, and OSError.
     """

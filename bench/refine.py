@@ -1,4 +1,4 @@
-"""What a frame of refinement costs, for all methods and sizes of mesh in one run.
+"""The time of a frame of refinement, for all methods and sizes of mesh in one run.
 
 Kähler, Haber, Seidel 2003, Table 1 compares the static with the refined mesh. Here the time of the
 refiner is taken, from positions to a filled stream, everything counted: normals, criterion, points,
@@ -11,8 +11,8 @@ The methods of a mesh are run interleaved, forwards and backwards in turn, with 
 off, and medians are reported: on a shared machine times drift by a third within a run, and so only
 rows of one mesh can be compared. The best time is reported beside the median for the same reason.
 
-On the graphics card a frame lasts from the upload of positions until OpenGL has finished; whoever
-draws by arrays uploads rows and triangles besides, which is not in the times of the processor.
+On the graphics card a frame lasts from the upload of positions until OpenGL has finished. The
+times of the processor do not include the upload of rows and triangles, which drawing needs too.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ SHARES = {10: (0.90, 0.97), 50: (0.50, 0.85), 100: (0.0, 0.70)}
 """Per cent of the edges that are split -> quantiles of the drops that are the two thresholds."""
 TRIANGLE_COUNTS = {"2k": 2_000, "20k": 20_000, "200k": 200_000, "1M": 1_000_000}
 SIZES = ("face", "20k", "200k", "1M")
-"""What is measured unless told; 2k is for a quick look."""
+"""The meshes of a run by default; 2k is for a quick look."""
 FEWEST_ROUNDS = 5
 MOST_ROUNDS = 200
 WINDOWS_LOOK: Mapping[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
@@ -60,7 +60,7 @@ METHODS: Mapping[str, Mapping[str, Any]] = {
     "detail": {"scheme": "detail"},
     "window's look": WINDOWS_LOOK,
 }
-"""Our methods on the face: the paper's, and what each scheme and each option costs."""
+"""Our methods on the face: the paper's, and each scheme and each option beside it."""
 SEED = 2003
 WAVES = ((13.0, 0.4), (29.0, 1.1), (9.0, 2.5))  # length [cells], direction [radians]
 HEIGHT = 1.0  # of the waves [cells]; bends most edges by 2 to 20 degrees
@@ -91,7 +91,7 @@ class Row(NamedTuple):
 
 
 class _Case(NamedTuple):
-    """A method, the mean number of its triangles, and what refines positions by it."""
+    """A method, the mean number of its triangles, and its call, which refines positions."""
 
     method: str
     triangles: float
@@ -192,7 +192,7 @@ def _card_cases(load: Load) -> list[_Case]:
     for title, options in {"paper's rule": {}, "window's look": WINDOWS_LOOK}.items():
         card = refine.create("kahler-gl", load.faces, load.rest, **options)
         if not isinstance(card, KahlerGl):
-            raise UserError("--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` tells more")
+            raise UserError("--refiner kahler-gl: needs OpenGL 4.3; `risorius doctor` says more")
         own = own_context()
         room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
         buffers = own.run(GpuBuffers, own.gl, *room)
@@ -240,8 +240,9 @@ def _timed(load: Load, cases: Sequence[_Case], seconds: float) -> list[Row]:
 def interleaved(calls: Sequence[Callable[[], object]], rounds: int) -> npt.NDArray[np.float64]:
     """Return the seconds of each call in each round, shape (rounds, len(calls)).
 
-    A call is as fast as what ran before it left the caches. Of three or more calls each always
-    follows the same neighbours, so where two are compared closely they are timed as a pair.
+    The speed of a call depends on the caches that the call before it left. Of three or more calls
+    each always follows the same neighbours, so where two are compared closely they are timed as a
+    pair.
     """
     seconds = np.zeros((rounds, len(calls)))
     gc.disable()
@@ -267,7 +268,7 @@ def report(found: Sequence[Row]) -> str:
     if any(row.method.startswith("kahler-gl") for row in found):
         own = own_context()
         card = str(own.run(own.gl.info.__getitem__, "GL_RENDERER"))
-        kind = "software, which is no card: its times tell nothing" if is_software(card) else "card"
+        kind = "software, which is no card: its times mean nothing" if is_software(card) else "card"
         lines.append(f"kahler-gl: on {card} ({kind})")
     for mesh, group in groupby(found, key=lambda row: row.mesh):
         rows = list(group)

@@ -1,4 +1,4 @@
-"""What all commands of `risorius bench` print: tables, targets, and what machine it was."""
+"""The output of all commands of `risorius bench`: tables, targets, and the machine."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def table(columns: str, rows: Iterable[Sequence[object]], *, indent: str = "") -
 
 
 class Target(NamedTuple):
-    """Something that a benchmark is held to, in words, and whether it is met."""
+    """A bound on a result of a benchmark, in words, and whether it is met."""
 
     text: str
     is_met: bool
@@ -40,18 +40,18 @@ class Target(NamedTuple):
         return f"  {'met   ' if self.is_met else 'MISSED'}  {self.text}"
 
 
-def at_most(what: str, value: float, most: float, unit: str = "") -> Target:
-    """A value that must not be larger; one that is no number misses it."""
-    return Target(f"{what}: {value:.4g}{unit}, at most {most:g}{unit}", value <= most)
+def at_most(name: str, value: float, most: float, unit: str = "") -> Target:
+    """A value that must not be larger; NaN misses it."""
+    return Target(f"{name}: {value:.4g}{unit}, at most {most:g}{unit}", value <= most)
 
 
-def at_least(what: str, value: float, least: float, unit: str = "") -> Target:
-    """A value that must not be smaller; one that is no number misses it."""
-    return Target(f"{what}: {value:.4g}{unit}, at least {least:g}{unit}", value >= least)
+def at_least(name: str, value: float, least: float, unit: str = "") -> Target:
+    """A value that must not be smaller; NaN misses it."""
+    return Target(f"{name}: {value:.4g}{unit}, at least {least:g}{unit}", value >= least)
 
 
 def conclude(text: str, targets: Iterable[Target]) -> None:
-    """Print a report and what it is held to; end with exit code 1 where a target is missed."""
+    """Print a report and its targets; end with exit code 1 where a target is missed."""
     targets = list(targets)
     click.echo("\n".join([text, "", *map(str, targets)]).rstrip())
     if not all(target.is_met for target in targets):
@@ -59,7 +59,7 @@ def conclude(text: str, targets: Iterable[Target]) -> None:
 
 
 def say_progress(name: str) -> None:
-    """Say on the error stream what is at work, where a person looks on."""
+    """Print the name of the present step to the error stream, if that is a terminal."""
     if sys.stderr.isatty():
         click.echo(f"... {name}", err=True)
 

@@ -1,16 +1,16 @@
-"""What a face tracker sees in our faces: every shape of ARKit at 1, read back from pictures.
+"""A face tracker on our faces: every shape of ARKit at 1, read back from pictures.
 
 A shape is right if somebody else's eyes call it by its name: MediaPipe's face landmarker (Google,
 Apache-2.0), which finds a face in a picture and says how far each of ARKit's shapes is there, 0 to
 1, all but `tongueOut`. Its model is a file that users bring, face_landmarker.task. Each shape is
 drawn from VIEWS and shown as it is and mirrored, so that the tracker's own left and right do not
-count. Told is how far the mean score is above that of the neutral face:
+count. The report has the mean score less that of the neutral face:
 
     own      of the shape itself; of a pair, both sides of which are posed, the mean of both
     highest  the other shape that scores most, with its score; of pairs the mean of both sides
 
-A tracker is no measure of anatomy: it learned what comes together in real faces, and some shapes it
-never answers, not in scans of real faces either (docs/capture.md).
+A tracker is no measure of anatomy: it learned which shapes come together in real faces, and some
+shapes it never reports, not in scans of real faces either (docs/capture.md).
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ Tracker = Callable[[Image], Scores]
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
 SEEN = 0.1  # a score below says nothing
-# Sides that cannot be posed together, for they are one shape to either side; and what is posed
-# besides, as no eye looks to a side alone and lips that close do so over an open jaw.
+# Shapes whose sides cannot be posed together, and the shapes that are posed beside them: no eye
+# looks to a side alone, and lips that close do so over an open jaw.
 BESIDE: dict[str, tuple[str, ...]] = {
     "mouthLeft, Right": (),
     "jawLeft, Right": (),
@@ -74,7 +74,7 @@ def face_tracker(model: Path) -> Iterator[Tracker]:
     try:
         with _silent():
             landmarker = vision.FaceLandmarker.create_from_options(options)
-            scores(np.zeros((64, 64, 3), dtype=np.uint8))  # what it does once, it does now
+            scores(np.zeros((64, 64, 3), dtype=np.uint8))  # the first call is slow
     except (OSError, RuntimeError, ValueError) as error:
         raise UserError(
             f"{model}: is no model of MediaPipe's face landmarker, which is called "
@@ -102,7 +102,7 @@ def _silent() -> Iterator[None]:
 
 
 class Shape(NamedTuple):
-    """What the tracker sees in one shape, or pair of shapes; see the module."""
+    """The scores of one shape, or pair of shapes; see the module."""
 
     own: float
     highest: str
@@ -146,7 +146,7 @@ def bases() -> Iterator[tuple[str, tuple[str, ...]]]:
 def compared(
     scores: Scores, neutral: Scores, own: Sequence[str], posed: Sequence[str] = ()
 ) -> Shape:
-    """What is seen over the neutral face where the shapes `own` are at 1.
+    """Scores above those of the neutral face, where the shapes `own` are at 1.
 
     posed: shapes that are there besides, and no mistake. Sides count by their mean, beside a side
     that was posed alone by the greater one.
@@ -164,7 +164,7 @@ def compared(
 
 
 def measure(tracker: Tracker) -> dict[str, Shape]:
-    """Show every shape of the built-in head to the tracker; what it sees, by base name."""
+    """Show every shape of the built-in head to the tracker; its scores, by base name."""
     shapes = {}
     with Capture(FaceScene(), CaptureOptions(size=SIZE)) as studio:
         neutral = pose_scores(tracker, studio, ())

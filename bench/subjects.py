@@ -40,7 +40,7 @@ COARSE_TRIANGLES = 2029  # of a decimated scan: about those of the built-in head
 
 @dataclass(frozen=True)
 class Scans:
-    """A neutral face and what expressions do to it, as they were scanned [mm]."""
+    """A neutral face and its displacement by expressions, as they were scanned [mm]."""
 
     directory: Path
     mesh: Mesh

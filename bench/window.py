@@ -1,6 +1,6 @@
-"""Frames a second of the window while a smile plays, and what it takes while nothing happens.
+"""Frames a second of the window while a smile plays, and its load while nothing happens.
 
-The real window is driven as fast as it goes; nothing waits but for what the screen makes it wait.
+The real window is driven as fast as it goes; it waits for nothing but the screen.
 Rounds take all cases in turn, forwards and backwards: on a shared machine only cases of one run
 can be compared. A case begins like a new window, with an untimed second in which it finds its
 level of detail.
@@ -44,7 +44,7 @@ Frames = list[list[float]]
 def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
     """Time the window: `seconds` for each case, after a second of warming up.
 
-    The text to print, and what the window is held to where software draws.
+    Returns the text to print, and the targets of the window where software draws.
     """
     seen: dict[str, Frames] = {name: [] for name in CASES}
     with Viewer(_smile(), size, Display()) as viewer:
@@ -66,7 +66,7 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
             [_cells(name, np.array(frames)) for name, frames in seen.items()],
         ),
         "",
-        "Times in ms: of a frame; processor: what all cores spend on one, which other programs",
+        "Times in ms of a frame; processor: its time on all cores, which other programs",
         "disturb least; on the right, medians of its stages; the rest is events, panels, and",
         "handing the picture over.",
         f"Nothing moves: {100.0 * idle:.1f} % of a core; the face lives: {100.0 * alive:.0f} %.",
@@ -83,7 +83,7 @@ def _smile() -> Script:
 
 
 def _play(viewer: Viewer, display: Display, seconds: float) -> Frames:
-    """Let the window play for a while; what its frames took."""
+    """Let the window play for a while; returns the times of its frames."""
     viewer.settings.display = replace(display)
     viewer.painter.level_of_detail = LevelOfDetail(is_software=viewer.surface.is_software)
     if not viewer.session.is_playing:

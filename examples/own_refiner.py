@@ -2,7 +2,7 @@
 
     python examples/own_refiner.py
 
-It derives from `refine.BaseRefiner`, which binds the mesh, checks what goes in, and carries texture
+It derives from `refine.BaseRefiner`, which binds the mesh, checks arguments, and carries texture
 coordinates and attributes along. This one cuts all edges or none, and does not smooth. After
 `refiners.register` the whole program knows it by name. A package of its own needs no call; it says
 in its pyproject.toml
@@ -45,8 +45,8 @@ class Quarters(BaseRefiner):
         super().__init__(faces, rest_positions, **values)
         self._limit = longest * self._longest_edge(self.rest_positions)
         # Wedges and attribute edges are vertices and edges, counted once for each side of a texture
-        # seam. The lowest bit of a triangle's attribute edge tells its direction: middles have no
-        # use for that.
+        # seam. The lowest bit of a triangle's attribute edge is its direction, which middles do
+        # not need.
         mesh = self.connectivity
         rows = mesh.triangle_attribute_edges[~mesh.is_degenerate] >> 1
         corners = mesh.corners[~mesh.is_degenerate]
@@ -120,7 +120,7 @@ def main() -> list[int]:
     for stretch in (1.0, 1.5, 2.0, 3.0):
         positions = rest * [stretch, 1.0, 1.0]
         mesh = refiner.refine(positions)
-        check(refiner, mesh, positions)  # names what a refiner does wrong
+        check(refiner, mesh, positions)  # names the mistakes of a refiner
         counts.append(len(mesh.triangles))
     return counts
 

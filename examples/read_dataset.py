@@ -3,7 +3,7 @@
     risorius dataset --count 1000 --passes depth,segmentation -o faces
     python examples/read_dataset.py faces
 
-`Faces` has what PyTorch asks of a data set, a length and items by number: hand it to a DataLoader.
+`Faces` is a data set for PyTorch, with a length and items by number: hand it to a DataLoader.
 """
 
 import argparse

@@ -1,1 +1,1 @@
-"""The paper, made anew: what it says and shows, each beside what was measured here."""
+"""The paper, made anew: its numbers and pictures, each beside our measurement."""

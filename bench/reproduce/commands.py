@@ -22,8 +22,8 @@ PATH = click.Path(path_type=Path)
 PAGE = "index.html"
 TITLE = "Dynamically refined animated triangle meshes, repeated"
 ABOUT = """\
-Kähler, Haber, Seidel 2003 (doi 10.1007/s00371-002-0185-8), in the order of the paper: what it says,
-and what this program measures. Times are medians."""
+Kähler, Haber, Seidel 2003 (doi 10.1007/s00371-002-0185-8), in the order of the paper: its numbers,
+and those that this program measures. Times are medians."""
 STYLE = "body { max-width: 80rem; margin: auto } img { max-width: 100% } pre { overflow-x: auto }"
 
 
@@ -35,11 +35,11 @@ NAMES = [experiment.name for experiment in EXPERIMENTS]
 @click.option(
     "-o", "--output", "folder", type=PATH, default=Path("out/reproduce"), show_default=True
 )
-@click.option("--rounds", type=click.IntRange(3, 10_000), help="Of what is timed; 60 unless told.")
+@click.option("--rounds", type=click.IntRange(3, 10_000), help="Rounds of timing; by default 60.")
 def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
-    """Make what the paper shows and says anew: all of it, or some, into a folder.
+    """Make the paper's figures and table anew, all or some, into a folder.
 
-    There are figure8, figure9, figure10 and table1. index.html in the folder shows what was made,
+    There are figure8, figure9, figure10 and table1. index.html in the folder shows the results,
     in the paper's order. The exit code is 1 where a tolerance is missed.
     """
     from risorius.app.files import check_file, save_png, save_text
@@ -54,7 +54,7 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
     for result in results:
         if result.outcome.picture is not None:
             save_png(folder / f"{result.experiment.name}.png", result.outcome.picture)
-        click.echo(f"\n{result.experiment.title} ({result.experiment.place})\n{_told(result)}")
+        click.echo(f"\n{result.experiment.title} ({result.experiment.place})\n{_text(result)}")
     save_text(folder / PAGE, _page(results))
     click.echo(f"\n{in_one_line(folder / PAGE)}: written")
     missed = [each for result in results for each in result.missed]
@@ -65,8 +65,8 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
         sys.exit(1)
 
 
-def _told(result: Result) -> str:
-    """What an experiment has to say."""
+def _text(result: Result) -> str:
+    """The report of an experiment."""
     rows = [
         (claim.verdict(x), claim.value, claim.paper, claim.ours(x), claim.allowed)
         for claim, x in result.findings
@@ -98,5 +98,5 @@ def _page(results: Sequence[Result]) -> str:
         ]
         if result.outcome.picture is not None:
             lines.append(f'<img src="{each.name}.png" alt="{escape(each.title)}">')
-        lines.append(f"<pre>{escape(_told(result))}\n\nrisorius reproduce {each.name}</pre>")
+        lines.append(f"<pre>{escape(_text(result))}\n\nrisorius reproduce {each.name}</pre>")
     return "\n".join([*lines, ""])

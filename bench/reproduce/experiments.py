@@ -1,7 +1,7 @@
-"""What the paper says, by number, and whether what was measured agrees with it.
+"""The numbers of the paper, and whether our measurements agree with them.
 
-`paper.toml` is the one table of experiments, in the order of the paper. An entry there is a command
-and a part of the page: nothing else has to be told of a new one. The command line imports this at
+`paper.toml` is the one table of experiments, in the order of the paper. An entry there makes a
+command and a part of the page; a new entry needs no other change. The command line imports this at
 once, so it imports nothing that is slow.
 """
 
@@ -32,7 +32,7 @@ class Claim:
     differs: bool = False
 
     def verdict(self, number: float) -> str:
-        """Whether it is so; what is no number misses, too."""
+        """Whether the number agrees; NaN misses, too."""
         if not self.low <= number <= self.high:
             return "MISSED"
         return "differs" if self.differs else "met"
@@ -54,10 +54,10 @@ class Claim:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What an experiment made."""
+    """The results of an experiment."""
 
     values: Mapping[str, float]
-    """What was measured, by name."""
+    """Measured values, by name."""
     picture: Image | None = None
     text: str = ""
     """A table of more than the claims."""
@@ -65,7 +65,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Experiment:
-    """One thing that the paper says, and how it is tried; see `paper.toml`."""
+    """A statement of the paper, and the function that tests it; see `paper.toml`."""
 
     name: str
     """Of the command, and of its picture."""
@@ -77,7 +77,7 @@ class Experiment:
     rounds: int | None = None
 
     def run(self, *, rounds: int | None = None) -> Result:
-        """Do it. KeyError for a claim that was not measured."""
+        """Run it. KeyError for a claim that was not measured."""
         timing = {} if self.rounds is None else {"rounds": rounds or self.rounds}
         module, _, name = self.function.partition(".")
         function = getattr(importlib.import_module(f"{__package__}.{module}"), name)
@@ -87,7 +87,7 @@ class Experiment:
 
 
 class Result(NamedTuple):
-    """An experiment that was made, and what was measured for each of its claims."""
+    """An experiment that was run, and the measurement for each of its claims."""
 
     experiment: Experiment
     outcome: Outcome

@@ -1,9 +1,9 @@
 """The paper's Fig. 10: the region of the mouth, static and refined, beside a dense mesh.
 
 Kähler, Haber, Seidel 2003, section 5: "The rendered mesh is visibly smoothed, reducing shading
-artifacts and improving the silhouette of the opened mouth." What is smooth need not be true; so the
-built-in head with 16 times the triangles is moved by the same muscles, drawn alike and taken for
-the truth. Below a picture stands how far it is off, in levels of 255 and in pixels around the
+artifacts and improving the silhouette of the opened mouth." A smooth surface need not be true; so
+the built-in head with 16 times the triangles is moved by the same muscles, drawn alike and taken
+for the truth. Below a picture stands how far it is off, in levels of 255 and in pixels around the
 opening between the lips: the row under the smooth pictures shows that opening dark, and red where
 it is not as that of the dense mesh.
 """
@@ -76,7 +76,7 @@ VIEWPOINTS = (
 
 @dataclass(frozen=True)
 class Cell:
-    """What one variant makes of one expression."""
+    """The picture of one expression by one variant."""
 
     title: str
     triangles: int
@@ -143,8 +143,8 @@ def _drawn(size: tuple[int, int]) -> Iterator[tuple[str, list[Cell]]]:
     refiners = []
     for variant in VARIANTS:
         detail = {"detail": (fine.vertices, fine.faces)} if variant is DETAIL else {}
-        told = {**variant.options, **detail}
-        bound = refine.create(variant.refiner, head.faces, head.vertices, **told)
+        options = {**variant.options, **detail}
+        bound = refine.create(variant.refiner, head.faces, head.vertices, **options)
         refiners.append((variant.title, bound, len(head.vertices)))
     dense = refine.create("none", fine.faces, fine.vertices)
     refiners.append(("dense mesh", dense, len(fine.vertices)))

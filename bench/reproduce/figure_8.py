@@ -2,8 +2,8 @@
 
 A fold bends across and hardly along. Its direction in a triangle, that of the least curvature, is
 found from how normals turn along the triangle's edges. The paper's claim is true if subtriangles
-are longer than the triangles that they are parts of, and lie nearer to that direction. Below each
-picture stands what was measured.
+are longer than the triangles that they are parts of, and lie nearer to that direction. The
+measurements stand below each picture.
 
 Source: Kähler, Haber, Seidel 2003, section 5 and Fig. 8; Rusinkiewicz 2004, "Estimating curvatures
 and their derivatives on triangle meshes", for the curvature of a triangle.
@@ -28,7 +28,7 @@ Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
 BENT = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
-ALONG = 0.4  # of the curvature across: what bends along as well is a dome, not a fold
+ALONG = 0.4  # of the curvature across, at most: a triangle that bends along, too, is in a dome
 RED = (0.85, 0.1, 0.1)
 WIRE = replace(FLAT, wireframe=True, wire_opacity=0.55)
 LIFT = 0.1  # mean edges that lines float over the surface
@@ -92,7 +92,7 @@ class Shapes(NamedTuple):
 
 
 def measure(refiner: refine.Refiner, faces: Faces, positions: Points) -> tuple[Shapes, Shapes]:
-    """What lies in folds and is split: the mesh's triangles, and the refined ones.
+    """Triangles that lie in folds and are split: those of the mesh, and the refined ones.
 
     Refines `positions` (V, 3) anew.
     """

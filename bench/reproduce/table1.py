@@ -2,8 +2,8 @@
 
 Kähler, Haber, Seidel 2003, section 5: triangles of the static mesh, the most that refinement makes
 of them during the animation, the time to render each, and c_rt, the factor by which the time per
-triangle grows. What the paper timed as "the rendering code" is here refining (or handing through),
-uploading and drawing, until OpenGL has finished.
+triangle grows. The time of "the rendering code" in the paper is here that of refining (or handing
+through), uploading and drawing, until OpenGL has finished.
 
 Where OpenGL is software, most of that is pixels, which do not care how many triangles they belong
 to. So the same is given for a picture of a few pixels, and for refinement alone, which on a mesh as
@@ -36,13 +36,13 @@ from .experiments import Outcome
 Points = npt.NDArray[np.float64]
 
 FRAMES_PER_SECOND = 30.0
-SIZE = (1280, 720)  # [pixels] of what is drawn
+SIZE = (1280, 720)  # [pixels] of the picture
 SMALL = (64, 36)  # where pixels cost next to nothing
 QUICK = 10  # rounds of a way that draws nothing, for one of the others
 DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL))
 ALONE = "refinement alone"
 WAYS = (DRAWN, DRAWN_SMALL, ALONE)
-"""What is timed, from most to least."""
+"""The stages that are timed, from most to least."""
 
 
 @dataclass(frozen=True)
@@ -77,8 +77,8 @@ PAPER = {
 def _measured(scene: Scene, rounds: int) -> list[Row]:
     """Time the scene's fullest frame in every way."""
     static = refine.create("none", scene.faces, scene.rest_positions)
-    told = PRESETS[PAPERS_PRESET][scene.name].options_for("kahler")
-    dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **told)
+    options = PRESETS[PAPERS_PRESET][scene.name].options_for("kahler")
+    dynamic = refine.create("kahler", scene.faces, scene.rest_positions, **options)
     positions, count = _fullest_frame(scene, dynamic)
     drawing = Drawing(camera_for(scene, script_for(None, scene.name).camera), GOURAUD)
 

@@ -54,7 +54,7 @@ def portrait(scene: Scene, name: str, size: tuple[int, int]) -> Image:
 
 
 def title_of(scene: Scene, name: str) -> str:
-    """What stands below the portrait of a control."""
+    """The text below the portrait of a control."""
     title = name.removeprefix("viseme_")
     action = scene.actions.get(name, "").partition(":")[0]
     return f"{title}  {action}" if name[:2] == "AU" else title.replace("_", " ")

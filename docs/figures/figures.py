@@ -1,4 +1,4 @@
-"""Programs that draw the figures of the documentation: what they are told, and how they draw.
+"""Functions of the programs that draw the figures of the documentation: options and drawing.
 
 `python docs/figures/figures.py FILE.png ...` takes pictures of `risorius capture` and `risorius
 reproduce`, and those that programs on pages write, into docs/pictures.
@@ -37,7 +37,7 @@ def shoot(
     options: CaptureOptions,
     target: npt.ArrayLike | None = None,
 ) -> Image:
-    """Hold a pose until it stands still, and draw it. target: what the camera looks at [mm]."""
+    """Hold a pose until it stands still, and draw it. target: of the camera [mm]."""
     scene.reset()
     scene.pose(pose)
     scene.step(SETTLED)
@@ -60,7 +60,8 @@ def webp(image: Image) -> bytes:
     page = PIL.Image.fromarray(image)
     page.save(exact, "WEBP", lossless=True, quality=80)
     page.save(near, "WEBP", quality=QUALITY)
-    return (exact if exact.tell() <= LARGER * near.tell() else near).getvalue()
+    is_small = len(exact.getvalue()) <= LARGER * len(near.getvalue())
+    return (exact if is_small else near).getvalue()
 
 
 def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
@@ -74,7 +75,7 @@ def draw(folder: Path, figures: Mapping[str, Figure]) -> None:
 
 
 def run(about: str | None, figures: Mapping[str, Figure]) -> None:
-    """Draw what the command line asks for: mistakes are one line, signals are heard."""
+    """Draw the figures of the command line: mistakes are one line, signals are heard."""
     parser = argparse.ArgumentParser(description=(about or "").partition("\n")[0])
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--only", nargs="+", metavar="NAME", default=[], help="these alone")

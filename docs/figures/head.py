@@ -29,7 +29,7 @@ STYLES = {
     "flat": render.Style(textured=False, albedo=render.CLAY, shading=render.Shading.FLAT),
 }
 WRINKLED = (270, 250)  # [pixels] of one picture of wrinkles
-# Pose, camera, what it looks at [mm].
+# Pose, camera, its target [mm].
 WRINKLES = (
     ("surprise", "-22,2,2.1", (0.0, 20.0, 80.0)),
     ("anger", "-12,2,3.0", (0.0, 12.0, 90.0)),
@@ -38,7 +38,7 @@ WRINKLES = (
     ("AU17", "-20,2,2.8", (0.0, -78.0, 90.0)),
     ("kiss", "-12,2,4.5", (0.0, -64.0, 95.0)),
 )
-# Persons; and some more, with what they do, in which light, from where.
+# Persons; and some more, with pose, light and camera.
 AT_EASE: tuple[int | str, ...] = ("ada", "kofi", "maria", 19, 40, 43, 47, 10)
 IN_LIGHT = (
     (30, "joy", "window", "-24,2,0.9"),
@@ -49,7 +49,7 @@ IN_LIGHT = (
 
 
 def system() -> Image:
-    """One smile: what pulls, what is moved, where it is split, and what is seen."""
+    """One smile: the muscles, the mesh that they move, its splits, and the skin."""
     mesh = render.Style(textured=False, albedo=render.CLAY, wireframe=True)
     splits = replace(mesh, colour_by=render.ColourBy.SPLITS)
     steps: dict[str, dict[str, Any]] = {

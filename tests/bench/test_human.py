@@ -36,7 +36,8 @@ def space() -> IdentitySpace:
 
 def rest_of(space: IdentitySpace, vertices: Points) -> Rest:
     """What the space leaves of a head that is turned and moved."""
-    c, s = np.cos(TURN), np.sin(TURN)
+    c = np.cos(TURN)
+    s = np.sin(TURN)
     moved = vertices @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]).T + [3.0, -2.0, 4.0]
     normals = vertex_normals(moved, space.triangles)
     surface = Surface(moved, space.triangles, normals, moved[space.landmarks])
@@ -81,7 +82,8 @@ def test_what_is_left_is_held_to_targets() -> None:
 
 def test_what_looks_at_skin_is_no_region(space: IdentitySpace) -> None:
     """The insides of lips are left out, the skin of cheeks and forehead is not."""
-    regions, marks = space.regions(), space.landmarks
+    regions = space.regions()
+    marks = space.landmarks
     assert (regions[marks[[62, 66]]] == "").all()
     assert (regions[marks[[31, 8, 19, 24]]] != "").all()
 

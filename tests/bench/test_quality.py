@@ -39,7 +39,8 @@ def rolled_plane() -> Subject:
 def test_scores_of_a_cylinder() -> None:
     """Cubic edges follow a cylinder, Loop shrinks it; budgets are kept."""
     average = quality.means(scores := quality.measure(rolled_plane()))
-    static, loop = average[STATIC], average["uniform Loop 16x"]
+    static = average[STATIC]
+    loop = average["uniform Loop 16x"]
     assert (static.triangles, loop.triangles) == (1.0, 16.0)
     assert all(score.triangles <= 2.0 for name, score in average.items() if name.endswith(" 2x"))
     cubic = average["cubic twice"]
@@ -54,7 +55,8 @@ def test_scores_of_a_cylinder() -> None:
 def test_error_of_the_truth_is_zero() -> None:
     """A coarse mesh that is the dense one has no error; one turned aside has one of its own."""
     subject = rolled_plane()
-    rest, pose = subject.rest.coarse, subject.poses["roll 1"].coarse
+    rest = subject.rest.coarse
+    pose = subject.poses["roll 1"].coarse
     faces = subject.coarse_faces
     poses = {"same": PosePair(pose, pose), "wider": PosePair(pose * [1.1, 1.0, 1.0], pose)}
     found = Subject(faces, faces, PosePair(rest, rest), poses)

@@ -1,9 +1,10 @@
 """Add-on for Blender: a copy of an animated mesh that is refined in every frame, where it bends.
 
-Object > Refined Copy, or the tab Risorius of the 3D viewport's sidebar. Whatever moves the source
-(shape keys, armatures, caches, physics), a handler of frame changes reads the evaluated mesh and
-writes triangles into the copy, in the window and in renders alike. Python keeps no reference to
-Blender's data between frames: what is bound is made anew after undo and after a file is opened.
+Object > Refined Copy, or the tab Risorius of the 3D viewport's sidebar. The source may be
+moved by shape keys, armatures, caches or physics: a handler of frame changes reads the evaluated
+mesh and writes triangles into the copy, in the window and in renders alike. Python keeps no
+reference to Blender's data between frames: refiners are bound anew after undo and after a file is
+opened.
 """
 
 from typing import Any
@@ -27,12 +28,12 @@ def numbers(collection: Any, name: str, width: int, kind: type) -> np.ndarray:
 
 
 def points_of(mesh: bpy.types.Mesh) -> np.ndarray:
-    """The positions of a mesh, shape (V, 3), as single floats: what Blender keeps."""
+    """The positions of a mesh, shape (V, 3), as single floats, as Blender keeps them."""
     return numbers(mesh.attributes["position"].data, "vector", 3, np.float32)
 
 
 class Bound:
-    """The refiner of one copy, and what it shows of its source beside the shape."""
+    """The refiner of one copy, and the data that it copies from its source beside the shape."""
 
     def __init__(self, settings: "RisoriusSettings") -> None:
         """Learn the mesh at rest; the first time on a machine, code is compiled for seconds."""
@@ -97,7 +98,7 @@ def write(mesh: bpy.types.Mesh, name: str, kind: str, domain: str, values: np.nd
 
 
 def update(copy: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
-    """Bring one copy up to date; what is wrong is shown in its panel."""
+    """Bring one copy up to date; errors are shown in its panel."""
     settings = copy.risorius
     if copy.mode == "EDIT" or settings.rest is None:
         return
@@ -120,7 +121,7 @@ def refine_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None
 
 @persistent
 def forget(*_: Any) -> None:
-    """After undo, redo, or another file: meshes are no longer what they were."""
+    """After undo, redo, or another file: meshes have changed."""
     _bound.clear()
 
 
@@ -148,7 +149,7 @@ def is_source(settings: "RisoriusSettings", thing: bpy.types.Object) -> bool:
 
 
 class RisoriusSettings(bpy.types.PropertyGroup):
-    """What is kept with each refined copy, in the file."""
+    """Settings of each refined copy, kept in the file."""
 
     source: bpy.props.PointerProperty(
         name="Source", type=bpy.types.Object, poll=is_source, update=source_changed
@@ -202,7 +203,8 @@ class OBJECT_OT_risorius_refine(bpy.types.Operator):  # noqa: N801 (Blender asks
         source.hide_set(True)
         context.view_layer.objects.active = copy
         copy.select_set(True)
-        context.scene.render.use_lock_interface = True  # a render changes what the window draws
+        # Renders change meshes that the window draws.
+        context.scene.render.use_lock_interface = True
         return {"FINISHED"}
 
 
@@ -215,7 +217,7 @@ class VIEW3D_PT_risorius(bpy.types.Panel):  # noqa: N801
     bl_region_type = "UI"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Show what there is to set."""
+        """Show the settings."""
         layout = self.layout
         layout.use_property_split = True
         active = context.active_object

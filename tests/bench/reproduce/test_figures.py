@@ -27,7 +27,8 @@ def rolled(cells: int, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarra
     """A flat sheet, its triangles, and the sheet rolled to a cylinder about y."""
     vertices, faces = make_grid(cells, cells, 10.0)
     angle = vertices[:, 0] / radius
-    x, z = radius * np.sin(angle), radius * np.cos(angle)
+    x = radius * np.sin(angle)
+    z = radius * np.cos(angle)
     return vertices, faces, np.stack([x, vertices[:, 1], z], axis=1)
 
 
