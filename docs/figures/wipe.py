@@ -58,11 +58,11 @@ def frames(size: tuple[int, int], frames_per_second: float) -> Iterator[Image]:
     scene = FaceScene()
     clay = render.Style(textured=False, albedo=render.CLAY)
     wire = replace(clay, wireframe=True, shading=render.Shading.FLAT)
-    skin = CaptureOptions(size, frames_per_second, camera="-24,2,1.5")
+    skin = CaptureOptions(size, frames_per_second, camera="-24,2,1.32")
     mesh = replace(skin, refinement=Refinement(refiner=STATIC), style=wire)
     with Capture(scene, skin) as right, Capture(scene, mesh) as left:
         for capture in (right, left):
-            capture.camera.target = scene.focus + np.array([0.0, -16.0, 0.0])
+            capture.camera.target = scene.focus + np.array([0.0, -4.0, 0.0])
         for time in right.play(script, progress=False):
             turn = math.cos(2.0 * math.pi * time / script.duration)
             column = round((0.5 - 0.36 * turn) * size[0])
