@@ -1,15 +1,15 @@
 """The window: a face that answers to sliders, keys, the mouse and a script.
 
 window/     all parts joined (application.py: start reading here), loop, menus, splash screen
-context.py  what the parts share, and take what they need from
+context.py  the objects that the parts share
 marking/    landmarks of a mesh, marked in place of the face
-panels/     what stands around the picture
+panels/     the panels around the picture
 timeline/   the script below it: keys in rows and as curves, the sound
 documents/  scripts, heads and exports: opened, asked for, saved
-picture/    what is seen: camera, meshes and colours, when it is drawn; the mouse in it
-session/    what the user does: controls, script, recording, undo, unsaved work; knows no window
+picture/    the picture: camera, meshes and colours, when it is drawn; the mouse in it
+session/    the user's work: controls, script, recording, undo, unsaved work; knows no window
 interface/  Dear ImGui, commands, small widgets
-settings.py what is remembered, how the scene is displayed among it
+settings.py the settings that are remembered, among them how the scene is displayed
 """
 
 from typing import TYPE_CHECKING, Any

@@ -1,4 +1,4 @@
-"""What the parts of an open window share: every panel is handed this, and takes what it needs."""
+"""The objects that the parts of an open window share; every panel is given all of them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .settings import Settings
 
 
 class ApplicationContext:
-    """The session and how it is seen, what is asked and said, and what can be done with files."""
+    """The session and its picture, the messages and dialogs, and the commands for files."""
 
     def __init__(self, session: Session, settings: Settings, surface: render.WindowSurface) -> None:
         """surface: of the window, which is open and has nothing in it yet."""

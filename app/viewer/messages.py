@@ -1,4 +1,4 @@
-"""What the window says in a line, and where errors that a user may mend become such lines."""
+"""Messages of one line in the window; errors that a user can mend become such messages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SECONDS = 6.0  # for which a message stays
 LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
 
 Message = str | None  # to be shown; None for nothing to say
-Task = Callable[[], Message]  # what a user asks for; it may raise UserError or OSError
+Task = Callable[[], Message]  # an action of the user; it may raise UserError or OSError
 
 
 @dataclass
@@ -35,7 +35,7 @@ class Messages:
         self.seconds_left = SECONDS
 
     def attempt(self, task: Task, *, stays: bool = False) -> None:
-        """Do something, and show what it has to say or what the user may have to mend."""
+        """Run a task, and show the message that it returns or the error that it raises."""
         try:
             line = task()
         except (UserError, OSError) as error:
@@ -45,12 +45,12 @@ class Messages:
             self.say(line, stays=stays)
 
     def carry_out(self, command: Task) -> None:
-        """The same for what the user does: whatever was said before is over."""
+        """The same for a command of the user; it takes the message before it away."""
         self.text = ""
         self.attempt(command)
 
     def age(self, seconds: float) -> None:
-        """Time has passed since the last frame: a line goes away unless it stays."""
+        """Let time pass since the last frame: a line goes away unless it stays."""
         if not self.stays:
             self.seconds_left -= min(seconds, LONGEST_FRAME)
         if self.seconds_left <= 0.0:

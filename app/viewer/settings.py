@@ -1,8 +1,8 @@
-"""What the window remembers, each value with what is allowed: its size, how things are shown.
+"""The settings that the window remembers, each with its allowed values.
 
-One JSON file in the user's configuration folder, replaced whole or not at all. Every value stands
-for itself: one that is of no use gives way to what it is at first, the others stay, and the window
-names it in one line.
+They are one JSON file in the user's configuration folder, replaced whole or not at all. Each value
+is checked by itself: the default takes the place of an unusable value, the others stay, and the
+window names the unusable one in one line.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from .interface.gui import THEMES
 
 LONGEST_FILE = 2**20  # [bytes] of settings; those that we write have two thousand
 SIDES_SHOWN = 200, 16384  # [screen units] of the window, least and most
-SIDES_EXPORTED = 16, 8192  # [pixels] of what is exported
+SIDES_EXPORTED = 16, 8192  # [pixels] of exported pictures
 ZOOMS = 0.6, 3.0  # least and most of the size of words
 COMPARISONS = ("off", "wipe", "side by side")
 SKINS = {  # whether it is textured, and its colour
@@ -51,7 +51,7 @@ BACKGROUNDS = {"theme": None, **{name: getattr(render, name.upper()) for name in
 TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
 TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
 MOST_RECENT = 10  # files that are remembered
-MOST_TOLD = 4  # of values that are of no use; a line has room for no more
+MOST_REPORTED = 4  # unusable values; a line has room for no more
 FRAMES = "frames"  # pictures in a folder
 
 
@@ -82,7 +82,7 @@ def _option(value: Any) -> Any:
 
 
 def _refiners() -> list[str | None]:
-    """All that do something and are there when somebody asks; None: that of the look."""
+    """The names of all refiners that refine and can be used here; None: that of the look."""
     return [None, *(name for name in refine.refiners.available() if name != STATIC)]
 
 
@@ -98,7 +98,7 @@ class Display(Record):
 
     look: Annotated[str, OneOf(PRESETS)] = FIRST_PRESET
     refiner: Annotated[str | None, OneOf(_refiners, "a refiner")] = None  # None: the look's
-    # What refiners are told over the look, by their names.
+    # Options that replace those of the look, by the names of refiners.
     options: dict[str, dict[str, Option]] = field(default_factory=dict)
     is_refined: Flag = True
     compare: Annotated[str, OneOf(COMPARISONS)] = "off"  # the mesh as it is, and refined
@@ -119,7 +119,7 @@ class Display(Record):
 
     @property
     def anatomy(self) -> AnatomyView:
-        """What is seen under the skin."""
+        """The anatomy that is shown under the skin."""
         structures = tuple(name for name in STRUCTURES if name in self.overlays)
         return AnatomyView(structures, self.skin_opacity, self.dissect)
 
@@ -138,7 +138,7 @@ class Display(Record):
         self.refiner = None if name == PRESETS[self.look][scene.name].refiner else name
 
     def preset_as_changed(self, scene: Scene) -> str:
-        """The look's name, and whether what is seen of this scene is still what it was."""
+        """The look's name, with a mark if the refinement of this scene differs from it."""
         asked = self.refinement_on(scene)
         return self.look if asked == Refinement(self.look) else f"{self.look}{CHANGED}"
 
@@ -149,7 +149,7 @@ class Display(Record):
 
     @property
     def share(self) -> float:
-        """Of the picture's width, what is at the left of the line in a comparison."""
+        """The share of the picture's width at the left of the line in a comparison."""
         return self.divider if self.compare == "wipe" else 0.5
 
     def toggle_overlay(self, name: str) -> None:
@@ -164,7 +164,7 @@ class Display(Record):
 
 @dataclass
 class ExportChoices(Record):
-    """What was exported last, and how."""
+    """The choices of the last export."""
 
     kind: Annotated[str, OneOf(KINDS)] = "mp4"
     size: Annotated[tuple[int, int], Within(*SIDES_EXPORTED)] = (1280, 720)
@@ -238,7 +238,7 @@ def settings_path() -> Path:
 
 
 def load_settings(path: Path) -> tuple[Settings, str]:
-    """What is remembered, and a line that names what is in the file and of no use, "" for nothing.
+    """The stored settings, and a line that names the unusable values in the file, "" for none.
 
     The file is written anew on closing.
     """
@@ -253,14 +253,16 @@ def load_settings(path: Path) -> tuple[Settings, str]:
     settings, refused = read_what_fits(Settings, stored)
     if not refused:
         return settings, ""
-    told = refused[:MOST_TOLD] + [f"{len(refused) - MOST_TOLD} more"] * (len(refused) > MOST_TOLD)
-    return settings, in_one_line(f"{path}: as at first: {'; '.join(told)}")
+    reported = refused[:MOST_REPORTED]
+    if len(refused) > MOST_REPORTED:
+        reported.append(f"{len(refused) - MOST_REPORTED} more")
+    return settings, in_one_line(f"{path}: as at first: {'; '.join(reported)}")
 
 
 def save_settings(path: Path, settings: Settings) -> None:
     """Write the file; UserError where that cannot be."""
     stored = asdict(settings)
-    for table in (stored, stored["display"]):  # what is not chosen is not there
+    for table in (stored, stored["display"]):  # a value that is not chosen is left out
         for name in [name for name, value in table.items() if value is None]:
             del table[name]
     save_text(path, json.dumps(stored, indent=1))

@@ -1,1 +1,1 @@
-"""What comes from files and goes into them: scripts, heads, exports, and what is asked for that."""
+"""Files that are read and written: scripts, heads, exports, and the dialogs for them."""

@@ -1,4 +1,4 @@
-"""Pictures of what is displayed, and exports: what `risorius capture` and `export` write.
+"""Screenshots, and exports: the files that `risorius capture` and `export` write.
 
 An export goes on in a process of its own, with script and view as they were; the window stays free.
 """
@@ -37,7 +37,7 @@ class ExportJob:
 
     target: Path
     task: Task
-    told: float = 0.0  # how much of it was done when the user was told
+    shown_share: float = 0.0  # the share of the work that the window showed last
 
 
 class Exporter:
@@ -53,7 +53,7 @@ class Exporter:
 
     @property
     def choices(self) -> ExportChoices:
-        """What is exported, and how."""
+        """The kind, size and rate of the export."""
         return self._settings.export
 
     @property
@@ -70,14 +70,14 @@ class Exporter:
         return f"Written to {target}"
 
     def ask(self) -> Message:
-        """Open the dialog, with what was used last."""
+        """Open the dialog, with the last choices."""
         self.is_asking = True
         if not self.session.differing:
             return None
         return "The script is exported; [Set key] puts the face as it is into it"
 
     def _options(self, head: FittedHead | None) -> CaptureOptions:
-        """How `capture` is told to draw what the window shows, a comparison side by side."""
+        """Options of `capture` that draw the window's picture, a comparison side by side."""
         choices = self.choices
         view = self._view
         display = self._view.display
@@ -99,9 +99,9 @@ class Exporter:
         )
 
     def start(self, target: Path) -> Message:
-        """Write a file, or a folder of frames: check what can be checked, and begin.
+        """Check the target, and begin to write a file, or a folder of frames.
 
-        UserError where it cannot be.
+        UserError where it cannot be written.
         """
         choices = self.choices
         script = self.session.script
@@ -125,11 +125,11 @@ class Exporter:
 
     @property
     def has_news(self) -> bool:
-        """Whether there is more to be told of it than a moment ago."""
+        """Whether the export has advanced since the last call."""
         job = self.job
-        if job is None or (job.told == job.task.share and not job.task.is_done):
+        if job is None or (job.shown_share == job.task.share and not job.task.is_done):
             return False
-        job.told = job.task.share
+        job.shown_share = job.task.share
         return True
 
     def poll(self) -> Message:
@@ -146,7 +146,7 @@ class Exporter:
         return f"Written to {job.target}"
 
     def close(self) -> None:
-        """End it at once; what is half written goes."""
+        """End the export at once; a file that is half written is removed."""
         job, self.job = self.job, None
         if job is not None:
             job.task.stop(waits=True)
@@ -165,7 +165,7 @@ Value = TypeVar("Value")
 
 
 class ExportDialog:
-    """Draws the dialog, and how far an export is; carries out what is done with them."""
+    """Draws the dialog and the progress of an export, and carries out the user's actions."""
 
     def __init__(self, gui: Gui, exporter: Exporter, files: FileDialogs, view: View) -> None:
         self._gui = gui
@@ -176,7 +176,7 @@ class ExportDialog:
         self._was_focused = False  # in the frame before: no list was open over it
 
     def draw(self) -> Message:
-        """Draw what there is to be seen."""
+        """Draw the dialog, or the progress of an export."""
         exporter = self._exporter
         self._draw_progress()
         if not exporter.is_asking or self._files.is_waiting:
@@ -192,13 +192,13 @@ class ExportDialog:
         return None
 
     def _pick(self, label: str, now: Value, choices: Mapping[Value, str]) -> Value:
-        """A list to choose from; what is chosen."""
+        """Draw a list to choose from; returns the choice."""
         values = {text: value for value, text in choices.items()}
         chosen = self._rows.choose(label, choices[now], values)
         return now if chosen is None else values[chosen]
 
     def _draw_motion(self, choices: ExportChoices) -> None:
-        """What is exported, how large and how often."""
+        """Draw the choices of an export: kind, size and rate."""
         titles = {name: kind.title for name, kind in KINDS.items()}
         choices.kind = self._pick("Write", choices.kind, titles)
         kind = self._exporter.kind

@@ -23,7 +23,7 @@ ENTER = imgui.Key.enter, imgui.Key.keypad_enter
 
 @dataclass
 class Request:
-    """A file that is asked for, what to do with it, and what is in the dialog so far."""
+    """A question for a file, the task for the answer, and the present state of the dialog."""
 
     title: str
     is_saving: bool
@@ -32,12 +32,12 @@ class Request:
     folder: Path
     name: str = ""  # in the line, as text
     complaint: str = ""
-    warned: Path | None = None  # what is there already, as was said
+    warned: Path | None = None  # a file that is there already, as a line said
     wants_focus: bool = True  # of the line: on opening, and after each answer that was none
     found: list[str] = field(default_factory=list)  # folders, which end in "/", then files
 
     def enter(self, folder: Path) -> None:
-        """Show a folder, if it may be read; without what hides."""
+        """Show a folder, if it may be read; without hidden files."""
         try:
             with os.scandir(folder) as entries:
                 visible = [entry for entry in entries if not entry.name.startswith(".")]
@@ -54,7 +54,7 @@ class Request:
 
     @property
     def target(self) -> Path:
-        """What the line stands for."""
+        """The path that the line stands for."""
         written = self.name.strip().strip("'\"")
         is_written = (name for name in self.found if as_text(name) == written)
         target = self.folder / Path(next(is_written, written)).expanduser()
@@ -79,7 +79,7 @@ class Request:
 
 
 class FileDialogs:
-    """Asks for one file at a time: a line to type in, above it what is in the folder."""
+    """Asks for one file at a time: a line to type in, above it the files of a folder."""
 
     def __init__(self) -> None:
         self.request: Request | None = None
@@ -135,7 +135,7 @@ class FileDialogs:
 
 
 def _draw_places(gui: Gui, request: Request) -> None:
-    """Where one may want to go, and where one is."""
+    """Draw buttons of useful folders, and the path of the present one."""
     places = {"Up": request.folder.parent, "Home": Path.home()}
     if not request.is_saving and SUFFIX in request.suffixes:
         places["Examples"] = Path(str(files("risorius.assets") / "scripts"))
@@ -148,19 +148,19 @@ def _draw_places(gui: Gui, request: Request) -> None:
 
 
 def _draw_listing(gui: Gui, request: Request) -> Path | None:
-    """What is in the folder; the file that was clicked twice, if any."""
+    """Draw the files of the folder; returns the file that was clicked twice, if any."""
     chosen = None
     room = 2.2 * imgui.get_frame_height_with_spacing()
     borders = imgui.ChildFlags_.borders | imgui.ChildFlags_.nav_flattened
     imgui.begin_child("listing", (0.0, -room), borders)
     for name in request.found:
-        what = "folder" if name.endswith("/") else "file"
+        kind = "folder" if name.endswith("/") else "file"
         text = as_text(name)
         label = text.replace("##", "# #")  # of which imgui would hide the rest
         twice = imgui.SelectableFlags_.allow_double_click
-        is_clicked, _ = imgui.selectable(f"{label}###{what} {text}", text == request.name, twice)
-        gui.remember(f"{what} {text.removesuffix('/')}")
-        if is_clicked and what == "folder":
+        is_clicked, _ = imgui.selectable(f"{label}###{kind} {text}", text == request.name, twice)
+        gui.remember(f"{kind} {text.removesuffix('/')}")
+        if is_clicked and kind == "folder":
             request.enter(request.folder / name)
             break
         if is_clicked:

@@ -1,4 +1,4 @@
-"""Files let go over the window: what to play, a sound, a head."""
+"""Files dropped onto the window: a script, pose or recording, a sound, a head."""
 
 from __future__ import annotations
 
@@ -26,13 +26,14 @@ LANDMARKS = ".json"
 
 
 def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
-    """Files by what they are: mesh, landmarks, sound, or else script, a pose or recording, too.
+    """Files by their kind: mesh, landmarks, sound, or else script, also for pose or recording.
 
-    Names tell, but of JSON, which may be a recording. UserError for several of a kind.
+    The kind follows from names; JSON may be a recording, and is read. UserError for several of
+    one kind.
     """
     found: dict[str, Path] = {}
     for path in paths:
-        end = Path(path.name.lower().removesuffix(".gz")).suffix  # whose reader tells what to do
+        end = Path(path.name.lower().removesuffix(".gz")).suffix  # whose reader reports the fault
         kind = "mesh" if end in MESHES else "sound" if end in SOUNDS else "script"
         if end == LANDMARKS and not is_recording(path):
             kind = "landmarks"
@@ -55,17 +56,17 @@ class FileDrop:
     ) -> None:
         """show_scene: puts a scene with another head in place of the present one.
 
-        read: in a thread; what has the landmarks of a mesh marked, or those of a file that are
-        missing.
+        read: runs in a thread; returns a task that has the landmarks of a mesh marked, or those
+        that a file lacks.
         """
         self._files = files
         self._scripts = scripts
         self._show_scene = show_scene
         self._read = read
-        self.making: Future[Task] | None = None  # what shows a head
-        self._what = ""
+        self.making: Future[Task] | None = None  # makes the task that shows a head
+        self._action = ""  # in words
         self._begun = 0.0  # when [s]
-        self._told = 0
+        self._shown_seconds = 0
 
     def open(self, paths: Sequence[str]) -> Message:
         """Open files, or begin to make a head."""
@@ -81,8 +82,8 @@ class FileDrop:
             )
         if mesh is None:
             return self._play(found)
-        what = "Reading" if landmarks is None else "Fitting muscles to"
-        self._begin(f"{what} {mesh.name}", partial(self._make, mesh, landmarks, found))
+        action = "Reading" if landmarks is None else "Fitting muscles to"
+        self._begin(f"{action} {mesh.name}", partial(self._make, mesh, landmarks, found))
         return None
 
     def show_person(self, who: int | str | None) -> None:
@@ -94,11 +95,11 @@ class FileDrop:
 
         self._begin(f"Making {'the built-in head' if who is None else person_in_words(who)}", make)
 
-    def _begin(self, what: str, make: Callable[[], Task]) -> None:
-        """Have a thread make what shows a head; one that is being made is wanted no more."""
-        self._what = what
+    def _begin(self, action: str, make: Callable[[], Task]) -> None:
+        """Make the task that shows a head in a thread; the result of one before is dropped."""
+        self._action = action
         self._begun = time.monotonic()
-        self._told = -1
+        self._shown_seconds = -1
         thread = ThreadPoolExecutor(1)
         self.making = thread.submit(make)
         self.making.add_done_callback(lambda _: wake_up())
@@ -106,22 +107,22 @@ class FileDrop:
 
     @property
     def has_news(self) -> bool:
-        """Whether there is more to be told of what is being made than a moment ago."""
+        """Whether the head is made, or another second has passed."""
         making = self.making
         seconds = int(time.monotonic() - self._begun)
-        return making is not None and (making.done() or seconds > self._told)
+        return making is not None and (making.done() or seconds > self._shown_seconds)
 
     def poll(self) -> Message:
-        """Tell how long it has taken so far, or show it."""
+        """Show the head if it is made; until then the message says for how long it has taken."""
         making = self.making
         if making is not None and making.done():
             self.making = None
             return making.result()()
-        self._told = int(time.monotonic() - self._begun)
-        return f"{self._what} ... {self._told} s"
+        self._shown_seconds = int(time.monotonic() - self._begun)
+        return f"{self._action} ... {self._shown_seconds} s"
 
     def _make(self, mesh: Path, landmarks: Path | None, others: Mapping[str, Path]) -> Task:
-        """In a thread: what shows a head, or has it marked, and plays what came with it."""
+        """In a thread: make the task that shows a head, or has it marked, and plays its files."""
         show = None
         remark = ""
         try:
@@ -136,7 +137,7 @@ class FileDrop:
         show_first = show or self._read(mesh, landmarks)
 
         def go_on() -> Message:
-            """Show the head first, then what shall be played on it."""
+            """Show the head first, then play the script, pose or recording on it."""
             line = show_first() or (f"{mesh.name}: opened" if remark else None)
             self._scripts.note_recent(*filter(None, (mesh, landmarks)))
             return self._play(others, remark) or line

@@ -1,4 +1,4 @@
-"""What menus do with scripts: begin, open, record, save; and what is asked before work is lost."""
+"""Commands for scripts: begin, open, record, save; and the question before work is lost."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..messages import Message, Task
 from ..session.session import Session
 from .file_dialogs import SUFFIX, FileDialogs
 
-RECORDINGS = (".csv", ".json", ".tsv", ".txt")  # how their names may end; content tells what it is
+RECORDINGS = (".csv", ".json", ".tsv", ".txt")  # ends of names; the content decides
 SOUNDS = (
     *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
     *(".mov", ".mp4", ".mkv", ".webm"),  # films that are heard: a phone's, beside its take
@@ -33,7 +33,7 @@ class Unsaved(Protocol):
 
     @property
     def unsaved(self) -> str:
-        """What would be lost, in words; "" for nothing."""
+        """The work that would be lost, in words; "" for nothing."""
 
     def save(self, then: Task) -> Message:
         """Save it, and go on."""
@@ -44,7 +44,7 @@ class Question:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self.task: Task | None = None  # what waits for the answer
+        self.task: Task | None = None  # which waits for the answer
         self.verb = ""  # for it, as "Close"
         self.other: Unsaved | None = None  # whose work is in danger, in place of the session's
 
@@ -55,11 +55,11 @@ class Question:
 
     @property
     def unsaved(self) -> str:
-        """What would be lost, in words; "" for nothing."""
+        """The work that would be lost, in words; "" for nothing."""
         return (self.other or self._session.work).unsaved
 
     def before(self, verb: str, task: Task, other: Unsaved | None = None) -> Message:
-        """Go on with `task` at once, or when what is unsaved was saved or given up."""
+        """Run `task` at once, or when unsaved work was saved or given up."""
         self.other = other
         if not self.unsaved:
             return task()
@@ -71,7 +71,7 @@ class Question:
 class ScriptCommands:
     """Opens and saves the session's script and pose, and asks where that needs an answer.
 
-    A command's `then` is what to do after saving; it is not done where nothing was saved.
+    A command's `then` is a task to run after saving; it does not run where nothing was saved.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class ScriptCommands:
         question: Question,
         note_recent: Callable[..., object],
     ) -> None:
-        """note_recent: is told what files were opened together, or saved."""
+        """note_recent: is called with files that were opened together, or saved."""
         self._session = session
         self._files = files
         self._question = question
@@ -106,7 +106,7 @@ class ScriptCommands:
     def open(self, path: Path, remark: str = "") -> Message:
         """Show the script, pose or recording of a file; if work would be lost, ask first.
 
-        remark: what else there is to say when it is opened.
+        remark: is added to the message when the file is opened.
         """
         session = self._session
         limits = session.controls.limits if session.scene.name == "face" else None
@@ -120,7 +120,7 @@ class ScriptCommands:
             return f"{report.in_brief if report else f'{path.name}: opened'}{remark}"
 
         if is_pose(script) and not self._session.work.has_unsaved_pose:
-            return show()  # whatever else is unsaved stays
+            return show()  # all other unsaved work stays
         return self._question.before("Open", show)
 
     def _check(self, script: Script) -> None:
@@ -211,7 +211,7 @@ UNSAVED = "Unsaved work"
 def draw_question(
     gui: Gui, question: Question, session: Session, scripts: ScriptCommands
 ) -> Message:
-    """Draw the question, if there is one, and go on with what was answered."""
+    """Draw the question, if there is one, and carry out the answer."""
     task = question.task
     verb = question.verb
     other = question.other

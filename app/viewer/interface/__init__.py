@@ -1,1 +1,1 @@
-"""What all panels are drawn with: Dear ImGui in the window, commands, small widgets."""
+"""The means by which all panels are drawn: Dear ImGui in the window, commands, small widgets."""

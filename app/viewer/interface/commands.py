@@ -16,12 +16,12 @@ _KEYS = {imgui.get_key_name(key).removesuffix("Arrow"): key for key in imgui.Key
          if imgui.Key.tab <= key < imgui.Key.gamepad_start}  # fmt: skip
 # Ctrl keys that a line of text takes for itself while one writes.
 _WRITING = ("Ctrl+A", "Ctrl+C", "Ctrl+V", "Ctrl+Y", "Ctrl+Z", "Ctrl+Shift+Z")
-_CHANGING = ("Edit", "Keys", "Expression")  # menus of what waits until the mouse lets go
+_CHANGING = ("Edit", "Keys", "Expression")  # menus of commands that wait until the mouse lets go
 
 
 @dataclass
 class Command:
-    """One thing to do: where it stands, its key, what it does, and whether it is switched on."""
+    """One command: its menu, label and key, its action, and whether it is switched on."""
 
     menu: str
     label: str
@@ -64,12 +64,12 @@ def chord(key: str) -> int:
 
 
 class MenuBar:
-    """Draws menus and carries out what is chosen in them."""
+    """Draws menus and runs the commands that are chosen in them."""
 
     def __init__(
         self, gui: Gui, messages: Messages, commands: Sequence[Command], unsaved: Callable[[], str]
     ) -> None:
-        """unsaved: what work would be lost now, in words; "" for none."""
+        """unsaved: the work that would be lost now, in words; "" for none."""
         self._gui = gui
         self._messages = messages
         self._commands = commands
@@ -92,7 +92,7 @@ class MenuBar:
         return height
 
     def draw_menu(self, title: str) -> None:
-        """What a menu offers, inside it."""
+        """Draw the commands of a menu, inside it."""
         for command in self._commands:
             if command.menu != title:
                 continue
@@ -110,7 +110,7 @@ class MenuBar:
             self._gui.remember(f"menu {title}: {label}")
             if is_clicked:
                 self._messages.carry_out(command.run)
-        if imgui.is_key_pressed(imgui.Key.escape):  # the mouse may be on what opens a submenu again
+        if imgui.is_key_pressed(imgui.Key.escape):  # or the mouse may open a submenu again
             imgui.close_current_popup()
 
 
@@ -127,14 +127,14 @@ def command_button(
 ) -> None:
     """Draw a button that carries out a command, and is lit while that is on, or wanted.
 
-    label, meaning: what it reads, and a hint, where that is not the command's label and keys.
+    label, meaning: its text and its hint, by default the command's label and keys.
     name, width: see `button`.
     """
     is_on = is_wanted or (command.is_on is not None and command.is_on())
     ink = colour(gui.theme.accent, 0.6) if is_on else None
     imgui.begin_disabled(not command.can_run())
     text = label or command.label
-    told = meaning or command.displayed_keys
-    if button(gui, text, name=name, width=width, meaning=told, highlight=ink):
+    hint = meaning or command.displayed_keys
+    if button(gui, text, name=name, width=width, meaning=hint, highlight=ink):
         messages.carry_out(command.run)
     imgui.end_disabled()

@@ -35,7 +35,7 @@ LEFT = 0
 RIGHT = 1
 MIDDLE = 2
 BUTTON = -1  # in place of a key: one of the mouse was pressed
-SETTLING = 3  # turns of the GUI in which what a press has opened gets the focus
+SETTLING = 3  # turns of the GUI in which a window that a press opened gets the focus
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
 NOTE_FLAGS = (
@@ -106,7 +106,7 @@ class Gui:
         self.theme = THEMES["light"]
         self._dressed: object = None
         io = imgui.get_io()
-        io.set_ini_filename("")  # settings.py remembers what is worth it
+        io.set_ini_filename("")  # settings.py remembers the panel's width and folds
         if FONT.exists():
             io.fonts.add_font_from_file_ttf(str(FONT), FONT_SIZE)
         address = ctypes.cast(window, ctypes.c_void_p).value
@@ -163,7 +163,7 @@ class Gui:
             glfw.restore_window(self._window)
 
     def look(self, seconds: float = 0.0) -> bool:
-        """Take in what the user does, and wait so long for something; whether there is any."""
+        """Take in the user's events, and wait so long for one [s]; whether there is any."""
         self._blind = time.perf_counter() - self._looked
         glfw.wait_events_timeout(seconds)
         self._looked = time.perf_counter()
@@ -219,7 +219,7 @@ class Gui:
 
     @contextlib.contextmanager
     def frame(self, *, is_visible: bool = True) -> Iterator[None]:
-        """Everything drawn with imgui in this block appears over what was drawn before.
+        """Draw everything that this block draws with imgui over the present picture.
 
         is_visible: False only answers the user; nothing is drawn.
         """
@@ -253,7 +253,7 @@ class Gui:
         self.places[name] = (low.x, low.y, high.x, high.y)
 
     def close(self) -> None:
-        """Give back what the GUI holds; the window stays."""
+        """Give back all resources of the GUI; the window stays."""
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context(self._context)
@@ -273,10 +273,10 @@ def on_drop(window: Any, open_files: Callable[[Sequence[str]], None]) -> None:
     """Call `open_files` with the paths of files that are dropped onto the window."""
 
     def call(_: Any, count: int, names: Any) -> None:
-        """What GLFW calls; its own wrapper knows no names but those in UTF-8."""
+        """Take a call of GLFW; its own wrapper knows no names but those in UTF-8."""
         open_files([os.fsdecode(names[number]) for number in range(count)])
 
-    library: Any = glfw  # its stubs leave out what its wrapper calls
+    library: Any = glfw  # its stubs leave out the functions that its wrapper calls
     callback = library._GLFWdropfun(call)
     _drop_callbacks.append(callback)
     library._glfw.glfwSetDropCallback(window, callback)
@@ -316,7 +316,7 @@ def ink_of(rgb: tuple[float, float, float], opacity: float = 1.0) -> int:
 
 
 def _set_colours(style: Any, theme: Theme) -> None:
-    """Quiet panels: the face is what is looked at."""
+    """Set quiet colours for the panels: the user looks at the face."""
     fresh = imgui.Style()
     for name in dir(fresh):  # every size anew, or scaling would add up
         size = getattr(fresh, name)
@@ -344,5 +344,5 @@ def _set_colours(style: Any, theme: Theme) -> None:
         style.set_color_(index, colour(theme.accent, 0.55))
     style.set_color_(which.slider_grab, colour(theme.accent, 0.45))  # its number stands over it
     for index in (which.resize_grip, which.resize_grip_hovered, which.resize_grip_active):
-        style.set_color_(index, colour(theme.panel, 0.0))  # an edge tells it, too
+        style.set_color_(index, colour(theme.panel, 0.0))  # an edge shows it, too
     style.set_color_(which.modal_window_dim_bg, colour((0.0, 0.0, 0.0), 0.3))

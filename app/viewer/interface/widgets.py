@@ -17,7 +17,7 @@ HIDDEN = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text
 
 
 class SliderState(NamedTuple):
-    """What happened to a slider in this frame."""
+    """The changes of a slider in this frame."""
 
     value: float
     is_changed: bool
@@ -38,7 +38,7 @@ def slider(
 ) -> SliderState:
     """Draw the slider `name`; a double or Ctrl click types a number, a right click resets.
 
-    mark: what stands at its beginning.
+    mark: the text at its beginning.
     """
     io = imgui.get_io()
     label = f"##{name}"
@@ -97,10 +97,10 @@ FIRST_OPEN = frozenset(
 def heading(
     gui: Gui, folds: dict[str, bool], title: str, label: str = "", *, must_open: bool = False
 ) -> bool:
-    """Draw a heading, which stays folded as it was left; whether what belongs to it is displayed.
+    """Draw a heading, which stays folded or open as it was left; whether it is open.
 
     folds: which headings are open, by title, where somebody has opened or folded them.
-    label: what it reads, where that is more than the title. must_open: for now, as in a search.
+    label: its text, if that is more than the title. must_open: for now, as in a search.
     """
     was_open = must_open or folds.get(title, title in FIRST_OPEN)
     imgui.set_next_item_open(was_open)
@@ -160,7 +160,7 @@ def dialog(title: str, width: float = 0.0, height: float = 0.0) -> Iterator[bool
 
 
 def choose(gui: Gui, label: str, present: str, choices: Iterable[str]) -> str | None:
-    """Draw a list to choose from, as wide as was asked for; what was chosen in it now."""
+    """Draw a list to choose from, as wide as imgui was set to; the choice made in this frame."""
     chosen = None
     flags = imgui.ComboFlags_.height_largest
     is_open = imgui.begin_combo(f"##{label}", readable(present), flags)
@@ -189,7 +189,7 @@ class LabelledRows:
         return float(self._share * imgui.get_window_width())
 
     def begin(self, label: str) -> None:
-        """Draw a label; what comes next takes the rest of the row."""
+        """Draw a label; the next item takes the rest of the row."""
         imgui.align_text_to_frame_padding()
         imgui.text(readable(label))
         self.end(label)
@@ -197,11 +197,11 @@ class LabelledRows:
         imgui.set_next_item_width(-1.0)
 
     def end(self, label: str) -> None:
-        """The hint of what was drawn last."""
+        """Give the item drawn last the hint of its label."""
         hint(self._gui.with_keys(self._hints.get(label, "")))
 
     def choose(self, label: str, present: str, choices: Iterable[str]) -> str | None:
-        """Draw a row with a list; what was chosen in it now."""
+        """Draw a row with a list; the choice made in this frame."""
         self.begin(label)
         return choose(self._gui, label, present, choices)
 
@@ -227,7 +227,7 @@ def button_width(label: str) -> float:
 
 
 def hint(text: str) -> None:
-    """Tell more about the item drawn last while the mouse is on it."""
+    """Show a hint on the item drawn last while the mouse is on it."""
     if text and imgui.is_item_hovered(imgui.HoveredFlags_.allow_when_disabled):
         imgui.begin_tooltip()
         imgui.push_text_wrap_pos(em(24))

@@ -1,7 +1,7 @@
 """Marking the 68 landmarks of a mesh by the mouse.
 
 marking.py  the mesh, where its landmarks are so far, undo, files; knows no windows
-room.py     what is drawn and asked, the mouse, and commands
+room.py     the picture, the questions to the user, the mouse, and commands
 """
 
 from .marking import Marking

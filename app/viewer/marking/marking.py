@@ -1,7 +1,7 @@
 """A mesh whose landmarks are being marked: where they are so far, undo, its file.
 
-Knows nothing of windows. Places are those of the mesh's own coordinates; `placing` takes them to
-the space that is seen: upright and in millimetres as soon as all marks are there.
+This module knows nothing of windows. Places are in the mesh's own coordinates; `placing` takes them
+to the space of the picture: upright and in millimetres as soon as all marks are there.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ class Marking:
     """Marks on one mesh. `current` is the landmark that is asked for, or was chosen."""
 
     def __init__(self, path: Path, files: FileDialogs) -> None:
-        """Read a mesh; UserError where no head can be made of it, whatever is marked."""
+        """Read a mesh; UserError where no marks can make a head of it."""
         self.path = path
         self._files = files
         with _for_users():
@@ -140,14 +140,14 @@ class Marking:
         self._nearest = scipy.spatial.cKDTree(self.positions)
 
     def turn(self, rotation: FloatArray) -> None:
-        """Turn what is seen, (3, 3), as long as the marks do not tell how it stands."""
+        """Turn the mesh by a matrix (3, 3), as long as the marks do not show which way is up."""
         now = self.placing
         self._place(Similarity(now.scale, rotation @ now.rotation, rotation @ now.shift))
         self._note()
 
     @property
     def is_upright(self) -> bool:
-        """Whether the marks have told how it stands."""
+        """Whether the marks have shown which way is up, and the mesh stands so."""
         return self.placing is self._upright
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
@@ -169,10 +169,10 @@ class Marking:
             normals[[number in INNER_LIPS for number in chosen]] = FORWARD
         return points, normals
 
-    # What is marked
+    # Changes of the marks
 
     def put(self, number: int, point: FloatArray) -> None:
-        """Place a landmark at a point of what is seen; `note` when that is done."""
+        """Place a landmark at a point of the mesh as it is seen; `note` completes the change."""
         self.marks = self.marks.placed(number, self.placing.inverse.points(point))
 
     def note(self) -> Message:
@@ -212,7 +212,7 @@ class Marking:
 
     @property
     def unsaved(self) -> str:
-        """What would be lost, in words; "" for nothing."""
+        """The name of the work that would be lost, in words; "" for nothing."""
         return "" if self.marks == self._saved else f"the landmarks of {self.path.name}"
 
     def open(self, path: Path) -> Message:
@@ -252,9 +252,9 @@ class Marking:
 
 
 @contextlib.contextmanager
-def _for_users(what: str = "", cure: str = "") -> Iterator[None]:
-    """What is wrong with a mesh or with marks is for users to mend."""
+def _for_users(subject: str = "", cure: str = "") -> Iterator[None]:
+    """Report faults of a mesh or of marks as a UserError: users can mend them."""
     try:
         yield
     except AssetError as error:
-        raise UserError(f"{what}{error}{cure}") from None
+        raise UserError(f"{subject}{error}{cure}") from None

@@ -1,4 +1,4 @@
-"""A mesh that is marked, in the window: what is seen and asked, the mouse, commands."""
+"""A mesh that is marked, in the window: the picture, the questions, the mouse, commands."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ class MarkingView(View):
 
 
 class MarkingPanel:
-    """Draws what is asked, what can be done, and the points over the mesh."""
+    """Draws the task, the buttons, and the points over the mesh."""
 
     def __init__(
         self,
@@ -121,7 +121,7 @@ class MarkingPanel:
         menus: MenuBar,
         commands: Iterable[Command],
     ) -> None:
-        """commands: that get buttons."""
+        """commands: those that get buttons."""
         self._gui = gui
         self._messages = messages
         self._marking = marking
@@ -324,7 +324,7 @@ class Room:
         self._placing = marking.placing
 
     def paint(self, elapsed: float) -> bool:
-        """Draw what has changed; from the front where the mesh stands otherwise now."""
+        """Draw the mesh if it has changed; from the front if it stands in another way now."""
         if self.marking.placing is not self._placing:
             self._placing = self.marking.placing
             self.view.fit_scene()
@@ -358,7 +358,7 @@ class Room:
             camera.pitch = 0.0
 
     def _turn(self) -> None:
-        """Let what is seen be the front; where it is so already, turn it by a right angle."""
+        """Make the side that is seen the front; if it is so already, turn it by a right angle."""
         seen = np.array(self.view.camera.axes())
         turn = max(axes_turned(), key=lambda turn: float((turn * seen).sum()))
         self.marking.turn(QUARTER if np.array_equal(turn, np.eye(3)) else turn)

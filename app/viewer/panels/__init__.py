@@ -1,1 +1,1 @@
-"""What the window shows around the picture: each file is one panel, drawn anew in every frame."""
+"""The panels around the picture: each file is one panel, drawn anew in every frame."""

@@ -21,10 +21,10 @@ from ..interface.widgets import button, button_width, heading, hint, muted, slid
 
 @dataclass(frozen=True)
 class Row:
-    """One line: what its controls are called alike, and those that it has bars for.
+    """One line: the name that its controls share, and the controls that have bars.
 
-    names: of both sides at once before each side, the subject's right before the left. sides: what
-    can be linked, () for nothing; with is_linked the left one's bar moves both.
+    names: of both sides at once before each side, the subject's right before the left. sides: two
+    controls that can be linked, or (); with is_linked the left one's bar moves both.
     """
 
     label: str
@@ -83,7 +83,7 @@ def search_rows(
 ) -> list[Row]:
     """The rows in which all words of the query occur.
 
-    In names, group, what a control does, or among other words for it.
+    Words are looked for in names, groups, actions of controls, and synonyms.
     """
     return [row for row in rows if is_found(query, _text_of(row, group, actions), row.names)]
 
@@ -100,7 +100,7 @@ NARROW = 15.0  # [em] of room below which bars stand under their names
 
 
 class ControlRows:
-    """Draws rows of controls, and carries out what is done to them."""
+    """Draws rows of controls, and sets controls as the user moves their bars."""
 
     def __init__(self, app: ApplicationContext) -> None:
         self._gui = app.gui

@@ -1,6 +1,6 @@
 """Where everything stands: menus above, controls at the left, time below, the picture in the rest.
 
-What the window has to say stands in a line at the upper edge of the picture.
+A message stands in a line at the upper edge of the picture.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ PANEL_SHARE = 0.45  # of the window, at most
 
 
 class Layout:
-    """Draws what is around the picture, and says where the picture is."""
+    """Draws everything around the picture, and gives the picture its place."""
 
     def __init__(
         self,
@@ -55,7 +55,7 @@ class Layout:
         tabs: Mapping[str, Callable[[], None]],
         timeline: Timeline,
     ) -> None:
-        """tabs: what draws the panels at the left, by their titles, or label###title."""
+        """tabs: draw the panels at the left, by their titles, or label###title."""
         self._app = app
         self._gui = app.gui
         self._settings = app.settings

@@ -1,4 +1,4 @@
-"""A face that is sent while it moves: who sends, and how it is taken."""
+"""A face that is sent while it moves: its sender, and how its shapes are used."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ LABEL_SHARE = 0.38  # of a row
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
 COMPUTERS = {"this computer alone": LOOPBACK, "the whole network": ANYWHERE}
 HINTS = {
-    "Protocol": "what the sender speaks; Live Link Face is an app of an iPhone, "
-    "VMC is what most programs for avatars send",
-    "Listen to": "a phone needs the whole network; whoever is in it can then move this face, and "
-    "do nothing else",
-    "Port": "where the sender must send to",
+    "Protocol": "of the sender; Live Link Face is an app of an iPhone, "
+    "VMC is sent by most programs for avatars",
+    "Listen to": "a phone needs the whole network; every computer in it can then move this face, "
+    "and do nothing else",
+    "Port": "the port to which the sender must send",
     "Gain": "how strongly shapes are taken",
 }
 
 
 class LivePanel:
-    """Draws the panel, and carries out what is done in it."""
+    """Draws the panel, and carries out the user's actions in it."""
 
     def __init__(self, app: ApplicationContext, commands: Mapping[str, Command]) -> None:
         """commands: by their labels."""
@@ -48,7 +48,7 @@ class LivePanel:
         self._draw_listening()
         label = "Stop listening" if live.is_on else "Listen"
         command_button(gui, messages, self._commands["Listen"], label, name="listen", width=-1.0)
-        face = live.face  # which that may have begun or ended
+        face = live.face  # which the button may have begun or ended
         imgui.push_text_wrap_pos(0.0)
         is_received = face is not None and face.state is State.RECEIVING
         ink = gui.theme.accent if is_received else gui.theme.text
@@ -67,7 +67,7 @@ class LivePanel:
         imgui.end_child()
 
     def _draw_listening(self) -> None:
-        """Who sends: protocol, computers, port."""
+        """Draw rows for the sender: protocol, computers, port."""
         live = self._live
         rows = self._rows
         wanted = live.wanted
@@ -101,7 +101,7 @@ class LivePanel:
 
 
 def state_in_words(face: LiveFace | None) -> str:
-    """What can be said of who sends."""
+    """The state of the sender in words."""
     if face is None:
         return "not listening"
     who = f" {face.subject}" if face.subject else ""
@@ -120,7 +120,7 @@ def state_in_words(face: LiveFace | None) -> str:
 
 
 def advice_in_words(face: LiveFace, own_address: str) -> str:
-    """What to do while nobody sends, else how many packets came, and how many were of no use."""
+    """The next step while nobody sends, else how many packets came and could not be used."""
     if face.state is not State.WAITING or face.received:
         unusable = f", of no use: {face.unusable}" if face.unusable else ""
         return f"packets: {face.received}{unusable}"

@@ -1,4 +1,4 @@
-"""The mechanism: refiner and its options, comparison, colours, overlays, what a frame costs."""
+"""The mechanism: refiner and its options, comparison, colours, overlays, times of a frame."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from ..messages import Message
 from ..session.physics import PHASES
 from ..settings import BACKGROUNDS, COMPARISONS, SKINS, TONES, Display, switch
 
-# What the mouse is told that rests on a label or on what it is the label of.
+# Hints for the mouse on a label, or on the item that has the label.
 HINTS = {
     "Refine": "draw the refined mesh, or the simulated one as it is ([Refine])",
-    "Look": "smooth: what looks best; paper: the paper's own rule ([Paper's look]). A look sets "
-    "the refiner and all that it is told",
+    "Look": "smooth: the best picture; paper: the paper's own rule ([Paper's look]). A look sets "
+    "the refiner and all of its options",
     "Refiner": "kahler: the paper's; a look as it is goes to a graphics card (kahler-gl) by "
     "itself where the mesh is large",
     "Compare": "the simulated mesh at the left, refined at the right, under one camera: wipe "
@@ -37,12 +37,12 @@ HINTS = {
     "threshold once": "an edge splits once where the normals at its ends have turned apart by more "
     "than this since rest (drop of their dot product)",
     "threshold twice": "the same for splitting twice",
-    "criterion": "by what it is decided which edges split; normal: where the face moves (the "
+    "criterion": "decides which edges split; normal: where the face moves (the "
     "paper's), rest: where it is round at rest, so that outlines are, displacement: where the "
     "scheme moves edges, border: where a mouth opens",
     "scheme": "where the new points go",
-    "normals": "what light sees; linear: those of the simulated mesh, in between (the paper's), "
-    "refined: those of the refined surface",
+    "normals": "those that light uses; linear: of the simulated mesh, in between (the paper's), "
+    "refined: of the refined surface",
     "blend": "new points grow out of the edge, and nothing pops",
     "coherent": "triangles are cut in the order in which their edges split, and no line turns; for "
     "flat shading",
@@ -53,7 +53,7 @@ HINTS = {
     "Skin tone": "by its typology angle; own: as this person has it",
     "Person": "another head, on which script and pose go on (--person takes any number)",
     "Muscles": "under translucent skin; they bulge and redden as they contract ([Muscles])",
-    "Skull": "under translucent skin, as far as the head tells it; the mandible moves with the jaw",
+    "Skull": "under translucent skin, fitted to the head; the mandible moves with the jaw",
     "Skin opacity": "over muscles and skull; 0: no skin",
     "Dissect": "the side of the face whose skin is translucent",
 }
@@ -103,7 +103,7 @@ class MechanismPanel:
             if heading(self._gui, self._settings.folds, title, label):
                 draw()
         display = self._display
-        display.options = {name: told for name, told in display.options.items() if told}
+        display.options = {name: chosen for name, chosen in display.options.items() if chosen}
         imgui.end_child()
 
     def _draw_refinement(self) -> None:
@@ -128,19 +128,19 @@ class MechanismPanel:
             muted(self._gui, f"({count / base:.2f} x)")
 
     def _options(self) -> dict[str, Any]:
-        """What can be set of the refiner; nothing of one that cannot be loaded, as was reported."""
+        """The options of the refiner; none of one that cannot be loaded, which was reported."""
         try:
             return options_of(self._display.refiner_on(self._stage.scene))
         except (ValueError, TypeError):
             return {}
 
     def _draw_option(self, name: str, default: Any) -> None:
-        """A slider, a checkbox or a list for an option, by what its default is."""
+        """Draw a slider, a checkbox or a list for an option, by the type of its default."""
         scene = self._stage.scene
         refiner = self._display.refiner_on(self._stage.scene)
         stored = self._display.options.setdefault(refiner, {})
-        told = PRESETS[self._display.look][scene.name].options_for(refiner)
-        value = stored.get(name, told.get(name, default))
+        preset = PRESETS[self._display.look][scene.name].options_for(refiner)
+        value = stored.get(name, preset.get(name, default))
         label = name.replace("_", " ")
         put = partial(stored.__setitem__, name)
         if isinstance(default, bool):
@@ -156,7 +156,7 @@ class MechanismPanel:
             slid = self._rows.slide(label, name, float(value), limits, default, digits=3)
             if slid != value:
                 put(slid)
-                _keep_in_order(stored, name, slid, told)
+                _keep_in_order(stored, name, slid, preset)
         elif isinstance(default, str):
             has_finer = can_detail(scene)
             allowed = [word for word in _choices(name) if word != DETAIL or has_finer]
@@ -250,11 +250,11 @@ def _choices(option: str) -> tuple[str, ...]:
 
 
 def _keep_in_order(
-    stored: dict[str, Any], name: str, value: float, told: Mapping[str, Any]
+    stored: dict[str, Any], name: str, value: float, preset: Mapping[str, Any]
 ) -> None:
     """Splitting twice never begins before splitting once: the other threshold gives way."""
     first, second = THRESHOLDS
-    defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **told}
+    defaults = {first: refine.THRESHOLD_ONCE, second: refine.THRESHOLD_TWICE, **preset}
     if name == first:
         stored[second] = max(value, stored.get(second, defaults[second]))
     elif name == second:

@@ -1,7 +1,7 @@
 """The mouse in the picture: drag the skin, click a muscle, turn the camera, drag the divider.
 
 Left on the skin drags it, left beside it orbits, right orbits anywhere, middle or Shift pans, the
-wheel zooms to where the mouse is. What a finger does to the skin is in skin.py.
+wheel zooms to where the mouse is. A finger's effect on the skin is in skin.py.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Select = Callable[[str], None]
 
 DEGREES_PER_EM = 5.5
 ZOOM_PER_NOTCH = 1.1
-CLOSEST = 0.15  # of the scene's radius, from what is zoomed to: a head moves a little
+CLOSEST = 0.15  # of the scene's radius, from the point zoomed to: a head moves a little
 CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
 
 
@@ -37,8 +37,8 @@ class CameraMouse:
         self.forget()
 
     def forget(self) -> None:
-        """Hold on to nothing any more: what it was on is not there."""
-        self._doing = ""  # orbit, pan, or what the left button does
+        """Hold on to nothing any more: the picture under the mouse is another one."""
+        self._doing = ""  # orbit, pan, or the left button's action
         self._pressed_at = (0.0, 0.0)
 
     @property
@@ -47,7 +47,7 @@ class CameraMouse:
         return bool(self._doing)
 
     def follow(self) -> None:
-        """Carry out what the mouse did since the last frame."""
+        """Carry out the mouse's actions since the last frame."""
         io = imgui.get_io()
         if self._doing:
             self._drag(io)
@@ -65,7 +65,7 @@ class CameraMouse:
         """The mouse is over the picture, and does nothing."""
 
     def _take(self, io: Any) -> str:
-        """What the left button does, pressed here."""
+        """The action of the left button, pressed here."""
         return "orbit"
 
     def _press(self, io: Any, button: int) -> None:
@@ -109,7 +109,7 @@ class CameraMouse:
         return skin_under(self._ray(io), scene.positions, scene.faces)
 
     def _zoom(self, io: Any) -> None:
-        """What the mouse is on stays under it: skin, or beside it what is as far as the target."""
+        """Zoom so that the point under the mouse stays there: on skin, or as far as the target."""
         camera = self._view.camera
         point = self._skin_under(io)
         before = self._view.camera.distance

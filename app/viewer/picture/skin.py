@@ -29,7 +29,7 @@ ROUNDING = 1e-9  # of a triangle; [mm] too
 
 @dataclass(frozen=True)
 class Ray:
-    """What the camera sees in one pixel."""
+    """A ray from the camera through one pixel."""
 
     origin: Array
     direction: Array
@@ -105,7 +105,7 @@ class SkinDrag:
         self._candidates = (
             _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
         )
-        self._own: dict[str, float] = {}  # what solved controls had before
+        self._own: dict[str, float] = {}  # values of solved controls before
         self._pull: sim.Pull | None = None  # from the first motion on: a click need not wait
 
     def to(self, point: Array) -> Message:
@@ -129,7 +129,7 @@ class SkinDrag:
         return self._simulation.anatomy.muscle_at(self.point, MUSCLE_REACH)
 
     def let_go(self) -> Message:
-        """The skin stays where muscles hold it, and else swings back; what was solved."""
+        """End the drag: skin stays where muscles hold it, or swings back; the solved controls."""
         self.drop()
         if self._pull is None:
             return None
@@ -142,7 +142,7 @@ class SkinDrag:
         self._simulation.touch.end_drag()
 
     def _solve(self) -> Message:
-        """Set what is solved, put back what was set before and is needed no more, and tell."""
+        """Set the solved controls, put back others set before, and report the solved ones."""
         if self._pull is None:
             finger = self._vertices, self._firmness
             self._pull = sim.Pull(self._simulation, *finger, self._candidates, self._sight)
@@ -159,8 +159,8 @@ class SkinDrag:
                 self._session.set(name, value)
         if not solved:
             return "No muscle draws the skin this way; with Ctrl it is pulled all the same"
-        told = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
-        return f"{', '.join(told).capitalize()}; {pull.short:.1f} mm short of the mouse"
+        moved = (f"{called(*names)} {value:.2f}" for names, value in pull.changes.items())
+        return f"{', '.join(moved).capitalize()}; {pull.short:.1f} mm short of the mouse"
 
 
 def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""The scene in the window: its camera; what is drawn where, coloured and overlaid; and when.
+"""The scene in the window: its camera, viewports, colours and overlays, and when it is drawn.
 
 Draws by `Pipeline.draw`, as films do, and keeps the time of each part of the paper's Figure 1. It
 draws if something has changed, and while it moves as finely as this machine can. A scene that
@@ -59,7 +59,7 @@ class View:
         self.camera = whole_scene(self._session.scene, script.camera)
 
     def look_from(self, label: str) -> None:
-        """Turn the camera to one of `render.VIEWS`, about what it looks at."""
+        """Turn the camera to one of `render.VIEWS`, about the point that it looks at."""
         self.camera.yaw, self.camera.pitch = render.VIEWS[label.lower().replace(" ", "-")]
 
     @property
@@ -69,7 +69,7 @@ class View:
 
     @property
     def background(self) -> render.Background:
-        """What is behind it."""
+        """The background of the picture."""
         return BACKGROUNDS[self.display.background] or THEMES[self._settings.theme].background
 
     @property
@@ -102,7 +102,7 @@ class View:
         return place, display, self._settings.theme, self.viewport, self.pointed
 
     def divider(self) -> list[tuple[render.Rectangle, render.Colour]]:
-        """The line between the two halves of a comparison, and what to drag it by."""
+        """The line between the two halves of a comparison, and the knob to drag it by."""
         if self.display.compare == "off":
             return []
         left, bottom, width, height = self.viewport
@@ -139,7 +139,7 @@ class Stage:
         self._tone: float | None = None
         # The mesh as it is, and as the refiner that is chosen has it drawn.
         self.refined = self.static = self.pipeline.bind(Refinement(refiner=STATIC))
-        self._asked: Refinement | None = None  # what it was bound for
+        self._asked: Refinement | None = None  # the one that is bound
         self.bind(display)
 
     def bind(self, display: Display) -> None:
@@ -160,7 +160,7 @@ class Stage:
         self.refined = self.static
 
     def viewports(self, display: Display, area: render.Rectangle) -> list[Viewport]:
-        """What is drawn where in an area of the frame."""
+        """The viewports in an area of the frame: one, or one for each side of a comparison."""
         left, bottom, width, height = area
         if display.compare == "off" or width < 2:  # less than a pixel for each
             return [Viewport(self.refined if display.is_refined else self.static, area)]
@@ -192,7 +192,7 @@ class Stage:
     def _labels(
         self, view: View, viewports: Sequence[Viewport], style: render.Style
     ) -> list[Label]:
-        """What each side of a comparison is, and what colours stand for."""
+        """The labels of each side of a comparison, and the meaning of colours."""
         texts = [each.drawn.caption for each in viewports if len(viewports) > 1]
         places = [each.seen for each in viewports]
         has_splits = any(each.drawn is not self.static for each in viewports)
@@ -213,7 +213,7 @@ class Stage:
 
 
 def pointed_lines(scene: Scene, shares: Mapping[str, float]) -> list[render.Lines]:
-    """The fibres of muscles, for whoever points at a control: the clearer the more each does.
+    """The fibres of the muscles of a control under the mouse: the clearer the more each does.
 
     shares: name -> how far it goes. One without sides stands for both.
     """
@@ -234,7 +234,7 @@ def pointed_lines(scene: Scene, shares: Mapping[str, float]) -> list[render.Line
 
 
 def style_of(display: Display, background: render.Background | None) -> render.Style:
-    """The renderer's style for what the user wants to see."""
+    """The renderer's style for the display that the user chose."""
     is_textured, albedo = SKINS[display.skin]
     return render.Style(
         shading=render.Shading(display.shading),
@@ -309,7 +309,7 @@ class Painter:
         self.forget()
 
     def forget(self) -> None:
-        """What was drawn last is not what should be seen."""
+        """Draw anew: the last picture is out of date."""
         self._painted: tuple[object, render.Detail] = (None, FULL)
 
     @property
@@ -320,7 +320,7 @@ class Painter:
     def paint(self, elapsed: float, *, has_moved: bool, is_alive: bool) -> bool:
         """Draw the scene if it has changed, or is not drawn in full yet; whether it changed.
 
-        elapsed: since the last frame [s]. has_moved: whether what is seen of it did. is_alive: it
+        elapsed: since the last frame [s]. has_moved: whether it moved visibly. is_alive: it
         only lives, and will move again in a moment: finer pictures in between would flicker.
         """
         surface = self._stage.surface

@@ -1,1 +1,1 @@
-"""What a user does with a face, what it does in time, and what of it is kept; knows no window."""
+"""A user's work on a face, the face's motion in time, and files of both; knows no window."""

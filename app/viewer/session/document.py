@@ -1,4 +1,4 @@
-"""What a user works on: the controls of a scene, states that can be undone, a script's file."""
+"""The user's document: the controls of a scene, states that can be undone, a script's file."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class SceneControls:
     """Every control of every layer (muscles, jaw, gaze, action units, expressions, visemes).
 
     limits: the lowest and highest value of each. muscles: the lowest ones, to which all others add
-    up; all where a scene does not tell. groups: title -> controls, the highest layer first; those
-    of both sides of a muscle are found beside its sides.
+    up; all controls of a scene without layers. groups: title -> controls, the highest layer first;
+    those of both sides of a muscle are found beside its sides.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -51,7 +51,7 @@ class SceneControls:
 
 
 class LiveOverride:
-    """Where a live face has controls, and by what share of 0 (not at all) to 1 (all the way)."""
+    """The controls of a live face, and their share: 0 (no effect) to 1 (they replace others)."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -59,9 +59,10 @@ class LiveOverride:
         self.take({}, 0.0)
 
     def take(self, controls: Mapping[str, float], share: float) -> None:
-        """Override these controls from now on, and no others; those there are not are left out."""
+        """Override these controls from now on, and no others; unknown names are left out."""
         if (names := tuple(controls)) != self._names:  # a stream has the same in each frame
-            self._names, self._known = names, tuple(n for n in names if n in self._limits)
+            self._names = names
+            self._known = tuple(name for name in names if name in self._limits)
             self._places = self._limits.places(self._known)
         wanted = np.array([controls[name] for name in self._known], np.float64)
         self._wanted = self._limits.cut_off(wanted, self._places)
@@ -73,7 +74,7 @@ class LiveOverride:
         return self._share > 0.0
 
     def over(self, values: ControlValues) -> ControlValues:
-        """The values, overridden: what lies between two values is within their limits, too."""
+        """The values, overridden: a mean of two values is within their limits, too."""
         if not self._share:
             return values
         numbers = values.numbers.copy()
@@ -85,7 +86,7 @@ _QUOTED = re.compile(r"""'[^'\n]*'|"(?:\\.|[^"\\\n])*\"""")
 
 
 class ScriptFile:
-    """The file of one script, through all that is done to it; undo and redo share it.
+    """The file of one script, through all of its changes; undo and redo share it.
 
     path: None as long as no file of the user's holds the script.
     """
@@ -109,7 +110,7 @@ class ScriptFile:
 
     @property
     def objection(self) -> str:
-        """What would be lost by writing the file unasked, in words; "" for nothing."""
+        """The loss by writing the file unasked, in words; "" for none."""
         if self.path is None or not self.path.exists():
             return ""
         if _bytes_of(self.path) != self._bytes:
@@ -131,7 +132,7 @@ class ScriptFile:
 
 
 def _bytes_of(path: Path | None) -> bytes | None:
-    """What is in a file; None where it cannot be read."""
+    """The bytes of a file; None where it cannot be read."""
     try:
         return path.read_bytes() if path is not None else None
     except OSError:
@@ -140,9 +141,9 @@ def _bytes_of(path: Path | None) -> bytes | None:
 
 @dataclass(frozen=True)
 class Document:
-    """A pose, a script, and where that is kept."""
+    """A pose, a script, and the file of the script."""
 
-    values: Mapping[str, float] | None  # set by hand, what is not 0; None: as the script has it
+    values: Mapping[str, float] | None  # set by hand, those not 0; None: as the script has them
     script: Script
     file: ScriptFile  # in which the script is kept
     time: float = field(default=0.0, compare=False)  # [s] at which the pose was made
@@ -175,7 +176,7 @@ class History(Generic[State]):
         return self._states[self.place]
 
     def note(self, state: State) -> None:
-        """Something was done; what was undone before is forgotten. Equal states count once."""
+        """Note a change; states undone before are forgotten. Equal states count once."""
         if state == self.present:
             return
         self._states[self.place + 1 :] = [state]
@@ -183,7 +184,7 @@ class History(Generic[State]):
         self.place = len(self._states) - 1
 
     def amend(self, state: State) -> None:
-        """The present is this now, which nobody would call a step."""
+        """Replace the present state; that is no step of undo."""
         self._states[self.place] = state
 
     def go(self, place: int) -> State:

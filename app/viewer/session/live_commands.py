@@ -1,6 +1,6 @@
 """A live face in the window: begin and end it, calibrate it, and let it override the session.
 
-It wins over sliders and script; controls that it does not name stay as these have them.
+The live face overrides sliders and script; these keep the controls that it does not name.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ def check_scene(name: str) -> None:
 
 
 class LiveCommands:
-    """What menus and panels do with a live face, and what the window asks of it.
+    """Commands of menus and panels for a live face, and questions of the window about it.
 
-    wanted: what `toggle` listens to; settable.
-    face: the live face, None while nothing is listened to.
-    own_address: what a phone must send to, "" without a network.
+    wanted: protocol, address and port for `toggle`; settable.
+    face: the live face, None while the window does not listen.
+    own_address: the address to which a phone must send, "" without a network.
     """
 
     def __init__(
         self, session: Session, show_panel: Callable[[], None], wake: Callable[[], None]
     ) -> None:
-        """show_panel: is called when a live face begins, which a panel tells of.
+        """show_panel: is called when a live face begins, and shows the panel with its state.
 
         wake: makes a window that waits for events go on; it is called from another thread.
         """
@@ -43,8 +43,8 @@ class LiveCommands:
         self.wanted = Listening("livelink")
         self.face: LiveFace | None = None
         self.own_address = ""
-        self.has_changed = False  # what can be said of who sends, in the last `advance`
-        self._told: object = None
+        self.has_changed = False  # the sender's state in words, in the last `advance`
+        self._shown: object = None
 
     # Commands
 
@@ -54,7 +54,7 @@ class LiveCommands:
         return self.face is not None
 
     def start(self, wanted: Listening) -> Message:
-        """Listen from now on, and show the panel that tells of it; UserError if that cannot be."""
+        """Listen from now on, and show the panel; UserError where the port cannot be opened."""
         check_scene(self._session.scene.name)
         self.stop()
         face = LiveFace(wanted, wake=self._wake)
@@ -84,19 +84,19 @@ class LiveCommands:
             self.face.calibrate()
         return "Hold a neutral face, eyes on the camera ..."
 
-    # What the window asks
+    # Questions of the window
 
     def advance(self, seconds: float) -> Message:
-        """Take in what has come, which overrides the session's controls."""
+        """Take in the packets that came; their face overrides the session's controls."""
         face = self.face
         if face is None:
             self.has_changed = False
             return None
         was_calibrating = face.is_calibrating
         face.advance(min(seconds, LONGEST_STEP))
-        told = face.state, face.received > 0
-        self.has_changed = told != self._told
-        self._told = told
+        shown = face.state, face.received > 0
+        self.has_changed = shown != self._shown
+        self._shown = shown
         self._session.live_override.take(face.controls(), face.presence)
         if was_calibrating and not face.is_calibrating:
             return "This face is neutral now"

@@ -25,10 +25,10 @@ from ...scenes import FaceScene
 from .session import Session
 
 STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
-MOST_STEPS = 6  # a tenth of a second: what a stalled window catches up
+MOST_STEPS = 6  # a tenth of a second, which a stalled window catches up
 EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz that is now a little
 # late and now early gets one step for each of its frames, and motion does not judder
-EARLIEST = 0.95  # the same for what a live face has just sent, which must not wait a frame
+EARLIEST = 0.95  # the same for a packet of a live face, which must not wait a frame
 CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
 STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
 LEFT_ALONE = 0.5  # [s] after which a face that nobody moved any more only lives
@@ -38,7 +38,7 @@ PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure
 KEPT_FRAMES = 60  # of which the times are known
 SMOOTHING = 0.9  # of the frame rate, from frame to frame
 
-Life = Callable[[float], Mapping[str, float]]  # what a face adds to its controls, so much [s] later
+Life = Callable[[float], Mapping[str, float]]  # values to add to controls, so much [s] later
 
 
 class FrameTimes:
@@ -69,7 +69,7 @@ class FrameTimes:
 
 
 class Clock:
-    """Says how many steps are due; what is left over waits for the next time."""
+    """Counts the steps that are due; time left over waits for the next call."""
 
     def __init__(self) -> None:
         self._owed = 0.0
@@ -143,7 +143,7 @@ class Physics:
             return
         self._posed = wanted
         moved = self._step(steps, life)
-        # Muscles follow late: what has not moved yet may still be about to.
+        # Muscles follow late: a face that has not moved yet may be about to.
         self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
         self.has_moved = not self.is_left_alone or self._is_to_be_seen()
         if self.has_moved:
@@ -180,7 +180,7 @@ class Physics:
         return max(turns, default=0.0) * EYE_RADIUS > SEEN
 
 
-ASLEEP_AFTER = 600.0  # [s] without input: whoever looked has gone, and the machine may rest
+ASLEEP_AFTER = 600.0  # [s] without input: the user has gone, and the machine may rest
 
 
 class IdleLife:
@@ -219,7 +219,7 @@ class IdleLife:
         return not (is_moved or session.live_override.is_on) and self._without_input < ASLEEP_AFTER
 
     def after(self, seconds: float, *, is_held: bool) -> Values:
-        """What to add to the controls, `seconds` later than the last time.
+        """The values to add to the controls, `seconds` later than the last time.
 
         is_held: the user has hold of something, so that the face does no more than look at him.
         """

@@ -1,10 +1,10 @@
-"""Unsaved work survives what ends the window: a signal, a crash, a closed terminal.
+"""Unsaved work survives the end of the window: a signal, a crash, a closed terminal.
 
-It is kept as a script beside the settings, written some seconds after a change, and when the
-process is told to stop; a pose that is no key is one in it. The file goes when the work is saved or
-given up. The next window puts what is there aside, under the time of its writing, to be opened as
-any script. Of several windows with the same scene the first has the file, by a lock that the system
-lets go of however a process ends.
+A script beside the settings keeps the work. It is written some seconds after a change, and when a
+signal stops the process. A pose by hand is a key in it. The file is removed when the work is saved
+or given up. The next window adds the time of writing to the name of a file that it finds, and the
+user can open it like any script. Of several windows with the same scene the first one locks the
+file; the system releases the lock when the process ends.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from ...stopping import cleaned_up_if_stopped
 from .session import Session
 
 INTERVAL = 2.0  # [s] after a change, in which further ones may come
-LEAST_SHARE = 30.0  # ... or so many times what writing took, lest a long recording stutters
+LEAST_SHARE = 30.0  # or so many times the time of writing, lest a long recording stutters
 
 
 class Recovery:
     """Keeps a session's unsaved work safe in a folder; without one it does nothing."""
 
-    found: Path | None = None  # the script that a window left behind which ended
+    found: Path | None = None  # the script that an earlier window left behind
 
     def __init__(
         self, folder: Path | None, session: Session, clock: Callable[[], float] = time.monotonic
@@ -40,8 +40,8 @@ class Recovery:
         self._session = session
         self._path = folder and folder / f"unsaved-{session.scene.name}.toml"
         self._lock: IO[Any] | None = None
-        self._safe: object = None  # the state that the file has
-        self._due = math.inf  # when it is to be written
+        self._safe: object = None  # the state in the file
+        self._due = math.inf  # when the file is to be written
         self._writing_took = 0.0  # [s]
         self._is_failing = False
         if self._path is not None:
@@ -56,7 +56,10 @@ class Recovery:
                     self.found = self._path.replace(self._path.with_stem(kept))
 
     def watch(self) -> None:
-        """To be called all the time; UserError, once, where nothing can be written."""
+        """Note changes, and write the file when it is due; to be called in each turn of the loop.
+
+        Raises UserError, once, where the file cannot be written.
+        """
         if self._path is None:
             return
         if not self._session.work.unsaved:
@@ -71,11 +74,11 @@ class Recovery:
             self._due = self._clock() + max(INTERVAL, LEAST_SHARE * self._writing_took)
 
     def due_in(self) -> float:
-        """How long until something is to be written [s]; infinite if nothing is."""
+        """How long until the file is to be written [s]; infinite without a change."""
         return self._due - self._clock()
 
     def save(self) -> None:
-        """Write what is unsaved; UserError, once, where that cannot be."""
+        """Write unsaved work; UserError, once, where the file cannot be written."""
         state = _state(self._session)
         if self._path is None or state == self._safe or not self._session.work.unsaved:
             return
@@ -84,23 +87,24 @@ class Recovery:
             save_script(self._path, unsaved_script(self._session))
             self._is_failing = False
         except UserError as error:
-            is_told, self._is_failing = self._is_failing, True
-            if not is_told:
+            is_reported = self._is_failing
+            self._is_failing = True
+            if not is_reported:
                 raise UserError(f"unsaved work is not kept safe: {error}") from None
-        finally:  # if it failed, it is tried again after the next change
+        finally:  # writing that failed is tried again after the next change
             self._safe = state
             self._due = math.inf
             self._writing_took = time.perf_counter() - begin
 
     def discard(self) -> None:
-        """All is saved, or knowingly thrown away."""
+        """Remove the file: all work is saved, or knowingly given up."""
         if self._path is not None:
             with contextlib.suppress(OSError):
                 self._path.unlink(missing_ok=True)
 
     @contextlib.contextmanager
     def guarding(self) -> Iterator[None]:
-        """Keep what is unsaved if the block is stopped or fails; where it just ends, discard it."""
+        """Write unsaved work if the block is stopped or fails; if it just ends, remove the file."""
         try:
             with cleaned_up_if_stopped(self.save):
                 yield
@@ -111,13 +115,13 @@ class Recovery:
         self.discard()
 
     def close(self) -> None:
-        """Leave what is still there to the next window."""
+        """Release the lock, and leave the file, if there is one, to the next window."""
         if self._lock is not None:
             self._lock.close()
 
 
 def unsaved_script(session: Session) -> Script:
-    """The script with what is recorded, and with a pose by hand as a key at the time shown."""
+    """The script with the recording, and with a pose by hand as a key at the time shown."""
     recorder = session.recorder
     script = (recorder.script() if recorder is not None else None) or session.script
     if _has_pose(session):
@@ -127,13 +131,13 @@ def unsaved_script(session: Session) -> Script:
 
 
 def _has_pose(session: Session) -> bool:
-    """Whether there is one; what is moved while a recording is paused, that has not."""
+    """Whether a pose by hand is unsaved; in a paused recording, whether controls were moved."""
     missed = session.recorder.missed if session.recorder is not None else {}
     return session.work.has_unsaved_pose or (bool(missed) and not session.is_playing)
 
 
 def _state(session: Session) -> object:
-    """What tells whether there is other work to be kept; quickly made and compared."""
+    """The state of unsaved work: two states differ where the work differs; quickly compared."""
     return (
         session.script if session.work.script_is_unsaved else None,
         session.values if _has_pose(session) else None,

@@ -1,6 +1,6 @@
-"""What a user does with a face: controls, a script in time, a recording, undo, unsaved work.
+"""A user's work on a face: controls, a script in time, a recording, undo, unsaved work.
 
-Knows the scene, which adds up all of `values`, and nothing of windows.
+This module knows the scene, which adds up all of `values`, and nothing of windows.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class Session:
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.is_following = any(self.values.numbers)  # the script; a neutral face need not yet
         self._is_touched = False  # by hand, since something was noted
-        self.recorder: Recorder | None = None  # of what is being recorded
-        self.live_override = LiveOverride(scene.limits)  # leaves no trace in what can be undone
+        self.recorder: Recorder | None = None  # of the present recording
+        self.live_override = LiveOverride(scene.limits)  # is no part of states that can be undone
         self.history = History(self._document())
         self.work = Work(self)
 
@@ -79,12 +79,12 @@ class Session:
         self.set_pose(self.scene.limits.pose({}), is_unsaved=False)
 
     def mirror(self, source: str = "") -> None:
-        """What is left becomes right and the reverse, or one side ("left", "right") the other's."""
+        """Exchange left and right, or copy one side ("left", "right") to the other."""
         values = copied(self.values, source) if source else mirrored(self.values)
         self.set_pose(self.scene.limits.pose(values))
 
     def set_pose(self, pose: ControlValues, *, is_unsaved: bool = True) -> None:
-        """Take a value for each control; a recording takes in what differs."""
+        """Take a value for each control; a recording takes in those that differ."""
         if self.recorder is not None:
             self.recorder.held |= {n: v for n, v in pose.items() if v != self.values[n]}
         else:
@@ -96,7 +96,7 @@ class Session:
 
     @property
     def current(self) -> ControlValues:
-        """Where each control is now: by hand or script, and over it what a live face overrides."""
+        """The value of each control now: by hand or script, overridden by a live face."""
         return self.live_override.over(self.values)
 
     @property
@@ -170,7 +170,7 @@ class Session:
             self.scene.step(SETTLING)  # as in a film
 
     def seek(self, time: float) -> Message:
-        """Go to a time of the script and take its pose; a line says what is let go for that."""
+        """Go to a time of the script and take its pose; the message names controls let go."""
         self._refuse_while_recording()
         line = self.let_go()
         self._go_to(time)
@@ -182,7 +182,7 @@ class Session:
         self.pose_is_unsaved = False
 
     def let_go(self) -> Message:
-        """Back to the script; what was set by hand and is no key can be undone, as a line says."""
+        """Go back to the script; the message names controls let go, which undo brings back."""
         if self.is_following or self.is_recording:
             return None
         self.note()
@@ -191,9 +191,9 @@ class Session:
         if not names:
             self.history.amend(self._document())
             return None
-        what = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
+        controls = readable(min(names)) if len(names) == 1 else counted(len(names), "control")
         self.history.note(self._document())
-        return f"{what} not keyed, so let go; [Undo] brings the pose back"
+        return f"{controls} not keyed, so let go; [Undo] brings the pose back"
 
     def seek_key(self, direction: int) -> Message:
         """Pause at the next time at which the script has a key, or with -1 at the one before."""
@@ -235,7 +235,7 @@ class Session:
     def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
         """Let time pass: the script moves the controls, the scene follows them.
 
-        beneath: what else moves the scene, at controls that are 0; no script ever has it.
+        beneath: values added to the scene at controls that are 0; no script ever has them.
         """
         if self.is_playing:
             self.time += self.speed * seconds
@@ -261,7 +261,7 @@ class Session:
         return self.recorder is not None
 
     def toggle_recording(self) -> Message:
-        """Record what is moved into the script, which plays from the time shown, or end that.
+        """Record moved controls into the script, which plays from the time shown, or end that.
 
         Nothing is recorded while it is paused, or goes through a part again.
         """
@@ -273,7 +273,7 @@ class Session:
             self.pose_is_unsaved = False
             if not self.is_playing:
                 self.toggle_playing()
-            return f"Recording from {self.time:.2f} s: what you move replaces the script there"
+            return f"Recording from {self.time:.2f} s: your moves replace the script there"
         recorder, self.recorder = self.recorder, None
         recording = recorder.script()
         self.is_playing = False
@@ -285,12 +285,12 @@ class Session:
         missed = self.differing  # a pose by hand
         self.is_following = not missed
         self.pose_is_unsaved = bool(missed)
-        what = counted(len(recorder.samples), "control")
+        controls = counted(len(recorder.samples), "control")
         self.note()
         if recording is None:
             raise UserError("nothing was recorded: no control moved")
         apart = f"; {counted(len(missed), 'control')} moved after that, not keyed" if missed else ""
-        return f"{what} recorded from {recorder.start:.2f} to {recorder.time:.2f} s{apart}"
+        return f"{controls} recorded from {recorder.start:.2f} to {recorder.time:.2f} s{apart}"
 
     @property
     def recorded_seconds(self) -> float:
@@ -309,7 +309,7 @@ class Session:
 
 
 class Work:
-    """What files have of a session: what is opened, saved, or would be lost."""
+    """The files of a session: scripts and poses that are opened, saved, or unsaved."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -342,19 +342,19 @@ class Work:
 
     @property
     def unsaved(self) -> str:
-        """What would be lost by closing, in words; "" for nothing."""
+        """The work that closing would lose, in words; "" for nothing."""
         lost = {"the pose": self.has_unsaved_pose, "the script": self.script_is_unsaved}
         lost["the recording"] = self._session.is_recording
-        return " and ".join(what for what, is_lost in lost.items() if is_lost)
+        return " and ".join(part for part, is_lost in lost.items() if is_lost)
 
     @property
     def script_is_unsaved(self) -> bool:
-        """Whether the script says what its file does not."""
+        """Whether the script differs from its file."""
         return self._session.file.differs(self._session.script)
 
     @property
     def name(self) -> str:
-        """What the script is called: by its file, if there is one, else by its title."""
+        """The script's name: that of its file, if there is one, else its title."""
         path = self._session.file.path
         return as_text(path.name if path else self._session.script.title or "Untitled")
 

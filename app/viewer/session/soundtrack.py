@@ -1,8 +1,8 @@
-"""The script's sound in the window: heard while the script plays, and what the picture keeps to.
+"""The script's sound in the window: heard while the script plays; the picture keeps to it.
 
-The picture follows the sound: a device keeps the time of its own clock, and what is heard must not
+The picture follows the sound: a device keeps the time of its own clock, and the sound must not
 jump. So a little more or less time passes for the picture, until both agree, and a window that was
-stalled skips what was heard meanwhile. The sound follows where the user goes, or a loop begins.
+stalled skips the time that was heard meanwhile. The sound follows a jump of the user or of a loop.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Soundtrack:
         self._player: Player | None = None
         self._time = session.time  # in the last frame
         self._was_playing = False  # in the last frame
-        self.sound = None  # what is in the script's file; None as long as it has none
+        self.sound = None  # in the script's file; None as long as it has none
 
     def refresh(self) -> None:
         """Read the script's sound if it has another one now; UserError, once, if it cannot be."""

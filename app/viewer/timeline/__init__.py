@@ -1,1 +1,1 @@
-"""The script in time: which part of it is seen, its keys in rows and as curves, its sound."""
+"""The script in time: its visible part, its keys in rows and as curves, its sound."""

@@ -1,8 +1,8 @@
 """The keys in time: a ruler to scrub in, below it rows of keys, or their values as curves.
 
-As in every dope sheet: a click selects a key and goes there, a drag moves what is selected, Shift
-adds, a drag over nothing draws a box, the wheel zooms. Where keys are too dense to be told apart,
-only those that are selected are dragged, and a drag over others draws a box.
+As in every dope sheet: a click selects a key and goes there, a drag moves the selected keys,
+Shift adds, a drag over nothing draws a box, the wheel zooms. Where keys are too dense to be seen
+one by one, a drag moves selected keys alone, and a drag over others draws a box.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ VALUES = 2.2  # [em] for the labels of values
 
 @dataclass
 class Drag:
-    """What the mouse holds on to."""
+    """The state of a drag, from press to release."""
 
     doing: str  # keys, box, scrub, end, pan, slope
     began: tuple[float, float]  # [window units]
@@ -54,7 +54,7 @@ class Drag:
 
 
 class DopeSheet:
-    """Draws ruler and rows, and carries out what the mouse does in them."""
+    """Draws ruler and rows, and carries out the mouse's actions in them."""
 
     def __init__(
         self,
@@ -78,14 +78,14 @@ class DopeSheet:
         self._all: tuple[Track, ...] = ()
         self.rows: tuple[Track, ...] = ()  # of these the ones that are not folded away
         self._known: Script | None = None  # of which the tracks are
-        self._are_dense: dict[str, bool] = {}  # by name: keys cannot be told apart
+        self._are_dense: dict[str, bool] = {}  # by name: keys are too dense to be seen one by one
         self._bottom = 0.0  # of all of it [window units]
-        self._tops = [0.0]  # of each row, and of what would come below the last [window units]
+        self._tops = [0.0]  # of each row, and of one below the last [window units]
         self._gutter = 0.0  # the width of their names [window units]
         self._wants_menu = False
 
     def _is_open(self, name: str) -> bool:
-        """Whether what is folded into this row is displayed; at first, of many groups one."""
+        """Whether the rows folded into this one are displayed; at first, of many groups one."""
         is_few = len(self._session.script.tracks) <= MOST_CURVES or name == self._all[1].name
         return self.settings.folds.get(name, is_few if ":" in name else self.settings.shows_curves)
 
@@ -183,7 +183,7 @@ class DopeSheet:
         y = corner[1] + 0.5 * (em(ROW) - em())
         self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
         room = min(room, self._gutter) - indent - arrow - em(0.3)
-        label = shortened(track.label, room, keeps_end=not track.is_sum)  # which tells the side
+        label = shortened(track.label, room, keeps_end=not track.is_sum)  # which names the side
         is_curve = self.settings.shows_curves and track.control
         muted = self._gui.theme.muted
         ink = self.graph.colour(track) if is_curve else ink_of(muted)
@@ -254,7 +254,7 @@ class DopeSheet:
         return bisect.bisect_right(self._tops, y) - 1
 
     def _begin(self, doing: str, io: Any, selected: Places | None = None) -> None:
-        """Hold on to something; selected: from now on, where that is not what is selected."""
+        """Begin a drag; selected: the keys to select from now on, None for those that are."""
         places = self.selection.places if selected is None else selected
         self._drag = Drag(doing, (*io.mouse_pos,), self._session.script, places)
 
@@ -293,7 +293,7 @@ class DopeSheet:
             self.axis.zoom(ZOOM_PER_NOTCH**io.mouse_wheel, io.mouse_pos.x)
 
     def _follow(self, io: Any, drag: Drag) -> None:
-        """Carry out what the mouse does until it lets go; Escape takes back what it did."""
+        """Carry out the drag until the mouse lets go; Escape undoes the drag."""
         (x, y) = io.mouse_pos
         axis = self.axis
         session = self._session
@@ -367,7 +367,7 @@ class DopeSheet:
         self.selection.places = drag.selected | inside
 
     def _release(self, io: Any, drag: Drag) -> Message:
-        """The mouse has let go; what there is to say about it."""
+        """End the drag as the mouse lets go; returns a message about it."""
         session = self._session
         line = None
         if drag.doing == "keys" and drag.has_moved:

@@ -2,7 +2,7 @@
 
 A curve belongs to a track, or to one control of the poses: there a key that is dragged up changes
 that value of its pose. The way to a selected key has two handles, at its control points as a Bezier
-curve, that are dragged up and down. What the mouse does is in dope_sheet.py, as for rows of keys.
+curve, that are dragged up and down. The mouse's actions are in dope_sheet.py, as for rows of keys.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ FAINT = 0.3  # a curve that has no selected key, beside others that have
 
 
 class Hit(NamedTuple):
-    """What a place in the graph means: a curve, and its key if one is there."""
+    """The meaning of a place in the graph: a curve, and its key if one is there."""
 
     curve: Track
     value: float
@@ -39,7 +39,7 @@ class Hit(NamedTuple):
 
 
 class Handle(NamedTuple):
-    """A third of the way to a key, from the key before or to it: what sets the slope there."""
+    """A control point of the way to a key, a third from either end: it sets the slope there."""
 
     key: Places
     number: int  # 0: at the start of the way, 1: at its end
@@ -50,15 +50,15 @@ class Handle(NamedTuple):
 
 
 class Graph:
-    """Draws curves between a time axis and one of values, and knows what is where."""
+    """Draws curves between a time axis and one of values, and finds keys and curves by place."""
 
     def __init__(self, gui: Gui, selection: KeySelection, axis: TimeAxis) -> None:
         self._gui = gui
         self._selection = selection
         self._axis = axis
         self.curves: list[Track] = []
-        self.held: Hit | None = None  # what the mouse was pressed on
-        self.handle: Handle | None = None  # that it was pressed on
+        self.held: Hit | None = None  # the curve or key that the mouse was pressed on
+        self.handle: Handle | None = None  # that the mouse was pressed on
         self._low = 0.0  # value
         self._high = 1.0  # value
         self._bottom = 0.0  # where the low value is
@@ -81,10 +81,10 @@ class Graph:
         """Where a value is, or each of an array of values [window units]."""
         return self._bottom + self.slope * (value - self._low)
 
-    # What is where
+    # Places of keys and curves
 
     def at(self, x: float, y: float) -> Hit | None:
-        """The key there, or else the curve; of keys that cannot be told apart, selected ones."""
+        """The key there, or else the curve; of keys too dense to be seen singly, selected ones."""
         axis = self._axis
         reach = em(REACH)
         hits = list[tuple[float, Hit]]()
@@ -156,7 +156,7 @@ class Graph:
         return places.between(self._axis.time(begin), self._axis.time(end))
 
     def _is_dense(self, curve: Track) -> bool:
-        """Whether its visible keys cannot be told apart."""
+        """Whether its visible keys are too dense to be seen one by one."""
         axis = self._axis
         times = curve.channel.times
         count = np.diff(np.searchsorted(times, (axis.start, axis.end)))[0]
@@ -198,7 +198,7 @@ class Graph:
         self.slope = -height / (self._high - self._low)
 
     def _draw_ground(self, low: Point, high: Point, script_end: float) -> None:
-        """What curves stand on, between two corners: darker as far as the script goes."""
+        """Draw the ground of the curves, between two corners: darker as far as the script goes."""
         theme = self._gui.theme
         lines = imgui.get_window_draw_list()
         end = min(max(script_end, low[0]), high[0])

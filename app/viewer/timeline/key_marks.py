@@ -1,4 +1,4 @@
-"""How ruler, rows and keys of the timeline look; what they do is in dope_sheet.py."""
+"""The look of ruler, rows and keys of the timeline; dope_sheet.py has their behaviour."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Point = tuple[float, float]
 def draw_ruler(
     theme: Theme, axis: TimeAxis, time: float, duration: float, edges: tuple[float, float]
 ) -> None:
-    """Ticks with seconds, the script's end, and at the time shown what is dragged to scrub.
+    """Draw ticks with seconds, the script's end, and at the time shown a handle to scrub by.
 
     time, duration: [s]. edges: the upper and the lower one [window units].
     """
@@ -57,7 +57,7 @@ def draw_ruler(
 
 
 def number_of(time: float) -> str:
-    """Seconds as short as they can be told, minutes where there are some."""
+    """Seconds as short as they can be written, minutes where there are some."""
     if time < 60.0:
         return f"{time:.3g} s" if time == 0.0 else f"{time:.3g}"
     minutes, seconds = divmod(round(time, 2), 60.0)
@@ -166,7 +166,7 @@ def draw_line(xs: Floats, ys: Floats, ink: int, width: float = 1.0) -> None:
 
 
 def draw_box(theme: Theme, first: Point, last: Point) -> None:
-    """What a drag over nothing encloses."""
+    """Draw the box that a drag over nothing encloses."""
     lines = imgui.get_window_draw_list()
     lines.add_rect_filled(first, last, ink_of(theme.accent, 0.15))
     lines.add_rect(first, last, ink_of(theme.accent, 0.8))
@@ -197,9 +197,9 @@ class Waveform:
         return sound.duration if sound is not None else 0.0
 
     def draw(self, time: float, duration: float, corner: Point) -> None:
-        """Draw it from its upper left corner on; what comes after the script's end is faint.
+        """Draw it from its upper left corner on; after the script's end it is faint.
 
-        time, duration: that is shown, and of the script [s].
+        time: that is shown [s]. duration: of the script [s].
         """
         sound = self._soundtrack.sound
         axis = self._axis

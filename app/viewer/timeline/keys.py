@@ -28,8 +28,8 @@ class Track:
     label: str
     places: Places
     channel: Channel = field(default_factory=partial(Channel, (), ()))  # of one control
-    control: str = ""  # which that is
-    track: str = ""  # that its keys are in
+    control: str = ""  # the name of that control
+    track: str = ""  # the name of the track that has its keys
     parents: tuple[str, ...] = ()  # the names of the rows that it is folded into
     names: tuple[tuple[float, str], ...] = ()  # of poses, by time [s]
     is_whole: bool = False  # poses, which are keys of all controls
@@ -99,9 +99,9 @@ class KeySelection:
 
     def delete(self) -> Message:
         """Take the selected keys away."""
-        what = counted(len(self.places), "key")
+        keys = counted(len(self.places), "key")
         self._session.edit(keyframes.without(self._session.script, self.places))
-        return f"{what} deleted; [Undo] brings back"
+        return f"{keys} deleted; [Undo] brings back"
 
     def copy(self) -> Message:
         """Keep the selected keys, to be pasted elsewhere."""
@@ -114,9 +114,9 @@ class KeySelection:
         source, places = self.copied
         offset = keyframes.key_time(self._session.script, self._session.time) - places.first
         script, self.places = keyframes.moved(self._session.script, places, offset, source)
-        what = counted(len(places), "key")
+        keys = counted(len(places), "key")
         self._session.edit(script)
-        return f"{what} copied to {places.first + offset:.2f} s"
+        return f"{keys} copied to {places.first + offset:.2f} s"
 
     def nudge(self, frames: int) -> None:
         """Move the selected keys by so many frames."""

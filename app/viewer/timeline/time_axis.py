@@ -1,4 +1,4 @@
-"""Which part of the script the timeline displays, and where in it a time is."""
+"""The part of the script that the timeline displays, and the places of times in it."""
 
 from __future__ import annotations
 
@@ -61,14 +61,14 @@ class TimeAxis:
         return distance / self._width * self.span
 
     def zoom(self, factor: float, x: float) -> None:
-        """Show `factor` times as much time; what is at `x` stays there."""
+        """Show `factor` times as much time; the time at `x` stays there."""
         fixed = self.time(x)
         self.span = max(self.span * factor, LEAST_SPAN)
         self.is_whole = False
         self.start = fixed - self.seconds(x - self._left)
 
     def scroll(self, seconds: float) -> None:
-        """Show what comes later."""
+        """Show a part that is so much later."""
         self.start += seconds
 
     def follow(self, time: float) -> None:

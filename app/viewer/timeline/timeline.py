@@ -17,20 +17,20 @@ SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 BUTTON_WIDTH = 4.0  # [em]
 SPEED_WIDTH = 4.6  # [em]
 MOST_HEIGHT = 0.4  # of the window
-# By the label of the command: what the button reads while that is on, and a hint.
+# By the label of the command: the button's text while that is on, and a hint.
 BUTTONS = {
     "Play": ("Pause", "play the script ([Play])"),
-    "Record": ("Stop", "record what you move, from here on ([Record])"),
+    "Record": ("Stop", "record the controls that you move, from here on ([Record])"),
     "Loop": ("Loop", "begin again at the end ([Loop])"),
     "Curves": ("Curves", "keys in rows, or their values as curves ([Curves])"),
     "Set key": ("Set key", "the face as it is becomes a key at the time shown ([Set key])"),
-    "Let go": ("Let go", "what was changed by hand goes back to where the script has it"),
-    "Auto-key": ("Auto-key", "what is changed by hand becomes a key at once"),
+    "Let go": ("Let go", "controls changed by hand go back to where the script has them"),
+    "Auto-key": ("Auto-key", "each change by hand becomes a key at once"),
 }
 
 
 class Timeline:
-    """Draws buttons and dope sheet, and carries out what is done with the buttons."""
+    """Draws buttons and dope sheet, and runs the commands of the buttons."""
 
     def __init__(
         self, app: ApplicationContext, commands: Iterable[Command], dope_sheet: DopeSheet
@@ -93,7 +93,7 @@ class Timeline:
         hint("speed of the script")
 
     def _draw_status(self, differing: int) -> None:
-        """The time, and what is being made now, else how many controls differ, or the script."""
+        """Draw the time, then a recording, or how many controls differ, or else the script."""
         session = self._session
         theme = self._gui.theme
         status = session.work.name

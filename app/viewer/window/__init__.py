@@ -1,1 +1,1 @@
-"""The window: all parts joined, its loop, its menus, and what is seen before it is ready."""
+"""The window: all parts joined, its loop, its menus, and its splash screen."""

@@ -1,4 +1,4 @@
-"""What the window is made of: the one place where all parts of the viewer meet."""
+"""The parts of the window: the one place where all parts of the viewer meet."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from ..timeline.timeline import Timeline
 from . import menus
 from .splash_screen import SplashScreen
 
-LOG = logging.getLogger("risorius.viewer")  # what is told where there is no window any more
+LOG = logging.getLogger("risorius.viewer")  # reports when there is no window any more
 
 
 class Application(ApplicationContext):
@@ -60,10 +60,10 @@ class Application(ApplicationContext):
     ) -> None:
         """Open the window.
 
-        head: a user's own, None for the built-in one. size, display: None takes what is remembered.
+        head: a user's own, None for the built-in one. size, display: None takes those remembered.
         splash: the window, where it is open already.
-        settings_path: where that is kept, and beside it what is not saved; None for nowhere.
-        Raises UserError for a script that names what the scene has not.
+        settings_path: of the settings, beside which unsaved work is kept; None for nowhere.
+        Raises UserError for a script that names controls which the scene has not.
         """
         self._settings_path = settings_path
         splash = splash or SplashScreen(size, settings_path)
@@ -76,7 +76,7 @@ class Application(ApplicationContext):
         else:
             complaint = complaint or _without_refused_options(settings.display, scene)
         settings.display.remove_missing_overlays(scene)
-        with contextlib.ExitStack() as stack:  # whatever fails here closes the window again
+        with contextlib.ExitStack() as stack:  # an error here closes the window again
             stack.push(splash)
             super().__init__(Session(scene, script), settings, splash.surface)
             stack.push(self.opened)
@@ -99,7 +99,7 @@ class Application(ApplicationContext):
             )
 
     def _join_commands(self) -> None:
-        """What can be done, each with what it needs for that."""
+        """Make all commands, each with the parts that it needs."""
         session = self.session
         settings = self.settings
         self.time_axis = TimeAxis()
@@ -124,7 +124,7 @@ class Application(ApplicationContext):
         self.painter = Painter(self.stage, self.view, self.messages)
 
     def _join_panels(self) -> None:
-        """What is around the picture, and the mouse in it."""
+        """Make the panels around the picture, and the mouse in it."""
         session = self.session
         bar = MenuBar(self.gui, self.messages, self.commands, lambda: session.work.unsaved)
         waveform = Waveform(self.gui, self.soundtrack, self.time_axis)
@@ -159,7 +159,7 @@ class Application(ApplicationContext):
             self.settings.size = self.gui.window_size
             save_settings(self._settings_path, self.settings)
 
-    # What is done to the window as a whole
+    # Changes of the window as a whole
 
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""
@@ -179,9 +179,10 @@ class Application(ApplicationContext):
             self.messages.say(refused)
 
     def read(self, mesh: Path, landmarks: Path | None = None) -> Task:
-        """Read a mesh, in any thread; what has its landmarks marked, or goes on with a file's.
+        """Read a mesh, in any thread; returns a task that has its landmarks marked.
 
-        The face waits meanwhile. UserError where that cannot be.
+        The marking begins with those of a file, if there is one. The face waits meanwhile.
+        UserError where the mesh or the file cannot be used.
         """
         marking = Marking(mesh, self.files)
         line = None if landmarks is None else marking.open(landmarks)
@@ -234,7 +235,7 @@ def _without_refused_options(display: Display, scene: Scene) -> str:
 
 
 def _ready_scene(script: Script, head: FittedHead | None, display: Display) -> Scene:
-    """The scene, at rest; what its first frames run was run once, and is compiled."""
+    """The scene, at rest; the code of its first frames has run once, and is compiled."""
     scene = build_scene(script.scene, head)
     script.check(scene.limits)
     scene.step(1.0 / 60.0)

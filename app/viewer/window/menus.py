@@ -48,7 +48,7 @@ def file_menu(
     command = partial(Command, "File")
 
     def recent() -> Iterator[Command]:
-        """What was opened or saved lately, and can be opened again."""
+        """The files that were opened or saved lately, to be opened again."""
         for paths in (each.split("\n") for each in settings.recent):
             names = " + ".join(Path(path).name for path in paths)
             label = as_text(f"{names}   {Path(paths[0]).parent}").replace("##", "# #")
@@ -119,7 +119,7 @@ def switch_of(
 
 
 def keys_menu(session: Session, selection: KeySelection) -> Menu:
-    """What is done with the keys that are selected in the timeline."""
+    """Changes of the keys that are selected in the timeline."""
     command = partial(Command, "Keys")
     edit = partial(command, can_run=lambda: selection.can_edit)
     change = partial(command, can_run=lambda: selection.can_change)
@@ -140,7 +140,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
 
 
 def view_menu(settings: Settings, view: View) -> Menu:
-    """How the scene is drawn, and what is around it."""
+    """How the scene is drawn, and the panels around it."""
     command = partial(Command, "View")
     display_switch = partial(switch_of, lambda: settings.display, "View")
     setting = partial(switch_of, lambda: settings, "View")
@@ -192,18 +192,18 @@ def live_menu(live: LiveCommands) -> Menu:
     )
 
 
-HELP = tuple(  # what the mouse does, to be read
-    Command("Help", f"{how.capitalize()}: {what}", "", lambda: None)
-    for how, what in (
+HELP = tuple(  # actions of the mouse, to be read
+    Command("Help", f"{gesture.capitalize()}: {action}", "", lambda: None)
+    for gesture, action in (
         ("left on the skin", "pose; Ctrl: pull; click: muscle"),
         ("left beside, or right", "orbit"),
         ("middle, or Shift", "pan"),
         ("wheel", "zoom to where the mouse is"),
         ("double click a slider", "type a number"),
         ("right click a slider", "back to 0"),
-        ("drag a key", "move what is selected; Ctrl: anywhere"),
+        ("drag a key", "move all selected keys; Ctrl: anywhere"),
         ("drag over nothing", "select keys in a box"),
-        ("right click a key", "what can be done with it"),
+        ("right click a key", "a menu of changes to it"),
         ("drop files", "open them"),
     )
 )

@@ -1,4 +1,4 @@
-"""The window as it opens: a line that says what goes on, while the face is made in a thread."""
+"""The window as it opens: a line on its progress, while the face is made in a thread."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from ..settings import Settings, load_settings
 LOADING = "Loading the face ..."
 COMPILING = "Compiling, once for each kind of work: up to half a minute ..."
 FIRST_SIZE = 1280, 800  # [units of a screen of ordinary density]
-PAUSE = 0.05  # [s] between two looks at what the user does
-LOG = logging.getLogger("risorius.jit")  # where it is told what is compiled
+PAUSE = 0.05  # [s] between two looks at the user's events
+LOG = logging.getLogger("risorius.jit")  # reports each function that is compiled
 Result = TypeVar("Result")
 
 
 class SplashScreen(logging.Handler):
     """An open window with nothing in it yet; a context manager, which closes it.
 
-    settings, complaint: what is remembered, and a line on what of it is of no use.
+    settings, complaint: those remembered, and a line that names the unusable ones.
     """
 
     def __init__(self, size: tuple[int, int] | None, path: Path | None) -> None:
-        """size: None for what is remembered, or else as the screen suits. path: of the settings."""
+        """size: None for the remembered one, or else one for the screen. path: of the settings."""
         super().__init__()
         self.settings = Settings()
         self.complaint = ""
@@ -48,7 +48,7 @@ class SplashScreen(logging.Handler):
         self._show()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Somebody tells that code is compiled."""
+        """Show that code is compiled, as the record reports."""
         self._text = COMPILING
 
     def __enter__(self) -> SplashScreen:
@@ -59,7 +59,7 @@ class SplashScreen(logging.Handler):
         self.surface.close()
 
     def during(self, work: Callable[[], Result]) -> Result:
-        """Do what takes long, while the window answers; where it fails, the window closes."""
+        """Do long work while the window answers; if the work fails, the window closes."""
         thread = ThreadPoolExecutor(1)
         outcome = thread.submit(work)
         thread.shutdown(wait=False)
@@ -67,7 +67,7 @@ class SplashScreen(logging.Handler):
             wait_for_event(PAUSE)
             if self._drawn != (self.surface.frame_size, self._text):
                 self._show()
-            if self.surface.should_close:  # there is nothing yet that could be lost
+            if self.surface.should_close:  # no work can be lost yet
                 os._exit(0)
         if outcome.exception() is not None:
             self.__exit__()

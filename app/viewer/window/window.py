@@ -36,9 +36,9 @@ class Viewer(Application):
     """The window with everything in it, as it runs; a context manager."""
 
     _last: float  # when the last frame began [s]
-    _awake: int  # frames that are drawn yet, whatever happens
+    _awake: int  # frames that are drawn in any case
     refresh = REFRESH
-    # Of the panels as they were drawn last: how old [s], in what window [pixels], over the scene?
+    # Of the panels as they were drawn last: age [s], size of the window [pixels], over the scene?
     _panels_age = math.inf
     _panels_size = (0, 0)
     _is_scene_covered = True
@@ -105,7 +105,7 @@ class Viewer(Application):
         is_calm = self.physics.is_at_rest or self.physics.is_left_alone
         self.times.note_frame(elapsed if is_moving or not is_calm else 0.0)
         if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
-            return  # what is shown stays as it is; of a line of text the cursor blinks
+            return  # the picture stays as it is; in a line of text the cursor blinks
         self._show_panels(elapsed, is_moving=is_moving)
         self.surface.end()
         if is_moving and not self.is_left_alone:
@@ -130,7 +130,7 @@ class Viewer(Application):
 
     @property
     def shown_painter(self) -> Painter:
-        """That of what is shown: the face, or a mesh that is marked."""
+        """The painter of the present picture: of the face, or of a mesh that is marked."""
         return self.painter if self.room is None else self.room.painter
 
     @property
@@ -165,7 +165,7 @@ class Viewer(Application):
         """Sleep where nothing happens, and between frames where the face only lives.
 
         The latter half of the time at least, however long a frame takes. A live face that has just
-        been shown is waited for: a frame that begins with what it sent shows that at once.
+        been shown is waited for: a frame that begins with its packet shows it at once.
         """
         if self.is_idle:
             self._wait()
@@ -193,13 +193,13 @@ class Viewer(Application):
         """Draw the panels around the scene, unless their last picture does.
 
         On software OpenGL they cost as much as a quarter of the face, and while a script plays only
-        sliders creep in them. Whatever the user does is answered in the same frame.
+        sliders creep in them. Every action of the user is answered in the same frame.
         """
         size = self.surface.size
         is_answering = self._awake > 0 or imgui.is_any_item_active()
-        if not self.is_left_alone:  # what the face does by itself moves no slider
+        if not self.is_left_alone:  # the face's own life moves no slider
             self._panels_age += elapsed
-        # What is dragged in the scene moves no slider.
+        # A drag in the scene moves no slider.
         has_input = self.room is not None or (is_answering and not self.mouse.is_dragging)
         is_stale = self._panels_age >= self.refresh or size != self._panels_size
         if is_moving and not (has_input or is_stale or self._is_scene_covered):
@@ -215,7 +215,7 @@ class Viewer(Application):
         self._is_scene_covered = self.gui.covers(view.area)
 
     def _draw_gui(self, *, is_visible: bool) -> None:
-        """Panels, and what the user does to them and to the face; is_visible: see Gui.frame."""
+        """Draw panels, and answer the user in them and in the face; is_visible: see Gui.frame."""
         messages = self.messages
         gui = self.gui
         room = self.room
