@@ -54,7 +54,7 @@ def wipe(viewer: Viewer) -> None:
     viewer.session.toggle_alone("disgust")
     viewer.wanted_tab = "Mechanism"
     viewer.settings.theme = "dark"
-    # Of the panel show what says how the mesh is refined, and its colours.
+    # Of the panel show refinement and colours of the mesh.
     viewer.settings.folds |= dict.fromkeys(("Anatomy", "Light and person", "Milliseconds"), False)
     viewer.settings.display = Display(compare="wipe", wireframe=True, splits=True, skin="clay")
     viewer.view.camera = camera_for(viewer.session.scene, "front")

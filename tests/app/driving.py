@@ -29,7 +29,7 @@ NEEDS_A_SCREEN = [
 ]
 HELLO = Path(__file__).parents[2] / "docs" / "hello.toml"
 SIZE = (900, 600)  # of the window that tests share
-DEADLINE = 60.0  # [s] for what takes a blink on a quiet machine
+DEADLINE = 60.0  # [s] for an answer that a quiet machine gives at once
 LEAST_FRAMES = 10  # shown before a deadline counts: one that loads a head may last longer
 STEADY = 3  # frames alike, after which no panel moves by itself
 
@@ -37,7 +37,7 @@ STEADY = 3  # frames alike, after which no panel moves by itself
 def settle(viewer: Viewer) -> None:
     """Draw until the window has taken in all that was sent, and panels show all that was set.
 
-    When xdotool ends, the screen has handled what it sent: a question to the screen brings all of
+    When xdotool ends, the screen has handled its events: a question to the screen brings all of
     it, in order, before the answer. A panel is laid out by sizes of the frame before.
     """
     shown: list[object] = []
@@ -47,7 +47,7 @@ def settle(viewer: Viewer) -> None:
         shown.append((dict(viewer.gui.places), imgui.get_io().want_text_input))
         return viewer.file_drop.making is None and shown[-STEADY:] == STEADY * shown[-1:]
 
-    # While a face moves, panels may be older than what was set.
+    # While a face moves, panels may be older than the values that were set.
     with mock.patch.object(viewer, "refresh", 0.0):
         assert until(viewer, is_steady), shown[-2:]
 
@@ -66,7 +66,8 @@ def xdotool(viewer: Viewer, *words: object) -> None:
 
 def until(viewer: Viewer, condition: Callable[[], object], seconds: float = DEADLINE) -> bool:
     """Show frames until something has come true, or too long: one at least, or it may be old."""
-    end, shown = time.monotonic() + seconds, 0
+    end = time.monotonic() + seconds
+    shown = 0
     while shown < LEAST_FRAMES or time.monotonic() < end:
         viewer.frame()
         shown += 1

@@ -1,4 +1,4 @@
-"""The real window, driven by real mouse and key events: sliders, skin, picture, what it asks."""
+"""The real window, driven by real mouse and key events: sliders, skin, picture, questions."""
 
 import os
 import subprocess
@@ -67,7 +67,8 @@ def test_a_number_can_be_typed(viewer: Viewer) -> None:
 def test_linked_sides_move_together(viewer: Viewer) -> None:
     """One slider for both sides; unlinked, each has its own."""
     show_controls(viewer, "zygom maj")
-    left, right = "zygomaticus_major_left", "zygomaticus_major_right"
+    left = "zygomaticus_major_left"
+    right = "zygomaticus_major_right"
     drag_and_release(viewer, middle(viewer, left), (30, 0))
     assert viewer.session.values[left] == viewer.session.values[right] > 0.1
     click(viewer, "Link sides")
@@ -92,11 +93,12 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
 
 
 def test_keys_change_the_picture(viewer: Viewer) -> None:
-    """W, C, T, D and F2, the theme, each change what is seen, and back."""
+    """W, C, T, D and F2, the theme, each change the picture, and back."""
     viewer.session.toggle_alone("disgust")
     settle(viewer)
     assert until(viewer, lambda: viewer.is_idle)
-    before, settings = viewer.surface.read(), deepcopy(viewer.settings)
+    before = viewer.surface.read()
+    settings = deepcopy(viewer.settings)
     left = round(viewer.view.area[0])
     for key in ("w", "c", "t", "d", "F2"):
         xdotool(viewer, "key", key)
@@ -122,13 +124,15 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer: Viewer) -> None:
 
 @pytest.mark.parametrize("number", [30, 54, 19, -1])
 def test_the_wheel_zooms_to_the_mouse(viewer: Viewer, number: int) -> None:
-    """What is under it, skin or a place beside it, stays there, closer and back to where it was."""
-    camera, scene = viewer.view.camera, viewer.session.scene
+    """The point under it, on skin or beside it, stays there, zoomed in and out again."""
+    camera = viewer.view.camera
+    scene = viewer.session.scene
     camera.orbit(20.0, -10.0)
     point = camera.target + 150.0 * camera.axes()[0] + 90.0 * camera.axes()[1]
     if number >= 0:
         point = scene.positions[scene.head.landmarks[number]]
-    view, place = camera.view_matrix().copy(), seen_at(viewer, point)
+    view = camera.view_matrix().copy()
+    place = seen_at(viewer, point)
     xdotool(viewer, "mousemove", *place)
     for button in (4, 5, 5, 4):
         xdotool(viewer, "click", "--repeat", 6, button)
@@ -146,7 +150,7 @@ def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
     assert not viewer.session.work.unsaved
 
 
-def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
+def test_a_hovered_expression_lights_its_muscles(viewer: Viewer) -> None:
     """Joy lights both sides alike; a kiss lights the lips and no forehead."""
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
     pulled = [f"{MAJOR}_{side}" for side in ("left", "right")]
@@ -154,7 +158,8 @@ def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
     assert viewer.view.pointed[pulled[0]] == viewer.view.pointed[pulled[1]] > 0.8
     xdotool(viewer, "mousemove", *middle(viewer, "show kiss"))
     assert until(viewer, lambda: "orbicularis_oris_sphincter" in viewer.view.pointed)
-    scene, shares = viewer.session.scene, viewer.view.pointed
+    scene = viewer.session.scene
+    shares = viewer.view.pointed
     drawn = pointed_lines(scene, shares)
     brows = scene.rest_positions[scene.head.landmarks[27], 1]
     points = np.concatenate([line for lines in drawn for line in lines.polylines])
@@ -165,10 +170,11 @@ def test_a_hovered_expression_lights_what_does_it(viewer: Viewer) -> None:
 
 
 def test_a_look_is_chosen(viewer: Viewer) -> None:
-    """In the panel, by the menu and by its key; it undoes what was changed of the one before."""
+    """In the panel, by the menu and by its key; it undoes changes of the one before."""
     viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
-    display, stage = viewer.settings.display, viewer.stage
+    display = viewer.settings.display
+    stage = viewer.stage
     assert until(viewer, lambda: viewer.is_idle)
     smooth = stage.refined.triangle_count
     click(viewer, "Look")
@@ -227,7 +233,7 @@ def test_the_window_remembers(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "risorius", "replay", str(script), "--once"]
 
     def replayed(*options: str) -> Settings:
-        """What is remembered after a replay with these options."""
+        """The settings that are remembered after a replay with these options."""
         result = subprocess.run(
             [*command, *options], capture_output=True, text=True, timeout=60, check=False,
             env=environment, cwd=Path(__file__).parents[2],

@@ -1,4 +1,4 @@
-"""The window among others: what is seen first, hidden panels, minimised, the first size."""
+"""The window among others: its first picture, hidden panels, minimised, the first size."""
 
 import contextlib
 import os
@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def ask_to_close(window: int) -> None:
-    """What a click on the cross above the window sends it."""
+    """Send the message of a click on the cross above the window."""
     screen = display.Display()
     target = screen.create_resource_object("window", window)
     words = [screen.intern_atom("WM_DELETE_WINDOW"), X.CurrentTime, 0, 0, 0]
@@ -43,13 +43,13 @@ def windows_of(process: subprocess.Popen[bytes], screen: display.Display) -> Ite
     number = screen.get_atom("_NET_WM_PID")
     for window in screen.screen().root.query_tree().children:
         with contextlib.suppress(XError):  # it is not there any more
-            told = window.get_full_property(number, X.AnyPropertyType)
-            if told is not None and told.value[0] == process.pid:
+            owner = window.get_full_property(number, X.AnyPropertyType)
+            if owner is not None and owner.value[0] == process.pid:
                 yield window
 
 
 def first_pictures(process: subprocess.Popen[bytes]) -> Iterator[np.ndarray]:
-    """What the window of a process that starts shows, again and again, (H, W, 3)."""
+    """Pictures of the window of a process that starts, again and again, (H, W, 3)."""
     screen = display.Display()
     while process.poll() is None:
         for window in windows_of(process, screen):
@@ -83,7 +83,7 @@ def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
 def test_a_line_is_seen_before_anything_is_compiled(
     start: Callable[[], subprocess.Popen[bytes]], tmp_path: Path
 ) -> None:
-    """The first start says what goes on, and closes when asked."""
+    """The first start reports its progress, and closes when asked."""
     process = start()
     wanted = [
         picture((640, 400), 15.0, THEMES["light"], text).astype(int)

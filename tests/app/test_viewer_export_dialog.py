@@ -1,4 +1,4 @@
-"""File > Export, driven with mouse and keys: films, motion, progress, cancel, what goes wrong."""
+"""File > Export, driven with mouse and keys: films, motion, progress, cancel, errors."""
 
 import signal
 from collections.abc import Iterator
@@ -44,7 +44,7 @@ def open_script(viewer: Viewer, text: str) -> None:
 
 
 def finish(viewer: Viewer, *key: str) -> None:
-    """Open the dialog, take what is there, and wait until it is written."""
+    """Open the dialog, take its present choices, and wait until the file is written."""
     xdotool(viewer, "key", *(key or ("F10",)))
     assert until(viewer, lambda: "export: begin" in viewer.gui.places)
     begin(viewer)
@@ -68,28 +68,30 @@ def pictures(folder: Path) -> np.ndarray:
     return np.stack([np.asarray(Image.open(file)) for file in files]).astype(int)
 
 
-def test_a_film_is_what_capture_writes(viewer: Viewer, tmp_path: Path) -> None:
-    """Frames of the dialog are those that `capture` writes, told the same; the face stays."""
+def test_a_film_is_that_of_capture(viewer: Viewer, tmp_path: Path) -> None:
+    """`capture` writes the same frames with the same options; the face stays."""
     scene = viewer.session.scene
     viewer.view.camera = camera_for(scene, "three-quarter")
-    viewer.settings.display.light, viewer.settings.display.look = "side", "paper"
+    viewer.settings.display.light = "side"
+    viewer.settings.display.look = "paper"
     before = scene.positions.copy()
     finish(viewer)
     assert not viewer.messages.is_error and np.array_equal(scene.positions, before)
     assert str(tmp_path / "smile") in viewer.messages.text and viewer.messages.stays
     style = Style(light=LIGHTS["side"], background=LIGHT)
     options = CaptureOptions(SMALL, 12.0, Refinement("paper"), camera="three-quarter", style=style)
-    film_of(viewer.session.script, options, output=tmp_path / "told", progress=False)
-    ours, told = pictures(tmp_path / "smile"), pictures(tmp_path / "told")
-    assert ours.shape == told.shape == (7, 120, 160, 3)
-    assert np.abs(ours - told).max() <= 2
+    film_of(viewer.session.script, options, output=tmp_path / "captured", progress=False)
+    ours = pictures(tmp_path / "smile")
+    captured = pictures(tmp_path / "captured")
+    assert ours.shape == captured.shape == (7, 120, 160, 3)
+    assert np.abs(ours - captured).max() <= 2
     xdotool(viewer, "key", "n")
     assert not viewer.messages.text  # which the next command takes away
 
 
 @pytest.mark.slow
 def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -> None:
-    """What `risorius export` writes, under the name that was typed."""
+    """The file of `risorius export`, under the name that was typed."""
     xdotool(viewer, "key", "ctrl+e")
     click(viewer, "Write")
     click(viewer, "Write: Motion: numpy arrays (.npz)")
@@ -131,7 +133,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(
 
 @pytest.mark.parametrize("kind", ["mp4", "npz"])
 def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
-    """It is told at once, and all that was chosen is there when it is tried again."""
+    """The error is shown at once, and all choices are there when it is tried again."""
     viewer.settings.export.kind = kind
     xdotool(viewer, "key", "F10")
     begin(viewer, "/proc/none/moved")

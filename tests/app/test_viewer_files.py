@@ -41,7 +41,8 @@ POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 
 def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) -> None:
     """A script, then a pose with an awkward name, from another program, by the X protocol."""
-    script, pose = tmp_path / "smile.toml", tmp_path / "schöner & 50% größer.toml"
+    script = tmp_path / "smile.toml"
+    pose = tmp_path / "schöner & 50% größer.toml"
     script.write_text(SCRIPT)
     pose.write_text(POSE)
     drop(viewer, script)
@@ -52,9 +53,10 @@ def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) ->
     assert viewer.session.script.duration == 2.0
 
 
-def test_a_bad_file_dropped_is_told_and_survived(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_bad_file_dropped_is_reported_and_survived(viewer: Viewer, tmp_path: Path) -> None:
     """Nonsense shows one line in the window, which goes on; the script that was there stays."""
-    before, bad = viewer.session.script, tmp_path / "bad.toml"
+    before = viewer.session.script
+    bad = tmp_path / "bad.toml"
     bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
     put(viewer, bad)
     assert viewer.messages.is_error and "no_such_muscle" in viewer.messages.text
@@ -91,7 +93,7 @@ def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> No
 
 
 def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) -> None:
-    """A name that is taken needs a second word; a folder that is missing is told."""
+    """A name that is taken needs a second word; a folder that is missing is reported."""
     taken = tmp_path / "pose.toml"
     taken.write_text("precious")
     viewer.session.set("jaw_open", 0.4)
@@ -125,7 +127,7 @@ def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) 
 
 
 def title_of(viewer: Viewer) -> str:
-    """What the desktop shows above the window."""
+    """The title that the desktop shows above the window."""
     settle(viewer)
     command = ["xdotool", "search", "--onlyvisible", "--name", "^Risorius: "]
     window = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[-1]
@@ -134,7 +136,7 @@ def title_of(viewer: Viewer) -> str:
 
 
 def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
-    """A script that was opened is saved without a question; the title tells its name and state."""
+    """A script that was opened is saved without a question; the title shows its name and state."""
     script = tmp_path / "smile.toml"
     script.write_text(f"# mine\n{SCRIPT}")
     put(viewer, script)
@@ -182,7 +184,7 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
 
 @pytest.mark.slow
 def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path) -> None:
-    """The face is another one, the script plays on it; what was unsaved before is still there."""
+    """The face is another one, the script plays on it; unsaved work is still there."""
     before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
     try:
@@ -238,7 +240,7 @@ def written(path: Path) -> Path:
 def test_a_recording_is_dropped_played_and_saved_as_a_script(
     viewer: Viewer, tmp_path: Path
 ) -> None:
-    """The window says as what it was taken; unsaved work is asked about before; saving asks where.
+    """The window names its kind; unsaved work is asked about before; saving asks for a name.
 
     The recording itself is never written.
     """
@@ -328,7 +330,7 @@ def test_the_waveform_is_seen_and_scrubs(viewer: Viewer, sound: Path, has_device
 
 @pytest.mark.parametrize("has_device", ["null device"], indirect=True)
 def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_device: bool) -> None:
-    """Ctrl+S writes it, undo and the menu take it away, a lost file is told once and survived."""
+    """Ctrl+S writes it, undo and the menu take it away, a lost file is reported once."""
     put(viewer, sound)
     xdotool(viewer, "key", "ctrl+s")
     assert load_script(sound.parent / "s.toml").sound == sound and not viewer.session.work.unsaved

@@ -1,4 +1,4 @@
-"""What outlives the window: settings, and unsaved work, which the next one offers."""
+"""Files that outlive the window: settings, and unsaved work, which the next one offers."""
 
 import errno
 import json
@@ -36,11 +36,13 @@ def path(tmp_path: Path) -> Path:
 
 
 def test_settings_come_back(tmp_path: Path) -> None:
-    """What is written is read again."""
+    """Settings that are written are read again."""
     path = tmp_path / "deep" / "viewer.json"
     settings = Settings(size=(900, 700), theme="dark", folds={"Jaw": True}, recent=["a"])
-    settings.display.look, settings.display.compare = "paper", "wipe"
-    settings.display.refiner, settings.display.overlays = "loop", ["muscles"]
+    settings.display.look = "paper"
+    settings.display.compare = "wipe"
+    settings.display.refiner = "loop"
+    settings.display.overlays = ["muscles"]
     settings.display.options = {"kahler": {"threshold_once": 0.1, "blend": True, "scheme": "cubic"}}
     save_settings(path, settings)
     assert load_settings(path) == (settings, "")
@@ -60,7 +62,7 @@ def test_settings_come_back(tmp_path: Path) -> None:
     ],
 )
 def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
-    """It is told with its name, and is as at first; all others stay."""
+    """It is reported by its name, and is as at first; all others stay."""
     stored = json.loads(json.dumps(GOOD))
     *tables, name = where.split(".")
     table = stored
@@ -86,7 +88,7 @@ def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
     "content",
     [b"", b"not json", b"[]", b"\xff\xfe\x00", 100_000 * b'{"display":', b" " * (2**20 + 1)],
 )
-def test_a_file_of_no_use_is_told(path: Path, content: bytes) -> None:
+def test_a_file_of_no_use_is_reported(path: Path, content: bytes) -> None:
     """All is as at first; a line says so; written anew, it is of use."""
     path.write_bytes(content)
     settings, complaint = load_settings(path)
@@ -100,21 +102,23 @@ def test_a_file_of_no_use_is_told(path: Path, content: bytes) -> None:
 @NEEDS_A_SCREEN[1]
 @pytest.mark.parametrize("name", ["theme", "display"])
 def test_no_settings_keep_the_window_shut(path: Path, name: str) -> None:
-    """Everything wrong at once, or what a refiner refuses: it opens, and says so."""
+    """Everything wrong at once, or an option that a refiner refuses: it opens, and says so."""
     wrong: dict[str, Any] = {name: "zzz" for name in vars(Settings())}
     if name == "display":
         wrong = {name: {"options": {"kahler": {"threshold_once": "x"}}}}
     path.write_text(json.dumps(wrong))
     with Viewer(script_for(None, "face"), SIZE, settings_path=path) as viewer:
         settle(viewer)
-        told = "'theme': was 'zzz'" if name == "theme" else "threshold_once was x, must be a number"
-        assert viewer.messages.is_error and told in viewer.messages.text
+        fault = (
+            "'theme': was 'zzz'" if name == "theme" else "threshold_once was x, must be a number"
+        )
+        assert viewer.messages.is_error and fault in viewer.messages.text
         assert viewer.settings.display == Display()
 
 
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
-def test_a_full_disk_is_told_and_closes_the_window(
+def test_a_full_disk_is_reported_and_closes_the_window(
     path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """One line on the terminal; unsaved work is left to the next window, the settings stay."""
@@ -143,7 +147,7 @@ ROOT = Path(__file__).parents[2]
 
 
 class Clock:
-    """Time that passes when it is told to."""
+    """Time that passes when `now` is set."""
 
     now = 0.0
 
@@ -178,7 +182,7 @@ def stored(folder: Path) -> list[str]:
 
 
 def found_by_next(folder: Path, session: Session) -> Script | None:
-    """What a window that opens now finds."""
+    """The file that a window which opens now finds."""
     other = Recovery(folder, session)
     other.close()
     return None if other.found is None else load_script(other.found)
@@ -211,7 +215,7 @@ def test_work_is_written_soon_and_goes_when_it_is_undone(
 
 
 def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Path) -> None:
-    """A script with what is being recorded, to each digit, its comments at the head and all."""
+    """A script with the present recording, to each digit, its comments at the head and all."""
     session.set("jaw_open", 0.25)
     session.set_key()
     session.set("jaw_open", 1.0 / 3.0)
@@ -226,8 +230,8 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     assert found == session.script and found.preface.startswith("# A smile")
 
 
-def test_what_was_found_stays_and_is_found_once(session: Session, tmp_path: Path) -> None:
-    """Whatever is done, saved or given up meanwhile; a window with the plane leaves it alone."""
+def test_a_found_file_stays_and_is_found_once(session: Session, tmp_path: Path) -> None:
+    """Changes, saving and giving up leave it alone, and so does a window with the plane."""
     session.set("jaw_open", 0.4)
     leave(tmp_path, session)
     assert found_by_next(tmp_path, Session(PlaneScene(), script_for(None, "plane"))) is None
@@ -243,8 +247,8 @@ def test_what_was_found_stays_and_is_found_once(session: Session, tmp_path: Path
     assert found_by_next(tmp_path, session) is None
 
 
-def test_a_folder_that_takes_nothing_is_told_once(session: Session, clock: Clock) -> None:
-    """The user is told that work is not safe, and works on."""
+def test_a_folder_that_takes_nothing_is_reported_once(session: Session, clock: Clock) -> None:
+    """A message says that work is not safe, and the user works on."""
     recovery = Recovery(Path("/proc/none"), session, clock)
     session.set("jaw_open", 0.4)
     with pytest.raises(UserError, match=r"not kept safe: .*/proc/none"):
@@ -273,7 +277,8 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
         # Keys are lost until the window listens. Each answer is awaited: the next try begins with
         # "neutral", and nothing would be there to be recovered if the process ended at that moment.
         subprocess.run(["xdotool", "mousemove", "450", "200", "key", "n", "1", "m"], check=True)
-        title, end = [*search, r"^Risorius: Expressions \*$"], time.monotonic() + 5.0
+        title = [*search, r"^Risorius: Expressions \*$"]
+        end = time.monotonic() + 5.0
         while time.monotonic() < end:
             if subprocess.run(title, capture_output=True, check=False).stdout:
                 return True
@@ -297,7 +302,7 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
 def test_a_window_that_ended_is_recovered(
     at_work: subprocess.Popen[str], tmp_path: Path, how: signal.Signals
 ) -> None:
-    """Told to stop, or killed some seconds after the last change: a line says where it is."""
+    """Stopped, or killed some seconds after the last change: a line says where it is."""
     folder = tmp_path / "risorius"
     if how == signal.SIGKILL:
         wait_for(lambda: stored(folder))

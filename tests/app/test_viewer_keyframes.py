@@ -1,4 +1,4 @@
-"""Editing keys without a window: what each change does to a script, and to a session."""
+"""Editing keys without a window: the effect of each change on a script, and on a session."""
 
 from pathlib import Path
 
@@ -28,7 +28,7 @@ def hello() -> Script:
 
 
 def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene) -> None:
-    """At its time the script says what the controls were; the other poses stay."""
+    """At its time the script has the values of the controls; the other poses stay."""
     limits = scene.limits
     wanted = limits.pose({"jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25})
     script = keyframes.keyed(hello, 2.12, wanted)
@@ -74,7 +74,8 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) ->
 
 def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None:
     """Undo past opening another script gives back the first one's file, too."""
-    own, other = session.file.path, tmp_path / "other.toml"
+    own = session.file.path
+    other = tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
     session.work.open(load_script(other))
     assert session.file.path == other and session.work.name == "other.toml"
@@ -86,7 +87,7 @@ def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None
     assert Session(session.scene, script_for(None, "face")).file.path is None
 
 
-def test_what_a_file_would_lose_is_noticed(session: Session) -> None:
+def test_losses_of_a_file_are_noticed(session: Session) -> None:
     """Changes by another program, and comments that are not kept; not a # in a title."""
     path = session.file.path
     assert path is not None and session.file.objection == ""

@@ -1,4 +1,4 @@
-"""Clicks, keys and words as they come to a window that draws slowly: each does what it is for."""
+"""Clicks, keys and words as they come to a window that draws slowly: each has its effect."""
 
 import subprocess
 import time
@@ -13,7 +13,7 @@ from .driving import NEEDS_A_SCREEN, click, middle, until, xdotool
 
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
-SLOW = 0.15  # [s] beside what it takes to draw a frame
+SLOW = 0.15  # [s] beside the time to draw a frame
 
 
 def slowly(viewer: Viewer, *words: object, frames: int = 3) -> None:
@@ -37,7 +37,8 @@ def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
     """Menus, lists, the menu of the timeline, dialogs."""
     click(viewer, "tab Mechanism")
     x, y = middle(viewer, "keys")
-    places, context = viewer.gui.places, imgui.get_current_context()
+    places = viewer.gui.places
+    context = imgui.get_current_context()
     for opens, shown in (
         (lambda: click(viewer, "menu File"), "menu File: Quit"),
         (lambda: click(viewer, "Refiner"), "Refiner: loop"),
@@ -60,7 +61,7 @@ def test_each_command_has_its_own_name_and_keys(viewer: Viewer) -> None:
 
 
 def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:
-    """The latest comes first; one that is gone is told in one line."""
+    """The latest comes first; one that is gone is reported in one line."""
     paths = [tmp_path / f"{name}.toml" for name in ("first", "second")]
     for path in paths:
         path.write_text("duration = 1.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")

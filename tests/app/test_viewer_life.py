@@ -1,4 +1,4 @@
-"""The face lives in the window while nobody moves it; what a user or a script moves is theirs."""
+"""The face lives in the window while nobody moves it; a user or a script takes control of it."""
 
 from collections.abc import Iterator
 
@@ -23,7 +23,7 @@ def alive(viewer: Viewer, calm: None) -> Iterator[None]:
 
 
 def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer: Viewer) -> None:
-    """The eyes turn to the camera; sliders, undo and what is unsaved stay as they were."""
+    """The eyes turn to the camera; sliders, undo and unsaved work stay as they were."""
     assert until(viewer, lambda: viewer.session.scene.values["gaze_horizontal_left"] != 0.0)
     assert until(viewer, lambda: moved(viewer) > 0.5)
     settle(viewer)

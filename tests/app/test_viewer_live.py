@@ -23,14 +23,16 @@ pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm", "silent")]
 
 
 class FrameClock:
-    """Tells seconds as the window shows frames: a frame lasts a twentieth at most.
+    """Counts seconds as the window shows frames: a frame lasts a twentieth at most.
 
     So no face is lost, and nothing is missed, because a machine is slow.
     """
 
     def __init__(self, frame: Callable[[], None]) -> None:
-        """frame: what the window does in a frame."""
-        self._frame, self._now, self._last = frame, 0.0, time.perf_counter()
+        """frame: the window's own, which draws one."""
+        self._frame = frame
+        self._now = 0.0
+        self._last = time.perf_counter()
 
     def __call__(self) -> float:
         return self._now
@@ -44,11 +46,11 @@ class FrameClock:
 
 @pytest.fixture
 def clock(viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> FrameClock:
-    """What the live face in the window takes for the time."""
-    told = FrameClock(viewer.frame)
-    monkeypatch.setattr(viewer, "frame", told.frame)
-    monkeypatch.setattr(live_commands, "LiveFace", partial(LiveFace, clock=told))
-    return told
+    """The clock of the live face in the window."""
+    made = FrameClock(viewer.frame)
+    monkeypatch.setattr(viewer, "frame", made.frame)
+    monkeypatch.setattr(live_commands, "LiveFace", partial(LiveFace, clock=made))
+    return made
 
 
 @pytest.fixture
@@ -124,7 +126,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path)
     assert not viewer.session.work.unsaved
 
 
-def test_live_leads_what_it_names_and_sliders_keep_the_rest(viewer: Viewer) -> None:
+def test_live_leads_controls_it_names_and_sliders_keep_the_rest(viewer: Viewer) -> None:
     """A slider of a control that is led has its value again when the lead is over."""
     face = listen(viewer)
     viewer.session.set("jawOpen", 0.2)
@@ -175,7 +177,7 @@ def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
 
 
 def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
-    """The window goes on, and says what to do."""
+    """The window goes on, and a line names the cure."""
     other = LiveCommands(viewer.session, lambda: None, lambda: None)
     other.start(Listening("livelink", port=0))
     assert other.face is not None

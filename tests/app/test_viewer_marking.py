@@ -83,7 +83,7 @@ def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path
     again.save()
     third = Marking(marking.path, FileDialogs())
     third.open(target)
-    assert third.marks == again.marks and third.is_upright  # what is guessed still is
+    assert third.marks == again.marks and third.is_upright  # guessed points stay guessed
     third.undo()
     assert not third.marks.places and not third.is_upright  # and may be turned again
     third.undo(-1)
@@ -139,7 +139,7 @@ class TestInTheWindow:
         viewer.surface.should_close = viewer.is_leaving = False
 
     def room(self, viewer: Viewer) -> Room:
-        """What is marked."""
+        """The marking mode of the window."""
         assert until(viewer, lambda: viewer.room is not None)
         assert viewer.room is not None
         return viewer.room
@@ -215,7 +215,8 @@ class TestInTheWindow:
         marking = self.room(viewer).marking
         self.mark_first(viewer)
         assert np.median(off(marking)) < 2.0 * METRES and off(marking).max() < 2.0 * NEAR
-        before, number = marking.marks, 37
+        before = marking.marks
+        number = 37
         start = self.place(viewer, np.array(before.places[number]))
         xdotool(viewer, "mousemove", *start)
         xdotool(viewer, "mousedown", 1)
@@ -242,7 +243,8 @@ class TestInTheWindow:
         xdotool(viewer, "key", "Return")
         assert until(viewer, lambda: viewer.room is None)
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
-        image, marks = tmp_path / "joy.png", mesh.with_name("marked.json")
+        image = tmp_path / "joy.png"
+        marks = mesh.with_name("marked.json")
         options = ("--set", "joy", "--size", "160x160", "-o", image)
         words = ("capture", "--head", mesh, "--landmarks", marks, *options)
         result = CliRunner().invoke(command(), [str(word) for word in words])

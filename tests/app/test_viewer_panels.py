@@ -44,7 +44,7 @@ def rows_shown(viewer: Viewer) -> set[str]:
 
 
 def test_plain_words_find_controls(viewer: Viewer) -> None:
-    """What people would say finds expressions, units, shapes and muscles."""
+    """Everyday words find expressions, units, shapes and muscles."""
     viewer.settings.zoom = 0.6  # room for all of them at once
     settle(viewer)  # until all is in its place
     try:
@@ -62,7 +62,7 @@ def test_plain_words_find_controls(viewer: Viewer) -> None:
 
 
 def test_one_side_is_copied_to_the_other(viewer: Viewer) -> None:
-    """By the menu, whatever spells its sides how; eyes and jaw stay where they are."""
+    """By the menu, in all spellings of sides; eyes and jaw stay where they are."""
     session = viewer.session
     shown = {"AU12_left": 0.5, "mouthSmileRight": 0.3, "wink": 0.2, "gaze_horizontal_left": 0.4}
     for name, value in {**shown, "jaw_sideways": 0.1, "AU61": 0.2}.items():
@@ -85,7 +85,8 @@ def test_one_side_is_copied_to_the_other(viewer: Viewer) -> None:
 def test_words_are_of_controls_that_there_are(viewer: Viewer) -> None:
     """Names, synonyms and filters of the table all mean something."""
     controls = viewer.session.controls
-    limits, words = controls.limits, read_words()
+    limits = controls.limits
+    words = read_words()
 
     def is_known(name: str) -> bool:
         return any(f"{name}{side}" in limits for side in ("", "_left", "Left"))

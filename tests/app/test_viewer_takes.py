@@ -1,4 +1,4 @@
-"""What is recorded into a script while it plays, without a window."""
+"""Recordings into a script while it plays, without a window."""
 
 import itertools
 from dataclasses import replace
@@ -23,7 +23,7 @@ MAJOR = "zygomaticus_major_left"
 
 
 def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -> None:
-    """The script plays on; only what was moved is replaced, and only where; one undo is enough."""
+    """The script plays on; only moved controls are replaced, where they move; one undo suffices."""
     before = session.script
     session.seek(1.5)
     line = session.toggle_recording()
@@ -83,21 +83,24 @@ def cut_by(script: Script, name: str, times: tuple[float, ...], moment: float) -
 def test_punching_in_changes_nothing_else(
     played: Script, start: float, moves: list[dict[str, float]]
 ) -> None:
-    """Outside of the recording every key, and what is not touched throughout, is as it was.
+    """Outside of the recording every key is as it was, and so is each control not touched.
 
     To the bit, but for an eased way that is cut: that is followed as closely as can be seen.
     """
-    recorder, held, time = Recorder(played, start), dict[str, float](), start
+    recorder = Recorder(played, start)
+    held = dict[str, float]()
+    time = start
     shown = {}
     for move in moves:
         held |= move
         time += STEP
-        told = played.values(time, LIMITS)
-        shown[time] = LIMITS.pose(held, told)
+        scripted = played.values(time, LIMITS)
+        shown[time] = LIMITS.pose(held, scripted)
         recorder.add(time, shown[time])
-    script, end = recorder.script(), round(time, 6)
+    script = recorder.script()
+    end = round(time, 6)
     if script is None:
-        assert all(value == told[name] for name, value in held.items())
+        assert all(value == scripted[name] for name, value in held.items())
         return
     script.check(LIMITS)
     assert script.poses == played.poses and script.duration == max(4.0, end)
@@ -114,7 +117,8 @@ def test_punching_in_changes_nothing_else(
         assert (np.diff(now.times) > 0.0).all()
         assert {key.time for key in keys if not start <= key.time <= end} <= set(now.times)
         for moment in np.linspace(0.0, 4.0, 121).tolist():
-            before, after = played.at(moment).get(name, 0.0), script.at(moment).get(name, 0.0)
+            before = played.at(moment).get(name, 0.0)
+            after = script.at(moment).get(name, 0.0)
             if moment < begin - 1.01 * STEP or (moment > end and end < 4.0 - 0.04):
                 if cut_by(played, name, (begin - STEP, end), moment):
                     assert after == pytest.approx(before, abs=3e-3)
@@ -137,7 +141,7 @@ def paused(session: Session) -> None:
 
 
 def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
-    """They are no part of the recording, which is told, and still there to be keyed."""
+    """They are no part of the recording, as a line says, and still there to be keyed."""
     paused(session)
     session.set("AU4", 0.8)
     session.set("jaw_open", 0.1)
@@ -182,7 +186,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
 def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
     session: Session, tmp_path: Path
 ) -> None:
-    """They take what is seen, not what sliders say beneath it."""
+    """They take the face as it is seen, not the sliders' values beneath it."""
     session.live_override.take({"jaw_open": 0.5}, 1.0)
     session.work.save_pose(tmp_path / "pose.toml")
     assert load_script(tmp_path / "pose.toml").at(0.0)["jaw_open"] == 0.5

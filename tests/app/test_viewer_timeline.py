@@ -126,7 +126,8 @@ def test_the_face_becomes_a_key(viewer: Viewer) -> None:
 
 def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
     """A drag in the ruler goes through frames; its end can be dragged; wheels zoom and scroll."""
-    axis, session = viewer.time_axis, viewer.session
+    axis = viewer.time_axis
+    session = viewer.session
     x, y = middle(viewer, "time")
     drag(viewer, (x, y), (30, 0))
     assert session.time == on_frame(session.time) > 1.0
@@ -185,7 +186,7 @@ def take(viewer: Viewer, own: Path, dense: Script) -> Script:
 
 
 def open_jaw(viewer: Viewer) -> float:
-    """Drag the jaw's slider with the mouse, and let it go; what it is then."""
+    """Drag the jaw's slider with the mouse, and let it go; its value then."""
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
     clear_search(viewer)
@@ -240,7 +241,7 @@ def move(viewer: Viewer, x: float, y: float) -> None:
 
 
 def values(viewer: Viewer, control: str) -> list[float]:
-    """What each pose has of a control."""
+    """The value of a control in each pose."""
     return [pose.values.get(control, 0.0) for pose in viewer.session.script.poses]
 
 
@@ -261,7 +262,7 @@ def test_a_key_is_dragged_in_time_and_value(viewer: Viewer) -> None:
 
 @pytest.mark.usefixtures("curves")
 def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
-    """A right click on a key chooses how it is approached, and the curve is what is played."""
+    """A right click on a key chooses its easing, and the script plays as its curve shows."""
     xdotool(viewer, "mousemove", *at(viewer, 3.0, 0.6))
     xdotool(viewer, "click", 3)
     click(viewer, "menu Keys: Easing: hold")

@@ -1,4 +1,4 @@
-"""What hands do to a script, without a window; and small parts of the window."""
+"""Changes of a script by hand, without a window; and small parts of the window."""
 
 import pytest
 from hypothesis import given, settings
@@ -18,8 +18,8 @@ SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
 
 @pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
-def test_a_pose_that_is_let_go_is_told_and_comes_back(session: Session, how: str) -> None:
-    """Whatever takes it away says so in a line; one undo brings it back to where it was made."""
+def test_a_pose_that_is_let_go_is_reported_and_comes_back(session: Session, how: str) -> None:
+    """Each way to let go says so in a line; one undo brings the pose back to where it was made."""
     session.seek(2.0)
     set_by_hand(session, jaw_open=0.6)
     assert session.differing == {"jaw_open"}
@@ -68,7 +68,7 @@ class Still(FaceScene):
 @given(st.lists(st.tuples(st.sampled_from(sorted(COMMANDS)), SHARES), max_size=12))
 @settings(max_examples=60, deadline=None)
 def test_undo_gives_the_state_before(steps: list[tuple[str, float]]) -> None:
-    """After any commands: back through all that was, and forward again to where it ended."""
+    """After any commands: back through all states, and forward again to the last one."""
     session = Session(SHARED, load_script(HELLO))
 
     def state() -> tuple[object, ...]:
@@ -76,7 +76,8 @@ def test_undo_gives_the_state_before(steps: list[tuple[str, float]]) -> None:
         return session.script, session.file, by_hand
 
     for command, share in steps:
-        before, place = state(), session.history.place
+        before = state()
+        place = session.history.place
         COMMANDS[command](session, share)
         after = state()
         if session.history.place == place + 1 and command != "redo":
@@ -100,7 +101,7 @@ SHARED = Still()
 
 
 def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -> None:
-    """What was copied stays as it was, whatever became of its script; it comes at the playhead."""
+    """Copied keys stay as they were if their script changes; they are pasted at the playhead."""
     selection = KeySelection(session)
     assert not selection.copied
     selection.places = Places.of(KeyPlace(POSES, 1.0), KeyPlace("blink", 2.12))
