@@ -38,8 +38,12 @@ if TYPE_CHECKING:
 class Filming:
     """Options of capture alone."""
 
-    size: tuple[int, int] = option(type=Size(), default=(1280, 720), help="1280x720 by default.")
-    fps: float = option(type=FiniteRange(1, 240), default=30.0, show_default=True)
+    size: tuple[int, int] = option(
+        type=Size(), default=(1280, 720), help="Size of pictures [pixels], 1280x720 by default."
+    )
+    fps: float = option(
+        type=FiniteRange(1, 240), default=30.0, show_default=True, help="Frames a second."
+    )
     compare: str | None = option(
         is_flag=False,
         flag_value=STATIC,
@@ -78,7 +82,12 @@ class Filming:
         type=FiniteRange(0, 86_400),
         help="Time of a .png [s]; by default the first named pose, or else the end.",
     )
-    samples: int = option(type=click.IntRange(0, 16), default=4, show_default=True)
+    samples: int = option(
+        type=click.IntRange(0, 16),
+        default=4,
+        show_default=True,
+        help="Samples of each pixel, for smooth edges.",
+    )
     overwrite: bool = option(is_flag=True, help="Replace the frames in a folder.")
     quiet: bool = option(is_flag=True, help="No progress bar.")
 

@@ -47,7 +47,9 @@ class Live:
     live: str | None = option(
         type=click.Choice(list(PROTOCOLS)), help="Follow a face over the network, by this protocol."
     )
-    port: int | None = option(type=click.IntRange(1, 65535), help="The protocol's own by default.")
+    port: int | None = option(
+        type=click.IntRange(1, 65535), help="Port; the protocol's own by default."
+    )
     address: str = option(
         default=LOOPBACK,
         show_default=True,
@@ -71,7 +73,7 @@ class Live:
 
 @click.command()
 @click.option("--size", type=Size(), help="Size of the window: as it was last, or 1280x800.")
-@click.option("--scene", type=SCENE_NAMES, help="face by default.")
+@click.option("--scene", type=SCENE_NAMES, help="The scene to animate, face by default.")
 @click.option("--script", type=PATH, help="The script or recording that the space key plays.")
 @SOUND
 @QUIET
@@ -105,7 +107,7 @@ def view(
 
 @click.command()
 @click.argument("recording", type=PATH, required=False)
-@click.option("--port", type=click.IntRange(1, 65535), help="The protocol's own by default.")
+@click.option("--port", type=click.IntRange(1, 65535), help="Port; the protocol's own by default.")
 @click.option(
     "--address", default=LOOPBACK, show_default=True, help="Address of the receiving computer."
 )

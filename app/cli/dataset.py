@@ -25,7 +25,11 @@ from .options import PATH, SILENT, Size, printing
     help="Your own table of expressions and poses; --sample-table prints ours.",
 )
 @click.option(
-    "--seed", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Which samples."
+    "--seed",
+    type=click.IntRange(0, 2**32 - 1),
+    default=0,
+    show_default=True,
+    help="Another seed makes other samples.",
 )
 @click.option(
     "--passes",
@@ -35,7 +39,9 @@ from .options import PATH, SILENT, Size, printing
     help="Beside each picture: depth, normal, triangle, splits, segmentation; "
     "landmarks are always there.",
 )
-@click.option("--size", type=Size(), default=(512, 512), help="512x512 by default.")
+@click.option(
+    "--size", type=Size(), default=(512, 512), help="Size of pictures [pixels], 512x512 by default."
+)
 @click.option("--refiner", metavar="NAME", help="Another refiner than the look's, as in capture.")
 @click.option(
     "--background",

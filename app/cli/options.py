@@ -276,7 +276,10 @@ class Drawing(Subject):
     splits: bool = option(is_flag=True, help="Colour triangles by their number of splits.")
     wireframe: bool = option(is_flag=True, help="Draw the edges of every triangle.")
     shading: str = option(
-        type=click.Choice(["flat", "gouraud", "pixel"]), default="pixel", show_default=True
+        type=click.Choice(["flat", "gouraud", "pixel"]),
+        default="pixel",
+        show_default=True,
+        help="Light each triangle, each vertex or each pixel.",
     )
 
     @property
