@@ -40,9 +40,9 @@ UNITS = "Action units"
 LIP_PARTING = ("AU9", "AU10", "AU16", "AU22", "AU25", "AU26", "AU27")
 MOUTH_SHUT = ("sadness", "anger", "contempt", "wink", "kiss", "blink", "viseme_sil", "viseme_PP")
 EYES_SHUT = ("yawn",)  # beside those above
-SHUT = 0.99  # of the muscle that closes a lid
+SHUT_VALUE = 0.99  # of the muscle that closes a lid
 CLOSER = "orbicularis_oculi_palpebral_upper"
-MOST = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
+LARGEST_FAULTS = {"slit": 0.2, "eye": 0.2, "lips": 0.1, "lids": 0.1, "teeth": 0.1}  # mm
 YAWS = (0.0, -30.0, 30.0, -60.0, 60.0)  # degrees
 PITCHES = (0.0, -10.0, 10.0, -25.0, 25.0, -40.0, 40.0)
 VIEWS = tuple(  # the whole front, as far as cameras go round it
@@ -50,18 +50,18 @@ VIEWS = tuple(  # the whole front, as far as cameras go round it
     for yaw, pitch in itertools.product(YAWS, PITCHES)
     if (yaw / 60.0) ** 2 + (pitch / 40.0) ** 2 < 1.3
 )
-MOUTH = 60.0  # mm around the mouth's middle in which skin may cover it
+MOUTH_RADIUS = 60.0  # mm around the mouth's middle in which skin may cover it
 EYE_CORNERS = {"right": (36, 39), "left": (42, 45)}  # landmarks
 LID_COLUMNS = 23  # planes across an eye
 LID_END = 1.5  # [mm] beside the corners of an eye, which are not looked at
 LID_STEP = 0.05  # mm between lines of sight in a plane
 LID_WINDOW = 12.0  # mm above and below the eye's middle
-EYE = 100.0  # mm around the eye's middle in which skin may cover it
+EYE_RADIUS = 100.0  # mm around the eye's middle in which skin may cover it
 SEED = 2001
 MOST_CONTROLS = 8  # in a mixture
 MOST_TORN = 2.0  # [% of poses]
 MOST_IN_A_POSE = 3  # triangles
-AROUND = 12.0  # mm around a triangle whose mean turn it is compared with
+COMPARED_RADIUS = 12.0  # mm around a triangle whose mean turn it is compared with
 
 
 class Pose(NamedTuple):
@@ -103,7 +103,7 @@ def _gaps(
         return None, None
     is_shut = name.removesuffix("_left").removesuffix("_right") not in LIP_PARTING + EYES_SHUT
     landmarks = simulation.positions[head.landmarks]
-    shut = [side for side in ("right", "left") if sums[f"{CLOSER}_{side}"] >= SHUT]
+    shut = [side for side in ("right", "left") if sums[f"{CLOSER}_{side}"] >= SHUT_VALUE]
     slits = []
     eyes = []
     for positions, triangles in meshes_of(simulation, refiner).values():
@@ -150,7 +150,7 @@ def widest_slit(positions: Array, triangles: Triangles, landmarks: Array) -> flo
     `landmarks`: where the 68 are now (68, 3).
     """
     lip = landmarks[list(LOWER_EDGES["mouth"])]
-    near = around(positions[triangles], (lip[0] + lip[-1]) / 2.0, MOUTH)
+    near = around(positions[triangles], (lip[0] + lip[-1]) / 2.0, MOUTH_RADIUS)
     turns = [_turned_by(*view) for view in VIEWS]
     return max(opening(near @ turn.T, lip @ turn.T) for turn in turns)
 
@@ -189,7 +189,7 @@ def lid_gaps(
     for side, numbers in EYE_CORNERS.items():
         ends = landmarks[list(numbers)]
         ball = eyeballs[side]
-        near = around(positions[triangles], ends.mean(axis=0), EYE)
+        near = around(positions[triangles], ends.mean(axis=0), EYE_RADIUS)
         gaps[side] = max(_lid_gap(near @ turn.T, ends @ turn.T, ball @ turn.T) for turn in turns)
     return gaps
 
@@ -238,7 +238,8 @@ def _inverted(rest: Array, now: Array, faces: Triangles) -> int:
     count = 0
     for face in np.flatnonzero((before * after).sum(axis=1) < 0.0):
         away = np.linalg.norm(rest - rest[faces[face]].mean(axis=0), axis=1)
-        near = away < max(AROUND, 2.0 * away[faces[face]].max())  # never the triangle alone
+        reach = max(COMPARED_RADIUS, 2.0 * away[faces[face]].max())  # never the triangle alone
+        near = away < reach
         a = rest[near] - rest[near].mean(axis=0)
         b = now[near] - now[near].mean(axis=0)
         left, _, right = np.linalg.svd(a.T @ b)
@@ -275,8 +276,9 @@ def report(poses: Sequence[Pose]) -> str:
 def targets(poses: Sequence[Pose]) -> list[Target]:
     """The targets of skin and contacts; a triangle turns over in a wink or a yawn."""
     torn = sum(pose.inverted > 0 for pose in poses) / len(poses)
+    most = LARGEST_FAULTS.items()
     return [
         at_most("poses with a triangle turned", 100.0 * torn, MOST_TORN, " %"),
         at_most("triangles turned in one pose", _worst(poses, "inverted")[0], MOST_IN_A_POSE),
-        *(at_most(name, _worst(poses, name)[0], most, " mm") for name, most in MOST.items()),
+        *(at_most(name, _worst(poses, name)[0], limit, " mm") for name, limit in most),
     ]

@@ -34,17 +34,18 @@ from .subjects import DENSE, MILLIMETRES, MODES, Faces, Points, read_arrays
 Rotation = scipy.spatial.transform.Rotation
 Labels = npt.NDArray[np.str_]
 
-MOST = {"all": 0.50, "nose": 0.60, "mouth": 0.60}  # [mm] RMS that may be left of the finer mesh
+# [mm] RMS that may be left of the finer mesh.
+MOST_DISTANCES = {"all": 0.50, "nose": 0.60, "mouth": 0.60}
 MOST_ANGLE = 5.0  # [deg] of the finer mesh
 MOST_COARSE = 0.80  # [mm] of the coarse mesh
 ROUNDS = 18  # of nearest points
-WITH_LANDMARKS = 6  # of the first rounds, which landmarks lead, too
+LANDMARK_ROUNDS = 6  # of the first rounds, which landmarks lead, too
 LANDMARKS = slice(17, 68)  # without the outline of the face, which slides
 LANDMARK_WEIGHT = 0.3  # of 1/mm^2
 REGIONS = ("forehead", "eyes", "nose", "cheek", "mouth", "chin", "jaw")
-OPPOSITE = 12.0  # [mm] on a line of sight within which skin hides a vertex
-FARTHEST = 12.0  # [mm] that points may be apart
-INDEPENDENT = 600  # points that count as independent: neighbours err alike
+OPPOSITE_DEPTH = 12.0  # [mm] on a line of sight within which skin hides a vertex
+FARTHEST_DISTANCE = 12.0  # [mm] that points may be apart
+INDEPENDENT_POINTS = 600  # points that count as independent: neighbours err alike
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ class IdentitySpace:
         angles = np.radians(np.arange(0.0, 360.0, 60.0))[:, None, None]
         slanted = facing + np.cos(angles) * aside + np.sin(angles) * np.cross(facing, aside)
         ways = np.concatenate([facing[None], np.sqrt(0.5) * slanted])
-        points = self.mean + np.arange(1.0, OPPOSITE)[:, None, None, None] * ways
+        points = self.mean + np.arange(1.0, OPPOSITE_DEPTH)[:, None, None, None] * ways
         at = closest_points(points.reshape(-1, 3), self.mean, self.triangles)
         away = points.reshape(-1, 3) - at.interpolate(self.mean)
         is_within = (away * at.interpolate(facing)).sum(axis=1) < 0.0
@@ -178,17 +179,17 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
         points = turn.apply(space.person(weights)) + shift
         modes = space.modes @ turn.as_matrix().T
         foot, facing, _ = _feet(points, space.triangles, asked, surface)
-        near = np.linalg.norm(foot - points[asked], axis=1) < FARTHEST
+        near = np.linalg.norm(foot - points[asked], axis=1) < FARTHEST_DISTANCE
         i = asked[near]
         n = facing[near]
         # A small turn w about the origin moves a point p along n by (p x n) w.
         columns = [np.einsum("kij,ij->ki", modes[:, i], n).T, np.cross(points[i], n), n]
         system = np.hstack(columns)
         left = ((foot[near] - points[i]) * n).sum(axis=1)
-        share = INDEPENDENT / max(len(i), 1)
+        share = INDEPENDENT_POINTS / max(len(i), 1)
         normal = share * system.T @ system
         right = share * system.T @ left
-        if number < WITH_LANDMARKS:
+        if number < LANDMARK_ROUNDS:
             marks = space.landmarks[LANDMARKS]
             for axis in np.eye(3):
                 to = np.broadcast_to(axis, (len(marks), 3))
@@ -206,7 +207,7 @@ def unexplained(space: IdentitySpace, labels: Labels, surface: Surface) -> Rest:
     points = turn.apply(space.person(weights)) + shift
     foot, facing, cosine = _feet(points, space.triangles, asked, surface)
     away = foot - points[asked]
-    near = np.linalg.norm(away, axis=1) < FARTHEST
+    near = np.linalg.norm(away, axis=1) < FARTHEST_DISTANCE
     distance = (away * facing).sum(axis=1)
     angle = np.degrees(np.arccos(cosine))
     groups = {name: near & (labels[asked] == name) for name in REGIONS} | {"all": near}
@@ -266,8 +267,9 @@ def report(found: Mapping[str, Rest]) -> str:
 def targets(found: Mapping[str, Rest]) -> list[Target]:
     """The targets of the form of a head."""
     fine = found["finer"]
+    limits = MOST_DISTANCES.items()
     return [
-        *(at_most(f"finer, {n}", fine.distances[n], most, " mm") for n, most in MOST.items()),
+        *(at_most(f"finer, {n}", fine.distances[n], most, " mm") for n, most in limits),
         at_most("finer, angle", fine.angles["all"], MOST_ANGLE, " degrees"),
         at_most("coarse, all", found["coarse"].distances["all"], MOST_COARSE, " mm"),
     ]

@@ -49,7 +49,7 @@ SCALES = (1e-5, 1e3)  # of thresholds: too many, too few triangles
 LEAST_GAIN = 20.0  # [%] of the error of static
 STATIC = "static"
 BEST = "cubic displacement 2x"
-_TOLD = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
+_PRESET = PRESETS[FIRST_PRESET]["face"].options_for("kahler")
 
 
 def _sliding(scheme: str, **more: Any) -> tuple[str, dict[str, Any]]:
@@ -63,7 +63,10 @@ METHODS: Mapping[str, tuple[str, dict[str, Any]]] = {
     "cubic displacement, blended 2x": _sliding("cubic", blend=True),
     "detail displacement 2x": _sliding("detail", blend=False),
     "detail displacement, blended 2x": _sliding("detail", blend=True),
-    f"{FIRST_PRESET}, as set": ("kahler", {name: _TOLD[name] for name in ("scheme", "criterion")}),
+    f"{FIRST_PRESET}, as set": (
+        "kahler",
+        {"scheme": _PRESET["scheme"], "criterion": _PRESET["criterion"]},
+    ),
     "cubic once": ("everywhere", {"scheme": "cubic", "splits": 1}),
     "cubic twice": ("everywhere", {"scheme": "cubic", "splits": 2}),
     "detail twice": ("everywhere", {"scheme": "detail", "splits": 2}),

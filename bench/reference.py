@@ -35,7 +35,7 @@ MODEL = "FaceXModel"
 NEUTRAL = "generic_neutral_mesh"
 FACE_VERTICES = 9409
 LICENCE = "LICENSE"
-MOST = 500_000  # vertices and triangles of a file
+MOST_ELEMENTS = 500_000  # vertices and triangles of a file
 BOTH_SIDES = (
     *("browInnerUp", "browDown", "noseSneer", "eyeBlink", "mouthFrown", "mouthStretch"),
     *("mouthLowerDown", "cheekPuff", "eyeSquint", "eyeWide"),
@@ -109,7 +109,9 @@ def _read(checkout: Path, name: str) -> tuple[Points, Faces]:
         )
     try:
         content = file.read_bytes()
-        surface = read_obj(gzip.decompress(content) if file.suffix == ".gz" else content, most=MOST)
+        if file.suffix == ".gz":
+            content = gzip.decompress(content)
+        surface = read_obj(content, most=MOST_ELEMENTS)
         return surface.vertices, surface.faces
     except (assets.AssetError, EOFError, gzip.BadGzipFile, zlib.error) as error:
         raise UserError(f"{file}: {error}") from None

@@ -40,10 +40,10 @@ Tracker = Callable[[Image], Scores]
 
 VIEWS = ("front", "-8,0", "8,0")  # as people sit before a camera
 SIZE = (560, 560)  # pixels; the tracker looks at 256 x 256 of the face
-SEEN = 0.1  # a score below says nothing
+SEEN_SCORE = 0.1  # a score below says nothing
 # Shapes whose sides cannot be posed together, and the shapes that are posed beside them: no eye
 # looks to a side alone, and lips that close do so over an open jaw.
-BESIDE: dict[str, tuple[str, ...]] = {
+POSED_BESIDE: dict[str, tuple[str, ...]] = {
     "mouthLeft, Right": (),
     "jawLeft, Right": (),
     "eyeLookIn": ("eyeLookOutRight",),
@@ -111,7 +111,7 @@ class Shape(NamedTuple):
     @property
     def verdict(self) -> str:
         """Whether it is seen, and under which name."""
-        if max(self.own, self.score) < SEEN:
+        if max(self.own, self.score) < SEEN_SCORE:
             return "not seen"
         return "seen" if self.own >= self.score else f"as {self.highest}"
 
@@ -170,8 +170,8 @@ def measure(tracker: Tracker) -> dict[str, Shape]:
         neutral = pose_scores(tracker, studio, ())
         for base, names in bases():
             own = names
-            beside = BESIDE.get(base, ())
-            if base in BESIDE:
+            beside = POSED_BESIDE.get(base, ())
+            if base in POSED_BESIDE:
                 own = names[:1]
             scores = pose_scores(tracker, studio, (*own, *beside))
             shapes[base] = compared(scores, neutral, own, beside)

@@ -24,7 +24,7 @@ from risorius.app.viewer.settings import Display
 
 from .report import Target, at_least, processor, table
 
-PROMISED = 20.0  # frames a second at 1280x720 with software OpenGL on 2 cores
+PROMISED_RATE = 20.0  # frames a second at 1280x720 with software OpenGL on 2 cores
 WARM_UP = 1.0  # [s]
 ROUNDS = 3
 IDLE_SECONDS = 8.0
@@ -72,7 +72,7 @@ def measure(seconds: float, size: tuple[int, int]) -> tuple[str, list[Target]]:
         f"Nothing moves: {100.0 * idle:.1f} % of a core; the face lives: {100.0 * alive:.0f} %.",
     ]
     promised = [name for name in CASES if name != UNPROMISED] if is_software else []
-    rates = [at_least(n, _rate(np.array(seen[n])), PROMISED, " frames/s") for n in promised]
+    rates = [at_least(n, _rate(np.array(seen[n])), PROMISED_RATE, " frames/s") for n in promised]
     return "\n".join(lines), rates
 
 

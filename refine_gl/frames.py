@@ -28,9 +28,9 @@ from .tables import Tables, groups_of
 
 MOST_GROUPS = 65535
 """Of a dispatch, that OpenGL promises."""
-VECTOR = 16  # bytes
-NUMBER = 4  # bytes
-DOUBLE = 8  # bytes
+VECTOR_BYTES = 16  # bytes
+NUMBER_BYTES = 4  # bytes
+DOUBLE_BYTES = 8  # bytes
 _STREAM = {4: "vertex_buffer", 5: "index_buffer", 6: "source_buffer", 7: "command_buffer"}
 
 
@@ -49,13 +49,13 @@ class Frames:
         self._tables = tables
         sizes = tables.sizes
         self._sizes = gl.buffer(_block(tables))
-        self._mesh = _buffer(gl, NUMBER * len(tables.words))
+        self._mesh = _buffer(gl, NUMBER_BYTES * len(tables.words))
         self._mesh.write(tables.words)
-        self._positions = _buffer(gl, 3 * DOUBLE * sizes["vertex_count"])
-        self._fields = _buffer(gl, VECTOR * tables.field_count)
-        self._work = _buffer(gl, NUMBER * tables.work_count)
+        self._positions = _buffer(gl, 3 * DOUBLE_BYTES * sizes["vertex_count"])
+        self._fields = _buffer(gl, VECTOR_BYTES * tables.field_count)
+        self._work = _buffer(gl, NUMBER_BYTES * tables.work_count)
         rest_cosines = np.where(rules.undefined_edges(), -np.inf, 0.0).astype(np.float32)
-        self._work.write(rest_cosines, offset=NUMBER * sizes["rest_cosines_at"])
+        self._work.write(rest_cosines, offset=NUMBER_BYTES * sizes["rest_cosines_at"])
         self._frame = 0
         self._bind()
         self._hand_over(rest_positions, rules.still)
@@ -75,12 +75,12 @@ class Frames:
         for name in self._programs:
             self._dispatch(name)
 
-    def fetch(self, name: str, count: int, size: int = NUMBER) -> Unsigned:
+    def fetch(self, name: str, count: int, size: int = NUMBER_BYTES) -> Unsigned:
         """The first numbers, or vectors, that passes have handed on under a name, as numbers.
 
         This waits for the frame.
         """
-        buffer = self._work if size == NUMBER else self._fields
+        buffer = self._work if size == NUMBER_BYTES else self._fields
         start = size * self._tables.sizes[f"{name}_at"]
         return np.frombuffer(buffer.read(size * count, offset=start) if count else b"", np.uint32)
 
@@ -96,7 +96,7 @@ class Frames:
             self._positions.orphan()
             self._positions.write(positions)
         if metric is not None and len(metric):
-            self._work.write(metric, offset=NUMBER * self._tables.sizes["measured_at"])
+            self._work.write(metric, offset=NUMBER_BYTES * self._tables.sizes["measured_at"])
 
     def _dispatch(self, name: str, *, is_rest: bool = False) -> None:
         program = self._programs[name]
@@ -123,10 +123,10 @@ def programs_of(
         raise GpuError(f"OpenGL 4.3 is needed, and this context has {gl.version_code / 100:.1f}")
     sizes = tables.sizes
     largest = max(
-        NUMBER * sizes["columns"] * sizes["most_rows"],
-        3 * NUMBER * sizes["most_subtriangles"] * sizes["face_count"],
-        NUMBER * len(tables.words),
-        VECTOR * tables.field_count,
+        NUMBER_BYTES * sizes["columns"] * sizes["most_rows"],
+        3 * NUMBER_BYTES * sizes["most_subtriangles"] * sizes["face_count"],
+        NUMBER_BYTES * len(tables.words),
+        VECTOR_BYTES * tables.field_count,
     )
     room = int(gl.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
     groups = max(groups_of_pass(name, sizes) for name in rules.passes)
@@ -140,7 +140,7 @@ def programs_of(
 
 def _buffer(gl: moderngl.Context, size: int) -> moderngl.Buffer:
     """A buffer of zeros; OpenGL has none without room."""
-    return gl.buffer(bytes(max(size, VECTOR)), dynamic=True)
+    return gl.buffer(bytes(max(size, VECTOR_BYTES)), dynamic=True)
 
 
 def _block(tables: Tables) -> bytes:

@@ -10,7 +10,7 @@ import numpy as np
 from risorius.refine import GpuStream, RefinedMesh
 from risorius.refine.mesh.arrays import Floats, Indices, Unsigned, Wide
 
-NUMBER = 4
+NUMBER_BYTES = 4
 """Bytes."""
 COMMAND_WORDS = 7
 """Of a command buffer: DrawElementsIndirectCommand (5), numbers of vertices and of triangles."""
@@ -29,10 +29,10 @@ class GpuBuffers:
     ) -> None:
         """Make room for the largest frame."""
         self.context = gl
-        self.vertex_buffer = gl.buffer(reserve=max(NUMBER * columns * vertex_capacity, 16))
-        self.index_buffer = gl.buffer(reserve=max(3 * NUMBER * triangle_capacity, 16))
-        self.source_buffer = gl.buffer(reserve=max(NUMBER * triangle_capacity, 16))
-        self.command_buffer = gl.buffer(reserve=NUMBER * COMMAND_WORDS)
+        self.vertex_buffer = gl.buffer(reserve=max(NUMBER_BYTES * columns * vertex_capacity, 16))
+        self.index_buffer = gl.buffer(reserve=max(3 * NUMBER_BYTES * triangle_capacity, 16))
+        self.source_buffer = gl.buffer(reserve=max(NUMBER_BYTES * triangle_capacity, 16))
+        self.command_buffer = gl.buffer(reserve=NUMBER_BYTES * COMMAND_WORDS)
 
 
 class GpuMesh:

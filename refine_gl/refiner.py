@@ -35,7 +35,7 @@ from risorius.refine.kahler.refiner import points_on_edges
 from risorius.refine.mesh.arrays import Small
 
 from .context import GpuError, OwnContext, own_context
-from .frames import VECTOR, Frames, programs_of
+from .frames import VECTOR_BYTES, Frames, programs_of
 from .refined import GpuBuffers, GpuMesh, Run
 from .rules import SCHEMES, Rules, Settings
 from .tables import tables_of
@@ -158,7 +158,7 @@ class KahlerGl(BaseRefiner, GpuRefiner):
             return origins
         counts = np.append(splits, 0)[mesh.triangle_edges].sum(axis=1)
         centres = np.flatnonzero(counts > 1)  # where the fan has a middle
-        vectors = self._run(self._frames.fetch, "centres", len(mesh.faces), VECTOR)
+        vectors = self._run(self._frames.fetch, "centres", len(mesh.faces), VECTOR_BYTES)
         weights = vectors.view(np.float32).reshape(-1, 4)[centres, :3]
         return origins.followed_by(mesh.faces[centres], weights)
 

@@ -17,7 +17,7 @@ OF_SHELLS = "in_strand", "in_way", "in_dense"
 # Striped parts: by the columns of their striation their kind, layout and attributes in OpenGL.
 STRIPED = {2: ("FIBRES", " 2f", "in_fibre"), 6: ("SHELLS", " 2f 3f 1f", *OF_SHELLS)}
 LAYERS = 9  # of shells; with more a picture takes longer, with fewer one sees between
-FEWEST = 2  # shells
+FEWEST_LAYERS = 2  # shells
 LAYER_PIXELS = 10.0  # that a layer is there for, where they are thickest
 ROOT = -0.6  # of that way, from vertices
 TIP = 0.4  # of that way, from vertices
@@ -141,7 +141,7 @@ class PartBuffers:
         """Draw its layers from the inside out; the outer ones, which are thin, hide nothing."""
         _, _, width, height = view.viewport
         pixels = view.camera.focal(width / height, height) / view.camera.distance
-        layers = int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST, LAYERS))
+        layers = int(np.clip(np.ceil(self._thick * pixels / LAYER_PIXELS), FEWEST_LAYERS, LAYERS))
         inner = -(-layers // 2)
         program["layers"] = layers
         for first, count in ((0, inner), (inner, layers - inner)):

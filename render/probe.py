@@ -69,7 +69,7 @@ def _probe_in_process(name: str) -> Finding:
 
 def write_finding(name: str) -> None:
     """Try one way to draw in this very process; the fields of a Finding to standard output."""
-    from .surface import NEWEST, Surface, open_offscreen
+    from .surface import NEWEST_VERSION, Surface, open_offscreen
     from .window import open_window
 
     found: dict[str, object]
@@ -90,7 +90,7 @@ def write_finding(name: str) -> None:
                 "version": surface.gl.info["GL_VERSION"],
                 "is_software": surface.is_software,
                 "samples": surface.gl.max_samples,
-                "lends_gpu_streams": surface.gl.version_code >= NEWEST,
+                "lends_gpu_streams": surface.gl.version_code >= NEWEST_VERSION,
             }
     except GLError as error:
         found = {"is_ok": False, "message": str(error)}

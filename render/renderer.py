@@ -34,9 +34,17 @@ from .render_target import Rectangle, scaled
 from .shadow import ShadowMap, Thrower
 from .stream import GpuStream, MeshBuffers, Share, Stream
 from .style import ColourBy, Style
-from .surface import NEWEST, Surface
+from .surface import NEWEST_VERSION, Surface
 from .texture import BumpMap, Texture
-from .translucency import SUNK, Plane, blending, draw_nearest, fade_seen, set_cut, set_translucency
+from .translucency import (
+    SUNK_DEPTH,
+    Plane,
+    blending,
+    draw_nearest,
+    fade_seen,
+    set_cut,
+    set_translucency,
+)
 
 # Texture units; the target uses 1.
 _VALUE_UNIT = 0
@@ -51,7 +59,7 @@ class Renderer:
         surface.make_current()
         self.surface = surface
         self._gl = surface.gl
-        self.lends_gpu_streams = self._gl.version_code >= NEWEST
+        self.lends_gpu_streams = self._gl.version_code >= NEWEST_VERSION
         self._programs: dict[tuple[str, ...], moderngl.Program] = {}
         self._parts = PartStore(self._gl)
         self._values: moderngl.Texture | None = None
@@ -246,7 +254,7 @@ class Renderer:
             write_uniform(program, "projection", view.projection)
             set_light(program, style.light)
             if cut is not None and "cut" in program:
-                set_cut(program, view, cut, SUNK)
+                set_cut(program, view, cut, SUNK_DEPTH)
             if shadow is not None and "shadow_map" in program:
                 shadow.set_uniforms(program, view, _SHADOW_UNIT)
         for buffers, bone in sorted(placed, key=lambda each: each[0].is_mixed):

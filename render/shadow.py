@@ -21,10 +21,10 @@ from .stream import MeshBuffers
 from .style import Vector
 
 RESOLUTION = 288  # texels each way: 1.2 mm on a head, so its shadows fade within 5 mm
-REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
-TEXEL = 2.0 * REACH / RESOLUTION  # of the scene's radius
+MAP_REACH = 1.15  # of the scene's radius: a face moves beyond its rest pose
+TEXEL = 2.0 * MAP_REACH / RESOLUTION  # of the scene's radius
 OFFSET = 0.003  # of the scene's radius, above the surface: 0.45 mm on a head
-STEEP = 0.999  # of a light's height, from which on it has no direction sideways
+STEEP_HEIGHT = 0.999  # of a light's height, from which on it has no direction sideways
 
 Thrower = MeshBuffers | PlacedPart
 FloatArray = npt.NDArray[np.float64]
@@ -90,7 +90,7 @@ class ShadowMap:
         camera = view.camera
         centre = (np.append(camera.scene_centre, 1.0) @ view.world_to_view)[:3]
         matrix = np.eye(4)
-        matrix[:3, :3] = self._basis.T / (REACH * camera.scene_radius)
+        matrix[:3, :3] = self._basis.T / (MAP_REACH * camera.scene_radius)
         matrix[3, :3] = -centre @ matrix[:3, :3]
         return matrix
 
@@ -98,7 +98,7 @@ class ShadowMap:
 def _basis(toward: FloatArray) -> FloatArray:
     """Rows: right, up, and away from the light, for a camera in the light."""
     toward = toward / np.linalg.norm(toward)
-    above = (0.0, 0.0, 1.0) if abs(toward[1]) > STEEP else (0.0, 1.0, 0.0)
+    above = (0.0, 0.0, 1.0) if abs(toward[1]) > STEEP_HEIGHT else (0.0, 1.0, 0.0)
     right = np.cross(above, toward)
     right /= np.linalg.norm(right)
     return np.stack([right, np.cross(toward, right), -toward])

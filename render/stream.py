@@ -1,6 +1,6 @@
 """Triangles that change every frame: arrays lent to their maker, and the buffers behind.
 
-The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) with whatever
+The borrower writes rows 0..N of `vertices` and 0..M of `triangles` (and of `source`) with any
 program it likes; `upload` hands exactly those rows to OpenGL. Nothing is allocated per frame. Or
 the buffers themselves are lent, to a program that runs on the graphics card.
 Source: Kähler et al. 2003, section 3: refined triangles go to the renderer and are forgotten.
@@ -25,7 +25,7 @@ class Share(Enum):
     CHOSEN = "chosen"  # those given to `choose`
 
 
-NUMBER = 4  # bytes
+NUMBER_BYTES = 4  # bytes
 COMMAND_WORDS = 7
 _Ranges = dict[Share, tuple[int, int]]  # first triangle and how many, in a buffer of indices
 
@@ -95,8 +95,10 @@ class MeshBuffers:
         self.corners = np.zeros((8, 3))
         self.has_bumps = False
         self._room = vertex_capacity, triangle_capacity
-        self.vertex_buffer = gl.buffer(reserve=NUMBER * columns * vertex_capacity, dynamic=True)
-        self.index_buffer = gl.buffer(reserve=3 * NUMBER * triangle_capacity, dynamic=True)
+        self.vertex_buffer = gl.buffer(
+            reserve=NUMBER_BYTES * columns * vertex_capacity, dynamic=True
+        )
+        self.index_buffer = gl.buffer(reserve=3 * NUMBER_BYTES * triangle_capacity, dynamic=True)
         # Made when they are first needed: amounts of bumps by vertex; and triangles parted by
         # bumps, and chosen.
         self._more: dict[str, moderngl.Buffer] = {}
@@ -119,7 +121,7 @@ class MeshBuffers:
         """Hand over an array with a row for each vertex, or a number for each triangle (uint32)."""
         if name not in self._more:
             room = self._room[array.dtype == np.uint32] * array.shape[1]
-            self._more[name] = self.context.buffer(reserve=NUMBER * room, dynamic=True)
+            self._more[name] = self.context.buffer(reserve=NUMBER_BYTES * room, dynamic=True)
         self._more[name].orphan()
         self._more[name].write(np.ascontiguousarray(array))
 
@@ -268,8 +270,8 @@ class GpuStream(MeshBuffers):
         margin: float,
     ) -> None:
         super().__init__(gl, vertex_capacity, triangle_capacity, columns)
-        self.source_buffer = gl.buffer(reserve=NUMBER * triangle_capacity)
-        self.command_buffer = gl.buffer(bytes(NUMBER * COMMAND_WORDS))
+        self.source_buffer = gl.buffer(reserve=NUMBER_BYTES * triangle_capacity)
+        self.command_buffer = gl.buffer(bytes(NUMBER_BYTES * COMMAND_WORDS))
         self._margin = margin
 
     def show(

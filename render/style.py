@@ -37,7 +37,7 @@ class ColourBy(Enum):
 SKIN: Colour = (0.79, 0.625, 0.545)
 FLESH: Colour = (0.60, 0.27, 0.25)  # inside of lids and mouth
 INNER_SHARE = 0.75  # of a cold albedo, on its back side
-WARM = 0.8  # from which on an albedo is that of skin
+WARM_RATIO = 0.8  # from which on an albedo is that of skin
 CLAY: Colour = (0.74, 0.74, 0.73)  # like the plain grey of the paper's pictures
 
 # Colour of a triangle whose edges have 1..6 splits in all; 0 keeps the albedo. Green to indigo,
@@ -121,7 +121,7 @@ class Style:
     @property
     def inside(self) -> Colour:
         """The albedo of the back side: red inside of lids and mouth, darker clay behind clay."""
-        warmth = min(self._warmth / WARM, 1.0)
+        warmth = min(self._warmth / WARM_RATIO, 1.0)
         red, green, blue = (
             warmth * flesh + (1.0 - warmth) * INNER_SHARE * front
             for flesh, front in zip(FLESH, self.albedo, strict=True)

@@ -19,8 +19,8 @@ from .errors import OFFSCREEN, GLError, diagnose
 from .render_target import RenderTarget
 
 Image = npt.NDArray[np.uint8]
-NEWEST = 430  # OpenGL, times 100: it has compute shaders
-OLDEST = 330  # OpenGL, times 100: all drawing needs it
+NEWEST_VERSION = 430  # OpenGL, times 100: it has compute shaders
+OLDEST_VERSION = 330  # OpenGL, times 100: all drawing needs it
 
 
 class Surface:
@@ -53,7 +53,7 @@ class Surface:
         return is_software(self.gl.info["GL_RENDERER"])
 
     def begin(self) -> None:
-        """Start a frame: empty it, and undo what a GUI may have done to the OpenGL state."""
+        """Start a frame: empty it, and undo changes of the OpenGL state by a GUI."""
         self.make_current()
         gl = self.gl
         self._collect()
@@ -212,9 +212,9 @@ def _new_context() -> moderngl.Context:
     is_linux = sys.platform.startswith("linux")
     how: dict[str, Any] = {"standalone": True, **({"backend": "egl"} if is_linux else {})}
     with contextlib.suppress(Exception):  # glcontext raises nothing better
-        return moderngl.create_context(require=NEWEST, **how)
+        return moderngl.create_context(require=NEWEST_VERSION, **how)
     try:
-        return moderngl.create_context(require=OLDEST, **how)
+        return moderngl.create_context(require=OLDEST_VERSION, **how)
     except Exception as error:
         raise diagnose(f"{OFFSCREEN} (EGL)" if is_linux else OFFSCREEN, error) from None
 

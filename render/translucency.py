@@ -13,7 +13,8 @@ from .style import Style
 
 Plane = tuple[float, float, float, float]  # (a, b, c, d): in front is a x + b y + c z + d > 0
 CUT_WIDTH = 0.008  # of the scene's radius: how thick skin looks where it is cut
-SUNK = 0.08  # of the scene's radius: as far as anything comes out of whole skin that should hide it
+# Of the scene's radius: as far as anything comes out of whole skin that should hide it.
+SUNK_DEPTH = 0.08
 # Colour as usual; the layer starts out transparent and collects premultiplied colour.
 _PREMULTIPLYING_BLEND: Any = (
     moderngl.SRC_ALPHA,

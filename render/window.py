@@ -16,7 +16,15 @@ from .compositor import Compositor, Detail
 from .errors import GLError, diagnose
 from .render_target import Rectangle, RenderTarget
 from .style import Colour
-from .surface import NEWEST, OLDEST, Image, Surface, check_size, image_of, possible_samples
+from .surface import (
+    NEWEST_VERSION,
+    OLDEST_VERSION,
+    Image,
+    Surface,
+    check_size,
+    image_of,
+    possible_samples,
+)
 
 
 class WindowSurface(Surface):
@@ -182,7 +190,7 @@ def open_window(
     with _complaints(glfw) as complaints:
         if not glfw.init():
             raise diagnose("opening a window", "; ".join(complaints))
-        for version in (NEWEST, OLDEST):
+        for version in (NEWEST_VERSION, OLDEST_VERSION):
             complaints.clear()
             _hint(glfw, is_scaled, version)
             if handle := glfw.create_window(*size, title, None, None):
@@ -196,7 +204,7 @@ def open_window(
     glfw.swap_interval(1 if visible else 0)
     try:
         loader: dict[str, Any] = {"context": _Loader(glfw)}
-        gl = moderngl.create_context(require=OLDEST, **loader)
+        gl = moderngl.create_context(require=OLDEST_VERSION, **loader)
         surface = WindowSurface(glfw, handle, gl, samples)
     except Exception as error:
         glfw.destroy_window(handle)

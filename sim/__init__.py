@@ -23,6 +23,6 @@ def create(head: Any) -> Simulation:
     """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
 
     Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze,
-    see face_model.py. Raises ValueError naming what is wrong with the head or its rig.
+    see face_model.py. Raises ValueError naming the fault of the head or its rig.
     """
     return Simulation(build_face_model(head))

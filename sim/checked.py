@@ -47,7 +47,7 @@ def numbers(what: str, given: Any, shape: Shape, wanted: str = "") -> Array:
 def vertex_numbers(
     what: str, given: Any, shape: Shape, vertex_count: int, wanted: str
 ) -> npt.NDArray[np.int64]:
-    """Numbers of vertices, a copy in rows; wanted: what they must be, in words."""
+    """Numbers of vertices, a copy in rows; wanted: the allowed values, in words."""
     array = _array(what, given, "fiub", wanted)
     is_whole = array.dtype.kind in "iu" or array.size == 0  # an empty list has no kind
     if not is_whole or not _fits(array, shape):

@@ -21,15 +21,15 @@ import numpy.typing as npt
 
 from .landmarks import Array, mouth_line, polyline_distance
 from .skull import Eyeball
-from .substep import SLIDES_PAST
+from .substep import SLIDE_DISTANCE
 from .surface import Surface
 
 LIP_EDGE = 5.0  # mm around the mouth line in which lip vertices are looked for
-OWN_SIDE = 0.1  # of the lip side field: nearer to the corner lips are one
+OWN_SIDE_LEVEL = 0.1  # of the lip side field: nearer to the corner lips are one
 PAIR_GAP = 2.0  # mm: lips further apart at rest are no pair; their red must not fold on the line
 LEAST_SEAL_AREA = 4.0  # mm2: tiny vertices of a lip edge still carry their share
 UNBROKEN_SEAL = 100.0  # x the rig's seal while nothing opens the lips: gaps below 0.1 mm
-FULLY_PRESSED = 0.25  # activity from which they overlap in full
+FULL_PRESS_ACTIVITY = 0.25  # activity from which they overlap in full
 PRESSED_OVERLAP = 1.5  # mm sealed lips overlap when muscles act: smoothing thins a folded lip
 EYE_REACH = 12.0  # mm around an eyeball in which skin is watched
 EYE_CLEARANCE = 0.3  # mm of lid thickness that stay between a vertex and the eyeball
@@ -58,7 +58,7 @@ class LipPairs(NamedTuple):
         below = self.share[:, None] * rest[a] + (1.0 - self.share)[:, None] * rest[b]
         forward = (x - rest)[self.lower, 2] - (above - below)[:, 2]
         crossing = self.least_gap - pressed - (above[:, 1] - x[self.lower, 1])
-        return float(np.where(np.abs(forward) < SLIDES_PAST, crossing, 0.0).max(initial=0.0))
+        return float(np.where(np.abs(forward) < SLIDE_DISTANCE, crossing, 0.0).max(initial=0.0))
 
 
 class Grip(NamedTuple):
@@ -74,7 +74,7 @@ class Grip(NamedTuple):
         Whole, it outdoes every muscle; it must give way early or the mouth would pop open.
         """
         stiffness = strength**5 / (1.0 - strength + 1.0 / UNBROKEN_SEAL)
-        return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / FULLY_PRESSED, 1.0))
+        return cls(stiffness, PRESSED_OVERLAP * strength * min(activity / FULL_PRESS_ACTIVITY, 1.0))
 
 
 SEALED = Grip.of(1.0, 0.0)
@@ -86,9 +86,9 @@ def pair_lips(surface: Surface, landmarks: Array, lip_side: Array, seal: float) 
     line = mouth_line(landmarks)
     at_edge = polyline_distance(x, line) < LIP_EDGE
     at_edge &= np.abs(x[:, 0] - line[2, 0]) < 0.51 * abs(line[-1, 0] - line[0, 0])
-    upper = np.flatnonzero(at_edge & (lip_side > OWN_SIDE))
+    upper = np.flatnonzero(at_edge & (lip_side > OWN_SIDE_LEVEL))
     pairs = []
-    for i in np.flatnonzero(at_edge & (lip_side < -OWN_SIDE)):
+    for i in np.flatnonzero(at_edge & (lip_side < -OWN_SIDE_LEVEL)):
         found = _upper_point(x, int(i), upper)
         if found is not None:
             pairs.append((int(i), *found))

@@ -32,7 +32,7 @@ from .rig import Rig
 
 MUSCLE_RATE = 45.0  # rad/s
 GAZE_RATE = 120.0  # rad/s: a saccade takes some 35 ms
-SETTLED = 1e-6  # a distance from the wanted value that counts as none
+SETTLED_DISTANCE = 1e-6  # a distance from the wanted value that counts as none
 SETTLED_SPEED = 1e-4  # per second: a speed that counts as rest
 SLACK = 1e-6  # beyond a limit by rounding is not an error
 
@@ -264,6 +264,6 @@ def follow(wanted, activation, speed, rate, dt):  # type: ignore[no-untyped-def]
         away = (away + slope * dt) * decay
         speed[n] = (speed[n] - rate[n] * slope * dt) * decay
         # Below a millionth a muscle is relaxed: rest must be reached, not only approached.
-        if abs(away) < SETTLED and abs(speed[n]) < SETTLED_SPEED:
+        if abs(away) < SETTLED_DISTANCE and abs(speed[n]) < SETTLED_SPEED:
             away = speed[n] = 0.0
         activation[n] = wanted[n] + away

@@ -54,12 +54,12 @@ from .tongue import Tongue, place_tongue
 
 SEAL_BROKEN_BY_JAW = 0.25  # jaw_open at which the lips no longer stick
 SEAL_LOST_BY_THRUST = 0.15  # at full jaw_forward: lips slide, or the upper turns inside out
-NECK = 45.0  # mm below the chin; the turn of the head fades evenly, or the throat turns over
-LIPS_MEET_AT = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
-LIPS_WHOLE = 7.0  # mm from the mouth line, up to which skin goes along in full
-LIPS_END = 32.0  # mm from the mouth line, from which on skin stays
+NECK_LENGTH = 45.0  # mm below the chin; the turn of the head fades evenly, or the throat turns over
+MEETING_SHARE = 0.2  # share of the jaw's motion at which both lips meet over an open jaw
+WHOLE_LIP_REACH = 7.0  # mm from the mouth line, up to which skin goes along in full
+LIP_END_REACH = 32.0  # mm from the mouth line, from which on skin stays
 LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
-LARGEST = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
+LARGEST_COORDINATE = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
 STEP_MARGIN = 1.0 + ROUNDING  # a substep may be this much longer than LONGEST_SUBSTEP
 
 
@@ -192,7 +192,7 @@ def _masses(surface: Surface, springs: TissueSprings, edges: EdgeSprings, greate
 
 
 def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
-    """Checked copies of the vertices and faces of a head; `what` names it in errors."""
+    """Checked copies of the vertices and faces of a head; `what`: its name in errors."""
     for name in ("vertices", "faces"):
         if not hasattr(given, name):
             raise ValueError(
@@ -201,9 +201,9 @@ def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
             )
     wanted = "(V, 3) with V > 0"
     vertices = checked.numbers(f"{what}.vertices", given.vertices, (None, 3), wanted)
-    if (np.abs(vertices) > LARGEST).any():
+    if (np.abs(vertices) > LARGEST_COORDINATE).any():
         raise ValueError(
-            f"{what}.vertices: some are beyond {LARGEST:g}; take another unit of length"
+            f"{what}.vertices: some are beyond {LARGEST_COORDINATE:g}; take another unit of length"
         )
     if len(vertices) == 0:
         raise ValueError(f"{what}.vertices: shape was {vertices.shape}, must be {wanted}")
@@ -282,7 +282,7 @@ def _turning_share(surface: Surface, landmarks: Array | None) -> Array:
     if landmarks is None:
         return np.ones((surface.vertex_count, 1))
     below = landmarks[8, 1] - surface.positions[:, 1]
-    share: Array = np.clip(1.0 - below / NECK, 0.0, 1.0)[:, None]
+    share: Array = np.clip(1.0 - below / NECK_LENGTH, 0.0, 1.0)[:, None]
     return share
 
 
@@ -295,8 +295,8 @@ def _closed_weight(surface: Surface, landmarks: Array | None, weight: Array) -> 
     if np.linalg.norm(upper - lower, axis=1).max() > PAIR_GAP:  # open at rest
         lips = [polyline_distance(surface.positions, lip) for lip in (upper, lower)]
         distance = np.minimum(*lips)
-    reach = (LIPS_END - distance) / (LIPS_END - LIPS_WHOLE)
-    return weight + smoothstep(reach) * (LIPS_MEET_AT - weight)
+    reach = (LIP_END_REACH - distance) / (LIP_END_REACH - WHOLE_LIP_REACH)
+    return weight + smoothstep(reach) * (MEETING_SHARE - weight)
 
 
 def _controls(rig: Rig, skull: Skull, is_face: bool) -> tuple[Control, ...]:

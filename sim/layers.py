@@ -37,7 +37,7 @@ much of that one's it makes good, and counts as value / the other's value, at mo
     at_least = { jaw_open = 0.22 }  # lips need room for a funnel: nothing where the jaw is open
 
 How layers combine: everything adds up, in any order of setting. A muscle's value is its own plus,
-for each control above it, that control's value times its share; then at least the greatest of what
+for each control above it, that control's value times its share; then at least the greatest floor of
 rows make sure of; cut off at the muscle's limits once, at the end.
 
 Source: Ekman, Friesen, Hager 2002, "Facial Action Coding System" (its action units); Apple,

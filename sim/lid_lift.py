@@ -21,9 +21,9 @@ from .skull import Eyeball
 
 CORNEA_WIDTH = 0.49  # radii of the ball: half its width
 CORNEA_RISE = 0.085  # radii of the ball: its height above it
-STEPS = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
-PASSES = 30  # until corners that triangles share are out of the way for all of them
-NEAR_ENOUGH = 1e-3  # mm
+EDGE_STEPS = 6  # parts of a triangle's edges at whose ends it is held against the eyeball
+MOST_PASSES = 30  # until corners that triangles share are out of the way for all of them
+LIFT_TOLERANCE = 1e-3  # mm
 LEAST_SHARE = 0.5  # that corners on the upper lid have in a point, if they are to move for it
 
 
@@ -36,7 +36,7 @@ def lift_off(
     rest may stay in it. moves: 1 for those of the upper lid, else 0, shape (V,).
     """
     away = x - ball.centre
-    ways = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), NEAR_ENOUGH)
+    ways = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), LIFT_TOLERANCE)
     faces = faces[moves[faces].any(axis=1)]
     outward = (cross_products(away, faces) * away[faces].sum(axis=1)).sum(axis=1)
     faces = faces[outward > 0.0]  # not the inner side of a lid
@@ -45,12 +45,12 @@ def lift_off(
     before = np.linalg.norm(shares @ (rest - ball.centre)[faces], axis=2) - ball.radius
     kept = np.where(before < 0.0, before, EYE_CLEARANCE)
     kept[moves[faces] @ shares.T < LEAST_SHARE] = -np.inf
-    for _ in range(PASSES):
+    for _ in range(MOST_PASSES):
         points = shares @ (away + lift[:, None] * ways)[faces]  # (F, S, 3)
         deep = _reach(points, ball.radius) + kept - np.linalg.norm(points, axis=2)
         share = shares[deep.argmax(axis=1)] * moves[faces]
-        push = deep.max(axis=1, initial=0.0) / np.maximum((share**2).sum(axis=1), NEAR_ENOUGH)
-        if push.max(initial=0.0) < NEAR_ENOUGH:
+        push = deep.max(axis=1, initial=0.0) / np.maximum((share**2).sum(axis=1), LIFT_TOLERANCE)
+        if push.max(initial=0.0) < LIFT_TOLERANCE:
             break
         further = np.zeros(len(x))
         np.maximum.at(further, faces, share * push[:, None])
@@ -60,13 +60,14 @@ def lift_off(
 
 def _shares() -> Array:
     """Shares of the corners in points all over a triangle, shape (S, 3)."""
-    ways = [(i, j, STEPS - i - j) for i in range(STEPS + 1) for j in range(STEPS + 1 - i)]
-    return np.array(ways, np.float64) / STEPS
+    n = EDGE_STEPS
+    ways = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
+    return np.array(ways, np.float64) / n
 
 
 def _reach(points: Array, radius: float) -> Array:
     """How far from its centre an eyeball's surface is towards `points` (..., 3); it looks ahead."""
-    ahead = points[..., 2] / np.maximum(np.linalg.norm(points, axis=-1), NEAR_ENOUGH)
+    ahead = points[..., 2] / np.maximum(np.linalg.norm(points, axis=-1), LIFT_TOLERANCE)
     beside = np.sqrt(np.maximum(1.0 - ahead**2, 0.0)) / CORNEA_WIDTH
     rise = CORNEA_RISE * np.maximum(1.0 - beside**2, 0.0) ** 1.5
     reach: Array = radius * (1.0 + np.where(ahead > 0.0, rise, 0.0))

@@ -45,14 +45,15 @@ MARGIN_REACH = 3.5  # mm from a lid's front edge that are its margin
 OVERLAP = 0.11  # rad (1.4 mm) by which closed lids are pressed into each other
 EDGE = 1e-3  # rad
 OFF_EDGE = 0.3  # 1/mm nearer to or farther from the eyeball than the landmarks: no front edge
-PROUD = 0.7  # mm that the closed upper lid lies in front of the lower one
+PROUD_HEIGHT = 0.7  # mm that the closed upper lid lies in front of the lower one
 LEAST_OPENING = 0.05  # rad: at the corners lids do not overlap
 WIDE_OPENING = 0.3  # rad: from here on they do in full
 SLIDE_REACH = 1.9  # x the reach of the turn: skin around the lid slides along with it
 SLIDE_ENDS = (0.1, 1.7)  # x the slide at the outer and the inner corner
-AT_CORNERS = 0.5  # of the motion of the open lid is there: their ligaments give
-STEEPEST = 0.45  # of its way up that the fold goes back: it slides on the orbit, not on the eyeball
-FOLD_FIRM = 0.12  # rad of turn from which the fold is held in full
+CORNER_SHARE = 0.5  # of the motion of the open lid is there: their ligaments give
+# Of its way up that the fold goes back: it slides on the orbit, not on the eyeball.
+STEEPEST_SLOPE = 0.45
+FIRM_FOLD_TURN = 0.12  # rad of turn from which the fold is held in full
 LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 
 
@@ -256,11 +257,11 @@ def _one_eye(
         margin = near[upper] & ((within < EDGE) if upper else (within > -EDGE))
         closing[margin] = (meeting - angle)[margin]
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
-    at_middle = AT_CORNERS + (1.0 - AT_CORNERS) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
+    at_middle = CORNER_SHARE + (1.0 - CORNER_SHARE) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
     fold = before * (folds[True] + folds[False]) * at_middle
     weight = before * weight
     closing = before * closing
-    sink = np.interp(column, where, depths[True] - depths[False]) - PROUD
+    sink = np.interp(column, where, depths[True] - depths[False]) - PROUD_HEIGHT
     sink *= (side > 0.0) * weight
     lid = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > LEAST_TURN)
     overlap = (
@@ -337,7 +338,7 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             angle -= close**3 * lids.overlap[row]  # late: half a blink is half closed
         free *= 1.0 - close
         angle += free
-        state.hold[i] += lids.fold_hold[row] * min(abs(free) / FOLD_FIRM, 1.0)
+        state.hold[i] += lids.fold_hold[row] * min(abs(free) / FIRM_FOLD_TURN, 1.0)
         state.hold[i] += lids.shut_hold[row] * close
         aside = gaze[e, 0] * lids.inward[e, 0] * lids.radii[e]
         inward = lids.along[row] * (inward + lids.sideways_follow * aside)
@@ -353,7 +354,7 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             normal_high += normals[i, k] * up[e, k]
             normal_far += normals[i, k] * forward[e, k]
         if free > 0.0:
-            high = min(high, STEEPEST * far)
+            high = min(high, STEEPEST_SLOPE * far)
         nearer = close * lids.sink[row] / max(np.sqrt(high * high + far * far), 1.0)
         for k in range(3):
             u = up[e, k]

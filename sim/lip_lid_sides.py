@@ -25,7 +25,7 @@ from .surface import Surface
 LIP_REACH = 20.0  # mm from the middle of a lip within which skin belongs to it
 CORNER_FADE = 10.0  # mm from the mouth corner where a lip moves fully on its own
 LID_REACH = 14.0  # mm from the lid landmarks
-CERTAIN = 3.0  # mm by which one lid must be nearer; less only happens at the corners
+CERTAIN_DISTANCE = 3.0  # mm by which one lid must be nearer; less only happens at the corners
 
 
 def lip_side(surface: Surface, landmarks: Array) -> Array:
@@ -51,9 +51,9 @@ def lid_side(surface: Surface, landmarks: Array, side: Side) -> Array:
     lower = _distance(surface, landmarks, (lower_outer, lower_inner))
     near = np.minimum(upper, lower) < LID_REACH
     balance = (lower - upper) / np.maximum(
-        np.abs(lower - upper).max(where=near, initial=CERTAIN), CERTAIN
+        np.abs(lower - upper).max(where=near, initial=CERTAIN_DISTANCE), CERTAIN_DISTANCE
     )
-    ramp = np.sign(balance) * smoothstep(np.abs(lower - upper) / CERTAIN)
+    ramp = np.sign(balance) * smoothstep(np.abs(lower - upper) / CERTAIN_DISTANCE)
     vertices = np.concatenate([np.flatnonzero(near), surface.nearest(landmarks[[outer, inner]])])
     values = np.concatenate([ramp[near], [0.0, 0.0]])
     return np.clip(surface.harmonic(vertices, values), -1.0, 1.0)

@@ -3,7 +3,7 @@
 The skin under the finger shall lie at its targets when the finger has gone, with few controls at
 work and the rest of the face left alone. Over the controls u, within their limits, minimise
 
-    sum_i s_i |A (t_i - p_i)|^2 + REST sum_j a_j |p_j - p_j(0)|^2
+    sum_i s_i |A (t_i - p_i)|^2 + REST_WEIGHT sum_j a_j |p_j - p_j(0)|^2
         + d^2 sum_c (PRICE |u_c - u_c(0)| + EFFORT (u_c - u_c(0))^2)
 
 i runs over the vertices under the finger, with shares s that add up to 1 and targets t, drawn by d
@@ -41,22 +41,22 @@ from .landmarks import Array
 
 STEP = 1.0 / 60.0  # [s] of a clone
 STEPS_TO_REST = 6  # of a clone after a small change; less than a twentieth of it is left
-MOST = 16  # controls that are looked at: those that move the finger's skin most
-MEANT = 0.1  # of how far a control moves any skin: one that moves the finger's less is not meant
-PROBE = 0.25  # of a control's range, to measure its slope
-ALONG = 0.05  # weight of a distance along the line of sight
-REST = 0.0051  # weight of the rest of the face, against an equal area under the finger
+MOST_CANDIDATES = 16  # controls that are looked at: those that move the finger's skin most
+LEAST_MOTION = 0.1  # of a control's largest motion of skin: with less at the finger it is not used
+PROBE_SHARE = 0.25  # of a control's range, to measure its slope
+SIGHT_WEIGHT = 0.05  # weight of a distance along the line of sight
+REST_WEIGHT = 0.0051  # weight of the rest of the face, against an equal area under the finger
 PRICE = 0.0041  # of a control at its limit, against skin that does not come along at all
 EFFORT = 0.034  # the same, as the square of its share: two that do the same share it
-FEW = 3  # controls at most are used; and so many strongest decide how far targets can be
-SWEEPS = 60  # through all controls at most
-STILL = 1e-4  # a change that counts as none, between sweeps
-MIDDLE = 6  # power of the firmness, for the skin next to the mouse
-ROUNDS = 12  # of Gauss and Newton at most
-NEAR = 0.01  # a change that counts as none, between rounds
-WORTH = 0.015  # of the squared distances: a control that mends less beside others is not used
-ALIKE = 0.2  # of that: whose worth differs by less come together, as both sides of a muscle
-MEAGRE = 0.25  # of the squared distances: an answer that mends less is no answer
+MOST_CONTROLS = 3  # that are used; and so many strongest decide how far targets can be
+MOST_SWEEPS = 60  # through all controls at most
+SWEEP_TOLERANCE = 1e-4  # a change that counts as none, between sweeps
+MIDDLE_POWER = 6  # power of the firmness, for the skin next to the mouse
+MOST_ROUNDS = 12  # of Gauss and Newton at most
+ROUND_TOLERANCE = 0.01  # a change that counts as none, between rounds
+LEAST_WORTH = 0.015  # of the squared distances: a control that mends less beside others is not used
+ALIKE_SHARE = 0.2  # of that: whose worth differs by less come together, as both sides of a muscle
+LEAST_GAIN = 0.25  # of the squared distances: an answer that mends less is no answer
 Names = tuple[str, ...]
 
 
@@ -84,9 +84,9 @@ class Pull:
         self._vertices = np.asarray(vertices, np.int64)
         share = np.asarray(firmness, np.float64)
         self._share = share / share.sum()
-        self._middle = share**MIDDLE / (share**MIDDLE).sum()
+        self._middle = share**MIDDLE_POWER / (share**MIDDLE_POWER).sum()
         axis = np.asarray(sight, np.float64) / np.linalg.norm(sight)
-        self._seen = np.eye(3) - (1.0 - ALONG) * np.outer(axis, axis)
+        self._seen = np.eye(3) - (1.0 - SIGHT_WEIGHT) * np.outer(axis, axis)
         _rest(self._base, {})
         self._home = self._base.clone()
         self._from = self._base.positions.copy()
@@ -112,7 +112,8 @@ class Pull:
             self._slope = np.zeros((len(firsts), *self._from.shape))
             self._measure(np.arange(len(firsts)))
             here = np.sqrt([self._square(slope[self._vertices]) for slope in self._slope])
-            is_meant = here > MEANT * np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
+            largest = np.linalg.norm(self._slope, axis=2).max(axis=1, initial=0.0)
+            is_meant = here > LEAST_MOTION * largest
             self.candidates = [self.candidates[n] for n in np.flatnonzero(is_meant)]
             self._low = self._low[is_meant]
             self._high = self._high[is_meant]
@@ -125,13 +126,14 @@ class Pull:
     def changes(self) -> dict[Names, float]:
         """The new values of controls that are not where they were, greatest change first."""
         moved = np.abs(self._value - self._start) * self.mends
-        order = sorted(np.flatnonzero(moved > NEAR), key=lambda n: -round(float(moved[n]), 3))
+        changed = np.flatnonzero(moved > ROUND_TOLERANCE)
+        order = sorted(changed, key=lambda n: -round(float(moved[n]), 3))
         return {self.candidates[n]: float(self._value[n]) for n in order}
 
     @property
     def mends(self) -> bool:
         """Whether the answer comes nearer by more than a trace."""
-        return self._off(self._base.positions) < (1.0 - MEAGRE) * self._drawn
+        return self._off(self._base.positions) < (1.0 - LEAST_GAIN) * self._drawn
 
     @property
     def short(self) -> float:
@@ -155,12 +157,12 @@ class Pull:
         needed = self._more(np.zeros(len(self._start), np.bool_))
         while (more := self._more(needed)).sum() > needed.sum():
             needed = more
-        for _ in range(ROUNDS):
+        for _ in range(MOST_ROUNDS):
             before = self._value
             self._value = before + self._system().least(needed)
             values = zip(self._value.tolist(), self.candidates, strict=True)
             _rest(self._base, {name: each for each, names in values for name in names})
-            if np.abs(self._value - before).max(initial=0.0) < NEAR:
+            if np.abs(self._value - before).max(initial=0.0) < ROUND_TOLERANCE:
                 break
             self._aims = self._aims + self._left(goal, self._base.positions)
             self._measure(np.flatnonzero(self._value != self._start))
@@ -173,7 +175,7 @@ class Pull:
         seen = (self._share[:, None] * drawn) @ self._seen
         along = ((self._first[:, self._vertices] @ self._seen) * seen).sum(axis=(1, 2))
         room = np.where(along > 0.0, self._high, self._low) - self._start
-        reach = float(np.sort(along * room)[-FEW:].sum())
+        reach = float(np.sort(along * room)[-MOST_CONTROLS:].sum())
         drawn *= min(reach / max(self._square(drawn), 1e-12), 1.0)
         self._aims = self._from[self._vertices] + drawn
         self._drawn = max(self._off(self._from), 1e-12)
@@ -186,7 +188,8 @@ class Pull:
             self._probe.jump(self._towards(names, 1.0))
             self._probe.step(STEP)
             moved.append(self._square((self._probe.positions - self._from)[self._vertices]))
-        least = 0.99 * sorted([0.0, *moved])[-MOST:][0]  # of two that are alike none stays away
+        # Of two that are alike none stays away.
+        least = 0.99 * sorted([0.0, *moved])[-MOST_CANDIDATES:][0]
         return [c for c, far in zip(candidates, moved, strict=True) if far > least]
 
     def _square(self, by: Array) -> float:
@@ -208,24 +211,24 @@ class Pull:
     def _measure(self, which: npt.ArrayLike) -> None:
         """The slopes of the skin in some controls, by number, here."""
         for n in np.asarray(which, np.int64):
-            moved = self._towards(self.candidates[n], PROBE)
+            moved = self._towards(self.candidates[n], PROBE_SHARE)
             self._probe.copy_from(self._base)
             _rest(self._probe, moved)
             by = next(iter(moved.values())) - self._value[n]
             self._slope[n] = (self._probe.positions - self._base.positions) / by
 
     def _more(self, needed: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-        """These controls and the one that mends most beside them, by slopes here; at most FEW."""
-        if needed.sum() >= FEW:
+        """These controls and the one that mends most beside them, by slopes here."""
+        if needed.sum() >= MOST_CONTROLS:
             return needed
         system = self._system()
-        worth = WORTH * self._drawn
+        worth = LEAST_WORTH * self._drawn
         costs = np.array([system.cost(needed | one) for one in np.eye(len(needed), dtype=bool)])
         best = needed | (np.arange(len(costs)) == costs.argmin())
-        alike = needed | (costs <= costs.min() + ALIKE * worth)
+        alike = needed | (costs <= costs.min() + ALIKE_SHARE * worth)
         if alike.sum() > best.sum() and system.cost(alike) < costs.min() - worth:
             best = alike
-        is_worth_it = best.sum() <= FEW and costs.min() < system.cost(needed) - worth
+        is_worth_it = best.sum() <= MOST_CONTROLS and costs.min() < system.cost(needed) - worth
         return best if is_worth_it else needed
 
     def _system(self) -> _Lasso:
@@ -236,7 +239,7 @@ class Pull:
         under = ((self._slope[:, self._vertices] @ self._seen) * root).reshape(count, -1)
         off = (((self._aims - now[self._vertices]) @ self._seen) * root).ravel()
         slope = self._slope.reshape(count, -1)
-        others = slope * np.repeat(REST * self._area, 3)
+        others = slope * np.repeat(REST_WEIGHT * self._area, 3)
         effort = EFFORT * self._drawn
         changed = self._value - self._start
         return _Lasso(
@@ -272,7 +275,7 @@ class _Lasso(NamedTuple):
         downhill = self.right.copy()
         downhill += self.gram[:, ~usable] @ total[~usable]
         total[~usable] = 0.0
-        for _ in range(SWEEPS):
+        for _ in range(MOST_SWEEPS):
             farthest = 0.0
             for c in np.flatnonzero(usable):
                 slope = self.gram[c, c]
@@ -283,7 +286,7 @@ class _Lasso(NamedTuple):
                     total[c] += by
                     downhill -= by * self.gram[c]
                     farthest = max(farthest, abs(by))
-            if farthest < STILL:
+            if farthest < SWEEP_TOLERANCE:
                 break
         return total - self.changed
 

@@ -30,7 +30,7 @@ EYE_SETBACK = 5.5  # mm from the line of the eye corners back to the centre (fit
 NECK_BELOW_CHIN = 45.0  # mm below the chin landmark the skin no longer belongs to the mandible
 BEHIND_EARS = 20.0  # mm behind the ear landmarks likewise
 HEAD_CONTROLS = ("head_pitch", "head_yaw", "head_roll")
-BACKWARD = 0.15  # of the way forward: nobody draws the jaw back by more than two millimetres
+BACKWARD_SHARE = 0.15  # of the way forward: nobody draws the jaw back by more than two millimetres
 HEAD_RATE = 30.0  # rad/s: chosen so that nods of 2 Hz keep 85 % of their size, 63 ms late
 LATERAL = (1.0, 0.0, 0.0)
 UP = (0.0, 1.0, 0.0)
@@ -108,7 +108,7 @@ class Skull:
         """The mandible for jaw_open (0..1), jaw_forward and jaw_sideways (-1..1)."""
         ways = self.jaw.opening_glide, self.jaw.forward_glide, self.jaw.sideways_glide
         angles = math.radians(self.jaw.opening_deg), math.radians(self.jaw.sideways_deg)
-        values = opening, max(forward, BACKWARD * forward), sideways
+        values = opening, max(forward, BACKWARD_SHARE * forward), sideways
         return RigidMotion.of(*move_mandible(self.condyles, ways, angles, values))
 
     def eye_motion(self, eyeball: Eyeball, horizontal: float, vertical: float) -> RigidMotion:

@@ -34,10 +34,10 @@ LONGEST_TICK = 1.0 / 60.0  # s: half as long is no more exact than the middle of
 LONGEST_SUBSTEP = 1.0 / 300.0
 ROUNDING = 0.02  # parts: 1/60 s given as 0.0167 is still one tick, not two
 LIP_PASSES = 5  # averaged projections need a second pass where lips are pressed hard
-FASTEST = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may
-SHORTEST = 1e-6  # mm: the direction of a shorter edge is noise
+LARGEST_SPEED = 5000.0  # mm/s per axis; a face never reaches it, a vertex thrown by the caller may
+SHORTEST_EDGE = 1e-6  # mm: the direction of a shorter edge is noise
 SEAL_AXES = (0.5, 1.0, 0.5)  # the seal's stiffness sideways, up and down, forward (last fitted)
-SLIDES_PAST = 3.0  # mm the lower lip may come forward, or roll in, before it passes the upper one
+SLIDE_DISTANCE = 3.0  # mm the lower lip comes forward, or rolls in, before it passes the upper one
 SLIDE_FADE = 3.0  # mm over which it then does
 TOOTH_FADE = 3.0  # mm above and below the teeth over which they cease to be felt
 LEAST_SHARE = 0.1  # of an arch: nearer to its axis the way out is uncertain
@@ -142,7 +142,7 @@ def edge_forces(state, springs):  # type: ignore[no-untyped-def]
         dz = x[j, 2] - x[i, 2]
         tension[e] = dx * dx + dy * dy + dz * dz
     for e in range(len(edges)):
-        length = max(np.sqrt(tension[e]), SHORTEST)
+        length = max(np.sqrt(tension[e]), SHORTEST_EDGE)
         extension = length - rest_length[e]
         beyond = max(extension - strain_limit * rest_length[e], 0.0)
         tension[e] = stiffness[e] * (extension + extra * beyond) / length
@@ -235,7 +235,7 @@ def move(state, h):  # type: ignore[no-untyped-def]
     v = state.v
     for i in range(len(x)):
         for k in range(3):
-            v[i, k] = min(max(v[i, k], -FASTEST), FASTEST)
+            v[i, k] = min(max(v[i, k], -LARGEST_SPEED), LARGEST_SPEED)
             x[i, k] += h * v[i, k]
 
 
@@ -260,7 +260,7 @@ def keep_lips_apart(state, skin, overlap):  # type: ignore[no-untyped-def]
             continue
         forward = x[i, 2] - rest[i, 2]
         forward -= w * (x[a, 2] - rest[a, 2]) + (1.0 - w) * (x[b, 2] - rest[b, 2])
-        full = min(max(1.0 - (abs(forward) - SLIDES_PAST) / SLIDE_FADE, 0.0), 1.0)
+        full = min(max(1.0 - (abs(forward) - SLIDE_DISTANCE) / SLIDE_FADE, 0.0), 1.0)
         if full == 0.0:
             continue
         if not crossed:

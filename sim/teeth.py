@@ -22,7 +22,7 @@ from .landmarks import Array
 from .skull import RigidMotion
 from .surface import Surface
 
-REACH = 18.0  # mm around an arch in which skin is watched
+TEETH_REACH = 18.0  # mm around an arch in which skin is watched
 LIP_THICKNESS = 0.5  # mm that stay between the skin's inner side and a tooth
 BONES = ("cranium", "mandible")
 
@@ -64,8 +64,8 @@ def watch_teeth(parts: Any, surface: Surface, space: FaceSpace) -> Teeth:
             arch = _arch(space.to_standard(found))
             inside = _inside(surface.positions, arch)
             off = surface.positions - (0.0, 0.0, arch[2])
-            near = inside < 1.0 + REACH / min(arch[0], arch[1])
-            near &= (off[:, 1] > arch[3] - REACH) & (off[:, 1] < arch[4] + REACH)
+            near = inside < 1.0 + TEETH_REACH / min(arch[0], arch[1])
+            near &= (off[:, 1] > arch[3] - TEETH_REACH) & (off[:, 1] < arch[4] + TEETH_REACH)
             near &= off[:, 2] > 0.0
             vertices = np.flatnonzero(near)
             rows.append((vertices, part.bone == "mandible", arch, inside[vertices]))

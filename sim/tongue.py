@@ -33,14 +33,15 @@ LIPS = (62, 66, 57, 65, 67)  # landmarks: upper; middle, lower edge and both sid
 SAMPLES = 65  # points of the spine
 DEGREE = 4  # of the polynomial that is the spine at rest
 SLICES = 24  # in which its thickness is measured
-SHORTEST = 5.0  # mm: a shorter tongue cannot bend
+LEAST_LENGTH = 5.0  # mm: a shorter tongue cannot bend
 INCISORS = 5.0  # mm beside the middle: the incisors' edges
 ROOT_FORWARD = 10.0  # mm that the root comes forward
 BODY = 5.0, 4.0  # mm that its middle comes forward and up
-BEHIND = 10.0  # mm behind the lower incisors' edges, where the path over them begins
-RISING = 0.25  # of tongue_out, by which the tip has risen from behind the incisors onto the path
-FILLED = 0.8  # of the room between teeth and lips: thickness of the tongue there
-THICKEST = 8.5  # mm: its thickness there at most
+PATH_SETBACK = 10.0  # mm behind the lower incisors' edges, where the path over them begins
+# Of tongue_out, by which the tip has risen from behind the incisors onto the path.
+RISE_SHARE = 0.25
+FILLED_SHARE = 0.8  # of the room between teeth and lips: thickness of the tongue there
+MOST_THICKNESS = 8.5  # mm: its thickness there at most
 LEAST_ROOM = 1.0  # mm between teeth and lips: with less the tongue stays in
 FREE_ROOM = 3.5  # mm between teeth and lips: with more the tongue comes out as far as it is set
 CLEARANCE = 0.6  # mm above teeth and lip
@@ -48,10 +49,10 @@ LIP_FRONT = 4.2  # mm that the lip's most forward skin is in front of its landma
 OVERHANG = 4.0  # mm that the tip is in front of the lip at the end
 DROP = 9.0  # mm that the tip is below the edge of the lip at the end
 PALATE = (5.0, -6.0)  # mm up and forward from the upper incisors' edges: where a risen tip is
-FARTHEST_UP = 24.0  # mm that the tip rises
-SUNK = 0.25  # of the way to where it lies on the lip
-FRONT = 0.75  # of the spine that rises with the tip
-THINNEST = 0.7  # of its width and height
+HIGHEST_RISE = 24.0  # mm that the tip rises
+SUNK_SHARE = 0.25  # of the way to where it lies on the lip
+FRONT_SHARE = 0.75  # of the spine that rises with the tip
+LEAST_WIDTH_SHARE = 0.7  # of its width and height
 
 
 @dataclass(frozen=True)
@@ -76,23 +77,24 @@ class Tongue:
         upper_edge = (self.upper_edge - mandible.shift) @ mandible.rotation
         room = min(lips[0, 1], upper_edge[1]) - max(lips[1, 1], self.lower_edge[1])
         out *= float(np.clip((room - LEAST_ROOM) / (FREE_ROOM - LEAST_ROOM), 0.0, 1.0))
-        thickness = float(np.clip(FILLED * room, LEAST_ROOM, THICKEST))
-        risen = float(smoothstep(np.array(out / RISING)))
+        thickness = float(np.clip(FILLED_SHARE * room, LEAST_ROOM, MOST_THICKNESS))
+        risen = float(smoothstep(np.array(out / RISE_SHARE)))
         spine = self.spine + risen * (self._on_path(out, lips, thickness) - self.spine)
         tip_up = upper_edge[[2, 1]] + (PALATE[1], PALATE[0]) - self.spine[0]
-        tip_up *= min(1.0, FARTHEST_UP / float(np.linalg.norm(tip_up)))
+        tip_up *= min(1.0, HIGHEST_RISE / float(np.linalg.norm(tip_up)))
         place = np.linspace(0.0, 1.0, SAMPLES)
-        spine += up * (1.0 - risen) * np.maximum(1.0 - place / FRONT, 0.0)[:, None] ** 2 * tip_up
+        falloff = np.maximum(1.0 - place / FRONT_SHARE, 0.0)[:, None] ** 2
+        spine += up * (1.0 - risen) * falloff * tip_up
         # Flat where it passes between the teeth.
-        between = (spine[:, 0] - self.lower_edge[2] + 2.0 * BEHIND) / (1.5 * BEHIND)
+        between = (spine[:, 0] - self.lower_edge[2] + 2.0 * PATH_SETBACK) / (1.5 * PATH_SETBACK)
         flat = risen * smoothstep(between)
         height = 1.0 + flat * (np.minimum(0.5 * thickness / self.half, 1.0) - 1.0)
-        slender = np.clip(np.sqrt(_length(self.spine) / _length(spine)), THINNEST, 1.0)
+        slender = np.clip(np.sqrt(_length(self.spine) / _length(spine)), LEAST_WIDTH_SHARE, 1.0)
         turn = _direction(spine) - _direction(self.spine)
         # The thin tip hangs lower than the middle of the thick rest.
-        sunk = SUNK * risen * np.maximum(0.5 * thickness - self.half, 0.0)
+        sunk = SUNK_SHARE * risen * np.maximum(0.5 * thickness - self.half, 0.0)
         # The lower lip is lowest in its middle: the tongue lies in it.
-        over_lip = smoothstep((spine[:, 0] - self.lower_edge[2]) / BEHIND)
+        over_lip = smoothstep((spine[:, 0] - self.lower_edge[2]) / PATH_SETBACK)
         rise = max(float(lips[3:, 1].mean()) - lips[1, 1], 0.0)
         hollow = risen * over_lip * rise / max(abs(lips[3, 0] - lips[4, 0]) / 2.0, 1.0) ** 2
 
@@ -116,7 +118,7 @@ class Tongue:
         path = np.array([
             self.spine[-1] + (ROOT_FORWARD, 0.0),
             self.spine[SAMPLES // 2] + BODY,
-            self.lower_edge[[2, 1]] + (-BEHIND, above),
+            self.lower_edge[[2, 1]] + (-PATH_SETBACK, above),
             (middle[2] - 1.0, over_lip),
             (front + above + OVERHANG, low[1] - DROP),
         ])  # fmt: skip
@@ -147,7 +149,7 @@ def place_tongue(
     rest, lower, upper = (space.to_standard(found[name]) for name in PARTS)
     tip = rest[:, 2].max()
     root = rest[:, 2].min()
-    if len(rest) < SLICES or tip - root < SHORTEST:
+    if len(rest) < SLICES or tip - root < LEAST_LENGTH:
         return None
     along = (tip - rest[:, 2]) / (tip - root)
     place = np.linspace(0.0, 1.0, SAMPLES)

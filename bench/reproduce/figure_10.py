@@ -28,7 +28,7 @@ from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table
 from ..subjects import SETTLE, Points, fine_simulation, settled_positions
 from .experiments import Outcome
 
-SEEN = 8.0  # levels of 255: a change that is seen
+SEEN_CHANGE = 8.0  # levels of 255: a change that is seen
 LEVEL = 2  # of the finer head: 16 times the triangles
 FINER = 2  # pixels are drawn so many times as fine
 SMOOTH = replace(GOURAUD, albedo=render.SKIN)
@@ -114,7 +114,7 @@ def outcome(size: tuple[int, int] = (330, 250)) -> Outcome:
         truth = cells[-1]
         static = named[STATIC.title]
         refined = named[CUBIC.title]
-        changed.append(100.0 * (refined.off(static) > SEEN).mean())
+        changed.append(100.0 * (refined.off(static) > SEEN_CHANGE).mean())
         left.append(refined.rms(truth) / static.rms(truth))
         outline.append(refined.wrong(truth).sum() / static.wrong(truth).sum())
         smooth = [

@@ -27,8 +27,9 @@ from .experiments import Outcome
 Points = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int32]
 
-BENT = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
-ALONG = 0.4  # of the curvature across, at most: a triangle that bends along, too, is in a dome
+BENT_ANGLE = 0.2  # [rad] that the normal turns across a triangle of a fold, at least
+# Of the curvature across, at most: a triangle that bends along, too, is in a dome.
+ALONG_SHARE = 0.4
 RED = (0.85, 0.1, 0.1)
 WIRE = replace(FLAT, wireframe=True, wire_opacity=0.55)
 LIFT = 0.1  # mean edges that lines float over the surface
@@ -125,7 +126,7 @@ def find_folds(faces: Faces, positions: Points) -> tuple[Points, npt.NDArray[np.
     least = np.abs(values).argmin(axis=1)
     directions = (axes @ vectors[np.arange(len(faces)), :, least][..., None])[..., 0]
     low, high = np.sort(np.abs(values), axis=1).T
-    return directions, (high * np.sqrt(2.0 * areas) > BENT) & (low < ALONG * high)
+    return directions, (high * np.sqrt(2.0 * areas) > BENT_ANGLE) & (low < ALONG_SHARE * high)
 
 
 def _shapes(corners: Points, directions: Points) -> Shapes:

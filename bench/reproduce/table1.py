@@ -37,9 +37,9 @@ Points = npt.NDArray[np.float64]
 
 FRAMES_PER_SECOND = 30.0
 SIZE = (1280, 720)  # [pixels] of the picture
-SMALL = (64, 36)  # where pixels cost next to nothing
-QUICK = 10  # rounds of a way that draws nothing, for one of the others
-DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL))
+SMALL_SIZE = (64, 36)  # where pixels cost next to nothing
+QUICK_ROUNDS = 10  # rounds of a way that draws nothing, for one of the others
+DRAWN, DRAWN_SMALL = (f"all of it, {width}x{height}" for width, height in (SIZE, SMALL_SIZE))
 ALONE = "refinement alone"
 WAYS = (DRAWN, DRAWN_SMALL, ALONE)
 """The stages that are timed, from most to least."""
@@ -90,10 +90,10 @@ def _measured(scene: Scene, rounds: int) -> list[Row]:
         return interleaved([partial(work, static), partial(work, dynamic)], rounds)
 
     seconds = {}
-    for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL)):
+    for way, size in ((DRAWN, SIZE), (DRAWN_SMALL, SMALL_SIZE)):
         with Canvas(size) as canvas:
             seconds[way] = timed(partial(draw, canvas), rounds)
-    seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), QUICK * rounds)
+    seconds[ALONE] = timed(lambda refiner: refiner.refine(positions), QUICK_ROUNDS * rounds)
     return [Row.of(f"{scene.name}, {way}", len(scene.faces), count, seconds[way]) for way in WAYS]
 
 
@@ -115,7 +115,7 @@ def _fullest_frame(scene: Scene, refiner: refine.Refiner) -> tuple[Points, int]:
 
 def outcome(*, rounds: int) -> Outcome:
     """Measure our rows for face and plane, beside the paper's."""
-    with Canvas(SMALL) as canvas:
+    with Canvas(SMALL_SIZE) as canvas:
         renderer = canvas.surface.gl.info["GL_RENDERER"]
     scenes: tuple[Scene, ...] = (FaceScene(), PlaneScene())
     measured = {scene.name: _measured(scene, rounds) for scene in scenes}

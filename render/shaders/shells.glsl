@@ -84,7 +84,7 @@ void main() {
     // Seen from the side, a look goes past many strands; but of the tips it sees lines with gaps.
     float seen = clamp(2.5 * surface.facing, LEAST_FACING, 1.0);
     float single = smoothstep(SIDEWAYS.x, SIDEWAYS.y, surface.facing);
-    // Its outline is the layer about the mean, whatever their number.
+    // Its outline is the layer about the mean, for any number of layers.
     float outline = (floor(MEAN * float(layers) - LOWEST + 0.5) + LOWEST) / float(layers) + SHARP;
     float tall = mix(outline, 0.65 + 0.5 * tones.x + 0.4 * tones.y, single);
     // Toward hems there are fewer strands, and shorter ones; where they are finer than a pixel, a veil.

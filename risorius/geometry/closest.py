@@ -21,10 +21,10 @@ Integers = npt.NDArray[np.int64]
 
 SAME_WAY = 0.3
 """Cosine between two normals above which they look the same way: 73 degrees."""
-LEAF = 4
+LEAF_SIZE = 4
 """Triangles in a box of the lowest level (chosen by timing)."""
-STACK = 64
-BITS = 20
+STACK_SIZE = 64
+CURVE_BITS = 20
 """Of the grid along one axis that the curve runs through; 3 x 20 fit a number of 64."""
 
 
@@ -83,10 +83,10 @@ def places_on_curve(positions: Doubles) -> Integers:
         return np.zeros(0, dtype=np.int64)
     low = positions.min(axis=0)
     size = float((positions.max(axis=0) - low).max())
-    scale = (2**BITS - 1) / size if size > 0.0 else 0.0
+    scale = (2**CURVE_BITS - 1) / size if size > 0.0 else 0.0
     cells = ((positions - low) * scale).astype(np.int64)
     places = np.zeros(len(positions), dtype=np.int64)
-    for bit in range(BITS):  # of x, y and z in turn
+    for bit in range(CURVE_BITS):  # of x, y and z in turn
         for axis in range(3):
             places |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
     return places
@@ -94,10 +94,10 @@ def places_on_curve(positions: Doubles) -> Integers:
 
 def _boxes(corners: Doubles) -> Doubles:
     """Boxes in heap order (children of k: 2 k and 2 k + 1), low and high, shape (2 n, 6)."""
-    leaf_count = 1 << max(0, int(np.ceil(np.log2(len(corners) / LEAF))))
+    leaf_count = 1 << max(0, int(np.ceil(np.log2(len(corners) / LEAF_SIZE))))
     boxes = np.full((2 * leaf_count, 6), np.inf)
     boxes[:, 3:] = -np.inf
-    starts = np.arange(0, len(corners), LEAF)
+    starts = np.arange(0, len(corners), LEAF_SIZE)
     leaves = slice(leaf_count, leaf_count + len(starts))
     boxes[leaves, :3] = np.minimum.reduceat(corners.min(axis=1), starts)
     boxes[leaves, 3:] = np.maximum.reduceat(corners.max(axis=1), starts)
@@ -124,8 +124,8 @@ def _box_distance(box, point):  # type: ignore[no-untyped-def]
 def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triangles, weights):  # type: ignore[no-untyped-def]
     """Write the closest place to each query: distance, triangle, barycentric coordinates."""
     leaf_count = boxes.shape[0] // 2
-    stack = np.empty(STACK, np.int64)
-    reach = np.empty(STACK)
+    stack = np.empty(STACK_SIZE, np.int64)
+    reach = np.empty(STACK_SIZE)
     for q in range(queries.shape[0]):
         point = queries[q]
         way = wanted[q]
@@ -140,8 +140,8 @@ def _search(queries, wanted, corners, ways, boxes, wrong_side, distances, triang
             if reach[depth] >= least:
                 continue
             if node >= leaf_count:
-                first = LEAF * (node - leaf_count)
-                for t in range(first, min(first + LEAF, corners.shape[0])):
+                first = LEAF_SIZE * (node - leaf_count)
+                for t in range(first, min(first + LEAF_SIZE, corners.shape[0])):
                     a, b, c = corners[t]
                     u, v, w = closest_on_triangle(point, a, b, c)
                     squared = facing = 0.0

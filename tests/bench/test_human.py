@@ -8,7 +8,7 @@ import pytest
 from risorius import assets
 from risorius.app.errors import UserError
 from risorius.bench.human import (
-    MOST,
+    MOST_DISTANCES,
     IdentitySpace,
     Rest,
     Surface,
@@ -35,7 +35,7 @@ def space() -> IdentitySpace:
 
 
 def rest_of(space: IdentitySpace, vertices: Points) -> Rest:
-    """What the space leaves of a head that is turned and moved."""
+    """The rest beside the space of a head that is turned and moved."""
     c = np.cos(TURN)
     s = np.sin(TURN)
     moved = vertices @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]).T + [3.0, -2.0, 4.0]
@@ -77,7 +77,7 @@ def test_what_is_left_is_held_to_targets() -> None:
     assert len(missed) == 2
     assert "nose" in missed[0]
     assert "angle" in missed[1]
-    assert len(targets({"coarse": good, "finer": good})) == len(MOST) + 2
+    assert len(targets({"coarse": good, "finer": good})) == len(MOST_DISTANCES) + 2
 
 
 def test_what_looks_at_skin_is_no_region(space: IdentitySpace) -> None:

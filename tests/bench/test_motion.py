@@ -59,7 +59,7 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
 
 @pytest.mark.slow
 def test_own_motion_is_known_again(scored: tuple[dict[str, Row], list[str]]) -> None:
-    """Carried over by landmarks to another head, each shape is nearly what it was made from."""
+    """Carried over by landmarks to another head, each shape is nearly its original."""
     rows, left_out = scored
     assert set(rows) == {*SCORED, "mouthClose", "eyeBlinkLeft"} - {"eyeBlink_L"}
     assert left_out == ["earWiggle", "eyeBlinkRight"]  # unknown, and nothing moves
@@ -138,7 +138,7 @@ def arrays() -> dict[str, Any]:
 def test_broken_references_are_named(
     arrays: dict[str, Any], tmp_path: Path, name: str, value: Any, message: str
 ) -> None:
-    """The file, the array, and what it must be."""
+    """The message names the file, the array, and the allowed values."""
     changed = {**arrays, name: value}
     np.savez(
         tmp_path / "face.npz", **{key: kept for key, kept in changed.items() if kept is not None}

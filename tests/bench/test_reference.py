@@ -52,7 +52,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def made(checkout: Path) -> dict[str, dict[str, npt.NDArray[Any]]]:
-    """What the command writes, by file."""
+    """The arrays that the command writes, by file."""
     folder = checkout.parent / "made"
     result = risorius("bench", "reference", checkout, "-o", folder)
     assert result.exit_code == 0, result.output

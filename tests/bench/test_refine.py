@@ -1,4 +1,4 @@
-"""The benchmark of the refiners measures what it says."""
+"""The benchmark of the refiners measures as documented."""
 
 import gc
 

@@ -60,10 +60,10 @@ def test_a_missed_target_is_told_and_ends_with_one(
     bench: Callable[..., tuple[int, str]], broken: dict[str, Any]
 ) -> None:
     """All that is as it should be ends with 0, and says "met" for each target."""
-    code, told = bench()
-    assert code == 0 and "  met     " in told and "MISSED" not in told
-    code, told = bench(**broken)
-    assert code == 1 and "  MISSED  " in told
+    code, output = bench()
+    assert code == 0 and "  met     " in output and "MISSED" not in output
+    code, output = bench(**broken)
+    assert code == 1 and "  MISSED  " in output
 
 
 @pytest.mark.slow

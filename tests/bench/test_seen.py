@@ -1,4 +1,4 @@
-"""What a face tracker sees: how its scores are counted, and a run with the tracker itself.
+"""A face tracker on our faces: how its scores are counted, and a run with the tracker itself.
 
 The run needs MediaPipe (the extra 'mediapipe') and its model, the file that the environment
 variable FACE_LANDMARKER names.
@@ -62,8 +62,8 @@ def test_without_mediapipe_one_line_says_so(
 
 
 @pytest.mark.parametrize("content", [b"", b"no model", b"PK\x03\x04 cut short"])
-def test_what_is_no_model_is_named(tmp_path: Path, content: bytes) -> None:
-    """One line with the file, and what it ought to be."""
+def test_a_file_without_model_is_named(tmp_path: Path, content: bytes) -> None:
+    """One line with the file, and the file that is needed."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     (tmp_path / "other.task").write_bytes(content)
     result = risorius("bench", "seen", "--model", tmp_path / "other.task")

@@ -14,7 +14,7 @@ pytestmark = [
 
 
 def test_the_window_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """`risorius bench window` plays each case, and says what the idle window takes."""
+    """`risorius bench window` plays each case, and reports the load of the idle window."""
     monkeypatch.setattr(window, "IDLE_SECONDS", 0.1)
     monkeypatch.setattr(window, "WARM_UP", 0.02)
     table, targets = window.measure(0.1, (640, 400))

@@ -14,7 +14,7 @@ Floats = npt.NDArray[np.float32]
 SignedImage = npt.NDArray[np.int32]  # an image that can be subtracted from another, (H, W, 3)
 
 PLAIN = render.Style(background=render.WHITE, shadows=False)
-"""Skin before pure white, so that what is not white is drawn."""
+"""Skin before pure white, so that pixels that are not white are drawn ones."""
 
 LIGHT_SKIN = (0.88, 0.75, 0.685)
 DARK_SKIN = (0.47, 0.325, 0.255)

@@ -1,4 +1,4 @@
-"""Camera maths: what is framed is seen, and moving the camera does what it says."""
+"""Camera maths: a framed scene is seen whole, and moves of the camera have their effect."""
 
 import numpy as np
 import numpy.typing as npt

@@ -19,7 +19,7 @@ on_linux = pytest.mark.skipif(
 
 
 def run_python(code: str, **environment: str) -> str:
-    """Run code in a Python of its own without a screen; what it printed."""
+    """Run code in a Python of its own without a screen; returns its output."""
     clean = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
     clean.pop("WAYLAND_DISPLAY", None)
     result = subprocess.run(
@@ -93,7 +93,7 @@ def test_no_screen_is_one_line_without_warnings() -> None:
     ],
 )
 def test_known_texts_have_a_cure(monkeypatch: pytest.MonkeyPatch, raw: str, cure: str) -> None:
-    """What the libraries say is kept, and followed by the one thing to do."""
+    """The text of the library is kept, and followed by one cure."""
     for name in [name for name in os.environ if name.startswith("GLCONTEXT_")]:
         monkeypatch.delenv(name)
     text = str(diagnose("opening", raw))

@@ -84,8 +84,8 @@ def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface: render.
     assert np.allclose(normals[48, 48], [0.0, -1.0, 0.0])
 
 
-def test_what_is_nearer_hides_what_is_behind(surface: render.Surface) -> None:
-    """Of two squares and a ball the nearest counts, whichever is drawn first."""
+def test_nearer_surfaces_hide_those_behind(surface: render.Surface) -> None:
+    """Of two squares and a ball the nearest counts, in any order of drawing."""
     far = square(50.0, z=-30.0)
     near = square(10.0, z=40.0)
     for shape in (joined(far, near), joined(near, far)):

@@ -1,4 +1,4 @@
-"""Light that comes from elsewhere: what it does to a picture, and what it leaves alone."""
+"""Light from elsewhere: the pixels that it changes, and those that it leaves alone."""
 
 from dataclasses import replace
 

@@ -38,7 +38,7 @@ def test_parts_move_with_their_bones(surface: render.Surface) -> None:
 
 
 def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) -> None:
-    """Other arrays of the same part are uploaded, whatever was drawn before."""
+    """Other arrays of the same part are uploaded, after any other drawing."""
     renderer = render.Renderer(surface)
     pixels = []
     ball = Ball()
@@ -66,7 +66,7 @@ def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
 
 
 def test_parts_and_mesh_hide_each_other(surface: render.Surface) -> None:
-    """Depth decides, whichever is drawn first."""
+    """Depth decides, in any order of drawing."""
     renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=10.0))
     ball = Ball()
@@ -131,7 +131,7 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
 
 
 def test_hair_is_dense_up_to_its_outline(surface: render.Surface) -> None:
-    """It covers what is under it, no veil stands off its outline; it is away where none grows."""
+    """It covers the skin under it, no veil stands off its outline; it is away where none grows."""
     renderer = render.Renderer(surface)
     ball = Ball(colour=(0.1, 0.1, 0.1))
     covers = []

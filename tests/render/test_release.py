@@ -1,4 +1,4 @@
-"""What is given back to OpenGL: what nobody holds any more leaves nothing behind."""
+"""Memory of OpenGL: objects without references leave nothing behind."""
 
 import weakref
 from collections import Counter, namedtuple
@@ -125,7 +125,7 @@ def test_a_part_without_weak_references_is_drawn() -> None:
 
 
 def test_a_closed_frame_hands_its_context_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next frame takes it over, unless what is to draw has changed, or an error ended it."""
+    """The next frame takes it over, unless the wanted OpenGL has changed, or an error ended it."""
     with render.open_offscreen((96, 96)) as first, render.open_offscreen((64, 48)) as beside:
         assert first.gl is not beside.gl
     with render.open_offscreen((64, 48), samples=0) as second:
@@ -143,7 +143,7 @@ def test_a_closed_frame_hands_its_context_on(monkeypatch: pytest.MonkeyPatch) ->
 
 @pytest.mark.slow
 def test_frames_that_are_opened_and_closed_take_no_memory() -> None:
-    """Two hundred frames, each with a picture: less than 3 MB, a quarter of what they once took."""
+    """Two hundred frames, each with a picture: less than 3 MB."""
 
     def draw_frames(number: int) -> None:
         for _ in range(number):

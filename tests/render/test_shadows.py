@@ -82,9 +82,9 @@ def test_convex_things_do_not_shadow_themselves(
 def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(
     surface: render.Surface, shadows: bool
 ) -> None:
-    """A ball of hair before a wall darkens it to its lower right, where it is told to.
+    """A ball of hair before a wall darkens it to its lower right, where shadows are on.
 
-    The ball keeps its colours: what is only a little nearer to the light does not shade it.
+    The ball keeps its colours: hair only a little nearer to the light does not shade it.
     """
     style = replace(PLAIN, albedo=render.CLAY, shadows=shadows)
     renderer = render.Renderer(surface)

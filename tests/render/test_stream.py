@@ -48,7 +48,7 @@ def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
 
 def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
     """Neither the arrays, nor OpenGL's buffers, nor the process grow while a mesh changes."""
-    resource = pytest.importorskip("resource", reason="this system does not tell memory in use")
+    resource = pytest.importorskip("resource", reason="this system does not report memory in use")
     renderer = render.Renderer(surface)
     shape = sphere(4)
     stream = lent(renderer, shape)

@@ -16,7 +16,7 @@ def upper_square() -> Shape:
 
 @pytest.mark.parametrize("samples", [0, 4])
 def test_read_gives_the_top_row_first(samples: int) -> None:
-    """What is up in the world is in the first rows of the array."""
+    """The upper part of the world is in the first rows of the array."""
     with render.open_offscreen((64, 48), samples=samples) as surface:
         frame = draw_image(surface, upper_square())
     assert frame.shape == (48, 64, 3)

@@ -116,7 +116,7 @@ def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shadin
 
 
 def test_lips_gloss(surface: render.Surface) -> None:
-    """What is much redder than most of the picture shines more than the gloss of the skin."""
+    """Texels much redder than most of the picture shine more than the gloss of the skin."""
     lips = plain_image((212, 176, 160), (256, 256))
     lips[64:192, 64:192] = (200, 120, 108)
     shine = {}

@@ -1,4 +1,4 @@
-"""A simulation can be built from any triangle mesh, with whatever it knows about itself."""
+"""A simulation can be built from any triangle mesh, with any of its optional attributes."""
 
 from types import SimpleNamespace
 from typing import Any

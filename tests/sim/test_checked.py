@@ -1,4 +1,4 @@
-"""The doors of `sim`: whatever is handed in wrongly is a ValueError that says what is allowed."""
+"""Public calls of `sim`: every wrong argument is a ValueError that names the allowed values."""
 
 from collections.abc import Callable
 from operator import attrgetter
@@ -15,7 +15,7 @@ from tests.meshes import open_grid
 HUGE = 10**400
 NAN = float("nan")
 INF = float("inf")
-# What is no number, no array of numbers and no name at any of the doors.
+# Values that are no number, no array of numbers and no name in any call.
 NONSENSE = (None, "0.5", b"1", [], [[1], [1, 2]], object(), 1j, [None], "x" * 10**6, len, {1: 2})
 NO_NUMBER = (*NONSENSE, NAN, INF, -INF, HUGE, -HUGE, 10**5000, [0.5], np.array([0.5]))
 COUNT = 9
@@ -38,7 +38,7 @@ TABLES = (*NONSENSE[:-1], 3, NAN, ["jaw_open"], np.zeros(3))
 
 TRIANGLE = {"vertices": np.eye(3) * 10.0, "faces": np.array([[0, 1, 2]])}
 
-# Method, the argument that is wrong, what it is called in the text, and what it is in turn.
+# Method, the wrong argument, its name in the text, and its values in turn.
 WRONG: list[tuple[str, str, str, tuple[Any, ...]]] = [
     ("controls.set", "name", "control", (*NAMES, [], {})),
     ("controls.set", "value", "control 'jaw_open'", (*NO_NUMBER, -1, 2)),
@@ -81,7 +81,7 @@ def small() -> sim.Simulation:
 
 
 def refused(call: Callable[[], object], begins: str) -> None:
-    """The call is a ValueError with a text of ours: what was wrong, in short, and what may be."""
+    """The call is a ValueError with our text: the wrong value, in short, and the allowed ones."""
     with pytest.raises(ValueError, match=MAY_BE) as error:
         call()
     text = str(error.value)
@@ -142,8 +142,8 @@ HEADS: list[tuple[str, str, tuple[Any, ...]]] = [
 
 
 @pytest.mark.parametrize(("attribute", "begins", "values"), HEADS)
-def test_wrong_heads_are_told(attribute: str, begins: str, values: tuple[Any, ...]) -> None:
-    """Whatever is wrong with a head, `create` names the attribute."""
+def test_wrong_heads_are_refused(attribute: str, begins: str, values: tuple[Any, ...]) -> None:
+    """`create` names the wrong attribute of a head."""
     for value in values:
         head = grid()
         setattr(head, attribute, value)

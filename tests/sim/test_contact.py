@@ -9,7 +9,7 @@ from risorius.sim.contact import watch_eyeballs
 
 
 def test_skin_may_come_as_near_as_a_lid_is_thick() -> None:
-    """0.3 mm to the ball; what starts nearer may stay there, what is far away is not watched."""
+    """0.3 mm to the ball; skin that starts nearer may stay there, distant skin is not watched."""
     ball = SimpleNamespace(centre=np.array([30.0, 0.0, 0.0]), radius=12.0)
     away = np.array([10.0, 12.1, 13.0, 20.0, 30.0])
     skin = SimpleNamespace(positions=ball.centre + away[:, None] * [0.0, 0.6, 0.8])

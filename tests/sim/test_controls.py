@@ -59,7 +59,7 @@ def test_activation_follows_without_overshoot() -> None:
 
 
 def test_positions_are_read_only(simulation: sim.Simulation) -> None:
-    """A caller cannot move the face by writing into what it reads."""
+    """A caller cannot move the face by writing into arrays that it reads."""
     for array in (simulation.positions, simulation.rest_positions):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0.0

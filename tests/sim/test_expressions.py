@@ -180,7 +180,7 @@ def test_blink_closes_the_eyes(
 
 @pytest.mark.slow
 def test_a_cornea_that_pierces_a_lid_is_seen(simulation: sim.Simulation, head: Head) -> None:
-    """The measure used for a blink looks at what is in front, not at holes alone."""
+    """The measure used for a blink looks at the surface in front, not at holes alone."""
     settled_displacement(simulation, {"AU45": 1.0})
     landmarks = simulation.positions[head.landmarks]
     pushed = {

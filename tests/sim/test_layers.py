@@ -53,7 +53,7 @@ FACES = layer("Faces", both={"A": 0.5, "slide": 0.25}, lopsided={"A_left": 1.5})
 
 
 def wanted(subject: Controls, **values: float) -> dict[str, float]:
-    """What the lowest controls add up to when these values are set and no others."""
+    """The sums of the lowest controls when these values are set and no others."""
     subject.pose(values)
     return subject.sums
 
@@ -152,7 +152,7 @@ def test_sums_are_cut_off_once_and_in_any_order() -> None:
     sums = dict(zip(LOWEST, subject.wanted.tolist(), strict=True))
     assert sums["puller_left"] == 1.0  # 0.5 + 0.72 + 0.4
     assert sums["slide"] == pytest.approx(1.0 - 0.4 + 0.25)
-    assert subject.values["puller_left"] == 0.5, "a layer does not change what was set below it"
+    assert subject.values["puller_left"] == 0.5, "a layer does not change values set below it"
 
 
 @pytest.mark.parametrize(
@@ -180,7 +180,7 @@ def test_sums_are_cut_off_once_and_in_any_order() -> None:
     ],
 )
 def test_a_wrong_row_is_named(rows: dict[str, Any], message: str) -> None:
-    """File, row and key stand in the error, with what is allowed."""
+    """File, row and key stand in the error, with the allowed values."""
     with pytest.raises(ValueError, match=message):
         controls(layer("X", **rows))
 
@@ -192,7 +192,7 @@ def test_a_row_cannot_hold_what_is_a_share() -> None:
 
 
 def test_the_shipped_tables_are_complete(controls: Controls, head: Head) -> None:
-    """Every action unit, expression and viseme is there, with words for what it does."""
+    """Every action unit, expression and viseme is there, with words for its effect."""
     names = controls.limits
     sided = {unit: (f"{unit}_left", f"{unit}_right") for unit in ("AU30", "AU46")}
     for unit in ACTION_UNITS:
@@ -228,7 +228,7 @@ def mirrored(sums: dict[str, float]) -> dict[str, float]:
 
 
 def test_sides_of_arkit_shapes_ask_for_the_same(controls: Controls) -> None:
-    """Whatever a shape of the left asks of the left, its twin asks of the right."""
+    """A shape of the left moves the left as its twin moves the right."""
 
     def sums(name: str) -> dict[str, float]:
         controls.pose({name: 1.0})

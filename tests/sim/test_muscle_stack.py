@@ -59,7 +59,7 @@ def test_nothing_is_carried_by_what_does_not_lie_beneath(head: Head) -> None:
 
 
 def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
-    """Each point moves by shares of what is beneath, in plain numpy; they are at most 1 in all."""
+    """Each point moves by shares of the lines beneath, in plain numpy; at most 1 in all."""
     muscles = simulation._model.muscles
     mandible = simulation._model.skull.mandible_motion
     pose = mandible(0.5, 0.3, 0.2)

@@ -46,7 +46,7 @@ def pull_at(
 
 
 def values_of(pull: sim.Pull) -> dict[str, float]:
-    """What was solved, by single controls."""
+    """The values that were solved, by single controls."""
     return {name: value for names, value in pull.changes.items() for name in names}
 
 

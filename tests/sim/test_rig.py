@@ -1,4 +1,4 @@
-"""The rig file: what it may say, and that each mistake is answered with muscle, key and cure."""
+"""The rig file: its keys, and that each mistake is answered with muscle, key and cure."""
 
 import copy
 from collections.abc import Callable
@@ -127,7 +127,7 @@ PULLER = ("muscle", "puller")
     ],
 )  # fmt: skip
 def test_each_mistake_is_named(change: Callable[[dict[str, Any]], None], message: str) -> None:
-    """Errors say where, what it was and what is allowed."""
+    """Errors name the place, the value and the allowed values."""
     document = copy.deepcopy(_document())
     change(document)
     with pytest.raises(ValueError, match=message):

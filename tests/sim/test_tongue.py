@@ -60,7 +60,7 @@ def with_middles(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
 
 
 def test_a_resting_tongue_is_the_part(simulation: sim.Simulation, head: Head) -> None:
-    """Without the controls nothing moves it, whatever the jaw does."""
+    """Without the controls nothing moves it, in any pose of the jaw."""
     settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
     bent = simulation.anatomy.tongue()
     assert bent is not None

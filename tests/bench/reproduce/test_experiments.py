@@ -1,4 +1,4 @@
-"""Verdicts can be bad; `reproduce all` writes page and pictures, whatever they say."""
+"""Verdicts can be bad; `reproduce all` writes page and pictures with any verdict."""
 
 import math
 import re
@@ -40,7 +40,7 @@ def test_pairs_are_compared_round_by_round() -> None:
     ],
 )
 def test_verdicts(value: float, differs: bool, verdict: str) -> None:
-    """Both bounds count, and what is no number is missed."""
+    """Both bounds count, and NaN is missed."""
     claim = Claim("x", "", "", low=1.0, high=3.0, differs=differs)
     assert claim.verdict(value) == verdict
 
@@ -89,7 +89,7 @@ def test_a_missed_tolerance_is_told_after_all_is_written(planted: None, tmp_path
 
 
 def test_the_page_stands_alone(planted: None, tmp_path: Path) -> None:
-    """It loads nothing but pictures beside it, escapes what it says, and shows every verdict."""
+    """It loads nothing but pictures beside it, escapes its text, and shows every verdict."""
     risorius("reproduce", "all", "-o", tmp_path)
     text = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert re.findall(r"(?:src|href)=\"([^\"]*)\"", text) == ["good.png"]
@@ -103,8 +103,8 @@ def test_the_page_stands_alone(planted: None, tmp_path: Path) -> None:
 
 def test_every_experiment_can_be_named() -> None:
     """The command knows it, and its entry names a function that is there."""
-    told = risorius("reproduce", "--help").output
+    help_text = risorius("reproduce", "--help").output
     for experiment in EXPERIMENTS:
         module, name = experiment.function.split(".")
         code = import_module(f"{commands.__package__}.{module}")
-        assert experiment.name in told and callable(getattr(code, name))
+        assert experiment.name in help_text and callable(getattr(code, name))

@@ -1,4 +1,4 @@
-"""The paper's figures 8, 9 and 10: what they claim holds on the pictures."""
+"""The paper's figures 8, 9 and 10: their claims hold on the pictures."""
 
 from collections.abc import Iterator
 
