@@ -3,8 +3,9 @@
 A face is a list of `{"category_name": "jawOpen", "score": 0.2}` (`categoryName` on web pages; a
 score may be a text), or simply `{"jawOpen": 0.2}`. A frame holds one or several of them, under
 `faceBlendshapes` or `blendshapes`, perhaps beside a time stamp and the head's matrix. A recording
-is a list of frames, under `frames` or not. NVIDIA's Audio2Face has `facsNames` and rows of
-`weightMat`.
+is a list of frames, under `frames` or not. Other documents name shapes once, above rows of numbers:
+NVIDIA's Audio2Face has `facsNames` and `weightMat`, tables have `columns` and `data`. Or each shape
+has a list over time: `{"time": [0.0, 0.1], "jawOpen": [0.2, 0.3]}`.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 
 from .gaps import whole_take
 from .head_pose import head_of
-from .names import shape_of
+from .names import angle_of, shape_of
 from .table import LARGEST
 from .take import Array, Request, Take
 from .timing import find_times, is_frame, stamp_of
@@ -26,8 +27,13 @@ from .values import is_calibrated, is_flag, rows_without_face, shares, without_r
 # All without capitals and underscores, see `_plain`.
 FACES = ("faceblendshapes", "blendshapes", "categories")
 FRAMES = ("frames", "results", "data", "recording", "samples", "records", "weights")
-LISTED_NAMES = ("facsnames", "names", "blendshapenames", "shapenames", "keys", "channels")
-ROWS = ("weightmat", *FRAMES)
+LISTED_NAMES = (
+    "facsnames", "names", "blendshapenames", "shapenames", "keys", "channels", "columns",
+    "columnnames", "header", "headers", "fields", "blendshapes", "shapes",
+)  # fmt: skip
+ROWS = ("weightmat", *FRAMES, "rows", "values")
+NAME_KEYS = ("categoryname", "name", "shape", "blendshape", "key", "label")  # of a category
+SCORE_KEYS = ("score", "value", "weight")
 WEIGHTS = ("weights", "values", "coefficients", "scores", *FACES)  # of one frame
 RATES = ("fps", "exportfps", "framerate")
 OF_NO_USE = ("index", "id", "version", "displayname", "facelandmarks", "landmarks")
@@ -85,23 +91,76 @@ def _take_of(
 
 def _named_rows(document: Any) -> list[Any]:
     """Frames of a document that names its shapes once; none of another."""
+    tables = _tables(document)
+    lists = [table.get(key) for key in LISTED_NAMES for table in tables]
+    names = next(filter(_are_names, lists), None)
+    if names is None:
+        return _frames_over_time(_columns(document))
+    lists = [table.get(key) for key in ROWS for table in tables]
+    rows = next((each for each in lists if isinstance(each, list) and each is not names), [])
+    beside = {
+        key: values
+        for key, values in _columns(document).items()
+        if len(values) == len(rows) and (angle_of(key) or not _is_left_out(_plain_name(key)))
+    }
+    return [
+        {key: values[place] for key, values in beside.items()} | _named_row(names, row)
+        for place, row in enumerate(rows)
+    ]
+
+
+def _tables(document: Any) -> list[dict[str, Any]]:
+    """The document and the tables in it, such as a head, under plain keys."""
     keys = _plain(document)
-    for listed in LISTED_NAMES:
-        names = keys.get(listed)
-        if not isinstance(names, list) or not any(shape_of(str(name)) for name in names):
-            continue
-        rows: list[Any] = next((keys[key] for key in ROWS if isinstance(keys.get(key), list)), [])
-        return [_named_row([str(name) for name in names], row) for row in rows]
-    return []
+    return [keys, *(_plain(item) for item in keys.values() if isinstance(item, dict))]
+
+
+def _are_names(item: Any) -> bool:
+    """Whether this is a list of texts, of which one names a shape at least."""
+    is_text = isinstance(item, list) and all(isinstance(each, str) for each in item)
+    return is_text and any(map(shape_of, item))
+
+
+def _columns(document: Any, depth: int = DEEPEST) -> dict[str, list[Any]]:
+    """Name -> list over time, in a document and the tables in it.
+
+    pandas' `to_json` writes such a list as a table under the numbers of rows.
+    """
+    found: dict[str, list[Any]] = {}
+    for key, item in document.items() if isinstance(document, dict) and depth else ():
+        values = item
+        if isinstance(item, dict) and item and all(map(str.isdecimal, item)):
+            values = [*item.values()]
+        if isinstance(values, list):
+            if not any(isinstance(each, dict | list) for each in values):
+                found.setdefault(key, values)
+        else:
+            found = _columns(item, depth - 1) | found
+    return found
+
+
+def _frames_over_time(columns: Mapping[str, list[Any]]) -> list[Any]:
+    """Frames of lists over time, as long as the longest of a shape; none without a shape's."""
+    count = max((len(values) for name, values in columns.items() if shape_of(name)), default=0)
+    whole = {
+        name: values for name, values in columns.items() if shape_of(name) or len(values) == count
+    }
+    return [
+        {name: values[row] for name, values in whole.items() if row < len(values)}
+        for row in range(count)
+    ]
 
 
 def _named_row(names: Sequence[str], row: Any) -> dict[str, Any]:
     """The frame of weights that are a row, or stand in a table with other keys."""
     if not isinstance(row, dict):
-        return {"blendshapes": dict(zip(names, row if isinstance(row, list) else [], strict=False))}
+        cells = dict(zip(names, row if isinstance(row, list) else [], strict=False))
+        shapes = {name: cell for name, cell in cells.items() if shape_of(name)}
+        beside = {name: cell for name, cell in cells.items() if not shape_of(name)}
+        return beside | {"blendshapes": shapes}
     frame = dict(row)
     for key in row:
-        if key.casefold().replace("_", "") in WEIGHTS and isinstance(row[key], list):
+        if _plain_name(key) in WEIGHTS and isinstance(row[key], list):
             del frame[key]
             frame["blendshapes"] = dict(zip(names, row[key], strict=False))
             break
@@ -171,8 +230,10 @@ def _is_left_out(key: str) -> bool:
 def _category(item: Any) -> tuple[str, float] | None:
     """Name and score, where the item is one category; the name is as written."""
     keys = _plain(item)
-    name, score = keys.get("categoryname"), keys.get("score")
-    return (name, _number(score)) if isinstance(name, str) and score is not None else None
+    name = _first(keys, NAME_KEYS)
+    score = _first(keys, SCORE_KEYS)
+    is_score = score is not None and not isinstance(score, dict | list)
+    return (name, _number(score)) if isinstance(name, str) and is_score else None
 
 
 def _shapes(
@@ -228,16 +289,20 @@ def _texts(frames: Sequence[Mapping[str, Any]], name: str) -> list[str]:
 
 
 def _rate(document: Any) -> float | None:
-    """The frames a second that the document has."""
-    rate = _number(_first(_plain(document), RATES))
-    return rate if 1.0 <= rate <= 1000.0 else None
+    """The frames a second that the document, or the head in it, has."""
+    rates = [_number(_first(table, RATES)) for table in _tables(document)]
+    return next((rate for rate in rates if 1.0 <= rate <= 1000.0), None)
 
 
 def _plain(item: Any) -> dict[str, Any]:
     """A table under keys without capitals and underscores; an empty one for what is none."""
     if not isinstance(item, dict):
         return {}
-    return {key.casefold().replace("_", ""): value for key, value in item.items()}
+    return {_plain_name(key): value for key, value in item.items()}
+
+
+def _plain_name(key: str) -> str:
+    return key.casefold().replace("_", "")
 
 
 def _first(keys: Mapping[str, Any], names: Sequence[str]) -> Any:

@@ -59,6 +59,23 @@ DOCUMENTS: dict[str, Any] = {
         ]
     },
     "flat": [{"jawOpen": jaw, "mouthClose": 0.125, "frame": n} for n, jaw in enumerate(JAW)],
+    "names and values": [
+        {"time": number / 30.0, "blendshapes": [{"name": "jawOpen", "value": jaw}]}
+        for number, jaw in enumerate(JAW)
+    ],
+    "names once in a head": {"metadata": {"fps": 30, "blendshapeNames": ["jawOpen"]},
+                             "frames": [{"values": [jaw]} for jaw in JAW]},
+    "columns and data": {"columns": ["time", "jawOpen"],
+                         "data": [[number / 30.0, jaw] for number, jaw in enumerate(JAW)]},
+    "names, and times beside rows": {"names": ["jawOpen"], "weights": [[jaw] for jaw in JAW],
+                                     "time": [number / 30.0 for number in range(4)]},
+    "lists over time": {"time": [number / 30.0 for number in range(4)], "jawOpen": JAW},
+    "lists over time in a table": {"time": [number / 30.0 for number in range(4)],
+                                   "blendshapes": {"jawOpen": JAW, "mouthClose": [0.1] * 4}},
+    "columns under numbers of rows": {
+        "timestamp_ms": {str(number): number * 100 / 3 for number in range(4)},
+        "jawOpen": {str(number): jaw for number, jaw in enumerate(JAW)},
+    },
     "an export of Audio2Face": {
         "exportFps": 30.0, "trackPath": "x", "numFrames": 4, "facsNames": ["jawOpen", "mouthClose"],
         "weightMat": [[jaw, 0.125] for jaw in JAW],
@@ -72,6 +89,19 @@ def test_a_film(kind: str, tmp_path: Path) -> None:
     take = read_take(written(tmp_path / "take", DOCUMENTS[kind]))
     assert take.channels["jawOpen"] == pytest.approx(JAW)
     assert take.times == pytest.approx(np.arange(4) / 30.0)
+
+
+def test_what_stands_in_columns_beside_shapes(tmp_path: Path) -> None:
+    """The head turns, rows without a face are known, and what nobody knows is listed."""
+    columns = ["jawOpen", "faceDetected", "headYaw", "mood"]
+    rows = [[jaw, row != 1, 10.0 * row, 0.5] for row, jaw in enumerate(JAW)]
+    over_time = dict(zip(columns, map(list, zip(*rows, strict=True)), strict=True))
+    for document in ({"columns": columns, "data": rows}, over_time):
+        take = read_take(written(tmp_path / "take", document))
+        assert take.channels.keys() == {"jawOpen", "head_yaw"}
+        assert np.ptp(take.channels["head_yaw"]) == pytest.approx(30.0)
+        assert take.channels["jawOpen"] == pytest.approx([0.1, 0.25, 0.4, 0.3])
+        assert take.unknown == ("mood",)
 
 
 def test_frames_without_a_face(tmp_path: Path) -> None:
