@@ -1,6 +1,6 @@
-"""A table in a text: names above columns, with commas, semicolons, tabs or bars between cells.
+"""A table in a text: names above columns, with commas, tabs, blanks and the like between cells.
 
-Plain lines stay as they are. Lines in which a cell is quoted, or a number has a decimal comma, are
+Plain lines stay as they are. Lines with blanks between cells, quoted cells or decimal commas are
 taken apart by the csv module and put together again with `CLEAN` between cells.
 
 Numbers are read by `numpy.loadtxt`, whose parser is compiled: ten minutes of 60 frames a second
@@ -27,7 +27,7 @@ LONGEST_NAME = 80  # [characters] of a column; what is longer is no header
 LARGEST = 1e30  # what is larger is no measurement; nanoseconds since 1970 are 1.8e18
 FACE_COLUMNS = ("face_id", "identity", "face_idx", "faceid", "face")
 MOST_LISTED = 8  # faces in a message
-DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars"}
+DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
 DECIMALS_SOUGHT = 2**16  # characters of the text in which a decimal comma is looked for
 CLEAN = "\x1f"  # the unit separator of ASCII, which no cell holds
 DECIMAL_COMMA = re.compile(r"[-+]?(\d*|\d{1,3}(\.\d{3})+),\d+(e[-+]?\d+)?", re.IGNORECASE)
@@ -49,7 +49,7 @@ class Layout:
     @property
     def is_plain(self) -> bool:
         """Whether a line can be split at its delimiters, without more."""
-        return not (self.is_quoted or self.has_decimal_commas)
+        return not (self.is_quoted or self.has_decimal_commas or self.delimiter == " ")
 
     @property
     def notes(self) -> list[str]:
@@ -65,8 +65,11 @@ class Layout:
 
     def rows_of(self, numbered: Sequence[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
         """The number of its first line, and the cells, of each row that has any."""
+        lines = (line for _, line in numbered)
+        if self.delimiter == " ":  # a run of blanks, or a tab, parts two cells like one blank
+            lines = (line.replace("\t", " ").strip() for line in lines)
         reader = csv.reader(
-            (f"{line}\n" for _, line in numbered),
+            (f"{line}\n" for line in lines),
             delimiter=self.delimiter,
             quotechar=self.quote,
             skipinitialspace=True,
@@ -206,7 +209,7 @@ def repeated_columns(names: Sequence[str]) -> list[str]:
 def _lines_of(text: str) -> Iterator[tuple[int, str]]:
     """The lines and their numbers, without comments and a spreadsheet's `sep=;`."""
     for number, line in enumerate(text.split("\n"), 1):
-        if not line.startswith("#") and not re.fullmatch(r"\s*\"?sep=.\"?\s*", line):
+        if not line.startswith("#") and not re.fullmatch(r"\s*\"?sep=.\"?\s*", line, re.IGNORECASE):
             yield number, line
 
 
@@ -218,21 +221,50 @@ def _is_empty(line: str) -> bool:
 def _layout_of(text: str, header: str) -> Layout:
     """The layout: the delimiter that makes most cells of the header, which has no numbers."""
     quote = "'" if header.lstrip().startswith("'") else '"'
-    best = Layout(quote=quote)
-    most = 1
-    for delimiter in DELIMITERS:
-        layout = Layout(delimiter, quote)
-        count = len(_cells_of(header, layout))
-        if count > most:
-            best = layout
-            most = count
+    sample = [*_lines_of(text[:DECIMALS_SOUGHT])]
+    best = _with_delimiter(header, sample, quote)
     best = replace(best, is_quoted=quote in text)
     # A comma in a cell can only be found where commas do not part cells, or where quotes do.
     if best.delimiter == "," and not best.is_quoted:
         return best
-    sample = [(number, line) for number, line in _lines_of(text[:DECIMALS_SOUGHT])]
     cells = [cell.strip() for _, row in best.rows_of(sample) for cell in row]
     return replace(best, has_decimal_commas=any(map(DECIMAL_COMMA.fullmatch, cells)))
+
+
+def _with_delimiter(header: str, sample: Sequence[tuple[int, str]], quote: str) -> Layout:
+    """The layout whose delimiter parts the header, and the row below it, into most cells.
+
+    A row may have one cell more or less than the header: a name of its own, or nothing behind the
+    last delimiter. Blanks part words, too: they count where nothing else parts cells, and where the
+    row has numbers and the header none.
+    """
+    rows = [line for _, line in sample if not _is_empty(line)]
+    row = rows[1] if len(rows) > 1 else header
+    best = Layout(quote=quote)
+    worth = (False, 1)
+    for delimiter in DELIMITERS:
+        layout = Layout(delimiter, quote)
+        names = _cells_of(header, layout)
+        cells = _cells_of(row, layout)
+        count = len(names)
+        is_alike = count > 1 and abs(len(cells) - count) <= 1
+        if delimiter == " ":
+            is_table = is_alike and any(map(_is_number, cells)) and not any(map(_is_number, names))
+            if worth[1] > 1 or not is_table:
+                continue
+        if count > 1 and (is_alike, count) > worth:
+            best = layout
+            worth = (is_alike, count)
+    return best
+
+
+def _is_number(cell: str) -> bool:
+    """Whether a cell is a number, perhaps with a decimal comma."""
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True
 
 
 def _cells_of(line: str, layout: Layout) -> list[str]:

@@ -46,6 +46,14 @@ def of_r() -> str:
     return "\n".join(lines)
 
 
+def aligned(*, has_row_names: bool = False) -> str:
+    """The table in columns of one width, as pandas' `to_string` writes it."""
+    rows = [[str(number), *row] for number, row in enumerate(cells(), -1)]
+    rows[0][0] = ""
+    begin = 0 if has_row_names else 1
+    return "\n".join("".join(f"{cell:>14}" for cell in row[begin:]) for row in rows)
+
+
 def of_r_table() -> str:
     """What R's write.table makes: row names without a name above."""
     return of_r().replace('"",', "", 1)
@@ -60,6 +68,16 @@ TEXTS: dict[str, tuple[Callable[[], str], str]] = {
     "semicolons": (lambda: rewritten(";"), "semicolons between cells."),
     "tabs": (lambda: rewritten("\t"), "tabs between cells."),
     "bars": (lambda: rewritten("|"), "bars between cells."),
+    "blanks": (lambda: rewritten(" "), "blanks between cells."),
+    "runs of blanks": (lambda: rewritten(" ").replace(" ", "   "), "blanks between cells."),
+    "aligned": (aligned, "blanks between cells."),
+    "aligned, with names of rows": (lambda: aligned(has_row_names=True), "blanks between cells."),
+    "blanks, quoted": (lambda: rewritten(" ", csv.QUOTE_ALL), "blanks between cells, quotes"),
+    "decimal commas, blanks": (lambda: german(separator=" "), "blanks between cells, decimal"),
+    "R's write.table with blanks": (
+        lambda: of_r_table().replace(",", " "),
+        "one cell more than the header",
+    ),
     "semicolons, quoted": (lambda: rewritten(";", csv.QUOTE_ALL), "semicolons between cells"),
     "decimal commas": (german, "semicolons between cells, decimal commas"),
     "decimal commas, tabs": (lambda: german(separator="\t"), "tabs between cells, decimal commas"),
@@ -88,6 +106,27 @@ def test_layouts(kind: str, tmp_path: Path) -> None:
     assert take.channels["jawOpen"] == pytest.approx(JAW, abs=1e-6)
     assert not take.unknown
     assert told(take.notes, note) or not note
+
+
+def test_a_separator_in_a_name(tmp_path: Path) -> None:
+    """The delimiter is the one that parts the rows, too; quotes keep others in a name."""
+    path = tmp_path / "take.csv"
+    path.write_text("head|jawOpen,head|mouthClose\n0.1,0.2\n0.2,0.3\n")
+    assert read_take(path).channels.keys() == {"jawOpen", "mouthClose"}
+    path.write_text('"time","jawOpen","said; or; sung; or not"\n0,0.1,a\n0.1,0.2,"b, c"\n')
+    take = read_take(path)
+    assert take.unknown == ("said; or; sung; or not",)
+    assert take.channels["jawOpen"] == pytest.approx([0.1, 0.2])
+
+
+@pytest.mark.parametrize(
+    "text", ["jawOpen = 0.5\nmouthClose = 0.2\n", "jawOpen is a shape\nand so is mouthClose\n"]
+)
+def test_words_are_no_table(text: str, tmp_path: Path) -> None:
+    """Blanks part cells above numbers only."""
+    path = tmp_path / "notes"
+    path.write_text(text)
+    assert not is_recording(path)
 
 
 def test_a_plain_table_needs_no_word(tmp_path: Path) -> None:
