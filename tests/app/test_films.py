@@ -106,12 +106,13 @@ def test_a_transparent_picture_lies_over_any_colour(
         options = replace(SMALL, size=(160, 120), samples=samples, style=style)
         with Capture(FaceScene(), options) as studio:
             pictures.append(studio.draw_image())
+            has_samples = studio.surface.samples > 1
     opaque, clear = pictures
     alpha = clear[..., 3:] / 255.0
     over = clear[..., :3] * alpha + np.array(colour) * (1.0 - alpha)
     assert np.abs(over - opaque).max() <= 3.0  # each layer of hair rounds to a byte
     assert (clear[0, 0] == 0).all() and 0.2 < alpha.mean() < 0.8
-    assert samples == 0 or ((alpha > 0.0) & (alpha < 1.0)).sum() > 50
+    assert not has_samples or ((alpha > 0.0) & (alpha < 1.0)).sum() > 50
 
 
 @pytest.mark.parametrize(

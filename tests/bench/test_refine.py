@@ -5,6 +5,7 @@ import gc
 import pytest
 
 from risorius.bench import refine
+from tests.refine_gl.agreement import why_no_card
 
 
 @pytest.mark.slow
@@ -22,6 +23,8 @@ def test_rows() -> None:
 
 def test_rows_of_the_card() -> None:
     """Both methods are timed on the processor and on the card, which is named."""
+    if reason := why_no_card():
+        pytest.skip(reason)
     rows = refine.measure(["2k"], 0.05, on_card=True)
     titles = "paper's rule", "window's look"
     assert [row.method for row in rows] == [

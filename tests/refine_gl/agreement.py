@@ -1,12 +1,20 @@
-"""The refiner on the graphics card beside that of the processor, with which it must agree."""
+"""The refiner on the graphics card beside that of the processor, with which it must agree.
 
+To the bit, where the driver rounds as a processor does: quotients and roots, which OpenGL lets be
+off by some bits. Whether it does is asked of it. Mesa's software does, and so does NVIDIA's.
+"""
+
+import functools
 from typing import Any
 
+import moderngl
 import numpy as np
 import numpy.typing as npt
+import pytest
 
 from risorius import refine
 from risorius.refine_gl import KahlerGl
+from risorius.refine_gl.context import GpuError, own_context
 
 Points = npt.NDArray[np.float64]
 LOOK: dict[str, Any] = {"scheme": "cubic", "criterion": "displacement+rest"}
@@ -16,11 +24,73 @@ RULES: dict[str, dict[str, Any]] = {
     "window's look": LOOK,
 }
 
+ROUNDING = """#version 430 core
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) buffer Numbers { float numbers[]; };
+void main() {
+    uint k = 4u * gl_GlobalInvocationID.x;
+    precise float quotient = numbers[k] / numbers[k + 1u];
+    precise float root = 1.0 / sqrt(numbers[k]);
+    numbers[k + 2u] = quotient;
+    numbers[k + 3u] = root;
+}
+"""
+
+
+def why_no_card() -> str:
+    """Why nothing can be refined on the card; empty if it can.
+
+    That no OpenGL is there at all is no reason to leave a test out.
+    """
+    try:
+        own_context()
+    except GpuError as error:
+        return str(error) if "version" in str(error) else ""
+    return ""
+
+
+@functools.cache
+def why_not_exact() -> str:
+    """Why the card cannot be held to the processor's bits; empty if it can."""
+    if reason := why_no_card():
+        return reason
+    own = own_context()
+    if own.run(rounds_as_processors, own.gl):
+        return ""
+    name = str(own.run(own.gl.info.__getitem__, "GL_RENDERER"))
+    return f"{name} rounds quotients or roots otherwise than a processor"
+
+
+def rounds_as_processors(gl: moderngl.Context) -> bool:
+    """Whether compute shaders divide and take roots to the last bit."""
+    numbers = np.random.default_rng(1).uniform(0.5, 2.0, (64 * 64, 4)).astype(np.float32)
+    buffer = gl.buffer(numbers.tobytes())
+    buffer.bind_to_storage_buffer(0)
+    gl.compute_shader(ROUNDING).run(len(numbers) // 64)
+    gl.memory_barrier()
+    found = np.frombuffer(buffer.read(), np.float32).reshape(-1, 4)
+    roots = np.float32(1.0) / np.sqrt(numbers[:, 0])
+    expected = np.stack([numbers[:, 0] / numbers[:, 1], roots], axis=1)
+    return bool((found[:, 2:] == expected).all())
+
+
+@pytest.fixture
+def exact_driver() -> None:
+    """Skip where the card cannot be held to the processor's bits, and say why."""
+    if reason := why_not_exact():
+        pytest.skip(reason)
+
+
+needs_exact_driver = pytest.mark.usefixtures("exact_driver")
+"""Of tests that compare bits, or pictures pixel by pixel."""
+
 
 def bound_twice(
     faces: npt.ArrayLike, rest: npt.ArrayLike, **options: Any
 ) -> tuple[refine.Refiner, KahlerGl]:
     """The refiners `kahler` and `kahler-gl` of one mesh, with the same options."""
+    if reason := why_not_exact():
+        pytest.skip(reason)
     on_card = refine.create("kahler-gl", faces, rest, **options)
     assert isinstance(on_card, KahlerGl), "no OpenGL 4.3: apt install libegl1 libgl1-mesa-dri"
     return refine.create("kahler", faces, rest, **options), on_card

@@ -1,6 +1,6 @@
 """The graphics card makes the same frames as the processor: splits, triangles and rows.
 
-To the bit on Mesa's software OpenGL, which rounds as the processor does.
+To the bit, where the driver rounds as the processor does (agreement.py).
 """
 
 import copy

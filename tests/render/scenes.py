@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
+import pytest
 
 from risorius import render
 from tests.meshes import ball
@@ -100,6 +101,13 @@ def draw_image(
     with fresh_frame(renderer, style):
         renderer.draw_mesh(stream, renderer.view(camera or facing()), style, values=values)
     return surface.read().astype(np.int32)
+
+
+def needs_samples(surface: render.Surface) -> None:
+    """Skip a test of smooth edges where the driver has one sample a pixel."""
+    if surface.samples < 4:
+        driver = surface.gl.info["GL_RENDERER"]
+        pytest.skip(f"{driver} has up to {surface.samples} samples a pixel, and 4 are asked for")
 
 
 def at(image: SignedImage, x: float, y: float) -> npt.NDArray[np.int32]:

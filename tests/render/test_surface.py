@@ -5,7 +5,7 @@ import pytest
 
 from risorius import render
 
-from .scenes import Shape, draw_image, drawn, sphere, square
+from .scenes import Shape, draw_image, drawn, needs_samples, sphere, square
 
 
 def upper_square() -> Shape:
@@ -41,6 +41,8 @@ def test_samples_smooth_edges() -> None:
     for samples in (0, 4):
         with render.open_offscreen((96, 96), samples=samples) as surface:
             frame = draw_image(surface, shape)
+            if samples > 0:
+                needs_samples(surface)
         red = frame[:, :, 0]
         levels[samples] = int(((red > 235) & (red < 254)).sum())
     assert levels[4] > levels[0] + 20
