@@ -24,12 +24,25 @@ RATES = (  # [frames / s], as timecode counts them
 DEFAULT_RATE = 30.0  # of most cameras
 TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$")
 CLOCK = re.compile(
-    r"""(?:(?P<days>-?\d+)\s+days?,?\s+)?
+    r"""(?:(?P<days>-?\d+)\s+days?,?\s+\+?)?
         (?:(?P<date>\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4})[T\s,]+)?
-        (?:(?P<hours>\d{1,4}):)?(?P<minutes>\d{1,2}):(?P<seconds>\d{1,2}(?:[.,]\d+)?)
+        (?:(?P<hours>\d{1,4}):)?(?P<minutes>\d{1,4}):(?P<seconds>\d{1,2}(?:[.,]\d+)?)
         \s*(?P<half>[ap]\.?m\.?)?
         \s*(?P<zone>Z|UTC|GMT|[-+]\d{2}(?::?\d{2})?)?$""",
     re.IGNORECASE | re.VERBOSE,
+)
+COMPACT_CLOCK = re.compile(  # ISO 8601 in its basic form
+    r"(\d{4})(\d\d)(\d\d)T(\d\d)(\d\d)(\d\d(?:[.,]\d+)?)(Z|[-+]\d\d(?::?\d\d)?)?$",
+    re.IGNORECASE,
+)
+DURATION = re.compile(  # of ISO 8601, in cells that are no number
+    r"(?P<sign>[-+]?)P(?=.*\d)(?:(?P<days>[\d.,]+)D)?"
+    r"(?:T(?:(?P<hours>[\d.,]+)H)?(?:(?P<minutes>[\d.,]+)M)?(?:(?P<seconds>[\d.,]+)S)?)?$",
+    re.IGNORECASE,
+)
+MEASURED = re.compile(
+    r"(?P<number>[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[-+]?\d+)?)\s*(?P<unit>[a-zµμ]+)$",
+    re.IGNORECASE,
 )
 DAY = 86_400.0  # [s]
 SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
@@ -46,7 +59,7 @@ STAMPS = (  # without the unit behind them; the first that a file has and that r
     "pts",
 )  # fmt: skip
 SPELLED_UNITS = {
-    "seconds": 1.0, "sec": 1.0, "secs": 1.0, "s": 1.0,
+    "seconds": 1.0, "second": 1.0, "sec": 1.0, "secs": 1.0, "s": 1.0,
     "milliseconds": 1e-3, "millis": 1e-3, "msec": 1e-3, "ms": 1e-3,
     "microseconds": 1e-6, "micros": 1e-6, "usec": 1e-6, "us": 1e-6,
     "nanoseconds": 1e-9, "nanos": 1e-9, "nsec": 1e-9, "ns": 1e-9,
@@ -142,7 +155,9 @@ def find_times(
             times = timecode_times(cells, rate, notes)
         elif rate is not None:
             continue
-        elif sum(":" in cell for cell in sample) * 2 > len(sample):
+        elif sum(_measured(cell) is not None for cell in sample) * 2 > len(sample):
+            times = stamp_times(np.array([_seconds_in(cell) for cell in cells]), notes, 1.0)
+        elif sum(_is_clock(cell) for cell in sample) * 2 > len(sample):
             times = clock_times(cells, name, notes)
         else:
             times = stamp_times(numbers(name), notes, stamps[name].unit)
@@ -153,6 +168,41 @@ def find_times(
         notes.append(f"{written_rate:g} frames a second, as the file says.")
     frame = next((numbers(name) for name in names if is_frame(name)), None)
     return frame_times(frame, count, rate or written_rate, notes, has_stamps=has_stamps)
+
+
+def _is_clock(cell: str) -> bool:
+    return ":" in cell or COMPACT_CLOCK.match(cell) is not None
+
+
+def _measured(cell: str) -> float | None:
+    """The seconds in `33 ms`, `0.033 s` or ISO 8601's `PT0.033S`; None for another cell."""
+    if found := MEASURED.match(cell):
+        spelled = found["unit"].casefold().replace("µ", "u").replace("μ", "u")
+        unit = SPELLED_UNITS.get(spelled) or SPELLED_UNITS.get(f"{spelled}s")
+        return None if unit is None else float(found["number"].replace(",", ".")) * unit
+    found = DURATION.match(cell)
+    if not found:
+        return None
+    lengths = {"days": DAY, "hours": 3600.0, "minutes": 60.0, "seconds": 1.0}
+    try:
+        parts = [
+            float((found[part] or "0").replace(",", ".")) * length
+            for part, length in lengths.items()
+        ]
+    except ValueError:  # two points in a number
+        return None
+    return -sum(parts) if found["sign"] == "-" else sum(parts)
+
+
+def _seconds_in(cell: str) -> float:
+    """The seconds in a cell with a unit, or of seconds without one; NaN for another cell."""
+    seconds = _measured(cell)
+    if seconds is not None:
+        return seconds
+    try:
+        return float(cell)
+    except ValueError:
+        return np.nan
 
 
 def _with_colons(cells: list[str]) -> list[str]:
@@ -241,14 +291,15 @@ def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Array | No
     seconds = np.full(len(cells), np.nan)
     days = np.zeros(len(cells))
     for row, cell in enumerate(cells):
-        if found := CLOCK.match(cell):
+        spread_out = COMPACT_CLOCK.sub(r"\1-\2-\3T\4:\5:\6\7", cell)
+        if found := CLOCK.match(spread_out):
             seconds[row] = _seconds_of_day(found)
             days[row] = _day_of(found)
     known = np.isfinite(seconds)
     if not known.any():
         notes.append(f"The times in '{name}' cannot be read, and were not used.")
         return None
-    if days[known].any():
+    if days[known].any():  # timedelta's days go below 0
         seconds[known] += DAY * (days[known] - days[known].min())
     else:
         seconds[known] = np.unwrap(seconds[known], period=DAY)
@@ -315,7 +366,8 @@ def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -
     elif len(cells) > 1:
         base = pace = max(base, 60.0)
         notes.append(f"Less than a second of timecode: {base:g} frames a second were assumed.")
-    dropped = _dropped(parts[known], base) if has_semicolon else 0
+    is_dropping = has_semicolon or _jumps_at_minutes(seconds, numbers[known], base)
+    dropped = _dropped(parts[known], base) if is_dropping else 0
     numbers[known] += seconds * base
     if dropped:
         minutes = seconds // 60.0
@@ -364,6 +416,20 @@ def _dropped(parts: Array, base: float) -> int:
     is_other_minute = parts[:, 1] % 10.0 != 0.0
     is_there = is_other_minute & (parts[:, 2] == 0.0) & (parts[:, 3] < dropped)
     return 0 if is_there.any() else dropped
+
+
+def _jumps_at_minutes(seconds: Array, numbers: Array, base: float) -> bool:
+    """Whether as many frames as drop-frame timecode leaves out are missing at most minutes.
+
+    seconds: whole, shape (T,). numbers: of frames in their second, shape (T,).
+    """
+    steps = np.diff(seconds * base + numbers)
+    minutes = seconds // 60.0
+    is_turn = (np.diff(minutes) == 1.0) & (minutes[1:] % 10.0 != 0.0)
+    if base % 30.0 != 0.0 or not is_turn.any():
+        return False
+    missing = np.median(steps[is_turn]) - np.median(steps[steps > 0.0])
+    return bool(abs(missing - base // 15.0) < 0.5)
 
 
 def _spread(values: Array, notes: list[str]) -> Array:

@@ -30,12 +30,12 @@ def timecode(frame: int, base: int, *, separator: str = ":", start: int = 36_000
     return f"{second // 3600 % 24:02}:{second // 60 % 60:02}:{second % 60:02}{separator}{number:02}"
 
 
-def drop_frame(frame: int, base: int) -> str:
+def drop_frame(frame: int, base: int, separator: str = ";") -> str:
     """The label of a frame by SMPTE's rule: at each minute but every tenth numbers are dropped."""
     dropped = base // 15
     tens, rest = divmod(frame, 600 * base - 9 * dropped)
     minutes = max(rest - dropped, 0) // (60 * base - dropped)
-    return timecode(frame + dropped * (9 * tens + minutes), base, separator=";", start=0)
+    return timecode(frame + dropped * (9 * tens + minutes), base, separator=separator, start=0)
 
 
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 50, 60, 72, 75, 90, 100, 120, 144, 240])
@@ -65,14 +65,23 @@ def test_a_rate_that_timecode_contradicts(tmp_path: Path) -> None:
     assert told(take.notes, "counts 60 frames a second; 30 was not used")
 
 
+@pytest.mark.parametrize("separator", [";", ":"])
 @pytest.mark.parametrize("base", [30, 60, 120])
-def test_drop_frame(base: int, tmp_path: Path) -> None:
+def test_drop_frame(base: int, separator: str, tmp_path: Path) -> None:
     """Eleven minutes and more: no jump where numbers are left out, and the true rate counts."""
     frames = np.arange(700 * base // 5) * 5
-    cells = [drop_frame(int(frame), base) for frame in frames]
+    cells = [drop_frame(int(frame), base, separator) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
     assert take.times == pytest.approx(frames * 1.001 / base, abs=1e-4)
     assert told(take.notes, "Timecode drops frames")
+
+
+@pytest.mark.parametrize(("start", "step"), [(0, 1), (3, 5), (7, 10)])
+def test_colons_that_drop_nothing(start: int, step: int, tmp_path: Path) -> None:
+    """Rows that happen to miss the first numbers of minutes are no drop-frame timecode."""
+    frames = range(start, 7200, step)
+    take = take_of(tmp_path, [timecode(frame, 30) for frame in frames], name="Timecode")
+    assert take.times == pytest.approx((np.array(frames) - start) / 30.0)
 
 
 def test_a_semicolon_that_drops_nothing(tmp_path: Path) -> None:
@@ -118,6 +127,13 @@ def timedelta_of_pandas(seconds: float) -> str:
     return f"0 days 00:00:{seconds:09.6f}"
 
 
+def timedelta_from_below(seconds: float) -> str:
+    """As pandas prints a time delta that begins a second before 0."""
+    if seconds < 1.0:
+        return f"-1 days +23:59:{59 + seconds:09.6f}"
+    return f"0 days 00:00:{seconds - 1.0:09.6f}"
+
+
 CLOCKS: dict[str, Callable[[float], object]] = {
     "HH:MM:SS.mmm": clock("%H:%M:%S.{ms}"),
     "HH:MM:SS,mmm": clock("%H:%M:%S,{ms}"),
@@ -129,7 +145,17 @@ CLOCKS: dict[str, Callable[[float], object]] = {
     "ISO 8601 with a blank": clock("%Y-%m-%d %H:%M:%S.{ms}"),
     "German": clock("%d.%m.%Y %H:%M:%S,{ms}"),
     "American": clock("%m/%d/%Y %I:%M:%S.{ms} %p"),
+    "ISO 8601 in its basic form": clock("%Y%m%dT%H%M%S.{ms}Z"),
+    "ISO 8601's durations": lambda s: f"PT{s:.4f}S",
+    "long durations": lambda s: f"P1DT2H3M{s:.3f}S",
+    "milliseconds with their unit": lambda s: f"{1e3 * s:.1f} ms",
+    "seconds with their unit": lambda s: f"{s:.4f} s",
+    "seconds in words": lambda s: f"{s:.4f} seconds",
+    "microseconds with their unit": lambda s: f"{1e6 * s:.0f}µs",
+    "many minutes": lambda s: f"132:{s:06.3f}",
     "pandas": timedelta_of_pandas,
+    "pandas, over a day": timedelta_from_below,
+    "Python, over a day": lambda s: str(datetime.timedelta(days=1, seconds=s - 1.0)),
     "Python": lambda s: str(datetime.timedelta(seconds=s)),
     "epoch in seconds": lambda s: f"{1_714_564_800 + s:.4f}",
     "epoch in milliseconds": lambda s: round((1_714_564_800 + s) * 1e3),
