@@ -19,7 +19,7 @@ import numpy as np
 from .gaps import whole_take
 from .head_pose import head_of
 from .names import angle_of, shape_of
-from .table import LARGEST
+from .table import LARGEST, without_percent
 from .take import Array, Request, Take
 from .timing import find_times, is_frame, stamp_of
 from .values import is_calibrated, is_flag, rows_without_face, shares, without_rows
@@ -285,7 +285,11 @@ def _keys(frames: Sequence[Mapping[str, Any]]) -> list[str]:
 def _texts(frames: Sequence[Mapping[str, Any]], name: str) -> list[str]:
     """What frames have under a key, as a table has it; "" for lists and tables."""
     values = [frame.get(name) for frame in frames]
-    return [str(v).strip() if isinstance(v, bool | int | float | str) else "" for v in values]
+    is_cell = [isinstance(value, bool | int | float | str) for value in values]
+    return [
+        without_percent(str(value).strip()) if is_one else ""
+        for value, is_one in zip(values, is_cell, strict=True)
+    ]
 
 
 def _rate(document: Any) -> float | None:
@@ -311,11 +315,11 @@ def _first(keys: Mapping[str, Any], names: Sequence[str]) -> Any:
 
 
 def _number(value: Any) -> float:
-    """A number, also one in quotes; NaN for what is none."""
+    """A number, also one in quotes or with a percent sign; NaN for what is none."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         return math.nan
     try:
-        number = float(value)
+        number = float(without_percent(value.strip()) if isinstance(value, str) else value)
     except (ValueError, OverflowError):
         return math.nan
     return number if abs(number) < LARGEST else math.nan

@@ -38,18 +38,21 @@ class Layout:
     """How the cells of a table are written.
 
     delimiter: the character between cells. quote: around cells that may hold the delimiter.
-    is_quoted: whether any cell is. has_decimal_commas: whether 0,5 is a half.
+    is_quoted: whether any cell is. has_decimal_commas: whether 0,5 is a half. has_percents: whether
+    50% is a half.
     """
 
     delimiter: str = ","
     quote: str = '"'
     is_quoted: bool = False
     has_decimal_commas: bool = False
+    has_percents: bool = False
 
     @property
     def is_plain(self) -> bool:
         """Whether a line can be split at its delimiters, without more."""
-        return not (self.is_quoted or self.has_decimal_commas or self.delimiter == " ")
+        is_written_oddly = self.is_quoted or self.has_decimal_commas or self.has_percents
+        return not is_written_oddly and self.delimiter != " "
 
     @property
     def notes(self) -> list[str]:
@@ -61,6 +64,8 @@ class Layout:
             guessed.append("quotes around cells")
         if self.has_decimal_commas:
             guessed.append("decimal commas")
+        if self.has_percents:
+            guessed.append("percent signs")
         return [f"The table was read with {', '.join(guessed)}."]
 
     def rows_of(self, numbered: Sequence[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
@@ -83,8 +88,18 @@ class Layout:
     def clean(self, cell: str) -> str:
         """A cell without a decimal comma, without line ends and blanks around."""
         cell = " ".join(cell.replace(CLEAN, " ").split())
-        if self.has_decimal_commas and DECIMAL_COMMA.fullmatch(cell):
-            return cell.replace(".", "").replace(",", ".")
+        if self.has_decimal_commas and DECIMAL_COMMA.fullmatch(cell.rstrip(" %")):
+            cell = cell.replace(".", "").replace(",", ".")
+        return without_percent(cell)
+
+
+def without_percent(cell: str) -> str:
+    """`12%` as `0.12`; another cell as it is."""
+    if not cell.endswith("%"):
+        return cell
+    try:
+        return repr(float(cell.rstrip(" %")) / 100.0)
+    except ValueError:
         return cell
 
 
@@ -225,10 +240,16 @@ def _layout_of(text: str, header: str) -> Layout:
     best = _with_delimiter(header, sample, quote)
     best = replace(best, is_quoted=quote in text)
     # A comma in a cell can only be found where commas do not part cells, or where quotes do.
-    if best.delimiter == "," and not best.is_quoted:
+    if best.is_plain and best.delimiter == "," and "%" not in text[:DECIMALS_SOUGHT]:
         return best
     cells = [cell.strip() for _, row in best.rows_of(sample) for cell in row]
-    return replace(best, has_decimal_commas=any(map(DECIMAL_COMMA.fullmatch, cells)))
+    return replace(
+        best,
+        has_decimal_commas=any(DECIMAL_COMMA.fullmatch(cell.rstrip(" %")) for cell in cells),
+        has_percents=any(
+            without_percent(cell.replace(",", ".")) != cell.replace(",", ".") for cell in cells
+        ),
+    )
 
 
 def _with_delimiter(header: str, sample: Sequence[tuple[int, str]], quote: str) -> Layout:

@@ -222,3 +222,25 @@ def test_what_json_says_besides(tmp_path: Path) -> None:
     assert take.unknown == ("emotion",)
     assert take.channels["jawOpen"][3] == 0.25
     assert told(take.notes, "these were left out: 'JawOpen'")
+
+
+@pytest.mark.parametrize("form", ["{:.1f}%", "{:.1f} %"])
+def test_percent_signs_in_cells(form: str, tmp_path: Path) -> None:
+    """A half is a half, whichever column has the sign, also of a face that does little."""
+    values = np.linspace(0.0, 0.02, 30).round(3)
+    rows = [[form.format(100.0 * value), form.format(20.0 + 75.0 * (value > 0.01)), "0.5"]
+            for value in values]  # fmt: skip
+    names = ["jawOpen", "confidence", "cheekPuff"]
+    path = tmp_path / "take"
+    comma = [[cell.replace(".", ",") for cell in row] for row in rows]
+    texts = [
+        "\n".join(",".join(row) for row in [names, *rows]),
+        "\n".join(";".join(row) for row in [names, *comma]),
+        json.dumps([dict(zip(names, row, strict=True)) for row in rows]),
+    ]
+    for text in texts:
+        path.write_text(text)
+        take = read_take(path)
+        assert take.channels["jawOpen"][-5:] == pytest.approx(values[-5:])
+        assert take.channels["cheekPuff"] == pytest.approx(0.5)
+        assert told(take.notes, "No face in")
