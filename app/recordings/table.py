@@ -186,7 +186,7 @@ def table_in(text: str, *, source: str) -> Table:
         rows = [(number, line.count(delimiter) + 1, line) for number, line in numbered[1:]]
     else:
         delimiter = CLEAN
-        rows = _cleaned(numbered[1:], layout, source)
+        rows = _cleaned(numbered[1:], layout, notes)
     if len(rows) > 1 and rows[-1][1] < len(names):
         notes.append(f"The last row, line {rows.pop()[0]}, is torn and was left out.")
     if not rows:
@@ -297,26 +297,43 @@ def _cells_of(line: str, layout: Layout) -> list[str]:
 
 
 def _cleaned(
-    numbered: Sequence[tuple[int, str]], layout: Layout, source: str
+    numbered: Sequence[tuple[int, str]], layout: Layout, notes: list[str]
 ) -> list[tuple[int, int, str]]:
     """Number, count of cells and text of each row, with `CLEAN` between cells.
 
-    UserError for quotes that are not closed.
+    A line whose quote nothing closes is left out, with a note: it costs no other row.
     """
+    rows = _rows_in(numbered, layout)
+    if rows is not None and len({count for _, count, _ in rows[:-1]}) <= 1:
+        return rows
+    alone = [_rows_in([entry], layout) for entry in numbered]
+    lost = [str(number) for (number, _), found in zip(numbered, alone, strict=True) if not found]
+    if not lost and rows is not None:
+        return rows
+    listed = ", ".join(lost[:MOST_LISTED]) + (", ..." if len(lost) > MOST_LISTED else "")
+    are = "is" if len(lost) == 1 else "are"
+    notes.append(
+        f"Quotes in {counted(len(lost), 'line')} {are} not closed, and the row was left out: "
+        f"line {listed}."
+    )
+    return [row for found in alone if found for row in found]
+
+
+def _rows_in(
+    numbered: Sequence[tuple[int, str]], layout: Layout
+) -> list[tuple[int, int, str]] | None:
+    """The rows as `_cleaned` has them; None where a quote is not closed, or only by another row."""
     rows: list[tuple[int, int, str]] = []
     is_closed = True
     try:
         for number, cells in layout.rows_of(numbered):
             is_closed = not cells[-1].endswith("\n")
+            if any("\n" in cell and layout.delimiter in cell for cell in cells):
+                return None
             rows.append((number, len(cells), CLEAN.join(map(layout.clean, cells))))
     except csv.Error:  # a cell of more than 128 KiB
-        is_closed = False
-    if not is_closed:
-        after = rows[-1][0] if rows else numbered[0][0]
-        raise UserError(
-            f"{source}: a quote in line {after} or below is not closed; each needs a second one"
-        )
-    return rows
+        return None
+    return rows if is_closed else None
 
 
 def one_face(table: Table, request: Request) -> Table:

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.errors import UserError
 from risorius.app.recordings import is_recording, read_take
 
 from .recording_files import table, told
@@ -171,12 +170,16 @@ def test_a_quoted_text_beside_numbers(tmp_path: Path) -> None:
     assert take.times == pytest.approx([0.0, 0.1, 0.2])
 
 
-def test_a_quote_that_is_not_closed(tmp_path: Path) -> None:
-    """It swallows no row in silence: the line is named."""
+@pytest.mark.parametrize("is_first", [True, False])
+def test_a_quote_that_is_not_closed(tmp_path: Path, is_first: bool) -> None:
+    """It costs its own row and no other, and the line is reported, also where two are open."""
     path = tmp_path / "take.csv"
-    path.write_text('time,jawOpen\n0,0.1\n0.1,"0.2\n0.2,0.3\n')
-    with pytest.raises(UserError, match="a quote in line 3 or below is not closed"):
-        read_take(path)
+    broken = '0.1,"0.2\n' if is_first else '"0.1,0.2\n'
+    path.write_text(f'time,"jawOpen"\n0,0.1\n{broken}0.2,0.3\n0.3,"0.4\n0.4,0.5\n')
+    take = read_take(path)
+    assert take.channels["jawOpen"].tolist() == [0.1, 0.3, 0.5]
+    assert any("Quotes in 2 lines are not closed" in note for note in take.notes)
+    assert any("line 3, 5" in note for note in take.notes)
 
 
 @pytest.mark.parametrize(
