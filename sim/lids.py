@@ -51,8 +51,7 @@ WIDE_OPENING = 0.3  # rad: from here on they do in full
 SLIDE_REACH = 1.9  # x the reach of the turn: skin around the lid slides along with it
 SLIDE_ENDS = (0.1, 1.7)  # x the slide at the outer and the inner corner
 CORNER_SHARE = 0.5  # of the motion of the open lid is there: their ligaments give
-# Of its way up that the fold goes back: it slides on the orbit, not on the eyeball.
-STEEPEST_SLOPE = 0.45
+STEEPEST_SLOPE = 0.45  # of its way up that the fold goes back: it slides on the orbit
 FIRM_FOLD_TURN = 0.12  # rad of turn from which the fold is held in full
 LEAST_TURN = 1e-3  # lid vertices that move less are not lid
 
@@ -214,63 +213,79 @@ def _one_eye(
     axes = _LidAxes(ball.centre, up, forward, landmarks[outer], landmarks[inner] - landmarks[outer])
     column = axes.column(x)
     angle = axes.angle(x)
-    lines = {
-        True: landmarks[[outer, upper_outer, upper_inner, inner]],
-        False: landmarks[[outer, lower_outer, lower_inner, inner]],
-    }
+    upper_line = landmarks[[outer, upper_outer, upper_inner, inner]]
+    lower_line = landmarks[[outer, lower_outer, lower_inner, inner]]
+    upper_ends = (eyes.fold_plateau, eyes.fold_reach)
+    lower_ends = (eyes.lid_plateau, eyes.lid_reach)
+    upper = _one_lid(eyes, surface, axes, upper_line, side > 0.0, upper_ends)
+    lower = _one_lid(eyes, surface, axes, lower_line, side < 0.0, lower_ends)
     where = np.linspace(0.0, 1.0, COLUMNS)
-    slide = np.zeros(surface.vertex_count)
-    fronts = {}
-    depths = {}
-    weights = {}
-    folds = {}
-    near = {}
-    for upper, line in lines.items():
-        on_lid = side > 0.0 if upper else side < 0.0
-        edge = _front_edge(surface, line, axes)
-        distance = polyline_distance(x, edge)
-        weights[upper] = on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach)
-        ends = (eyes.fold_plateau, eyes.fold_reach) if upper else (eyes.lid_plateau, eyes.lid_reach)
-        folds[upper] = on_lid * _share(distance, *ends)
-        slide = np.where(on_lid, _share(distance, 0.0, SLIDE_REACH * eyes.lid_reach), slide)
-        near[upper] = on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02)
-        edge = edge[np.argsort(axes.column(edge), kind="stable")]
-        fronts[upper], depths[upper] = (
-            np.interp(where, axes.column(edge), values)
-            for values in (axes.angle(edge), np.linalg.norm(edge - ball.centre, axis=1))
-        )
-    height = np.maximum(fronts[True] - fronts[False], 0.0)
+    slide = upper.slide + lower.slide
+    height = np.maximum(upper.front - lower.front, 0.0)
     wide = _smoothed(height)
     slide *= np.interp(column, where, wide, 0.0, 0.0) / max(height.max(), LEAST_OPENING)
     slide *= np.interp(column, (0.0, 1.0), SLIDE_ENDS)
     exact, broad = (np.interp(column, where, h) for h in (height, np.minimum(wide, height.max())))
-    weight = weights[True] + weights[False]
+    weight = upper.weight + lower.weight
     opening = weight * exact + (1.0 - weight) * broad
     share = np.where(side > 0.0, eyes.blink_meeting - 1.0, eyes.blink_meeting)
     closing = share * weight * opening
     arrives = column + slide * np.where(side > 0.0, *eyes.blink_slide) / np.linalg.norm(axes.axis)
-    seam = fronts[False] + eyes.blink_meeting * height  # where closed lids meet
+    seam = lower.front + eyes.blink_meeting * height  # where closed lids meet
     meeting, rises = (np.interp(c, where, seam) for c in (arrives, column))
     closing += weight * (meeting - rises)
-    for upper, front in fronts.items():  # the margin itself, up to its front edge
-        within = angle - np.interp(column, where, front)
-        margin = near[upper] & ((within < EDGE) if upper else (within > -EDGE))
+    for lid, sign in ((upper, 1.0), (lower, -1.0)):  # the margin itself, up to its front edge
+        within = sign * (angle - np.interp(column, where, lid.front))
+        margin = lid.near & (within < EDGE)
         closing[margin] = (meeting - angle)[margin]
     before = x[:, 2] > ball.centre[2]  # skin behind the eyeball's equator is no lid
     at_middle = CORNER_SHARE + (1.0 - CORNER_SHARE) * np.sin(np.pi * np.clip(column, 0.0, 1.0))
-    fold = before * (folds[True] + folds[False]) * at_middle
+    fold = before * (upper.fold + lower.fold) * at_middle
     weight = before * weight
     closing = before * closing
-    sink = np.interp(column, where, depths[True] - depths[False]) - PROUD_HEIGHT
+    sink = np.interp(column, where, upper.depth - lower.depth) - PROUD_HEIGHT
     sink *= (side > 0.0) * weight
-    lid = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > LEAST_TURN)
-    overlap = (
-        OVERLAP * weight * smoothstep((opening - LEAST_OPENING) / (WIDE_OPENING - LEAST_OPENING))
-    )[lid]
-    return _OneEye(
-        lid, side[lid] > 0.0, weight[lid], closing[lid], overlap, sink[lid], fold[lid],
-        opening[lid], slide[lid],
-    )  # fmt: skip
+    vertex = np.flatnonzero(np.maximum(np.maximum(weight, fold), slide) > LEAST_TURN)
+    width = (opening - LEAST_OPENING) / (WIDE_OPENING - LEAST_OPENING)
+    overlap = OVERLAP * weight * smoothstep(width)
+    values = (weight, closing, overlap, sink, fold, opening, slide)
+    return _OneEye(vertex, side[vertex] > 0.0, *(each[vertex] for each in values))
+
+
+class _OneLid(NamedTuple):
+    """One lid of an eye: by vertex, shape (V,), or by column of the opening, shape (COLUMNS,)."""
+
+    weight: Array  # (V,) share of the margin's turn
+    fold: Array  # (V,) share of the turn of the open lid
+    slide: Array  # (V,) share of the slide
+    near: npt.NDArray[np.bool_]  # (V,) near the margin
+    front: Array  # (COLUMNS,) rad, angle of the front edge
+    depth: Array  # (COLUMNS,) mm from the centre of the eyeball to the front edge
+
+
+def _one_lid(
+    eyes: Eyes,
+    surface: Surface,
+    axes: _LidAxes,
+    line: Array,
+    on_lid: npt.NDArray[np.bool_],
+    fold_ends: tuple[float, float],
+) -> _OneLid:
+    """Measure one lid along its line of landmarks (4, 3). fold_ends: mm, plateau and reach."""
+    edge = _front_edge(surface, line, axes)
+    distance = polyline_distance(surface.positions, edge)
+    column = axes.column(surface.positions)
+    edge = edge[np.argsort(axes.column(edge), kind="stable")]
+    places = axes.column(edge)
+    where = np.linspace(0.0, 1.0, COLUMNS)
+    return _OneLid(
+        weight=on_lid * _share(distance, eyes.lid_plateau, eyes.lid_reach),
+        fold=on_lid * _share(distance, *fold_ends),
+        slide=on_lid * _share(distance, 0.0, SLIDE_REACH * eyes.lid_reach),
+        near=on_lid & (distance < MARGIN_REACH) & (column > -0.02) & (column < 1.02),
+        front=np.interp(where, places, axes.angle(edge)),
+        depth=np.interp(where, places, np.linalg.norm(edge - axes.centre, axis=1)),
+    )
 
 
 def _front_edge(surface: Surface, line: Array, axes: _LidAxes) -> Array:
@@ -312,9 +327,8 @@ def _lid_muscles(
 def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
     """Turn the far ends of the tissue springs of all lid vertices, and their normals.
 
-    Adds the stiffness that holds moved folds to `state.hold`. drive: of each eye, shape
-    (eyes, 3), see Lids.drive; gaze: angles of each to the subject's left and up [rad], shape
-    (eyes, 2).
+    Adds the stiffness that holds moved folds to `state.hold`. drive: see Lids.drive; gaze: angles
+    of each eye to the subject's left and up [rad], shape (eyes, 2).
     """
     carried = state.carried
     normals = state.normals
@@ -365,14 +379,22 @@ def turn_lids(state, rest, lids, drive, gaze):  # type: ignore[no-untyped-def]
             normals[i, k] += (normal_high * c + normal_far * s) * u
             normals[i, k] += (normal_far * c - normal_high * s) * f
         if inward != 0.0:
-            side = 0.0
-            far = 0.0
-            for k in range(3):
-                side += (carried[i, k] - centres[e, k]) * lids.inward[e, k]
-                far += (carried[i, k] - centres[e, k]) * forward[e, k]
-            angle = inward / np.sqrt(side * side + far * far)
-            c = np.cos(angle) - 1.0
-            s = np.sin(angle)
-            for k in range(3):
-                carried[i, k] += (side * c + far * s) * lids.inward[e, k]
-                carried[i, k] += (far * c - side * s) * forward[e, k]
+            slide_lid(carried, lids, row, inward)
+
+
+@njit
+def slide_lid(carried, lids, row, inward):  # type: ignore[no-untyped-def]
+    """Slide the far end of a lid vertex around its eyeball, `inward` mm toward the nose."""
+    i = lids.vertex[row]
+    e = lids.eye[row]
+    side = 0.0
+    far = 0.0
+    for k in range(3):
+        side += (carried[i, k] - lids.centres[e, k]) * lids.inward[e, k]
+        far += (carried[i, k] - lids.centres[e, k]) * lids.forward[e, k]
+    angle = inward / np.sqrt(side * side + far * far)
+    c = np.cos(angle) - 1.0
+    s = np.sin(angle)
+    for k in range(3):
+        carried[i, k] += (side * c + far * s) * lids.inward[e, k]
+        carried[i, k] += (far * c - side * s) * lids.forward[e, k]
