@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from ..control_names import sentence
 from ..errors import UserError, as_text
 
-SECONDS = 6.0  # for which a message stays
 LONGEST_FRAME = 0.25  # [s] that counts for a message: a frame that took longer showed nothing
 
 Message = str | None  # to be shown; None for nothing to say
@@ -32,7 +31,7 @@ class Messages:
         self.text = sentence(as_text(text))
         self.is_error = error
         self.stays = error or stays
-        self.seconds_left = SECONDS
+        self.seconds_left = 6.0  # for which a line stays
 
     def attempt(self, task: Task, *, stays: bool = False) -> None:
         """Run a task, and show the message that it returns or the error that it raises."""

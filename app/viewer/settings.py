@@ -45,14 +45,16 @@ SKINS = {  # whether it is textured, and its colour
     "plain": (False, render.SKIN),
     "clay": (False, render.CLAY),
 }
-OF_RENDER = ("light", "dark", "white", "black")
-BACKGROUNDS = {"theme": None, **{name: getattr(render, name.upper()) for name in OF_RENDER}}
+RENDER_BACKGROUNDS = ("light", "dark", "white", "black")
+BACKGROUNDS = {
+    "theme": None,
+    **{name: getattr(render, name.upper()) for name in RENDER_BACKGROUNDS},
+}
 # Individual typology angles [degrees], see assets/identities/complexion.py; None: the person's own.
 TONES = {"own": None, "very light": 61.0, "light": 48.0, "intermediate": 34.0}
 TONES |= {"tan": 19.0, "brown": -10.0, "dark": -45.0}
-MOST_RECENT = 10  # files that are remembered
 MOST_REPORTED = 4  # unusable values; a line has room for no more
-FRAMES = "frames"  # pictures in a folder
+FRAMES_KIND = "frames"  # pictures in a folder
 
 
 class Kind(NamedTuple):
@@ -66,7 +68,7 @@ class Kind(NamedTuple):
 
 
 KINDS = {end[1:]: Kind(f"Film ({end})", end, fastest=each.fastest) for end, each in FILMS.items()}
-KINDS[FRAMES] = Kind("Pictures in a folder (.png)", "", True, True)
+KINDS[FRAMES_KIND] = Kind("Pictures in a folder (.png)", "", True, True)
 for _each in MOTION:
     _end = (*_each.suffixes, "")[0]
     KINDS[_each.name] = Kind(f"Motion: {_each.title} ({_end or 'folder'})", _end, is_drawn=False)
@@ -192,7 +194,7 @@ class Settings(Record):
     def note_recent(self, *paths: Path) -> None:
         """Remember files that were opened together, or saved."""
         opened = "\n".join(str(path.absolute()) for path in paths)
-        self.recent = [*dict.fromkeys((opened, *self.recent))][:MOST_RECENT]
+        self.recent = [*dict.fromkeys((opened, *self.recent))][:10]
 
     def enlarge(self, factor: float) -> None:
         """Make words and sliders larger or smaller."""

@@ -16,7 +16,7 @@ from Xlib.error import XError
 from Xlib.protocol import event
 
 from risorius.app.viewer.interface.gui import THEMES
-from risorius.app.viewer.window.splash_screen import COMPILING, LOADING, picture
+from risorius.app.viewer.window.splash_screen import COMPILING_TEXT, LOADING_TEXT, picture
 
 from .driving import (
     DEADLINE,
@@ -87,7 +87,7 @@ def test_a_line_is_seen_before_anything_is_compiled(
     process = start()
     wanted = [
         picture((640, 400), 15.0, THEMES["light"], text).astype(int)
-        for text in (LOADING, COMPILING)
+        for text in (LOADING_TEXT, COMPILING_TEXT)
     ]
     is_like = [False, False]
     for shown in first_pictures(process):

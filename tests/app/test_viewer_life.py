@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from risorius.app.viewer import Viewer
-from risorius.app.viewer.session.physics import ASLEEP_AFTER
+from risorius.app.viewer.session.physics import SLEEP_DELAY
 
 from .driving import NEEDS_A_SCREEN, moved, settle, until, xdotool
 
@@ -60,7 +60,7 @@ def test_a_script_moves_the_face_alone(viewer: Viewer) -> None:
 
 def test_it_sleeps_when_nobody_is_there(viewer: Viewer) -> None:
     """After some minutes without input the window rests; a key wakes the face."""
-    viewer.life.after(ASLEEP_AFTER, is_held=False)
+    viewer.life.after(SLEEP_DELAY, is_held=False)
     assert not viewer.life.is_on
     assert until(viewer, lambda: viewer.is_idle)
     xdotool(viewer, "key", "Shift_L")

@@ -8,7 +8,7 @@ from risorius.app.scenes import FaceScene
 from risorius.app.script.keyframes import POSES, places_of
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script
-from risorius.app.viewer.picture.stage import FULL, LEVELS, PATIENCE, LevelOfDetail
+from risorius.app.viewer.picture.stage import FULL_DETAIL, LEVELS, PATIENCE_FRAMES, LevelOfDetail
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.timeline.keys import KeySelection
 
@@ -120,8 +120,8 @@ def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -
 def test_detail_falls_once_and_does_not_flicker() -> None:
     """Slow frames lower the level; fast ones raise it by one, and only as a motion begins."""
     chosen = LevelOfDetail(is_software=False)
-    assert chosen.detail == FULL
-    for _ in range(2 * PATIENCE):
+    assert chosen.detail == FULL_DETAIL
+    for _ in range(2 * PATIENCE_FRAMES):
         chosen.note(0.08)
     assert chosen.level == 2
     for _ in range(100):

@@ -27,7 +27,7 @@ from ..interface.widgets import LabelledRows, button, dialog, muted, shortened
 from ..messages import Message
 from ..picture.stage import Stage, View, style_of
 from ..session.session import Session
-from ..settings import FRAMES, KINDS, TONES, ExportChoices, Kind, Settings
+from ..settings import FRAMES_KIND, KINDS, TONES, ExportChoices, Kind, Settings
 from .file_dialogs import FileDialogs
 
 
@@ -110,7 +110,7 @@ class Exporter:
         head = head if isinstance(head, FittedHead) else None
         work: Callable[[], object]
         if self.kind.is_drawn:
-            check_file(target / "frame.png" if choices.kind == FRAMES else target)
+            check_file(target / "frame.png" if choices.kind == FRAMES_KIND else target)
             draw = partial(capture, script, self._options(head), overwrite=True)
             work = partial(draw, progress=False, output=target)
         else:
@@ -153,10 +153,10 @@ class Exporter:
 
 
 TITLE = "Export"
-LABELS = 7.5  # [em] of words at the left
-WIDTH = 31.0  # [em] of the dialog
-BUTTON = 6.5  # [em] of a button
-PICTURES = {
+LABEL_WIDTH = 7.5  # [em] of words at the left
+DIALOG_WIDTH = 31.0  # [em] of the dialog
+BUTTON_WIDTH = 6.5  # [em] of a button
+PICTURE_SIZES = {
     **{(640, 480): "VGA", (1280, 720): "HD", (1920, 1080): "Full HD", (3840, 2160): "4K"},
     **{(1080, 1080): "Square", (1080, 1920): "Upright"},
 }
@@ -172,7 +172,7 @@ class ExportDialog:
         self._exporter = exporter
         self._files = files
         self._view = view
-        self._rows = LabelledRows(gui, LABELS / WIDTH, {})
+        self._rows = LabelledRows(gui, LABEL_WIDTH / DIALOG_WIDTH, {})
         self._was_focused = False  # in the frame before: no list was open over it
 
     def draw(self) -> Message:
@@ -181,7 +181,7 @@ class ExportDialog:
         self._draw_progress()
         if not exporter.is_asking or self._files.is_waiting:
             return None
-        with dialog(TITLE, WIDTH) as is_open:
+        with dialog(TITLE, DIALOG_WIDTH) as is_open:
             if is_open:
                 try:
                     self._draw_motion(exporter.choices)
@@ -204,7 +204,7 @@ class ExportDialog:
         kind = self._exporter.kind
         if kind.is_drawn:
             here = self._view.viewport[2:]
-            sizes = {choices.size: "As last", here: "As in the window", **PICTURES}
+            sizes = {choices.size: "As last", here: "As in the window", **PICTURE_SIZES}
             words = {size: f"{name}: {size[0]} x {size[1]}" for size, name in sizes.items()}
             choices.size = self._pick("Size", choices.size, words)
         choices.rate = min(choices.rate, kind.fastest)
@@ -223,12 +223,12 @@ class ExportDialog:
         duration = self._exporter.session.script.duration
         imgui.separator()
         imgui.align_text_to_frame_padding()
-        left = imgui.get_content_region_avail().x - em(2.0 * BUTTON)
+        left = imgui.get_content_region_avail().x - em(2.0 * BUTTON_WIDTH)
         muted(self._gui, f"{duration:.2f} s, {round(duration * choices.rate) + 1} frames")
         imgui.same_line(left)
-        is_begun = button(self._gui, "Export ...", name="export: begin", width=em(BUTTON))
+        is_begun = button(self._gui, "Export ...", name="export: begin", width=em(BUTTON_WIDTH))
         imgui.same_line()
-        is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(BUTTON))
+        is_over = button(self._gui, "Cancel", name="export: Cancel", width=em(BUTTON_WIDTH))
         was_focused, self._was_focused = self._was_focused, imgui.is_window_focused()
         # Enter is for the widget that Tab has come to, unless that is a line of text.
         io = imgui.get_io()
@@ -255,7 +255,7 @@ class ExportDialog:
         imgui.progress_bar(share, (em(12.0), 0.0), f"{share:.0%}" if share else "One moment ...")
         imgui.same_line()
         imgui.begin_disabled(job.task.is_stopped)
-        if button(self._gui, "Cancel", name="export: stop", width=em(BUTTON)):
+        if button(self._gui, "Cancel", name="export: stop", width=em(BUTTON_WIDTH)):
             job.task.stop(waits=False)
         imgui.end_disabled()
         imgui.end()

@@ -16,9 +16,8 @@ from ..interface.gui import Gui, colour
 from ..interface.widgets import button, dialog, muted, shortened
 from ..messages import Message
 
-SUFFIX = ".toml"  # of scripts and poses
-SIZE = 36.0, 26.0  # [em]
-ENTER = imgui.Key.enter, imgui.Key.keypad_enter
+SCRIPT_SUFFIX = ".toml"  # of scripts and poses
+ENTER_KEYS = imgui.Key.enter, imgui.Key.keypad_enter
 
 
 @dataclass
@@ -97,7 +96,7 @@ class FileDialogs:
         *,
         saving: bool,
         proposed: str = "",
-        suffixes: tuple[str, ...] = (SUFFIX,),
+        suffixes: tuple[str, ...] = (SCRIPT_SUFFIX,),
     ) -> None:
         """Ask for a file; `then` is called with it in a later frame, or never."""
         target = (self._folder or Path.cwd()) / proposed
@@ -112,7 +111,7 @@ class FileDialogs:
         chosen = None
         if request is None:
             return None
-        with dialog(request.title, *SIZE) as is_open:
+        with dialog(request.title, width=36.0, height=26.0) as is_open:
             if not is_open:
                 return None
             _draw_places(gui, request)
@@ -137,7 +136,7 @@ class FileDialogs:
 def _draw_places(gui: Gui, request: Request) -> None:
     """Draw buttons of useful folders, and the path of the present one."""
     places = {"Up": request.folder.parent, "Home": Path.home()}
-    if not request.is_saving and SUFFIX in request.suffixes:
+    if not request.is_saving and SCRIPT_SUFFIX in request.suffixes:
         places["Examples"] = Path(str(files("risorius.assets") / "scripts"))
     for label, place in places.items():
         if button(gui, label, name=f"folder {label}"):
@@ -188,6 +187,6 @@ def _is_confirmed(gui: Gui, request: Request) -> bool:
     label = "Open"
     if request.is_saving:
         label = "Replace" if request.warned == request.target else "Save"
-    is_pressed = any(imgui.is_key_pressed(key, False) for key in ENTER)
+    is_pressed = any(imgui.is_key_pressed(key, False) for key in ENTER_KEYS)
     is_pressed = is_pressed and bool(request.name) and not imgui.get_io().want_text_input
     return button(gui, label, name="path confirmed") or bool(is_entered) or is_pressed

@@ -19,10 +19,10 @@ from ...scenes import Scene, build_scene, own_head
 from ..interface.gui import wake_up
 from ..messages import Message, Task
 from .file_dialogs import FileDialogs
-from .scripts import SOUNDS, ScriptCommands
+from .scripts import SOUND_SUFFIXES, ScriptCommands
 
-MESHES = tuple(f".{name}" for name in FORMATS)
-LANDMARKS = ".json"
+MESH_SUFFIXES = tuple(f".{name}" for name in FORMATS)
+LANDMARKS_SUFFIX = ".json"
 
 
 def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
@@ -34,8 +34,8 @@ def sorted_out(paths: Sequence[Path]) -> dict[str, Path]:
     found: dict[str, Path] = {}
     for path in paths:
         end = Path(path.name.lower().removesuffix(".gz")).suffix  # whose reader reports the fault
-        kind = "mesh" if end in MESHES else "sound" if end in SOUNDS else "script"
-        if end == LANDMARKS and not is_recording(path):
+        kind = "mesh" if end in MESH_SUFFIXES else "sound" if end in SOUND_SUFFIXES else "script"
+        if end == LANDMARKS_SUFFIX and not is_recording(path):
             kind = "landmarks"
         if kind in found:
             names = f"{found[kind].name}, {path.name}"
@@ -153,8 +153,10 @@ class FileDrop:
 
         def go_on(mesh: Path) -> Message:
             """Take the landmarks that bear the mesh's name."""
-            own = (mesh.with_suffix(end) for end in (LANDMARKS, f".landmarks{LANDMARKS}"))
+            own = (
+                mesh.with_suffix(end) for end in (LANDMARKS_SUFFIX, f".landmarks{LANDMARKS_SUFFIX}")
+            )
             landmarks = next((path for path in own if path.is_file()), None)
             return self.open([str(path) for path in (mesh, landmarks) if path is not None])
 
-        self._files.ask("Open head", go_on, saving=False, suffixes=MESHES)
+        self._files.ask("Open head", go_on, saving=False, suffixes=MESH_SUFFIXES)

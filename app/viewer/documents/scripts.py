@@ -19,10 +19,10 @@ from ..interface.gui import Gui
 from ..interface.widgets import button, dialog
 from ..messages import Message, Task
 from ..session.session import Session
-from .file_dialogs import SUFFIX, FileDialogs
+from .file_dialogs import SCRIPT_SUFFIX, FileDialogs
 
-RECORDINGS = (".csv", ".json", ".tsv", ".txt")  # ends of names; the content decides
-SOUNDS = (
+RECORDING_SUFFIXES = (".csv", ".json", ".tsv", ".txt")  # ends of names; the content decides
+SOUND_SUFFIXES = (
     *(".wav", ".mp3", ".m4a", ".aac", ".flac", ".ogg", ".opus", ".aif", ".aiff", ".wma"),
     *(".mov", ".mp4", ".mkv", ".webm"),  # films that are heard: a phone's, beside its take
 )
@@ -100,7 +100,7 @@ class ScriptCommands:
     def ask_open(self) -> None:
         """Ask for a script, a pose or a recording, and show it."""
         title = "Open script, pose or recording"
-        ends = (SUFFIX, *RECORDINGS)
+        ends = (SCRIPT_SUFFIX, *RECORDING_SUFFIXES)
         self._files.ask(title, self.open, saving=False, suffixes=ends)
 
     def open(self, path: Path, remark: str = "") -> Message:
@@ -149,7 +149,7 @@ class ScriptCommands:
         script = self._session.script
         name = "script.toml"
         if script.is_converted:
-            name = f"{Path(script.source).stem}{SUFFIX}"
+            name = f"{Path(script.source).stem}{SCRIPT_SUFFIX}"
         self._files.ask(
             "Save script",
             lambda chosen: self._write(chosen, then),
@@ -177,7 +177,7 @@ class ScriptCommands:
 
     def ask_sound(self) -> None:
         """Ask for a sound file, and put it beside the script."""
-        self._files.ask("Open sound", self.set_sound, saving=False, suffixes=SOUNDS)
+        self._files.ask("Open sound", self.set_sound, saving=False, suffixes=SOUND_SUFFIXES)
 
     def set_sound(self, path: Path) -> Message:
         """Put a sound file beside the script; UserError where nothing is heard in it."""
@@ -205,9 +205,6 @@ class ScriptCommands:
         return self.save(then) or line
 
 
-UNSAVED = "Unsaved work"
-
-
 def draw_question(
     gui: Gui, question: Question, session: Session, scripts: ScriptCommands
 ) -> Message:
@@ -230,7 +227,7 @@ def draw_question(
         choices["Save pose ..."] = partial(scripts.save_pose, again)
     choices |= {f"{verb} without saving": task, "Back": lambda: None}
     answer: Task | None = None
-    with dialog(UNSAVED) as is_open:
+    with dialog("Unsaved work") as is_open:
         if not is_open:
             return None
         imgui.text(as_text(f"Not saved: {question.unsaved or 'nothing any more'}."))

@@ -34,8 +34,8 @@ FONT_SIZE = 15.0  # [window units at scale 1]
 LEFT = 0
 RIGHT = 1
 MIDDLE = 2
-BUTTON = -1  # in place of a key: one of the mouse was pressed
-SETTLING = 3  # turns of the GUI in which a window that a press opened gets the focus
+MOUSE_BUTTON_KEY = -1  # in place of a key: one of the mouse was pressed
+FOCUS_TURNS = 3  # turns of the GUI in which a window that a press opened gets the focus
 MODIFIERS = range(glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SUPER + 1)
 # Of a window that is a note over the picture: as large as its words, and it takes no keys.
 NOTE_FLAGS = (
@@ -179,7 +179,7 @@ class Gui:
     def _note_button(self, _: Any, button: int, action: int, modifiers: int) -> None:
         """Cut before a press: the mouse has to be there before. It may be as old as the last."""
         if action == glfw.PRESS:
-            self._presses.append((self._context.input_events_queue.size(), BUTTON))
+            self._presses.append((self._context.input_events_queue.size(), MOUSE_BUTTON_KEY))
             io = imgui.get_io()
             longest = self.double_click_time + self._blind
             io.mouse_double_click_time = longest
@@ -201,8 +201,8 @@ class Gui:
             while queue.size():
                 yield
             # A press may open a line to type in; keys that follow wait until it has the focus.
-            is_settling = pressed is not None and following not in (None, BUTTON)
-            for _ in range(SETTLING * is_settling):
+            is_settling = pressed is not None and following not in (None, MOUSE_BUTTON_KEY)
+            for _ in range(FOCUS_TURNS * is_settling):
                 if not io.want_text_input:
                     yield
 

@@ -13,7 +13,7 @@ from ...errors import as_text
 from .gui import LEFT, RIGHT, Gui, colour, em, ink_of
 
 # Knob and number of imgui's own sliders; bars have others.
-HIDDEN = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text)
+HIDDEN_COLOURS = (imgui.Col_.slider_grab, imgui.Col_.slider_grab_active, imgui.Col_.text)
 
 
 class SliderState(NamedTuple):
@@ -44,7 +44,7 @@ def slider(
     label = f"##{name}"
     is_typed = imgui.internal.temp_input_is_active(imgui.get_id(label))
     has_ctrl = io.key_ctrl
-    hidden = () if is_typed else HIDDEN
+    hidden = () if is_typed else HIDDEN_COLOURS
     imgui.set_next_item_width(width)
     imgui.push_style_var(imgui.StyleVar_.grab_min_size, 1.0)
     for index in hidden:
@@ -89,7 +89,7 @@ def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, di
 
 
 # Headings that are open as long as nobody has folded them.
-FIRST_OPEN = frozenset(
+OPEN_HEADINGS = frozenset(
     {"Expressions", "Wave", "Refinement", "Style", "Anatomy", "Milliseconds", "Light and person"}
 )
 
@@ -102,7 +102,7 @@ def heading(
     folds: which headings are open, by title, where somebody has opened or folded them.
     label: its text, if that is more than the title. must_open: for now, as in a search.
     """
-    was_open = must_open or folds.get(title, title in FIRST_OPEN)
+    was_open = must_open or folds.get(title, title in OPEN_HEADINGS)
     imgui.set_next_item_open(was_open)
     is_open = imgui.collapsing_header(f"{label or title}###{title}")
     gui.remember(title)

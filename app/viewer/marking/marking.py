@@ -31,11 +31,9 @@ from ..documents.file_dialogs import FileDialogs
 from ..messages import Message, Task
 from ..session.document import History
 
-SEEN_RADIUS = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
-SUFFIX = ".json"
+LANDMARKS_SUFFIX = ".json"
 INNER_LIPS = range(60, 68)
-AROUND = 4  # vertices: the nearest one alone may be behind a lid's edge, and look aside
-FORWARD = np.array([0.0, 0.0, 1.0])  # out of a face that is upright
+NEIGHBOUR_COUNT = 4  # vertices: the nearest one alone may be behind a lid's edge, and look aside
 
 FloatArray = npt.NDArray[np.float64]
 Place = tuple[float, float, float]  # in the mesh's own coordinates
@@ -123,7 +121,8 @@ class Marking:
         self.marks = self._saved = Marks({})
         self.current = FIRST[0]
         self.faces = mesh.faces
-        self._place(centred(mesh.vertices, SEEN_RADIUS))
+        radius = 140.0  # [mm] of the mesh, as long as nobody knows how large a head is in it
+        self._place(centred(mesh.vertices, radius))
         self._upright: Similarity | None = None
         self.history = History((self.marks, self.placing))
 
@@ -163,10 +162,10 @@ class Marking:
         chosen = list(numbers)
         places = [self.marks.places[number] for number in chosen]
         points = self.placing.points(np.reshape(places, (-1, 3)))
-        nearest = range(1, min(AROUND, len(self.positions)) + 1)
+        nearest = range(1, min(NEIGHBOUR_COUNT, len(self.positions)) + 1)
         normals = self._normals[self._nearest.query(points, nearest)[1]]
         if self.is_upright:  # skin between lips that touch looks up or down, and is seen from ahead
-            normals[[number in INNER_LIPS for number in chosen]] = FORWARD
+            normals[[number in INNER_LIPS for number in chosen]] = (0.0, 0.0, 1.0)
         return points, normals
 
     # Changes of the marks
@@ -231,16 +230,16 @@ class Marking:
 
     def ask_open(self) -> None:
         """Ask for a landmark file, and go on with it."""
-        self._files.ask("Open landmarks", self.open, saving=False, suffixes=(SUFFIX,))
+        self._files.ask("Open landmarks", self.open, saving=False, suffixes=(LANDMARKS_SUFFIX,))
 
     def save(self, then: Task = lambda: None) -> Message:
         """Write the marks to their file, all or as many as there are, or ask for one first."""
         if self.file is not None:
             return self._write(then, self.file)
-        proposed = str(self.path.with_suffix(SUFFIX).absolute())
+        proposed = str(self.path.with_suffix(LANDMARKS_SUFFIX).absolute())
         write = partial(self._write, then)
         ask = partial(self._files.ask, "Save landmarks", write, saving=True)
-        ask(proposed=proposed, suffixes=(SUFFIX,))
+        ask(proposed=proposed, suffixes=(LANDMARKS_SUFFIX,))
         return None
 
     def _write(self, then: Task, path: Path) -> Message:

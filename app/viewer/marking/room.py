@@ -30,27 +30,24 @@ from ..picture.stage import Painter, Stage, View
 from ..settings import Display, Settings
 from .marking import GROUP_OF, GROUPS, FloatArray, Marking
 
-FACING = 0.15  # cosine to the line of sight beyond which a mark is seen
-WIDTH = 21.0  # [em] of the panel
-SHARE = 0.4  # of the window that the panel has at most
-GUIDE = 11.0  # [em] of its height
+LEAST_FACING_COSINE = 0.15  # cosine to the line of sight beyond which a mark is seen
 DARK = (0.08, 0.08, 0.10)
 WHITE = (1.0, 1.0, 1.0)
-NAMES = {  # of the first points
+POINT_NAMES = {  # of the first points
     **{36: "Outer corner of the right eye", 45: "Outer corner of the left eye"},
     **{30: "Tip of the nose", 48: "Right corner of the mouth", 54: "Left corner of the mouth"},
 }
-SIDES = {
+SIDE_NAMES = {
     -1.0: "the person's right: on your left as the face looks at you",
     0.0: "in the middle of the face",
     1.0: "the person's left: on your right as the face looks at you",
 }
-BEGIN = (
+FIRST_ADVICE = (
     "Click the point on the skin that the guide shows. Where the head does not look at you, drag "
     "it with the mouse until it does, and press Turn until it stands upright. The wheel zooms, the "
     "middle button moves."
 )
-GO_ON = (
+LATER_ADVICE = (
     "Drag points that are not where they belong; a click on the skin moves this one. White inside: "
     "guessed, and not moved yet."
 )
@@ -107,7 +104,8 @@ class MarkingView(View):
         to_eye = self.camera.eye - points
         toward = np.einsum("nki,ni->nk", normals, to_eye).max(axis=1)
         toward /= np.linalg.norm(to_eye, axis=1)
-        return {n: spots[index] for index, n in enumerate(numbers) if toward[index] > FACING}
+        faces = toward > LEAST_FACING_COSINE
+        return {n: spots[index] for index, n in enumerate(numbers) if faces[index]}
 
 
 class MarkingPanel:
@@ -134,7 +132,7 @@ class MarkingPanel:
         """Draw everything, and give the view its place."""
         display = imgui.get_io().display_size
         top = self._menus.draw()
-        left = round(min(em(WIDTH), SHARE * display.x))
+        left = round(min(em(21.0), 0.4 * display.x))  # the panel's width
         view.area = (left, top, max(display.x - left, 1.0), max(display.y - top, 1.0))
         with fixed_panel("Controls", (0.0, top), (left, display.y - top)):
             imgui.push_text_wrap_pos(0.0)
@@ -164,16 +162,16 @@ class MarkingPanel:
         muted(self._gui, marking.path.name)
         if number in FIRST and not is_complete:
             step = f"First points: {FIRST.index(number) + 1} of {len(FIRST)}"
-            name = NAMES[number]
+            name = POINT_NAMES[number]
         else:
             step = GROUP_OF[number].title.capitalize()
             name = f"Point {number}"
         imgui.text_colored(colour(self._gui.theme.accent), step)
         imgui.text_wrapped(name)
         side = 0.0 if MIRRORED[number] == number else float(np.sign(self._guide[number, 0]))
-        muted(self._gui, SIDES[side])
+        muted(self._gui, SIDE_NAMES[side])
         imgui.spacing()
-        imgui.text_wrapped(GO_ON if is_complete else BEGIN)
+        imgui.text_wrapped(LATER_ADVICE if is_complete else FIRST_ADVICE)
         imgui.spacing()
 
     def _draw_guide(self) -> None:
@@ -181,7 +179,7 @@ class MarkingPanel:
         current = self._marking.current
         is_complete = self._marking.marks.is_complete
         low = imgui.get_cursor_screen_pos()
-        size = (imgui.get_content_region_avail().x, em(GUIDE))
+        size = (imgui.get_content_region_avail().x, em(11.0))
         imgui.dummy(size)
         numbers = list(GROUP_OF[current].numbers) if is_complete else range(len(self._guide))
         shown = self._guide[numbers]
@@ -227,10 +225,11 @@ def places_in(
     return [(left + x, top + y) for x, y in seen.tolist()]
 
 
-SHARED = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size")
-REACH = 0.8  # [em] around a mark in which the mouse takes it
-ASIDE = 40.0  # [degrees] from which a landmark is seen that the front hides
-QUARTER = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # of a turn in the picture
+SHARED_COMMANDS = ("Quit", "Dark theme", "Larger text", "Smaller text", "Usual size")
+MARK_REACH = 0.8  # [em] around a mark in which the mouse takes it
+SIDE_VIEW_YAW = 40.0  # [degrees] from which a landmark is seen that the front hides
+# Of the picture, about the line of sight.
+QUARTER_TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 class MarkingMouse(CameraMouse):
@@ -290,7 +289,7 @@ class MarkingMouse(CameraMouse):
             for number, spot in self._seen.places().items()
         }
         nearest = min(off, key=lambda number: off[number], default=0)
-        return nearest if off.get(nearest, math.inf) < em(REACH) else None
+        return nearest if off.get(nearest, math.inf) < em(MARK_REACH) else None
 
 
 class Room:
@@ -317,7 +316,7 @@ class Room:
         self.painter = Painter(stage, self.view, messages)
         self.mouse = MarkingMouse(self.view, stage, marking, messages)
         own = self._commands()
-        shared = [each for each in others if each.label in SHARED]
+        shared = [each for each in others if each.label in SHARED_COMMANDS]
         self.commands = (*own, *shared)
         menus = MenuBar(gui, messages, self.commands, lambda: app.session.work.unsaved)
         self.panel = MarkingPanel(gui, messages, marking, menus, own)
@@ -353,7 +352,7 @@ class Room:
         number = self.marking.current
         camera = self.view.camera
         if number not in self.view.places():
-            aside = 0.0 if MIRRORED[number] == number else ASIDE
+            aside = 0.0 if MIRRORED[number] == number else SIDE_VIEW_YAW
             camera.yaw = float(np.copysign(aside, self.marking.seen([number])[0][0, 0]))
             camera.pitch = 0.0
 
@@ -361,7 +360,7 @@ class Room:
         """Make the side that is seen the front; if it is so already, turn it by a right angle."""
         seen = np.array(self.view.camera.axes())
         turn = max(axes_turned(), key=lambda turn: float((turn * seen).sum()))
-        self.marking.turn(QUARTER if np.array_equal(turn, np.eye(3)) else turn)
+        self.marking.turn(QUARTER_TURN if np.array_equal(turn, np.eye(3)) else turn)
 
     def _commands(self) -> tuple[Command, ...]:
         """All that a key or a menu does here alone."""

@@ -94,11 +94,6 @@ def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
     return " ".join((names, readable(names), *title_of(row.label, action), group, action))
 
 
-LABEL_SHARE = 0.5  # of a row
-MOST_LABEL = 15.0  # [em]
-NARROW = 15.0  # [em] of room below which bars stand under their names
-
-
 class ControlRows:
     """Draws rows of controls, and sets controls as the user moves their bars."""
 
@@ -128,8 +123,8 @@ class ControlRows:
         current = session.current
         left = imgui.get_cursor_pos_x()
         room = imgui.get_content_region_avail().x
-        is_narrow = room < em(NARROW)
-        label_room = room if is_narrow else min(LABEL_SHARE * room, em(MOST_LABEL))
+        is_narrow = room < em(15.0)  # bars stand under their names
+        label_room = room if is_narrow else min(0.5 * room, em(15.0))
         is_lit = is_marked or any(current[name] for name in names)
         pointed = names if self._draw_label(row, label_room, number, is_lit=is_lit) else ()
         if is_narrow:  # nearer to its own name than to the next
@@ -188,9 +183,6 @@ class ControlRows:
         return is_pointed
 
 
-FLASH = 90  # frames for which a selected slider is marked
-
-
 class FacePanel:
     """Buttons, search, and groups of rows."""
 
@@ -207,7 +199,7 @@ class FacePanel:
         """Open the group of a control, scroll to it and mark it."""
         self.search = ""
         self._selected = name
-        self._flash = FLASH
+        self._flash = 90  # frames for which the slider is marked
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""

@@ -42,7 +42,6 @@ def draw_message(gui: Gui, messages: Messages, view: View) -> None:
 
 
 PANEL_WIDTHS = 12.0, 60.0  # [em] between which the left panel may be drawn wider
-PANEL_SHARE = 0.45  # of the window, at most
 
 
 class Layout:
@@ -70,7 +69,7 @@ class Layout:
         top = self._menus.draw()
         least, most = PANEL_WIDTHS
         wanted = em(min(max(self._settings.panel_width, least), most))
-        left = round(min(wanted, PANEL_SHARE * display.x))
+        left = round(min(wanted, 0.45 * display.x))
         below = round(self._timeline.height())
         with fixed_panel("Controls", (0.0, top), (left, display.y - top), resizes=True):
             is_other = round(imgui.get_window_width()) != left

@@ -15,7 +15,6 @@ from ..interface.commands import Command, command_button
 from ..interface.gui import colour
 from ..interface.widgets import LabelledRows, hint, muted
 
-LABEL_SHARE = 0.38  # of a row
 MOST_GAIN = min(3.0, HIGHEST_GAIN)
 COMPUTERS = {"this computer alone": LOOPBACK, "the whole network": ANYWHERE}
 HINTS = {
@@ -37,7 +36,7 @@ class LivePanel:
         self._messages = app.messages
         self._live = app.live
         self._commands = commands
-        self._rows = LabelledRows(app.gui, LABEL_SHARE, HINTS)
+        self._rows = LabelledRows(app.gui, share=0.38, hints=HINTS)
 
     def draw(self) -> None:
         """Draw everything, inside the window's panel."""

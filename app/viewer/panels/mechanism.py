@@ -60,9 +60,6 @@ HINTS = {
 # Rows of fields of the display, by their labels.
 FIELDS = {"Refine": "is_refined", "Skin tone": "tone", "Colour by splits": "splits"}
 FIELDS |= {each.name.capitalize().replace("_", " "): each.name for each in fields(Display)}
-UNNAMED = 20  # persons that the list has beside those with names
-LABEL_SHARE = 0.45  # of a row
-HIGHEST = 0.25  # of a slider for a number that is no whole one, as far as it is not more already
 
 
 class MechanismPanel:
@@ -76,7 +73,7 @@ class MechanismPanel:
         self._stage = app.stage
         self._view = app.view
         self._times = app.times
-        self._rows = LabelledRows(app.gui, LABEL_SHARE, HINTS)
+        self._rows = LabelledRows(app.gui, share=0.45, hints=HINTS)
 
     @property
     def _display(self) -> Display:
@@ -152,7 +149,7 @@ class MechanismPanel:
             if is_changed:
                 put(chosen)
         elif isinstance(default, float):
-            limits = 0.0, max(HIGHEST, 2.0 * default)
+            limits = 0.0, max(0.25, 2.0 * default)
             slid = self._rows.slide(label, name, float(value), limits, default, digits=3)
             if slid != value:
                 put(slid)
@@ -186,7 +183,8 @@ class MechanismPanel:
         if scene.in_tone is not None:
             self._pick("Skin tone", tuple(TONES))
         if scene.called:
-            people = {person_in_words(who): who for who in (*NAMED, *range(UNNAMED))}
+            listed = (*NAMED, *range(20))  # and some of those without names
+            people = {person_in_words(who): who for who in listed}
             who = int(scene.called) if scene.called.isdecimal() else scene.called
             present = scene.called if who in (BUILT_IN, OWN) else person_in_words(who)
             show = lambda name: self._file_drop.show_person(people.get(name))  # noqa: E731

@@ -22,10 +22,8 @@ from .stage import Stage, View
 Grab = Callable[..., SkinDrag]
 Select = Callable[[str], None]
 
-DEGREES_PER_EM = 5.5
 ZOOM_PER_NOTCH = 1.1
-CLOSEST = 0.15  # of the scene's radius, from the point zoomed to: a head moves a little
-CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
+CLICK_DISTANCE = 4.0  # [window units] a press that moves less is a click, not a drag
 
 
 class CameraMouse:
@@ -81,7 +79,7 @@ class CameraMouse:
         camera = self._view.camera
         delta = io.mouse_delta
         if self._doing == "orbit":
-            degrees = DEGREES_PER_EM / em()
+            degrees = 5.5 / em()
             camera.orbit(-delta.x * degrees, delta.y * degrees)
         elif self._doing == "pan":
             height = max(self._view.area[3], 1.0)
@@ -92,7 +90,7 @@ class CameraMouse:
 
     def _has_moved(self, io: Any) -> bool:
         x, y = self._pressed_at
-        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK)
+        return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK_DISTANCE)
 
     def _ray(self, io: Any) -> Ray:
         """Through the mouse, in the viewport that it is in."""
@@ -115,7 +113,8 @@ class CameraMouse:
         before = self._view.camera.distance
         if point is None:
             point = self._ray(io).at_depth_of(camera.target, camera.axes()[2])
-        room = float(np.linalg.norm(camera.eye - point)) / (CLOSEST * camera.scene_radius)
+        closest = 0.15 * camera.scene_radius  # lest a moving head comes too near
+        room = float(np.linalg.norm(camera.eye - point)) / closest
         camera.zoom(min(ZOOM_PER_NOTCH**io.mouse_wheel, max(room, 1.0)))
         camera.target = point + (camera.target - point) * (camera.distance / before)
 

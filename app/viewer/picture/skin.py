@@ -22,7 +22,6 @@ from ..session.session import Session
 from ..settings import Settings
 
 Array = npt.NDArray[np.float64]
-MUSCLE_REACH = 14.0  # [mm] from a fibre within which a click on the skin means its muscle
 # A ray that meets an edge must not slip between its two triangles by the last bit.
 ROUNDING = 1e-9  # of a triangle; [mm] too
 
@@ -72,9 +71,10 @@ def skin_under(ray: Ray, positions: Array, faces: npt.NDArray[Any]) -> Array | N
     return point
 
 
-FINGER = 16.0  # [mm] the finger's radius
-FARTHEST = 45.0  # [mm] that a finger drags, lest the skin turns inside out
-NOT_PULLED = ("gaze_", "head_", "tongue_", "lips_closed")  # controls that no finger on skin means
+FINGER_RADIUS = 16.0  # [mm] the finger's radius
+MOST_DRAG_DISTANCE = 45.0  # [mm] that a finger drags, lest the skin turns inside out
+# Of controls that no finger on the skin moves.
+UNPULLED_PREFIXES = ("gaze_", "head_", "tongue_", "lips_closed")
 
 
 class SkinDrag:
@@ -90,18 +90,18 @@ class SkinDrag:
         self._simulation: sim.Simulation = session.scene.simulation  # type: ignore[attr-defined]
         positions = self._simulation.positions
         distance = np.linalg.norm(positions - point, axis=1)
-        self._vertices = np.flatnonzero(distance < FINGER)
+        self._vertices = np.flatnonzero(distance < FINGER_RADIUS)
         if not len(self._vertices):
             self._vertices = distance.argmin(keepdims=True)
         self._from = positions[self._vertices].copy()
-        near = np.minimum(distance[self._vertices] / FINGER, 1.0)
+        near = np.minimum(distance[self._vertices] / FINGER_RADIUS, 1.0)
         self._firmness = np.maximum((1.0 - near**2) ** 2, 0.02 if near.max() < 1.0 else 1.0)
         self.offset = np.zeros(3)
         self._solved = np.zeros(3)
         self._due = 0.0
         poses = poses and not session.live_override.is_on  # which poses the face itself
         rest = self._simulation.rest_positions[self._vertices]
-        is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER
+        is_aside = abs(rest[:, 0].mean() - session.scene.focus[0]) > FINGER_RADIUS
         self._candidates = (
             _candidates(session, linked=settings.is_linked, is_aside=is_aside) if poses else []
         )
@@ -113,7 +113,8 @@ class SkinDrag:
         self.offset = offset = point - self.point
         if not self._candidates:
             length = float(np.linalg.norm(offset))
-            offset = offset * (FARTHEST * np.tanh(length / FARTHEST) / max(length, 1e-9))
+            shortened = MOST_DRAG_DISTANCE * np.tanh(length / MOST_DRAG_DISTANCE)
+            offset = offset * (shortened / max(length, 1e-9))
             self._simulation.touch.drag(self._vertices, self._from + offset, self._firmness)
             return None
         # A dense head takes long: at least half of the time is for the picture.
@@ -126,7 +127,7 @@ class SkinDrag:
 
     def muscle(self) -> str | None:
         """The one under the finger, if any."""
-        return self._simulation.anatomy.muscle_at(self.point, MUSCLE_REACH)
+        return self._simulation.anatomy.muscle_at(self.point, 14.0)  # [mm] from a fibre, at most
 
     def let_go(self) -> Message:
         """End the drag: skin stays where muscles hold it, or swings back; the solved controls."""
@@ -174,7 +175,7 @@ def _candidates(session: Session, *, linked: bool, is_aside: bool) -> list[tuple
     for name in lowest:
         twin = twin_of(name)
         is_whole = f"{name}_left" in lowest
-        if is_whole or name.startswith(NOT_PULLED):
+        if is_whole or name.startswith(UNPULLED_PREFIXES):
             continue
         if linked and is_aside and (name in TURNED or parted(name)[0] in OPPOSITE):
             continue

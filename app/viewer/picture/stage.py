@@ -26,7 +26,7 @@ from ...refining.presets import STATIC, Refinement
 from ...scenes import FaceScene, Scene
 from ..interface.gui import THEMES, em
 from ..messages import Messages
-from ..session.physics import CALM, FrameTimes
+from ..session.physics import CALM_SECONDS, FrameTimes
 from ..session.session import Session
 from ..settings import BACKGROUNDS, SKINS, TONES, Display, Settings
 
@@ -115,11 +115,8 @@ class View:
         return rules if self.display.compare == "wipe" else rules[:1]
 
 
-FULL = render.Detail(samples=4, scale=1.0)
+FULL_DETAIL = render.Detail(samples=4, scale=1.0)
 LEAST_SHARE = 0.08  # of the picture that each side of a comparison keeps
-POINTED_AT = np.array([1.0, 0.66, 0.10])  # sRGB
-MOST_SEEN = 0.9  # opacity of the muscle that does most
-LEAST_SEEN = 0.2  # of the share of the muscle that does most, from which on others are seen
 
 
 class Stage:
@@ -201,7 +198,7 @@ class Stage:
 
     def draw_image(self, view: View) -> Image:
         """The picture without panels, in full detail, with captions and a colour bar."""
-        self.surface.detail = FULL
+        self.surface.detail = FULL_DETAIL
         self.draw(view, is_photo=True)
         left, bottom, width, height = view.viewport
         top = self.surface.size[1] - bottom - height
@@ -226,9 +223,9 @@ def pointed_lines(scene: Scene, shares: Mapping[str, float]) -> list[render.Line
     most = max(seen.values(), default=1.0)
     drawn = []
     for name, share in seen.items():
-        if share >= LEAST_SEEN * most:
-            opacity = MOST_SEEN * share / most
-            colours = np.tile(POINTED_AT, (len(fibres[name]), 1))
+        if share >= 0.2 * most:
+            opacity = 0.9 * share / most
+            colours = np.tile((1.0, 0.66, 0.10), (len(fibres[name]), 1))  # sRGB
             drawn.append(render.Lines(fibres[name], colours, 2.5, opacity, opacity))
     return drawn
 
@@ -253,22 +250,22 @@ def style_of(display: Display, background: render.Background | None) -> render.S
 # Two samples would not help: software draws four. Processor time of a whole frame at 1280 x 720,
 # as parts of the first: 1, 0.53, 0.47, 0.39 (measured 2026-11-21); with four samples at 0.75: 0.8.
 LEVELS = (
-    FULL,
+    FULL_DETAIL,
     render.Detail(samples=0, scale=1.0),
     render.Detail(samples=0, scale=0.75),
     render.Detail(samples=0, scale=0.6),
 )
-FIRST_ON_SOFTWARE = 1  # lest the first second stutters
-TOO_SLOW = 0.045  # [s] a frame; more than 20 a second are promised
-AMPLE = 0.024  # [s] a frame at which the next finer level is safe
-PATIENCE = 4  # frames in a row that decide
+FIRST_SOFTWARE_LEVEL = 1  # lest the first second stutters
+SLOW_SECONDS = 0.045  # [s] a frame; more than 20 a second are promised
+AMPLE_SECONDS = 0.024  # [s] a frame at which the next finer level is safe
+PATIENCE_FRAMES = 4  # frames in a row that decide
 
 
 class LevelOfDetail:
     """Picks a level of detail by the time that frames took."""
 
     def __init__(self, *, is_software: bool) -> None:
-        self.level = FIRST_ON_SOFTWARE if is_software else 0
+        self.level = FIRST_SOFTWARE_LEVEL if is_software else 0
         self._slow = 0
         self._fast = 0
 
@@ -280,19 +277,19 @@ class LevelOfDetail:
     @property
     def unhurried(self) -> render.Detail:
         """For a scene that moves a little now and then: not coarser than software begins with."""
-        return LEVELS[min(self.level, FIRST_ON_SOFTWARE)]
+        return LEVELS[min(self.level, FIRST_SOFTWARE_LEVEL)]
 
     def begin_motion(self) -> None:
         """Something begins to move: the one moment at which more detail goes unnoticed."""
-        if self._fast >= PATIENCE and self.level > 0:
+        if self._fast >= PATIENCE_FRAMES and self.level > 0:
             self.level -= 1
         self._slow = self._fast = 0
 
     def note(self, seconds: float) -> None:
         """A frame of a moving scene took so long, all in all."""
-        self._slow = self._slow + 1 if seconds > TOO_SLOW else 0
-        self._fast = self._fast + 1 if seconds < AMPLE else 0
-        if self._slow >= PATIENCE and self.level < len(LEVELS) - 1:
+        self._slow = self._slow + 1 if seconds > SLOW_SECONDS else 0
+        self._fast = self._fast + 1 if seconds < AMPLE_SECONDS else 0
+        if self._slow >= PATIENCE_FRAMES and self.level < len(LEVELS) - 1:
             self.level += 1
             self._slow = 0
 
@@ -310,12 +307,12 @@ class Painter:
 
     def forget(self) -> None:
         """Draw anew: the last picture is out of date."""
-        self._painted: tuple[object, render.Detail] = (None, FULL)
+        self._painted: tuple[object, render.Detail] = (None, FULL_DETAIL)
 
     @property
     def is_complete(self) -> bool:
         """Whether the picture shows the present view, in full detail."""
-        return self._painted == (self._view.state, FULL)
+        return self._painted == (self._view.state, FULL_DETAIL)
 
     def paint(self, elapsed: float, *, has_moved: bool, is_alive: bool) -> bool:
         """Draw the scene if it has changed, or is not drawn in full yet; whether it changed.
@@ -329,15 +326,15 @@ class Painter:
         state = self._view.state
         painted, detail = self._painted
         has_changed = state != painted or has_moved or surface.frame_size != surface.size
-        if has_changed and self._calm_for > CALM:
+        if has_changed and self._calm_for > CALM_SECONDS:
             self.level_of_detail.begin_motion()
         self._calm_for = 0.0 if has_changed else self._calm_for + elapsed
         if has_changed:
             level = self.level_of_detail
             is_unhurried = is_alive and state == painted
             self._draw(level.unhurried if is_unhurried else level.detail, state)
-        elif detail != FULL and self._calm_for > CALM and not is_alive:
-            self._draw(FULL, state)
+        elif detail != FULL_DETAIL and self._calm_for > CALM_SECONDS and not is_alive:
+            self._draw(FULL_DETAIL, state)
         return has_changed
 
     def _draw(self, detail: render.Detail, state: object) -> None:

@@ -150,7 +150,6 @@ class Document:
 
 
 State = TypeVar("State")
-MOST = 100  # states
 
 
 class History(Generic[State]):
@@ -180,7 +179,7 @@ class History(Generic[State]):
         if state == self.present:
             return
         self._states[self.place + 1 :] = [state]
-        del self._states[:-MOST]
+        del self._states[:-100]  # the states that are kept
         self.place = len(self._states) - 1
 
     def amend(self, state: State) -> None:

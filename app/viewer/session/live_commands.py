@@ -12,8 +12,7 @@ from ...live import LOST_AFTER, Listening, LiveFace, State, own_address
 from ..messages import Message
 from .session import Session
 
-PACING = 0.008  # [s] that a frame waits for a packet: half a frame of the phone's
-LONGEST_STEP = 0.1  # [s] of easing in one frame, however long that took
+PACKET_WAIT = 0.008  # [s] that a frame waits for a packet: half a frame of the phone's
 
 
 def check_scene(name: str) -> None:
@@ -93,7 +92,7 @@ class LiveCommands:
             self.has_changed = False
             return None
         was_calibrating = face.is_calibrating
-        face.advance(min(seconds, LONGEST_STEP))
+        face.advance(min(seconds, 0.1))  # of easing, after a longer frame, too
         shown = face.state, face.received > 0
         self.has_changed = shown != self._shown
         self._shown = shown

@@ -26,13 +26,14 @@ from .session import Session
 
 STEP = 1.0 / 60.0  # [s] as in films and tests; the simulation divides it further by itself
 MOST_STEPS = 6  # a tenth of a second, which a stalled window catches up
-EARLY = 0.25  # of a step that may be taken before it is due: a screen of 60 Hz that is now a little
-# late and now early gets one step for each of its frames, and motion does not judder
-EARLIEST = 0.95  # the same for a packet of a live face, which must not wait a frame
-CALM = 0.15  # [s] without change before physics rests and the scene is drawn in full
-STILL = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
-LEFT_ALONE = 0.5  # [s] after which a face that nobody moved any more only lives
-SEEN = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
+# Of a step that may be taken before it is due: a screen of 60 Hz that is now a little late and now
+# early gets one step for each of its frames, and motion does not judder.
+EARLY_SHARE = 0.25
+URGENT_EARLY_SHARE = 0.95  # the same for a packet of a live face, which must not wait a frame
+CALM_SECONDS = 0.15  # [s] without change before physics rests and the scene is drawn in full
+STILL_DISTANCE = 2e-4  # [mm] if no vertex moves further in a step, the face is at rest
+LEFT_ALONE_SECONDS = 0.5  # [s] after which a face that nobody moved any more only lives
+SEEN_DISTANCE = 0.2  # [mm] of motion that is drawn while it only lives: about half a pixel
 EYE_RADIUS = 12.0  # [mm] about: of how far a turning eye moves
 PHASES = ("simulation", "refinement", "upload", "draw")  # of the paper's Figure 1
 KEPT_FRAMES = 60  # of which the times are known
@@ -74,7 +75,7 @@ class Clock:
     def __init__(self) -> None:
         self._owed = 0.0
 
-    def steps(self, elapsed: float, early: float = EARLY) -> int:
+    def steps(self, elapsed: float, early: float = EARLY_SHARE) -> int:
         """How many steps to take after `elapsed` more seconds; the rest of a stall is forgotten.
 
         early: of a step that may be taken before it is due.
@@ -109,12 +110,12 @@ class Physics:
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing has moved for some time."""
-        return self._still_for > CALM
+        return self._still_for > CALM_SECONDS
 
     @property
     def is_left_alone(self) -> bool:
         """Whether nobody has moved the face for some time, and it does no more than live."""
-        return self._left_for > LEFT_ALONE
+        return self._left_for > LEFT_ALONE_SECONDS
 
     def advance(
         self,
@@ -129,7 +130,7 @@ class Physics:
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
         moved. UserError where the simulation gave up.
         """
-        steps = self._clock.steps(seconds, EARLIEST if is_urgent else EARLY)
+        steps = self._clock.steps(seconds, URGENT_EARLY_SHARE if is_urgent else EARLY_SHARE)
         session = self._session
         scene = self._session.scene
         wanted = session.current
@@ -144,7 +145,8 @@ class Physics:
         self._posed = wanted
         moved = self._step(steps, life)
         # Muscles follow late: a face that has not moved yet may be about to.
-        self._still_for = 0.0 if is_driven or moved > STILL else self._still_for + steps * STEP
+        is_moving = is_driven or moved > STILL_DISTANCE
+        self._still_for = 0.0 if is_moving else self._still_for + steps * STEP
         self.has_moved = not self.is_left_alone or self._is_to_be_seen()
         if self.has_moved:
             self._seen = scene.positions.copy()
@@ -171,16 +173,16 @@ class Physics:
     def _is_to_be_seen(self) -> bool:
         """Whether the face has moved enough since it was last seen to move."""
         scene = self._session.scene
-        if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > SEEN:
+        if float(np.abs(scene.positions - self._seen).max(initial=0.0)) > SEEN_DISTANCE:
             return True
         turns = (
             float(np.abs(matrix[:3, :3] - self._seen_bones[name][:3, :3]).max())
             for name, matrix in scene.bone_transforms().items()
         )
-        return max(turns, default=0.0) * EYE_RADIUS > SEEN
+        return max(turns, default=0.0) * EYE_RADIUS > SEEN_DISTANCE
 
 
-ASLEEP_AFTER = 600.0  # [s] without input: the user has gone, and the machine may rest
+SLEEP_DELAY = 600.0  # [s] without input: the user has gone, and the machine may rest
 
 
 class IdleLife:
@@ -216,7 +218,7 @@ class IdleLife:
             return False
         is_in_script = session.is_following and session.time < session.script.duration
         is_moved = session.is_playing or session.is_recording or is_in_script
-        return not (is_moved or session.live_override.is_on) and self._without_input < ASLEEP_AFTER
+        return not (is_moved or session.live_override.is_on) and self._without_input < SLEEP_DELAY
 
     def after(self, seconds: float, *, is_held: bool) -> Values:
         """The values to add to the controls, `seconds` later than the last time.

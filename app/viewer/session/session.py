@@ -19,8 +19,6 @@ from ...script.script_file import is_pose, pose_script, save_script
 from ..messages import Message
 from .document import Document, History, LiveOverride, SceneControls, ScriptFile
 
-NEW_SECONDS = 4.0  # that a script begun from nothing lasts
-
 
 class Session:
     """The controls of a scene and the script that may move them."""
@@ -326,7 +324,8 @@ class Work:
         """An empty script: the neutral face, to which keys can be added."""
         scene = self._session.script.scene
         camera = self._session.script.camera
-        script = Script("", NEW_SECONDS, "a new script", scene, camera, poses=(Pose(0.0),))
+        duration = 4.0  # [s]
+        script = Script("", duration, "a new script", scene, camera, poses=(Pose(0.0),))
         self._session.replace_script(script, ScriptFile(None, script))
 
     def save_script(self, path: Path) -> None:

@@ -15,10 +15,9 @@ from ...sound.player import NoDeviceError
 from .physics import MOST_STEPS, STEP
 from .session import Session
 
-APART = 0.05  # [s] by which the picture is late before it skips
+MOST_LAG = 0.05  # [s] by which the picture is late before it skips
 LONGEST_FRAME = (MOST_STEPS + 1) * STEP  # [s] of the script at most; more was not the script's own
-CATCHING_UP = 0.3  # [s] in which most of a drift is gone
-SNIPPET = 0.07  # [s] that are heard of each place while the time is dragged
+CATCH_UP_SECONDS = 0.3  # [s] in which most of a drift is gone
 
 
 class Soundtrack:
@@ -73,7 +72,7 @@ class Soundtrack:
         elif was_playing:
             player.stop()
         elif session.time != before:
-            player.play(session.time, seconds=SNIPPET)
+            player.play(session.time, seconds=0.07)
         return seconds
 
     def _in_step(self, player: Player, seconds: float, went: float) -> float:
@@ -88,11 +87,11 @@ class Soundtrack:
         if player.is_stuck:
             return seconds
         late = (player.position - session.time) / session.speed - seconds
-        if late > APART and session.time < session.script.duration:  # a recording goes beyond
+        if late > MOST_LAG and session.time < session.script.duration:  # a recording goes beyond
             session.time = min(session.time + late * session.speed, session.script.duration)
             self._time = session.time
             return seconds
-        return max(seconds + late * min(seconds / CATCHING_UP, 1.0), 0.0)
+        return max(seconds + late * min(seconds / CATCH_UP_SECONDS, 1.0), 0.0)
 
     def rest(self) -> None:
         """Be silent, as long as the window waits."""

@@ -28,18 +28,15 @@ from .key_marks import Waveform
 from .keys import KeySelection, Track, all_tracks
 from .time_axis import TimeAxis
 
-ROW = 1.35  # [em] of a row's height
-RULER = 1.45  # [em] of the ruler's height
-GUTTER = 9.5  # [em] for the rows' names
-GUTTER_SHARE = 0.2  # of the width, at most
+ROW_HEIGHT = 1.35  # [em] of a row's height
+RULER_HEIGHT = 1.45  # [em] of the ruler's height
 MOST_ROWS = 6  # that are seen at once; the rest is scrolled to
-REACH = 0.5  # [em] beside a key that still mean it
-CLICK = 4.0  # [window units] a press that moves less is a click, not a drag
+KEY_REACH = 0.5  # [em] beside a key that still mean it
+CLICK_DISTANCE = 4.0  # [window units] a press that moves less is a click, not a drag
 ZOOM_PER_NOTCH = 0.8
 SCROLL_PER_NOTCH = 0.12  # of the visible time
-GRAPH = 14.0  # [em] of its height, as long as nobody changes that
+GRAPH_HEIGHT = 14.0  # [em] of its height, as long as nobody changes that
 MOST_CURVES = 24  # that are displayed at once, unless somebody wants more
-VALUES = 2.2  # [em] for the labels of values
 
 
 @dataclass
@@ -92,10 +89,10 @@ class DopeSheet:
     def height(self, room: float) -> float:
         """Of ruler and rows [window units], no more than there is room for."""
         self._refresh()
-        rows = em(ROW) * sum(track.height for track in self.rows[:MOST_ROWS])
-        wanted = em(GRAPH) if self.settings.shows_curves else rows
-        above = em(RULER) + self._waveform.height
-        return above + max(min(wanted, room - above), em(ROW))
+        rows = em(ROW_HEIGHT) * sum(track.height for track in self.rows[:MOST_ROWS])
+        wanted = em(GRAPH_HEIGHT) if self.settings.shows_curves else rows
+        above = em(RULER_HEIGHT) + self._waveform.height
+        return above + max(min(wanted, room - above), em(ROW_HEIGHT))
 
     def _refresh(self) -> None:
         """Bring rows and selection up to date with script and settings."""
@@ -116,9 +113,9 @@ class DopeSheet:
         place = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
         self._bottom = place.y + height
-        self._gutter = min(em(GUTTER), GUTTER_SHARE * room.x)
+        self._gutter = min(em(9.5), 0.2 * room.x)  # for the names of rows
         inset = em(0.7)
-        values = em(VALUES) if self.settings.shows_curves else 0.0
+        values = em(2.2) if self.settings.shows_curves else 0.0  # the width of their labels
         left = self._gutter + inset + values
         axis.place(place.x + left, room.x - left - inset - em(0.6))
         duration = session.script.duration
@@ -128,12 +125,13 @@ class DopeSheet:
             if session.is_playing:
                 axis.follow(session.time)
         imgui.set_cursor_screen_pos((place.x + self._gutter, place.y))
-        imgui.invisible_button("##time", (room.x - self._gutter, em(RULER) + self._waveform.height))
+        scrubbed = em(RULER_HEIGHT) + self._waveform.height
+        imgui.invisible_button("##time", (room.x - self._gutter, scrubbed))
         self._gui.remember("time")
         if imgui.is_item_hovered():
             self._press_in_ruler(io)
             self._turn_wheel(io)
-        edges = place.y, place.y + em(RULER)
+        edges = place.y, place.y + em(RULER_HEIGHT)
         key_marks.draw_ruler(self._gui.theme, axis, session.time, duration, edges)
         self._waveform.draw(session.time, duration, (place.x, edges[1]))
         imgui.set_cursor_screen_pos((place.x, edges[1] + self._waveform.height))
@@ -152,12 +150,12 @@ class DopeSheet:
     def _draw_rows(self, io: Any) -> None:
         """The rows, or of curves their names alone."""
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
-        least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(ROW))
+        least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(ROW_HEIGHT))
         has_keys = not self.settings.shows_curves
         imgui.begin_child("keys", (0.0 if has_keys else self._gutter, least), 0, flags)
         place = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
-        heights = [em(ROW) * (track.height if has_keys else 1.0) for track in self.rows]
+        heights = [em(ROW_HEIGHT) * (track.height if has_keys else 1.0) for track in self.rows]
         self._tops = list(itertools.accumulate(heights, initial=place.y))
         imgui.invisible_button("##keys", (room.x, self._tops[-1] - place.y))
         self._gui.remember("keys")
@@ -168,8 +166,8 @@ class DopeSheet:
         for track, (top, bottom) in zip(self.rows, itertools.pairwise(self._tops), strict=True):
             if imgui.is_rect_visible((place.x, top), (place.x + room.x, bottom)):
                 if has_keys:
-                    self._are_dense[track.name] = painter.draw(track, top, em(ROW))
-                self._draw_name(track, (place.x, bottom - em(ROW)), room.x)
+                    self._are_dense[track.name] = painter.draw(track, top, em(ROW_HEIGHT))
+                self._draw_name(track, (place.x, bottom - em(ROW_HEIGHT)), room.x)
         if has_keys:
             self._draw_over(io, (place.y, self._tops[-1]))
         if is_hovered and self._drag is None:
@@ -180,7 +178,7 @@ class DopeSheet:
         arrow = em(0.9) if track.is_sum else 0.0
         indent = em(0.5) * len(track.parents)
         x = corner[0] + indent
-        y = corner[1] + 0.5 * (em(ROW) - em())
+        y = corner[1] + 0.5 * (em(ROW_HEIGHT) - em())
         self._gui.places[f"row {track.name}"] = x, y, x + em(4.0), y + em()
         room = min(room, self._gutter) - indent - arrow - em(0.3)
         label = shortened(track.label, room, keeps_end=not track.is_sum)  # which names the side
@@ -198,7 +196,7 @@ class DopeSheet:
         imgui.same_line(0.0, 0.0)
         top = imgui.get_cursor_screen_pos().y
         width = imgui.get_content_region_avail().x
-        edges = top, top + max(self._bottom - top, em(ROW))
+        edges = top, top + max(self._bottom - top, em(ROW_HEIGHT))
         imgui.invisible_button("##graph", (max(width, 1.0), edges[1] - top))
         if imgui.is_item_hovered() and self._drag is None:
             self._hover(io, left)
@@ -225,14 +223,14 @@ class DopeSheet:
                     self.settings.folds[track.name] = not self._is_open(track.name)
                 elif imgui.is_mouse_clicked(LEFT):
                     selection.places = track.places
-            imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW) * io.mouse_wheel)
+            imgui.set_scroll_y(imgui.get_scroll_y() - em(ROW_HEIGHT) * io.mouse_wheel)
             return
         if self.settings.shows_curves:
             graph.handle = graph.handle_at(x, y)
             hit = None if graph.handle else graph.at(x, y)
             under = hit.key if hit else NOWHERE
         elif track is not None:
-            under = track.places.near(axis.time(x), axis.seconds(em(REACH)))
+            under = track.places.near(axis.time(x), axis.seconds(em(KEY_REACH)))
         if (under or hit) and not imgui.is_mouse_down(LEFT):
             value = f"{hit.curve.label} {hit.value:.2f}" if hit else ""
             imgui.set_tooltip(f"{under.first:.2f} s  {value}".rstrip() if under else value)
@@ -274,7 +272,7 @@ class DopeSheet:
 
     def _press_in_ruler(self, io: Any) -> None:
         end = self.axis.x(self._session.script.duration)
-        is_at_end = end < io.mouse_pos.x < end + em(key_marks.FLAG)
+        is_at_end = end < io.mouse_pos.x < end + em(key_marks.FLAG_SIZE)
         if is_at_end:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
             if self._drag is None:
@@ -298,7 +296,7 @@ class DopeSheet:
         axis = self.axis
         session = self._session
         distance = abs(x - drag.began[0]) + abs(y - drag.began[1])
-        drag.has_moved = drag.has_moved or distance > CLICK
+        drag.has_moved = drag.has_moved or distance > CLICK_DISTANCE
         act: dict[str, Task] = {
             "keys": lambda: self._move_keys(io, drag),
             "box": lambda: self._select_box(io, drag),
@@ -327,7 +325,7 @@ class DopeSheet:
         right = io.mouse_pos.x - drag.began[0]
         down = io.mouse_pos.y - drag.began[1]
         if not io.key_ctrl:  # either way begins with a step
-            right, down = (0.0 if abs(way) < CLICK else way for way in (right, down))
+            right, down = (0.0 if abs(way) < CLICK_DISTANCE else way for way in (right, down))
         time = self._grabbed.first
         target = time + self.axis.seconds(right)
         target = min(max(target, 0.0), self.axis.end)  # further right it would not be seen

@@ -23,11 +23,10 @@ from .time_axis import TimeAxis
 
 PADDING = 0.8  # [em] between the highest value and the edge
 LABEL_ROOM = 1.6  # [em] between two labels of values
-STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (1.0, 2.0, 5.0))
-REACH = 0.55  # [em] from a key or a curve that still mean it
+VALUE_STEPS = tuple(digit * 10.0**power for power in range(-4, 6) for digit in (1.0, 2.0, 5.0))
+MOUSE_REACH = 0.55  # [em] from a key or a curve that still mean it
 MOST_POINTS = 4000  # of all curves, in columns
-KEY = 0.27  # [em] from a key's middle to its corners
-FAINT = 0.3  # a curve that has no selected key, beside others that have
+KEY_RADIUS = 0.27  # [em] from a key's middle to its corners
 
 
 class Hit(NamedTuple):
@@ -86,7 +85,7 @@ class Graph:
     def at(self, x: float, y: float) -> Hit | None:
         """The key there, or else the curve; of keys too dense to be seen singly, selected ones."""
         axis = self._axis
-        reach = em(REACH)
+        reach = em(MOUSE_REACH)
         hits = list[tuple[float, Hit]]()
         for curve in self.curves[::-1]:
             channel = curve.channel
@@ -121,7 +120,8 @@ class Graph:
                 )
                 (x, right) = axis.x(times).tolist()
                 (y, there) = self.y(values).tolist()
-                if slopes is None or right - x < 3.0 * em(REACH) or abs(there - y) < em(REACH):
+                reach = em(MOUSE_REACH)
+                if slopes is None or right - x < 3.0 * reach or abs(there - y) < reach:
                     continue  # held, or no room
                 key = Places.of(KeyPlace(curve.track, float(times[1])))
                 across = (right - x) / 3.0
@@ -136,7 +136,7 @@ class Graph:
         """The handle there, if there is one."""
         away = [(float(np.hypot(h.place[0] - x, h.place[1] - y)), h) for h in self.handles()]
         distance, handle = min(away, key=lambda each: each[0], default=(0.0, None))
-        return handle if distance < em(REACH) else None
+        return handle if distance < em(MOUSE_REACH) else None
 
     def bent(self, handle: Handle, y: float) -> str:
         """The easing that the way has if its handle is dragged to a height."""
@@ -160,7 +160,7 @@ class Graph:
         axis = self._axis
         times = curve.channel.times
         count = np.diff(np.searchsorted(times, (axis.start, axis.end)))[0]
-        return bool(1.5 * em(KEY) * count > axis.x(axis.end) - axis.x(axis.start))
+        return bool(1.5 * em(KEY_RADIUS) * count > axis.x(axis.end) - axis.x(axis.start))
 
     # How it looks
 
@@ -181,7 +181,7 @@ class Graph:
         columns = round(min(0.5 * (right - left), MOST_POINTS / (len(self.curves) + 1)))
         for curve in self.curves:
             is_front = self._is_selected(curve) or not self._is_selected(self.curves[-1])
-            ink = self.colour(curve, 1.0 if is_front else FAINT)
+            ink = self.colour(curve, 1.0 if is_front else 0.3)
             times, values = curve.channel.outline(axis.start, axis.end, max(columns, 8))
             draw_line(axis.x(times), self.y(values), ink, em(0.12))
             self._draw_keys(curve, ink)
@@ -209,7 +209,8 @@ class Graph:
         """Lines at round values, with numbers at their left."""
         theme = self._gui.theme
         lines = imgui.get_window_draw_list()
-        step = next((each for each in STEPS if -each * self.slope >= em(LABEL_ROOM)), STEPS[-1])
+        wide = (each for each in VALUE_STEPS if -each * self.slope >= em(LABEL_ROOM))
+        step = next(wide, VALUE_STEPS[-1])
         first = int(np.ceil(self._low / step - SAME))
         last = int(self._high / step + SAME)
         for number in range(first, last + 1):
@@ -225,7 +226,7 @@ class Graph:
         lines = imgui.get_window_draw_list()
         for handle in self.handles():
             lines.add_line(handle.root, handle.place, accent)
-            lines.add_circle_filled(handle.place, em(0.8 * KEY), accent)
+            lines.add_circle_filled(handle.place, em(0.8 * KEY_RADIUS), accent)
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
         """The visible keys; before selected ones the way that the script takes to them."""
@@ -252,5 +253,5 @@ class Graph:
         xs = axis.x(times).tolist()
         ys = self.y(channel.values[visible]).tolist()
         for x, y, is_chosen in zip(xs, ys, are_chosen.tolist(), strict=True):
-            reach, fill = (1.4 * KEY, accent) if is_chosen else (KEY, ink)
+            reach, fill = (1.4 * KEY_RADIUS, accent) if is_chosen else (KEY_RADIUS, ink)
             lines.add_ngon_filled((x, y), em(reach), fill, 4)

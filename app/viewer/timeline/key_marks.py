@@ -18,11 +18,11 @@ from .keys import Track
 from .time_axis import TimeAxis
 
 LABEL_ROOM = 4.2  # [em] between two labels of the ruler
-FLAG = 0.7  # [em] of the handle at the script's end
-KEY = 0.36  # [em] from a key's middle to its corners
-LEAST_NAME = 2.4  # [em] of a pose's name: less would be no name
-CLOSEST = 2.0  # [window units] keys nearer than that are drawn as one
-MOST_COVERED = 0.5  # of a row by keys that are drawn one by one
+FLAG_SIZE = 0.7  # [em] of the handle at the script's end
+KEY_RADIUS = 0.36  # [em] from a key's middle to its corners
+LEAST_NAME_WIDTH = 2.4  # [em] of a pose's name: less would be no name
+LEAST_KEY_DISTANCE = 2.0  # [window units] keys nearer than that are drawn as one
+MOST_COVERED_SHARE = 0.5  # of a row by keys that are drawn one by one
 
 Point = tuple[float, float]
 
@@ -46,8 +46,8 @@ def draw_ruler(
             lines.add_text((x - 0.5 * imgui.calc_text_size(label).x, top), ink, label)
     end = axis.x(duration)
     if end <= axis.x(axis.end):
-        tip = end + em(FLAG), bottom - 0.5 * em(FLAG)
-        lines.add_triangle_filled((end, bottom - em(FLAG)), tip, (end, bottom), ink)
+        tip = end + em(FLAG_SIZE), bottom - 0.5 * em(FLAG_SIZE)
+        lines.add_triangle_filled((end, bottom - em(FLAG_SIZE)), tip, (end, bottom), ink)
     if axis.start <= time <= axis.end:  # below the numbers
         x = axis.x(time)
         half = em(0.4)
@@ -98,7 +98,7 @@ class TrackPainter:
         self._low = axis.x(axis.start) - em(0.5)
         self._high = axis.x(axis.end) + em(0.5)
         margin = axis.seconds(em(0.5))
-        count = max(round((self._high - self._low) / CLOSEST), 2)
+        count = max(round((self._high - self._low) / LEAST_KEY_DISTANCE), 2)
         self._edges = np.linspace(axis.start - margin, axis.end + margin, count + 1)  # of columns
         self._script_end = min(max(axis.x(duration), self._low), self._high)
 
@@ -131,14 +131,14 @@ class TrackPainter:
 
     def _draw_keys(self, track: Track, middle: float) -> bool:
         """The visible keys, selected ones on top; where they are dense, no others hide a curve."""
-        size = em(KEY if track.is_whole else 0.8 * KEY)
+        size = em(KEY_RADIUS if track.is_whole else 0.8 * KEY_RADIUS)
         ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
         names = track.places.times
         marks, chosen = (
             self._axis.x(places.latest_in(self._edges, names))
             for places in (track.places, self._selected)
         )
-        is_dense = len(marks) * 2.0 * size > MOST_COVERED * (self._high - self._low)
+        is_dense = len(marks) * 2.0 * size > MOST_COVERED_SHARE * (self._high - self._low)
         seen = marks[:0] if is_dense and len(track.channel) else marks
         accent = ink_of(self._theme.accent)
         for xs, reach, fill in ((seen, size, ink), (chosen, 1.2 * size, accent)):
@@ -153,9 +153,9 @@ class TrackPainter:
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
         for (time, name), end in zip(track.names, ends, strict=False):
             if axis.start <= time <= axis.end:
-                x = axis.x(time) - em(KEY)
+                x = axis.x(time) - em(KEY_RADIUS)
                 room = min(end, self._high) - x
-                if room >= min(em(LEAST_NAME), imgui.calc_text_size(name).x):
+                if room >= min(em(LEAST_NAME_WIDTH), imgui.calc_text_size(name).x):
                     self._lines.add_text((x, top), ink, shortened(name, room))
 
 
@@ -172,8 +172,7 @@ def draw_box(theme: Theme, first: Point, last: Point) -> None:
     lines.add_rect(first, last, ink_of(theme.accent, 0.8))
 
 
-HEIGHT = 2.6  # [em]
-LEAST = 0.5  # [window units] from the middle: silence is a thin line
+LEAST_AMPLITUDE = 0.5  # [window units] from the middle: silence is a thin line
 peaks_of = functools.lru_cache(maxsize=1)(Peaks)
 
 
@@ -188,7 +187,7 @@ class Waveform:
     @property
     def height(self) -> float:
         """Of the row [window units]."""
-        return em(HEIGHT) if self._soundtrack.sound is not None else 0.0
+        return em(2.6) if self._soundtrack.sound is not None else 0.0
 
     @property
     def duration(self) -> float:
@@ -221,8 +220,8 @@ class Waveform:
         inside = ink_of(theme.muted)
         outside = ink_of(theme.muted, 0.35)
         ends = axis.x(duration)
-        uppers = (middle - LEAST - reach * high).tolist()
-        lowers = (middle + LEAST - reach * low).tolist()
+        uppers = (middle - LEAST_AMPLITUDE - reach * high).tolist()
+        lowers = (middle + LEAST_AMPLITUDE - reach * low).tolist()
         for x, (upper, lower) in enumerate(zip(uppers, lowers, strict=True), start=first):
             lines.add_rect_filled((x, upper), (x + 1.0, lower), inside if x < ends else outside)
         draw_playhead(theme, axis, time, (top, bottom + 1.0))

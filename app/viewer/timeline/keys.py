@@ -16,8 +16,8 @@ from ...script.places import NOWHERE, Places
 from ..messages import Message
 from ..session.session import Session
 
-TRACKS = "Tracks"  # name of a row
-ALL = "Whole poses"  # name of a row
+TRACKS_ROW = "Tracks"  # name of a row
+WHOLE_POSES_ROW = "Whole poses"  # name of a row
 
 
 @dataclass(frozen=True)
@@ -49,21 +49,23 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
     if script.poses or not script.tracks:
         names = tuple((pose.time, pose.name) for pose in script.poses if pose.name)
         poses = Places({POSES: times.pop(POSES, np.empty(0))})
-        whole = Track(ALL, "Poses", poses, names=names, is_whole=True)
+        whole = Track(WHOLE_POSES_ROW, "Poses", poses, names=names, is_whole=True)
         rows.append(replace(whole, is_sum=bool(script.posed_names)))
         for name in script.posed_names:
             channel = script.posed_channel(name)
-            row = Track(f"pose {name}", readable(name), poses, channel, name, POSES, (ALL,))
+            above = (WHOLE_POSES_ROW,)
+            row = Track(f"pose {name}", readable(name), poses, channel, name, POSES, above)
             rows.append(row)
     if script.tracks:
-        rows.append(Track(TRACKS, TRACKS, Places(times), is_sum=True))
+        rows.append(Track(TRACKS_ROW, TRACKS_ROW, Places(times), is_sum=True))
     for title, controls in groups.items():
         inside = {name: times[name] for name in controls if name in script.tracks}
-        parents: tuple[str, ...] = (TRACKS,)
+        parents: tuple[str, ...] = (TRACKS_ROW,)
         if 0 < len(inside) < len(script.tracks):
-            group = Track(f"{TRACKS}: {title}", title, Places(inside), parents=parents, is_sum=True)
+            name = f"{TRACKS_ROW}: {title}"
+            group = Track(name, title, Places(inside), parents=parents, is_sum=True)
             rows.append(group)
-            parents = TRACKS, group.name
+            parents = TRACKS_ROW, group.name
         for name in inside:
             alone = Places({name: times[name]})
             channel = script.tracks[name]

@@ -7,10 +7,10 @@ from typing import TypeVar
 from ...script import Floats
 from ...script.keyframes import FRAME
 
-MARGIN = 1.06  # of the script: room behind its end, to drag keys there
+MARGIN_FACTOR = 1.06  # of the script: room behind its end, to drag keys there
 LEAST_SPAN = 8.0 * FRAME  # [s] as far as one may zoom in
-CLOSEST_TICKS = 0.12  # of the room for a label
-STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
+LEAST_TICK_SHARE = 0.12  # of the room for a label
+TICK_STEPS = (FRAME, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 3600.0, 86_400.0)
 
 Number = TypeVar("Number", float, Floats)
 
@@ -36,7 +36,7 @@ class TimeAxis:
 
     def fit(self, end: float) -> None:
         """The script ends at `end` [s] now: stay inside it."""
-        whole = max(end * MARGIN, LEAST_SPAN)
+        whole = max(end * MARGIN_FACTOR, LEAST_SPAN)
         self.is_whole = self.is_whole or self.span >= whole
         if self.is_whole:
             self.start = 0.0
@@ -78,9 +78,10 @@ class TimeAxis:
 
     def ticks(self, label_width: float) -> list[tuple[float, bool]]:
         """The times of marks that are visible [s], and whether each has room for a label."""
-        labelled = next((s for s in STEPS[1:] if s >= self.seconds(label_width)), STEPS[-1])
-        least = self.seconds(CLOSEST_TICKS * label_width)
-        parts = ((s, labelled / s) for s in STEPS if least <= s < labelled)
+        wide = (step for step in TICK_STEPS[1:] if step >= self.seconds(label_width))
+        labelled = next(wide, TICK_STEPS[-1])
+        least = self.seconds(LEAST_TICK_SHARE * label_width)
+        parts = ((s, labelled / s) for s in TICK_STEPS if least <= s < labelled)
         finer = [s for s, count in parts if abs(count - round(count)) < 1e-6]  # none is left over
         marked = finer[0] if finer else labelled
         count = round(labelled / marked)

@@ -16,9 +16,8 @@ from .dope_sheet import DopeSheet
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0)
 BUTTON_WIDTH = 4.0  # [em]
 SPEED_WIDTH = 4.6  # [em]
-MOST_HEIGHT = 0.4  # of the window
 # By the label of the command: the button's text while that is on, and a hint.
-BUTTONS = {
+BUTTON_TEXTS = {
     "Play": ("Pause", "play the script ([Play])"),
     "Record": ("Stop", "record the controls that you move, from here on ([Record])"),
     "Loop": ("Loop", "begin again at the end ([Loop])"),
@@ -46,7 +45,7 @@ class Timeline:
     def height(self) -> float:
         """Of the timeline [window units]; where words are too large for the window, it scrolls."""
         display = imgui.get_io().display_size.y
-        most = MOST_HEIGHT * display
+        most = 0.4 * display
         buttons = self._rows * imgui.get_frame_height_with_spacing()
         buttons += 2.0 * imgui.get_style().window_padding.y
         return float(min(buttons + self.dope_sheet.height(most - buttons), most))
@@ -72,7 +71,7 @@ class Timeline:
 
     def _draw_button(self, label: str, *, is_wanted: bool = False) -> None:
         command = self._commands[label]
-        (label_on, meaning) = BUTTONS[label]
+        (label_on, meaning) = BUTTON_TEXTS[label]
         is_on = command.is_on is not None and command.is_on()
         text = label_on if is_on else label
         width = em(BUTTON_WIDTH)

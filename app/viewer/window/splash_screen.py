@@ -18,10 +18,9 @@ from risorius import render
 from ..interface.gui import FONT, FONT_SIZE, THEMES, Theme, wait_for_event
 from ..settings import Settings, load_settings
 
-LOADING = "Loading the face ..."
-COMPILING = "Compiling, once for each kind of work: up to half a minute ..."
+LOADING_TEXT = "Loading the face ..."
+COMPILING_TEXT = "Compiling, once for each kind of work: up to half a minute ..."
 FIRST_SIZE = 1280, 800  # [units of a screen of ordinary density]
-PAUSE = 0.05  # [s] between two looks at the user's events
 LOG = logging.getLogger("risorius.jit")  # reports each function that is compiled
 Result = TypeVar("Result")
 
@@ -40,7 +39,7 @@ class SplashScreen(logging.Handler):
         if path is not None:
             self.settings, self.complaint = load_settings(path)
         known = size or self.settings.size
-        self._text = LOADING
+        self._text = LOADING_TEXT
         self._drawn = ((0, 0), "")
         size = known or FIRST_SIZE
         self.surface = render.open_window(size, "Risorius", is_scaled=known is None)
@@ -49,7 +48,7 @@ class SplashScreen(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Show that code is compiled, as the record reports."""
-        self._text = COMPILING
+        self._text = COMPILING_TEXT
 
     def __enter__(self) -> SplashScreen:
         return self
@@ -64,7 +63,7 @@ class SplashScreen(logging.Handler):
         outcome = thread.submit(work)
         thread.shutdown(wait=False)
         while not outcome.done():
-            wait_for_event(PAUSE)
+            wait_for_event(0.05)  # [s]
             if self._drawn != (self.surface.frame_size, self._text):
                 self._show()
             if self.surface.should_close:  # no work can be lost yet

@@ -16,16 +16,16 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from ...stopping import cleaned_up_if_stopped
-from ..documents.file_drop import LANDMARKS
+from ..documents.file_drop import LANDMARKS_SUFFIX
 from ..documents.scripts import draw_question
 from ..interface.commands import run_pressed
 from ..interface.gui import on_drop
 from ..panels.layout import draw_message
 from ..picture.stage import Painter
-from ..session.live_commands import PACING
+from ..session.live_commands import PACKET_WAIT
 from .application import Application
 
-REFRESH = 0.1  # [s] that a picture of the panels may be old while the face moves
+REFRESH_INTERVAL = 0.1  # [s] that a picture of the panels may be old while the face moves
 IDLE_WAIT = 2.0  # [s] between two frames while nothing happens
 WATCHFUL_WAIT = 0.1  # [s] the same while a file dialog is open, or words are typed
 LIFE_WAIT = 1.0 / 30.0  # [s] from one frame to the next while the face does no more than live
@@ -37,7 +37,7 @@ class Viewer(Application):
 
     _last: float  # when the last frame began [s]
     _awake: int  # frames that are drawn in any case
-    refresh = REFRESH
+    refresh = REFRESH_INTERVAL
     # Of the panels as they were drawn last: age [s], size of the window [pixels], over the scene?
     _panels_age = math.inf
     _panels_size = (0, 0)
@@ -173,7 +173,7 @@ class Viewer(Application):
             spent = time.perf_counter() - self._last
             self.gui.look(max(LIFE_WAIT - spent, spent))
         elif self.live.is_receiving and not self.live.has_frame:
-            self.gui.look(PACING)
+            self.gui.look(PACKET_WAIT)
 
     def _wait(self) -> None:
         """Sleep until an event comes, or for a while; the clock does not run on meanwhile."""
@@ -250,7 +250,7 @@ class Viewer(Application):
         open_files = partial(self.file_drop.open, paths)
         if self.room is None:
             self.messages.carry_out(open_files)
-        elif [Path(path).suffix for path in paths] == [LANDMARKS]:
+        elif [Path(path).suffix for path in paths] == [LANDMARKS_SUFFIX]:
             self.messages.carry_out(partial(self.room.marking.open, Path(paths[0])))
         else:
             self.messages.carry_out(partial(self.room.leave, open_files))
