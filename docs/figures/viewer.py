@@ -91,8 +91,8 @@ def landmarks(viewer: Viewer) -> None:
         mesh = Path(folder) / "anna.obj"
         mesh.write_text("\n".join(lines))
         viewer.read(mesh)()
-    assert viewer.room is not None
-    marking = viewer.room.marking
+    assert viewer.marking_mode is not None
+    marking = viewer.marking_mode.marking
     for number in FIRST:
         marking.put(number, marking.placing.points(head.vertices[head.landmarks[number]]))
     marking.note()

@@ -15,9 +15,9 @@ from risorius.__main__ import command
 from risorius.app.errors import UserError
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.documents.file_dialogs import FileDialogs
-from risorius.app.viewer.marking import Marking, Room
+from risorius.app.viewer.marking import Marking, MarkingMode
 from risorius.app.viewer.marking.marking import FIRST, ORDER
-from risorius.app.viewer.marking.room import places_in
+from risorius.app.viewer.marking.mode import places_in
 from risorius.assets import AssetError
 from risorius.assets.fitting.guess import placing
 from risorius.assets.fitting.landmark_file import read_landmarks
@@ -138,25 +138,25 @@ class TestInTheWindow:
             viewer.show_scene(before)
         viewer.surface.should_close = viewer.is_leaving = False
 
-    def room(self, viewer: Viewer) -> Room:
+    def mode(self, viewer: Viewer) -> MarkingMode:
         """The marking mode of the window."""
-        assert until(viewer, lambda: viewer.room is not None)
-        assert viewer.room is not None
-        return viewer.room
+        assert until(viewer, lambda: viewer.marking_mode is not None)
+        assert viewer.marking_mode is not None
+        return viewer.marking_mode
 
     def place(self, viewer: Viewer, point: Array) -> tuple[int, int]:
         """Where a point of the mesh is, on the screen."""
-        room = self.room(viewer)
-        seen = room.marking.placing.points(point[None])
-        return on_screen(viewer, *places_in(room.view.area, room.view.camera, seen)[0])
+        mode = self.mode(viewer)
+        seen = mode.marking.placing.points(point[None])
+        return on_screen(viewer, *places_in(mode.view.area, mode.view.camera, seen)[0])
 
     def face_it(self, viewer: Viewer) -> None:
         """Turn the camera to the face, which lies on its back: z is up in its file."""
-        room = self.room(viewer)
+        mode = self.mode(viewer)
         settle(viewer)  # the mesh gets its place in the window
         front = placing(dict(enumerate(true_places()))).inverse.vectors([0.0, 0.0, 1.0])
-        x, y, z = room.marking.placing.vectors(front)
-        camera = room.view.camera
+        x, y, z = mode.marking.placing.vectors(front)
+        camera = mode.view.camera
         camera.orbit(math.degrees(math.atan2(x, z)) - camera.yaw)
         camera.orbit(0.0, math.degrees(math.atan2(y, math.hypot(x, z))) - camera.pitch)
 
@@ -164,17 +164,17 @@ class TestInTheWindow:
         """Click the first points."""
         self.face_it(viewer)
         for number in FIRST:
-            assert self.room(viewer).marking.current == number
+            assert self.mode(viewer).marking.current == number
             xdotool(viewer, "mousemove", *self.place(viewer, true_places()[number]))
             xdotool(viewer, "click", 1)
-        assert until(viewer, lambda: self.room(viewer).marking.marks.is_complete)
+        assert until(viewer, lambda: self.mode(viewer).marking.marks.is_complete)
 
     def test_a_head_is_put_upright_before_anything_is_marked(
         self, viewer: Viewer, mesh: Path
     ) -> None:
         """Its file has z up; the mouse and one button turn it, and each turn can be undone."""
         drop(viewer, mesh)
-        marking = self.room(viewer).marking
+        marking = self.mode(viewer).marking
         self.face_it(viewer)
         ways = placing(dict(enumerate(true_places()))).inverse.vectors(np.eye(3))
 
@@ -199,20 +199,20 @@ class TestInTheWindow:
     def test_a_mark_is_put_only_where_it_is_seen(self, viewer: Viewer, mesh: Path) -> None:
         """A click into the open neck meets skin from behind: it is no mark, as a line says."""
         viewer.read(mesh)()
-        room = self.room(viewer)
-        room.view.camera.orbit(180.0)
+        mode = self.mode(viewer)
+        mode.view.camera.orbit(180.0)
         settle(viewer)
-        left, top, width, height = room.view.area
+        left, top, width, height = mode.view.area
         place = on_screen(viewer, left + 0.5 * width, top + 0.5 * height)
         xdotool(viewer, "mousemove", *place, "click", 1)
-        assert not room.marking.marks.places and "No skin looks at you" in viewer.messages.text
+        assert not mode.marking.marks.places and "No skin looks at you" in viewer.messages.text
 
     def test_a_head_is_marked_from_the_first_click_to_the_picture(
         self, viewer: Viewer, mesh: Path, tmp_path: Path
     ) -> None:
         """Dropped, five clicks, one drag, undone, saved; then capture takes the file."""
         drop(viewer, mesh)
-        marking = self.room(viewer).marking
+        marking = self.mode(viewer).marking
         self.mark_first(viewer)
         assert np.median(off(marking)) < 2.0 * METRES and off(marking).max() < 2.0 * NEAR
         before = marking.marks
@@ -232,16 +232,16 @@ class TestInTheWindow:
         assert number in marking.marks.by_hand
         xdotool(viewer, "key", "Right")
         assert marking.current == ORDER[ORDER.index(number) + 1]
-        self.room(viewer).view.camera.orbit(80.0, 0.0)  # whose side hides it
+        self.mode(viewer).view.camera.orbit(80.0, 0.0)  # whose side hides it
         xdotool(viewer, "key", "Left")
         settle(viewer)
-        assert number == marking.current and number in self.room(viewer).view.places()
+        assert number == marking.current and number in self.mode(viewer).view.places()
         click(viewer, "Use this head")
         assert viewer.files.is_waiting
         xdotool(viewer, "key", "ctrl+a")
         write(viewer, "marked")
         xdotool(viewer, "key", "Return")
-        assert until(viewer, lambda: viewer.room is None)
+        assert until(viewer, lambda: viewer.marking_mode is None)
         assert len(viewer.session.scene.faces) == len(stranger().mesh.faces)
         image = tmp_path / "joy.png"
         marks = mesh.with_name("marked.json")
@@ -257,14 +257,14 @@ class TestInTheWindow:
         viewer.session.set("jaw_open", 0.5)
         viewer.read(mesh)()
         xdotool(viewer, "key", "ctrl+w")
-        assert viewer.room is None  # nothing was marked, and the pose is not in danger
+        assert viewer.marking_mode is None  # nothing was marked, and the pose is not in danger
         viewer.read(mesh)()
         self.mark_first(viewer)
-        room = viewer.room
+        mode = viewer.marking_mode
         click(viewer, "Leave")
         assert viewer.question.is_open and "question: Save pose ..." not in viewer.gui.places
         xdotool(viewer, "key", "Escape")
-        assert viewer.room is room
+        assert viewer.marking_mode is mode
         viewer.drop([str(mesh)])
         assert viewer.question.is_open
         xdotool(viewer, "key", "Escape")
@@ -277,5 +277,5 @@ class TestInTheWindow:
         xdotool(viewer, "key", "ctrl+a")
         write(viewer, "kept")
         xdotool(viewer, "key", "Return")
-        assert until(viewer, lambda: viewer.room is None)
+        assert until(viewer, lambda: viewer.marking_mode is None)
         assert mesh.with_name("kept.json").exists() and viewer.session.values["jaw_open"] == 0.5

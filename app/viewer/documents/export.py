@@ -218,7 +218,7 @@ class ExportDialog:
             self._gui.remember(f"export: {label}")
 
     def _draw_end(self, choices: ExportChoices) -> None:
-        """How much will be written; and the buttons, the first of which asks for a name."""
+        """Draw how much will be written, and the buttons; the first one asks for a name."""
         exporter = self._exporter
         duration = self._exporter.session.script.duration
         imgui.separator()
@@ -243,7 +243,7 @@ class ExportDialog:
             ask(proposed=f"{Path(exporter.session.work.name).stem}{suffix}")
 
     def _draw_progress(self) -> None:
-        """How far it is."""
+        """Draw the progress of an export."""
         job = self._exporter.job
         if job is None:
             return

@@ -21,7 +21,7 @@ ENTER_KEYS = imgui.Key.enter, imgui.Key.keypad_enter
 
 
 @dataclass
-class Request:
+class FileRequest:
     """A question for a file, the task for the answer, and the present state of the dialog."""
 
     title: str
@@ -81,7 +81,7 @@ class FileDialogs:
     """Asks for one file at a time: a line to type in, above it the files of a folder."""
 
     def __init__(self) -> None:
-        self.request: Request | None = None
+        self.request: FileRequest | None = None
         self._folder: Path | None = None  # where the last file was
 
     @property
@@ -101,7 +101,7 @@ class FileDialogs:
         """Ask for a file; `then` is called with it in a later frame, or never."""
         target = (self._folder or Path.cwd()) / proposed
         folder = target.parent if proposed else target
-        self.request = Request(title, saving, suffixes, then, folder)
+        self.request = FileRequest(title, saving, suffixes, then, folder)
         self.request.enter(folder)
         self.request.name = as_text(target.name) if proposed else ""
 
@@ -133,7 +133,7 @@ class FileDialogs:
         return request.then(chosen)
 
 
-def _draw_places(gui: Gui, request: Request) -> None:
+def _draw_places(gui: Gui, request: FileRequest) -> None:
     """Draw buttons of useful folders, and the path of the present one."""
     places = {"Up": request.folder.parent, "Home": Path.home()}
     if not request.is_saving and SCRIPT_SUFFIX in request.suffixes:
@@ -146,7 +146,7 @@ def _draw_places(gui: Gui, request: Request) -> None:
     muted(gui, shortened(str(request.folder), room, keeps_end=True))
 
 
-def _draw_listing(gui: Gui, request: Request) -> Path | None:
+def _draw_listing(gui: Gui, request: FileRequest) -> Path | None:
     """Draw the files of the folder; returns the file that was clicked twice, if any."""
     chosen = None
     room = 2.2 * imgui.get_frame_height_with_spacing()
@@ -173,7 +173,7 @@ def _draw_listing(gui: Gui, request: Request) -> Path | None:
     return chosen
 
 
-def _is_confirmed(gui: Gui, request: Request) -> bool:
+def _is_confirmed(gui: Gui, request: FileRequest) -> bool:
     """The line to type in and the button below it; whether one was confirmed, or Enter pressed."""
     if request.wants_focus:
         imgui.set_keyboard_focus_here()

@@ -191,7 +191,7 @@ class ScriptCommands:
         return self._session.script.sound is not None
 
     def remove_sound(self) -> None:
-        """The script without its sound."""
+        """Remove the script's sound."""
         self._session.edit(replace(self._session.script, sound=None))
 
     def toggle_recording(self) -> Message:

@@ -148,7 +148,7 @@ class Gui:
 
     @property
     def window_size(self) -> tuple[int, int]:
-        """Of the window [screen units]."""
+        """The size of the window [screen units]."""
         width, height = glfw.get_window_size(self._window)
         return int(width), int(height)
 
@@ -301,7 +301,7 @@ def fixed_panel(
 
 
 def em(count: float = 1.0) -> float:
-    """So many letters' heights [window units]: the measure of all widths."""
+    """The height of so many letters [window units]: the measure of all widths."""
     return count * int(FONT_SIZE * imgui.get_style().font_scale_main + 0.5)  # as imgui in a frame
 
 

@@ -222,7 +222,7 @@ class LabelledRows:
 
 
 def button_width(label: str) -> float:
-    """Of a button that reads so [window units]."""
+    """The width of a button with this label [window units]."""
     return float(imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x)
 
 
@@ -237,7 +237,7 @@ def hint(text: str) -> None:
 
 
 def muted(gui: Gui, text: str) -> None:
-    """Text of less weight."""
+    """Draw text of less weight."""
     imgui.text_colored(colour(gui.theme.muted), as_text(text))
 
 

@@ -81,18 +81,18 @@ class Marks:
     guessed: frozenset[int] = frozenset()
 
     def placed(self, number: int, place: npt.ArrayLike) -> Marks:
-        """The same with one that was placed by hand."""
+        """These marks with one more, placed by hand."""
         x, y, z = np.asarray(place, np.float64).tolist()
         return Marks({**self.places, number: (x, y, z)}, self.guessed - {number})
 
     def with_guessed(self, found: FloatArray) -> Marks:
-        """The same with all 68 (68, 3) where they were guessed, but those placed by hand."""
+        """These marks with guessed places, shape (68, 3), except for those placed by hand."""
         guessed = {n: (x, y, z) for n, (x, y, z) in enumerate(found.tolist())}
         return Marks({**guessed, **self.by_hand}, frozenset(guessed.keys() - self.by_hand.keys()))
 
     @property
     def by_hand(self) -> dict[int, Place]:
-        """Those that were not guessed."""
+        """The marks that were placed by hand."""
         return {n: place for n, place in self.places.items() if n not in self.guessed}
 
     @property
@@ -150,7 +150,7 @@ class Marking:
         return self.placing is self._upright
 
     def _stand_up(self, known: Mapping[int, Place]) -> None:
-        """The first time: upright, looking ahead, as large as a head; AssetError for no face's."""
+        """Turn the mesh upright, once, as large as a head; AssetError for marks of no face."""
         upright = placing(known)
         if not self.is_upright:
             self._upright = upright
@@ -175,7 +175,7 @@ class Marking:
         self.marks = self.marks.placed(number, self.placing.inverse.points(point))
 
     def note(self) -> Message:
-        """A change is complete, and can be undone; the rest is guessed if it can be."""
+        """Note a complete change, to be undone; guess the other marks if it is possible."""
         can_guess = self.marks.asked is None and not self.marks.is_complete
         try:
             return self.guess() if can_guess else None
@@ -196,11 +196,11 @@ class Marking:
         return "All points are guessed; drag those that are not where they belong"
 
     def go(self, step: int) -> None:
-        """To the next landmark in the order of marking, or with -1 to the one before."""
+        """Go to the next landmark in the order of marking, or with -1 to the one before."""
         self.current = ORDER[(ORDER.index(self.current) + step) % len(ORDER)]
 
     def undo(self, changes: int = 1) -> None:
-        """Back to before so many changes, of how the mesh stands, too; -1: forward again."""
+        """Undo so many changes, turns of the mesh among them; -1 redoes one."""
         self.marks, placing = self.history.go(self.history.place - changes)
         if placing is not self.placing:
             self._place(placing)

@@ -60,7 +60,7 @@ class CameraMouse:
                 self._zoom(io)
 
     def _hover(self, io: Any) -> None:
-        """The mouse is over the picture, and does nothing."""
+        """Answer the mouse over the picture while it holds nothing."""
 
     def _take(self, io: Any) -> str:
         """The action of the left button, pressed here."""
@@ -93,7 +93,7 @@ class CameraMouse:
         return bool(abs(io.mouse_pos.x - x) + abs(io.mouse_pos.y - y) > CLICK_DISTANCE)
 
     def _ray(self, io: Any) -> Ray:
-        """Through the mouse, in the viewport that it is in."""
+        """The ray through the mouse, in the viewport under it."""
         width, height = self._stage.surface.size
         x = io.mouse_pos.x * width / max(io.display_size.x, 1.0)
         y = height - io.mouse_pos.y * height / max(io.display_size.y, 1.0)

@@ -78,7 +78,7 @@ UNPULLED_PREFIXES = ("gaze_", "head_", "tongue_", "lips_closed")
 
 
 class SkinDrag:
-    """A finger that holds on to the skin."""
+    """A finger that drags the skin."""
 
     def __init__(
         self, session: Session, settings: Settings, point: Array, sight: Array, poses: bool
@@ -126,7 +126,7 @@ class SkinDrag:
         return line
 
     def muscle(self) -> str | None:
-        """The one under the finger, if any."""
+        """The muscle under the finger, if any."""
         return self._simulation.anatomy.muscle_at(self.point, 14.0)  # [mm] from a fibre, at most
 
     def let_go(self) -> Message:

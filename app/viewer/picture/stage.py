@@ -53,7 +53,7 @@ class View:
         self.fit_scene()
 
     def fit_scene(self) -> None:
-        """The camera as at first: all of the scene; UserError if the script names none."""
+        """Set the camera as at first: all of the scene; UserError if the script names none."""
         script = self._session.script
         check_camera(script.camera, script.source)
         self.camera = whole_scene(self._session.scene, script.camera)
@@ -74,7 +74,7 @@ class View:
 
     @property
     def viewport(self) -> render.Rectangle:
-        """Its part of the framebuffer."""
+        """The part of the framebuffer that shows the scene."""
         return self.pixels(self.area)
 
     def pixels(self, area: tuple[float, float, float, float]) -> render.Rectangle:
@@ -271,22 +271,22 @@ class LevelOfDetail:
 
     @property
     def detail(self) -> render.Detail:
-        """For a scene that moves."""
+        """The detail for a scene that moves."""
         return LEVELS[self.level]
 
     @property
     def unhurried(self) -> render.Detail:
-        """For a scene that moves a little now and then: not coarser than software begins with."""
+        """The detail for a scene that moves a little now and then: as software begins, or finer."""
         return LEVELS[min(self.level, FIRST_SOFTWARE_LEVEL)]
 
     def begin_motion(self) -> None:
-        """Something begins to move: the one moment at which more detail goes unnoticed."""
+        """Note that a motion begins: the one moment at which more detail goes unnoticed."""
         if self._fast >= PATIENCE_FRAMES and self.level > 0:
             self.level -= 1
         self._slow = self._fast = 0
 
     def note(self, seconds: float) -> None:
-        """A frame of a moving scene took so long, all in all."""
+        """Note the whole time of a frame of a moving scene [s]."""
         self._slow = self._slow + 1 if seconds > SLOW_SECONDS else 0
         self._fast = self._fast + 1 if seconds < AMPLE_SECONDS else 0
         if self._slow >= PATIENCE_FRAMES and self.level < len(LEVELS) - 1:

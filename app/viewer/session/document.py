@@ -187,6 +187,6 @@ class History(Generic[State]):
         self._states[self.place] = state
 
     def go(self, place: int) -> State:
-        """To the state of this number, or as near as there is one."""
+        """Go to the state of this number, or to the nearest one."""
         self.place = min(max(place, 0), len(self._states) - 1)
         return self.present

@@ -16,7 +16,7 @@ PACKET_WAIT = 0.008  # [s] that a frame waits for a packet: half a frame of the 
 
 
 def check_scene(name: str) -> None:
-    """UserError for a scene that no live face can move."""
+    """Raise UserError for a scene that no live face can move."""
     if name != "face":
         raise UserError(f"a live face moves the scene 'face', not '{name}'")
 
@@ -49,7 +49,7 @@ class LiveCommands:
 
     @property
     def is_on(self) -> bool:
-        """Whether packets are listened to."""
+        """Whether the window listens to packets."""
         return self.face is not None
 
     def start(self, wanted: Listening) -> Message:
@@ -64,21 +64,21 @@ class LiveCommands:
         return f"{wanted.protocol.title}: listening on {wanted.address}, port {face.port}"
 
     def stop(self) -> None:
-        """Listen no longer; the face is where sliders or script have it."""
+        """Listen no longer; sliders or script move the face again."""
         if self.face is not None:
             self.face.close()
         self.face = None
         self._session.live_override.take({}, 0.0)
 
     def toggle(self) -> Message:
-        """Begin, or end."""
+        """Begin to listen, or end it."""
         if not self.is_on:
             return self.start(self.wanted)
         self.stop()
         return None
 
     def calibrate(self) -> Message:
-        """The face as it is in the next half second is neutral."""
+        """Take the face of the next half second as the neutral one."""
         if self.face is not None:
             self.face.calibrate()
         return "Hold a neutral face, eyes on the camera ..."

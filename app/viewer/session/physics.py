@@ -62,7 +62,7 @@ class FrameTimes:
             column.append(0.0)
 
     def note_frame(self, elapsed: float) -> None:
-        """A frame has begun `elapsed` seconds after the one before it; 0 where nothing moves."""
+        """Note a frame `elapsed` seconds after the one before it; 0 where nothing moves."""
         # The mean of times, not of rates: a few quick frames must not outweigh the slow ones.
         mean = 1.0 / self.frames_per_second if self.frames_per_second else elapsed
         smooth = SMOOTHING * mean + (1.0 - SMOOTHING) * elapsed
@@ -99,7 +99,7 @@ class Physics:
         self.begin_anew()
 
     def begin_anew(self) -> None:
-        """Another scene may be about to move."""
+        """Begin with another scene, which may move at once."""
         self.has_moved = False  # since the last frame in which it had, as far as one can see
         self._seen = self._session.scene.positions.copy()  # in that frame
         self._seen_bones = self._session.scene.bone_transforms()
@@ -125,7 +125,7 @@ class Physics:
         is_urgent: bool = False,
         life: Life | None = None,
     ) -> None:
-        """As many steps as are due; none for a face at rest that nobody moves and that has no life.
+        """Take the steps that are due; none for a face at rest that neither a user nor life moves.
 
         is_skin_dragged: whether the mouse drags the skin. is_urgent: whether a live face has just
         moved. UserError where the simulation gave up.
@@ -203,7 +203,7 @@ class IdleLife:
         self._without_input = 0.0  # [s]
 
     def note_input(self) -> None:
-        """Somebody is there."""
+        """Note input: a user is there."""
         self._without_input = 0.0
 
     @property

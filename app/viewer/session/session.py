@@ -64,7 +64,7 @@ class Session:
             self.pose_is_unsaved = self._is_touched = True
 
     def toggle_alone(self, name: str) -> None:
-        """This control alone at its most, or neutral if it is so already."""
+        """Show this control alone at its most, or neutral if it is shown already."""
         pose = self.scene.limits.pose({}) if self.is_alone(name) else self.controls.alone(name)
         self.set_pose(pose, is_unsaved=False)
 
@@ -73,7 +73,7 @@ class Session:
         return self.values == self.controls.alone(name)
 
     def neutral(self) -> None:
-        """All controls to zero; the skin swings back by itself."""
+        """Set all controls to zero; the skin swings back by itself."""
         self.set_pose(self.scene.limits.pose({}), is_unsaved=False)
 
     def mirror(self, source: str = "") -> None:
@@ -111,7 +111,7 @@ class Session:
         return Document(values, self.script, self.file, self.time)
 
     def note(self) -> None:
-        """A change is complete (a slider let go, a button pressed): it can be undone."""
+        """Note a complete change (a slider let go, a button pressed), to be undone."""
         if self.is_recording:
             return  # that is one change, when it ends
         is_touched, self._is_touched = self._is_touched, False
@@ -125,15 +125,15 @@ class Session:
         return self.history.can_undo or self._document() != self.history.present
 
     def undo(self) -> None:
-        """Back to before the last change, or to it, if the face has changed since."""
+        """Undo the last change, or go back to it if the face has moved since."""
         self.go_to(self.history.place - (self._document() == self.history.present))
 
     def redo(self) -> None:
-        """Forward again."""
+        """Redo the change that was undone last."""
         self.go_to(self.history.place + 1)
 
     def go_to(self, place: int) -> None:
-        """To the state of this number in the history."""
+        """Go to the state of this number in the history."""
         self._refuse_while_recording()
         document = self.history.go(place)
         self.is_playing = self._is_touched = False
@@ -159,7 +159,7 @@ class Session:
         return line
 
     def start_over(self) -> None:
-        """The first pose, as if it had been held for a while: each replay begins alike."""
+        """Begin with the first pose, held for a while: each replay begins alike."""
         self.time = 0.0
         self._follow_script()
         self.scene.reset()
@@ -217,7 +217,7 @@ class Session:
             raise UserError("stop the recording first ([Record]): it goes into the script as it is")
 
     def set_key(self) -> float:
-        """The face as it is becomes a key; its time."""
+        """Make the present face a key; returns its time [s]."""
         self._refuse_while_recording()
         time = self._key(self.current)
         self.note()
@@ -296,7 +296,7 @@ class Session:
         return self.recorder.time - self.recorder.start if self.recorder is not None else 0.0
 
     def replace_script(self, script: Script, file: ScriptFile) -> None:
-        """Another script in place of this one; a recording ends."""
+        """Replace the script by another one; a recording ends."""
         self.recorder = None
         self._is_touched = False
         self.script = script
@@ -313,7 +313,7 @@ class Work:
         self._session = session
 
     def open(self, script: Script) -> None:
-        """A pose to show, which a recording takes in, or a script to play, which ends it."""
+        """Show a pose, which a recording takes in, or begin a script, which ends a recording."""
         if is_pose(script):
             pose = script.values(0.0, self._session.scene.limits)
             self._session.set_pose(pose, is_unsaved=False)
@@ -321,7 +321,7 @@ class Work:
             self._session.replace_script(script, ScriptFile.of(script))
 
     def begin_script(self) -> None:
-        """An empty script: the neutral face, to which keys can be added."""
+        """Begin an empty script: the neutral face, to which keys can be added."""
         scene = self._session.script.scene
         camera = self._session.script.camera
         duration = 4.0  # [s]

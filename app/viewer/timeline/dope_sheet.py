@@ -87,7 +87,7 @@ class DopeSheet:
         return self.settings.folds.get(name, is_few if ":" in name else self.settings.shows_curves)
 
     def height(self, room: float) -> float:
-        """Of ruler and rows [window units], no more than there is room for."""
+        """The height of ruler and rows [window units], no more than there is room for."""
         self._refresh()
         rows = em(ROW_HEIGHT) * sum(track.height for track in self.rows[:MOST_ROWS])
         wanted = em(GRAPH_HEIGHT) if self.settings.shows_curves else rows
@@ -148,7 +148,7 @@ class DopeSheet:
             imgui.end_popup()
 
     def _draw_rows(self, io: Any) -> None:
-        """The rows, or of curves their names alone."""
+        """Draw the rows, or the names of curves alone."""
         flags = imgui.WindowFlags_.no_scroll_with_mouse | imgui.WindowFlags_.no_background
         least = max(self._bottom - imgui.get_cursor_screen_pos().y, em(ROW_HEIGHT))
         has_keys = not self.settings.shows_curves
@@ -207,7 +207,7 @@ class DopeSheet:
     # The mouse
 
     def _hover(self, io: Any, left: float) -> None:
-        """The mouse is over rows or curves and holds nothing yet."""
+        """Answer the mouse over rows or curves while it holds nothing."""
         selection = self.selection
         axis = self.axis
         (x, y) = io.mouse_pos

@@ -68,7 +68,7 @@ class Graph:
         self.curves = sorted((row for row in rows if row.control), key=self._is_selected)
 
     def colour(self, curve: Track, opacity: float = 1.0) -> int:
-        """Of a curve and its name; by the golden ratio neighbours differ most."""
+        """The colour of a curve and its name; by the golden ratio neighbours differ most."""
         light = (0.55, 0.95) if self._gui.theme.is_dark else (0.9, 0.6)
         hue = (0.58 + 0.618034 * curve.number) % 1.0
         return ink_of(imgui.color_convert_hsv_to_rgb(hue, *light), opacity)
@@ -104,7 +104,7 @@ class Graph:
         return hit if distance < 2.0 * reach else None
 
     def handles(self) -> Iterator[Handle]:
-        """Of the ways to selected keys, where there is room for them."""
+        """The handles of the ways to selected keys, where there is room for them."""
         axis = self._axis
         for curve in self.curves:
             channel = curve.channel
@@ -206,7 +206,7 @@ class Graph:
         lines.add_rect_filled(low, (end, high[1]), ink_of(theme.field))
 
     def _draw_values(self, left: float, right: float) -> None:
-        """Lines at round values, with numbers at their left."""
+        """Draw lines at round values, with numbers at their left."""
         theme = self._gui.theme
         lines = imgui.get_window_draw_list()
         wide = (each for each in VALUE_STEPS if -each * self.slope >= em(LABEL_ROOM))
@@ -221,7 +221,7 @@ class Graph:
             lines.add_text(place, ink_of(theme.muted), label)
 
     def _draw_handles(self) -> None:
-        """Of the ways to selected keys, each with the line that it bends."""
+        """Draw the handles of the ways to selected keys, each with the line that it bends."""
         accent = ink_of(self._gui.theme.accent)
         lines = imgui.get_window_draw_list()
         for handle in self.handles():
@@ -229,7 +229,7 @@ class Graph:
             lines.add_circle_filled(handle.place, em(0.8 * KEY_RADIUS), accent)
 
     def _draw_keys(self, curve: Track, ink: int) -> None:
-        """The visible keys; before selected ones the way that the script takes to them."""
+        """Draw the visible keys; before selected ones the way that the script takes to them."""
         axis = self._axis
         channel = curve.channel
         accent = ink_of(self._gui.theme.accent)

@@ -66,7 +66,7 @@ def number_of(time: float) -> str:
 
 
 def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float, float]) -> None:
-    """The line at the time shown [s], from one edge to the other [window units]."""
+    """Draw the line at the time shown [s], from one edge to the other [window units]."""
     if axis.start <= time <= axis.end:
         x = round(axis.x(time)) + 0.5
         ink = ink_of(theme.accent)
@@ -77,7 +77,7 @@ def draw_playhead(theme: Theme, axis: TimeAxis, time: float, edges: tuple[float,
 def draw_label(
     text: str, corner: Point, ink: int, arrow: float = 0.0, *, is_open: bool = False
 ) -> None:
-    """The name of a row from its upper left corner on, with an arrow where it folds."""
+    """Draw the name of a row from its upper left corner on, with an arrow where it folds."""
     lines = imgui.get_window_draw_list()
     (left, top) = corner
     if arrow:
@@ -130,7 +130,7 @@ class TrackPainter:
         return self._draw_keys(track, middle)
 
     def _draw_keys(self, track: Track, middle: float) -> bool:
-        """The visible keys, selected ones on top; where they are dense, no others hide a curve."""
+        """Draw the visible keys, selected ones on top; dense ones hide no curve."""
         size = em(KEY_RADIUS if track.is_whole else 0.8 * KEY_RADIUS)
         ink = imgui.get_color_u32(imgui.Col_.text) if track.is_whole else ink_of(self._theme.muted)
         names = track.places.times
@@ -147,7 +147,7 @@ class TrackPainter:
         return is_dense
 
     def _draw_names(self, track: Track, top: float) -> None:
-        """The names of poses above them, as much of each as there is room for before the next."""
+        """Draw the names of poses above them, each as far as there is room before the next."""
         axis = self._axis
         ink = ink_of(self._theme.muted)
         ends = [axis.x(time) - em(0.6) for time, _ in track.names[1:]] + [self._high]
@@ -160,7 +160,7 @@ class TrackPainter:
 
 
 def draw_line(xs: Floats, ys: Floats, ink: int, width: float = 1.0) -> None:
-    """A line through points."""
+    """Draw a line through points."""
     points: Any = np.stack([xs, ys], axis=1).tolist()
     imgui.get_window_draw_list().add_polyline(points, ink, width, 0)
 
@@ -186,12 +186,12 @@ class Waveform:
 
     @property
     def height(self) -> float:
-        """Of the row [window units]."""
+        """The height of the row [window units]."""
         return em(2.6) if self._soundtrack.sound is not None else 0.0
 
     @property
     def duration(self) -> float:
-        """Of the sound [s]."""
+        """The duration of the sound [s]."""
         sound = self._soundtrack.sound
         return sound.duration if sound is not None else 0.0
 

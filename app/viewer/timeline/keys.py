@@ -92,7 +92,7 @@ class KeySelection:
         return bool(self.places) and self.can_edit
 
     def set_key(self) -> Message:
-        """The face as it is becomes a key at the time shown."""
+        """Make the present face a key at the time shown."""
         time = self._session.set_key()
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)
@@ -111,7 +111,7 @@ class KeySelection:
         return f"{counted(len(self.places), 'key')} copied; [Paste] pastes at the time shown"
 
     def paste(self) -> Message:
-        """The keys that were copied, from the time shown on; also those of another script."""
+        """Paste the copied keys from the time shown on; also those of another script."""
         assert self.copied is not None
         source, places = self.copied
         offset = keyframes.key_time(self._session.script, self._session.time) - places.first
@@ -129,14 +129,14 @@ class KeySelection:
         self.places = places
 
     def select_all(self) -> None:
-        """All keys of the script."""
+        """Select all keys of the script."""
         self.places = keyframes.places_of(self._session.script)
 
     def ease(self, easing: str) -> None:
-        """How the selected keys are approached."""
+        """Set the easing toward the selected keys."""
         self._session.edit(keyframes.eased(self._session.script, self.places, easing))
 
     def is_eased(self, easing: str) -> bool:
-        """Whether all selected keys are approached so."""
+        """Whether all selected keys have this easing."""
         script = self._session.script
         return bool(self.places) and keyframes.eased(script, self.places, easing) == script

@@ -26,16 +26,16 @@ class TimeAxis:
         self._width = 1.0
 
     def show_whole(self) -> None:
-        """All of the script, however long it is."""
+        """Show the whole script."""
         self.is_whole = True
 
     def place(self, left: float, width: float) -> None:
-        """Where it is drawn [window units]."""
+        """Set the place of the axis [window units]."""
         self._left = left
         self._width = max(width, 1.0)
 
     def fit(self, end: float) -> None:
-        """The script ends at `end` [s] now: stay inside it."""
+        """Keep the visible part inside a script that ends at `end` [s]."""
         whole = max(end * MARGIN_FACTOR, LEAST_SPAN)
         self.is_whole = self.is_whole or self.span >= whole
         if self.is_whole:

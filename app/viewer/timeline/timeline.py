@@ -43,7 +43,7 @@ class Timeline:
         self._rows = 1  # of buttons, which go on in a second one where the window is narrow
 
     def height(self) -> float:
-        """Of the timeline [window units]; where words are too large for the window, it scrolls."""
+        """The height of the timeline [window units]; it scrolls if words are too large for it."""
         display = imgui.get_io().display_size.y
         most = 0.4 * display
         buttons = self._rows * imgui.get_frame_height_with_spacing()

@@ -20,7 +20,7 @@ from ..context import ApplicationContext
 from ..documents.export import ExportDialog
 from ..documents.file_drop import FileDrop
 from ..interface.commands import Command, MenuBar
-from ..marking import Marking, Room
+from ..marking import Marking, MarkingMode
 from ..messages import Message, Task
 from ..panels.face import FacePanel
 from ..panels.layout import Layout
@@ -104,7 +104,7 @@ class Application(ApplicationContext):
         settings = self.settings
         self.time_axis = TimeAxis()
         self.selection = KeySelection(session)
-        self.room: Room | None = None  # a mesh whose landmarks are being marked
+        self.marking_mode: MarkingMode | None = None  # a mesh whose landmarks are being marked
         self.file_drop = FileDrop(self.files, self.scripts, self.show_scene, self.read)
         self.commands: tuple[Command, ...] = (
             *menus.file_menu(
@@ -163,7 +163,7 @@ class Application(ApplicationContext):
 
     def show_scene(self, scene: Scene) -> None:
         """Take another scene with the same controls in place of this one."""
-        if self.room is not None and self.room.marking.unsaved:
+        if self.marking_mode is not None and self.marking_mode.marking.unsaved:
             raise UserError("landmarks were moved meanwhile: use this head once more")
         self.session.move_to(scene)
         self.leave_marking()
@@ -191,15 +191,17 @@ class Application(ApplicationContext):
             self.leave_marking()
             self.mouse.forget()
             self.session.is_playing = False
-            self.room = Room(marking, self, self.commands, self.file_drop.open, self.leave_marking)
+            open_files = self.file_drop.open
+            leave = self.leave_marking
+            self.marking_mode = MarkingMode(marking, self, self.commands, open_files, leave)
             return line
 
         return mark
 
     def leave_marking(self) -> None:
-        """Back to the face."""
-        if self.room is not None:
-            self.room = None
+        """Go back to the face."""
+        if self.marking_mode is not None:
+            self.marking_mode = None
             self.mouse.forget()
             self.painter.forget()
 
@@ -217,7 +219,7 @@ class Application(ApplicationContext):
         if self.is_leaving:
             return self._close()
         ask = partial(self.question.before, "Close", self._close)
-        return ask() if self.room is None else self.room.leave(ask)
+        return ask() if self.marking_mode is None else self.marking_mode.leave(ask)
 
     def _close(self) -> str | None:
         self.is_leaving = self.surface.should_close = True

@@ -97,11 +97,11 @@ class Viewer(Application):
         now = time.perf_counter()
         elapsed = now - self._last
         self._last = now
-        room = self.room
-        name = self.session.work.name if room is None else room.marking.path.name
-        is_unsaved = self.session.work.unsaved if room is None else room.marking.unsaved
+        mode = self.marking_mode
+        name = self.session.work.name if mode is None else mode.marking.path.name
+        is_unsaved = self.session.work.unsaved if mode is None else mode.marking.unsaved
         self.gui.set_title(f"Risorius: {name}{' *' if is_unsaved else ''}")
-        is_moving = self._move_face(elapsed) if room is None else room.paint(elapsed)
+        is_moving = self._move_face(elapsed) if mode is None else mode.paint(elapsed)
         is_calm = self.physics.is_at_rest or self.physics.is_left_alone
         self.times.note_frame(elapsed if is_moving or not is_calm else 0.0)
         if self.is_left_alone and not (is_moving or imgui.get_io().want_text_input):
@@ -131,7 +131,7 @@ class Viewer(Application):
     @property
     def shown_painter(self) -> Painter:
         """The painter of the present picture: of the face, or of a mesh that is marked."""
-        return self.painter if self.room is None else self.room.painter
+        return self.painter if self.marking_mode is None else self.marking_mode.painter
 
     @property
     def is_idle(self) -> bool:
@@ -139,7 +139,7 @@ class Viewer(Application):
         is_settled = (
             self._awake == 0 and self.shown_painter.is_complete and not self.messages.is_fading
         )
-        if self.room is not None:
+        if self.marking_mode is not None:
             return is_settled
         return (
             is_settled
@@ -154,7 +154,7 @@ class Viewer(Application):
     def is_left_alone(self) -> bool:
         """Whether the face does no more than live, and nothing else happens."""
         return (
-            self.room is None
+            self.marking_mode is None
             and self.physics.is_left_alone
             and self._awake == 0
             and not self.messages.is_fading
@@ -200,12 +200,12 @@ class Viewer(Application):
         if not self.is_left_alone:  # the face's own life moves no slider
             self._panels_age += elapsed
         # A drag in the scene moves no slider.
-        has_input = self.room is not None or (is_answering and not self.mouse.is_dragging)
+        has_input = self.marking_mode is not None or (is_answering and not self.mouse.is_dragging)
         is_stale = self._panels_age >= self.refresh or size != self._panels_size
         if is_moving and not (has_input or is_stale or self._is_scene_covered):
             return
         self.surface.resolve()
-        view = self.view if self.room is None else self.room.view
+        view = self.view if self.marking_mode is None else self.marking_mode.view
         left, bottom, width, _ = view.viewport
         self.surface.fill((0, 0, left, size[1]), self.gui.theme.panel)
         self.surface.fill((left, 0, width, bottom), self.gui.theme.panel)
@@ -218,18 +218,18 @@ class Viewer(Application):
         """Draw panels, and answer the user in them and in the face; is_visible: see Gui.frame."""
         messages = self.messages
         gui = self.gui
-        room = self.room
+        mode = self.marking_mode
         view = self.view
         commands = self.commands
-        if room is not None:
-            view = room.view
-            commands = room.commands
+        if mode is not None:
+            view = mode.view
+            commands = mode.commands
         with gui.frame(is_visible=is_visible):
             gui.set_theme(self.settings.theme, self.settings.zoom)
-            if room is None:
+            if mode is None:
                 self.layout.draw(view)
             else:
-                room.panel.draw(room.view)
+                mode.panel.draw(mode.view)
             messages.age(imgui.get_io().delta_time)
             draw_message(gui, messages, view)
             if imgui.is_any_mouse_down():
@@ -242,15 +242,15 @@ class Viewer(Application):
                 messages.attempt(draw)
             if not (self.files.is_waiting or self.question.is_open or self.exporter.is_asking):
                 run_pressed(commands, messages, gui)
-                (self if room is None else room).mouse.follow()
+                (self if mode is None else mode).mouse.follow()
 
     def drop(self, paths: Sequence[str]) -> None:
         """Open files that were dropped onto the window."""
         self._awake = FRAMES_AFTER_EVENT
         open_files = partial(self.file_drop.open, paths)
-        if self.room is None:
+        if self.marking_mode is None:
             self.messages.carry_out(open_files)
         elif [Path(path).suffix for path in paths] == [LANDMARKS_SUFFIX]:
-            self.messages.carry_out(partial(self.room.marking.open, Path(paths[0])))
+            self.messages.carry_out(partial(self.marking_mode.marking.open, Path(paths[0])))
         else:
-            self.messages.carry_out(partial(self.room.leave, open_files))
+            self.messages.carry_out(partial(self.marking_mode.leave, open_files))

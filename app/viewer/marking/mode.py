@@ -97,7 +97,7 @@ class MarkingView(View):
         return super().state, id(self._marking.positions)
 
     def places(self) -> dict[int, Spot]:
-        """Where the marks are that are on the side which is seen, by number."""
+        """The places of the marks on the visible side, by number."""
         numbers = list(self._marking.marks.places)
         points, normals = self._marking.seen(numbers)
         spots = places_in(self.area, self.camera, points)
@@ -175,7 +175,7 @@ class MarkingPanel:
         imgui.spacing()
 
     def _draw_guide(self) -> None:
-        """Where the current point belongs among those of a face; its group, as large as it can."""
+        """Draw the current point among those of a face, its group as large as possible."""
         current = self._marking.current
         is_complete = self._marking.marks.is_complete
         low = imgui.get_cursor_screen_pos()
@@ -191,7 +191,7 @@ class MarkingPanel:
         _draw_points(imgui.get_window_draw_list(), at, current, joined=True)
 
     def _draw_buttons(self) -> None:
-        """One for each command, two in a row."""
+        """Draw a button for each command, two in a row."""
         spacing = imgui.get_style().item_spacing.x
         width = 0.5 * (imgui.get_content_region_avail().x - spacing)
         for index, command in enumerate(self._commands):
@@ -203,7 +203,7 @@ class MarkingPanel:
 def _draw_points(
     pen: imgui.ImDrawList, at: Mapping[int, Spot], current: int, *, joined: bool
 ) -> None:
-    """Points with a dark border, joined by the lines of groups, a ring around one."""
+    """Draw points with a dark border, joined by the lines of groups, a ring around one."""
     for group in GROUPS if joined else ():
         for a, b in (pair for line in group.lines for pair in pairwise(line)):
             if a in at and b in at:
@@ -292,7 +292,7 @@ class MarkingMouse(CameraMouse):
         return nearest if off.get(nearest, math.inf) < em(MARK_REACH) else None
 
 
-class Room:
+class MarkingMode:
     """A mesh that is marked, in the window."""
 
     def __init__(
@@ -337,7 +337,7 @@ class Room:
         return self._open_files([str(marking.path), str(marking.file)])
 
     def leave(self, then: Task = lambda: None) -> Message:
-        """Back to the face, and on; if marks would be lost, ask first."""
+        """Go back to the face, and run `then`; if marks would be lost, ask first."""
 
         def go() -> Message:
             """Do so."""
@@ -347,7 +347,7 @@ class Room:
         return self._question.before("Leave", go, other=self.marking)
 
     def _step(self, direction: int) -> None:
-        """To another landmark; if its side is turned away, the camera goes there."""
+        """Go to another landmark; if its side is turned away, the camera goes there."""
         self.marking.go(direction)
         number = self.marking.current
         camera = self.view.camera
@@ -363,7 +363,7 @@ class Room:
         self.marking.turn(QUARTER_TURN if np.array_equal(turn, np.eye(3)) else turn)
 
     def _commands(self) -> tuple[Command, ...]:
-        """All that a key or a menu does here alone."""
+        """The commands of this mode alone."""
         marking = self.marking
         view = self.view
         file = partial(Command, "File")
