@@ -13,16 +13,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from .row_times import DAY, frame_times, mostly_rises, spread
 from .table import Table
 from .take import Array
+from .timecode import TIMECODE, timecode_times, with_colons
 
-RATES = (  # [frames / s], as timecode counts them
-    24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 75.0, 90.0, 100.0, 120.0, 144.0, 240.0, 1000.0
-)  # fmt: skip
-DEFAULT_RATE = 30.0  # of most cameras
-TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$")
 CLOCK = re.compile(
     r"""(?:(?P<days>-?\d+)\s+days?,?\s+\+?)?
         (?:(?P<date>\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4})[T\s,]+)?
@@ -44,7 +40,6 @@ MEASURED = re.compile(
     r"(?P<number>[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:e[-+]?\d+)?)\s*(?P<unit>[a-zµμ]+)$",
     re.IGNORECASE,
 )
-DAY = 86_400.0  # [s]
 SHORTEST_STEP = 0.004  # [s] between frames; shorter ones are no seconds
 UNITS = (  # shortest step, longest step, of which length [s]; of a time stamp
     (SHORTEST_STEP, 2.5, 1.0, "seconds"),
@@ -68,7 +63,6 @@ FRAMES = (
     "frame", "framenumber", "frameid", "frameindex", "frameidx", "frames", "frameno", "framenum",
     "framecount",
 )  # fmt: skip
-NTSC_TOLERANCE = 0.0025  # 29.97 is a thousandth less than 30, 23.976 than 24
 SAMPLED = 100  # cells that show whether a column holds clock times
 
 
@@ -148,7 +142,7 @@ def find_times(
     for name in sorted(
         stamps, key=lambda name: (stamps[name].place, stamps[name].unit is not None)
     ):
-        cells = _with_colons(texts(name))
+        cells = with_colons(texts(name))
         sample = [cell for cell in cells if cell][:SAMPLED]
         times: Array | None = None
         if sum(bool(TIMECODE.match(cell)) for cell in sample) * 2 > len(sample):
@@ -205,46 +199,6 @@ def _seconds_in(cell: str) -> float:
         return np.nan
 
 
-def _with_colons(cells: list[str]) -> list[str]:
-    """Timecode with a colon before its frames, also where the file has a point there.
-
-    Two digits behind the point are hundredths of a second unless they never reach 60: then they
-    count frames, at least 24 of them.
-    """
-    if not cells or not all(re.fullmatch(r"\d+:\d+:\d+\.\d\d", cell) for cell in cells if cell):
-        return cells
-    numbers = {cell[-2:] for cell in cells if cell}
-    seconds = {cell[:-3] for cell in cells if cell}
-    if len(seconds) < 3 or len(numbers) < 24 or max(numbers) >= "60":
-        return cells
-    return [f"{cell[:-3]}:{cell[-2:]}" if cell else "" for cell in cells]
-
-
-def frame_times(
-    numbers: Array | None,
-    count: int,
-    rate: float | None,
-    notes: list[str],
-    *,
-    has_stamps: bool = False,
-) -> Array:
-    """Times of frames by their numbers, or one row after the other where they have none.
-
-    has_stamps: whether there are time stamps that are of no use, as an earlier note says.
-    """
-    if rate is None:
-        rate = DEFAULT_RATE
-        if count > 1:
-            why = "Instead" if has_stamps else "No times are given:"
-            notes.append(f"{why} {rate:g} frames a second were assumed.")
-    if count == 1 or numbers is None or not _mostly_rises(numbers):
-        return np.arange(count) / rate
-    step = np.nanmedian(np.diff(numbers))
-    if step > 1.0:
-        notes.append(f"Only one in {step:g} frames was recorded.")
-    return (numbers - np.nanmin(numbers)) / rate
-
-
 def stamp_times(stamps: Array, notes: list[str], unit_of_name: float | None = None) -> Array | None:
     """Time stamps in seconds, whatever their unit is; None where they are of no use.
 
@@ -256,8 +210,8 @@ def stamp_times(stamps: Array, notes: list[str], unit_of_name: float | None = No
     if not np.isfinite(stamps).any():
         notes.append("The time stamps are no numbers, and were not used.")
         return None
-    stamps = _spread(stamps, notes)
-    if not _mostly_rises(stamps):
+    stamps = spread(stamps, notes)
+    if not mostly_rises(stamps):
         notes.append("The time stamps do not rise, and were not used.")
         return None
     steps = np.diff(stamps)
@@ -305,8 +259,8 @@ def clock_times(cells: Sequence[str], name: str, notes: list[str]) -> Array | No
         seconds[known] = np.unwrap(seconds[known], period=DAY)
     if len(cells) == 1:
         return None
-    seconds = _spread(seconds, notes)
-    if not _mostly_rises(seconds):
+    seconds = spread(seconds, notes)
+    if not mostly_rises(seconds):
         notes.append(f"The times in '{name}' do not rise, and were not used.")
         return None
     notes.append(f"The times in '{name}' were read as hours, minutes and seconds.")
@@ -333,129 +287,3 @@ def _day_of(found: re.Match[str]) -> int:
         return datetime.date(*map(int, parts)).toordinal()
     except ValueError:
         return 0
-
-
-def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
-    """Times [s] of timecode, HH:MM:SS:FF.fraction; NaN where a cell has none.
-
-    rate: frames a second that the user knows; it counts where the timecode agrees.
-    """
-    parts = np.full((len(cells), 4), np.nan)  # hours, minutes, seconds, frames with their fraction
-    has_semicolon = False
-    for row, cell in enumerate(cells):
-        if found := TIMECODE.match(cell):
-            parts[row] = [float(part) for part in found.group(1, 2, 3, 5)]
-            has_semicolon = has_semicolon or found[4] == ";"
-    numbers = parts[:, 3].copy()
-    known = np.isfinite(numbers)
-    seconds = np.unwrap(parts[known, :3] @ (3600.0, 60.0, 1.0), period=DAY)  # also over midnight
-    base, is_sure = _base_of(seconds, numbers[known])
-    pace = base  # frames a second in truth: 29.97 of a timecode that counts to 30
-    if rate is not None:
-        if not is_sure and round(rate) > numbers[known].max():
-            base = float(round(rate))
-        is_agreed = abs(rate / base - 1.0) < NTSC_TOLERANCE
-        pace = rate if is_agreed else base
-        if not is_agreed:
-            notes.append(
-                f"The timecode counts {base:g} frames a second; {rate:g} was not used for it."
-            )
-    elif np.ptp(seconds) > 0.0:
-        highest = int(numbers[known].max())
-        notes.append(f"Timecode of {base:g} frames a second, as it counts to {highest}.")
-    elif len(cells) > 1:
-        base = pace = max(base, 60.0)
-        notes.append(f"Less than a second of timecode: {base:g} frames a second were assumed.")
-    is_dropping = has_semicolon or _jumps_at_minutes(seconds, numbers[known], base)
-    dropped = _dropped(parts[known], base) if is_dropping else 0
-    numbers[known] += seconds * base
-    if dropped:
-        minutes = seconds // 60.0
-        numbers[known] -= dropped * (minutes - minutes // 10.0)
-        if pace == base:
-            pace = base / 1.001
-        notes.append(f"Timecode drops frames: it runs at {pace:.4g} a second.")
-    numbers = _spread(numbers, notes)
-    if not _mostly_rises(numbers):
-        notes.append("The timecode stands still, and was not used.")
-        return frame_times(None, len(cells), rate or base, notes)
-    return numbers / pace
-
-
-def _base_of(seconds: Array, numbers: Array) -> tuple[float, bool]:
-    """The frames that timecode counts in a second, and whether it turns over often enough to show.
-
-    seconds: whole, shape (T,). numbers: of frames in their second, shape (T,). Where the frames of
-    one second end and the next begin, the usual step is missing just this count.
-    """
-    highest = float(numbers.max())
-    usual = next((rate for rate in RATES if rate > int(highest)), int(highest) + 1.0)
-    steps = np.diff(numbers)
-    turns = np.diff(seconds)
-    within = steps[(turns == 0.0) & (steps > 0.0)]
-    over = steps[turns == 1.0]
-    if not within.size or not over.size:
-        return usual, False
-    counts = np.median(within) - over
-    count = float(round(float(np.median(counts))))
-    share = float(np.mean(np.abs(counts - count) < 0.25))
-    if len(counts) > 1 and share > 0.6 and count > int(highest):
-        return count, True
-    fitting = [rate for rate in RATES if int(highest) < rate and abs(count / rate - 1.0) < 0.04]
-    return min(fitting, key=lambda rate: abs(rate - count), default=usual), True
-
-
-def _dropped(parts: Array, base: float) -> int:
-    """How many numbers drop-frame timecode leaves out at minutes; 0 where those are in the file.
-
-    parts: hours, minutes, seconds, frames, shape (T, 4). Every tenth minute has all numbers.
-    """
-    if base % 30.0 != 0.0:
-        return 0
-    dropped = 2 * int(base // 30.0)
-    is_other_minute = parts[:, 1] % 10.0 != 0.0
-    is_there = is_other_minute & (parts[:, 2] == 0.0) & (parts[:, 3] < dropped)
-    return 0 if is_there.any() else dropped
-
-
-def _jumps_at_minutes(seconds: Array, numbers: Array, base: float) -> bool:
-    """Whether as many frames as drop-frame timecode leaves out are missing at most minutes.
-
-    seconds: whole, shape (T,). numbers: of frames in their second, shape (T,).
-    """
-    steps = np.diff(seconds * base + numbers)
-    minutes = seconds // 60.0
-    is_turn = (np.diff(minutes) == 1.0) & (minutes[1:] % 10.0 != 0.0)
-    if base % 30.0 != 0.0 or not is_turn.any():
-        return False
-    missing = np.median(steps[is_turn]) - np.median(steps[steps > 0.0])
-    return bool(abs(missing - base // 15.0) < 0.5)
-
-
-def _spread(values: Array, notes: list[str]) -> Array:
-    """Values of which several rows in a row have the same, so that each row has its own.
-
-    A clock that counts seconds, or timecode of 30 for rows of 60 a second, says when a group of
-    rows was seen; they are spread evenly.
-    """
-    known = np.isfinite(values)
-    there = values[known]
-    starts = np.flatnonzero(np.diff(there, prepend=-np.inf) != 0.0)
-    lengths = np.diff(starts, append=len(there))
-    jumps = np.diff(there[starts])
-    if not (jumps > 0.0).any() or np.median(lengths) < 2.0:
-        return values
-    usual = float(np.median(lengths))
-    quantum = float(np.median(jumps[jumps > 0.0]))
-    place = np.arange(len(there)) - np.repeat(starts, lengths).astype(np.float64)
-    place[: lengths[0]] += max(usual - lengths[0], 0.0)  # the first group began before the file
-    found = values.copy()
-    found[known] = there + quantum * place / np.repeat(np.maximum(lengths, usual), lengths)
-    notes.append(f"About {usual:g} rows have the same time, and were spread evenly.")
-    return found
-
-
-def _mostly_rises(values: Array) -> bool:
-    """Whether more than half of the steps go up."""
-    steps: npt.NDArray[np.bool_] = np.diff(values) > 0.0
-    return len(values) == 1 or 2 * int(steps.sum()) > len(steps)

@@ -1,0 +1,65 @@
+"""Times of rows by the numbers beside them: frames that are counted, and rows that share a time."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from .take import Array
+
+DEFAULT_RATE = 30.0  # of most cameras
+DAY = 86_400.0  # [s]
+
+
+def frame_times(
+    numbers: Array | None,
+    count: int,
+    rate: float | None,
+    notes: list[str],
+    *,
+    has_stamps: bool = False,
+) -> Array:
+    """Times of frames by their numbers, or one row after the other where they have none.
+
+    has_stamps: whether there are time stamps that are of no use, as an earlier note says.
+    """
+    if rate is None:
+        rate = DEFAULT_RATE
+        if count > 1:
+            why = "Instead" if has_stamps else "No times are given:"
+            notes.append(f"{why} {rate:g} frames a second were assumed.")
+    if count == 1 or numbers is None or not mostly_rises(numbers):
+        return np.arange(count) / rate
+    step = np.nanmedian(np.diff(numbers))
+    if step > 1.0:
+        notes.append(f"Only one in {step:g} frames was recorded.")
+    return (numbers - np.nanmin(numbers)) / rate
+
+
+def spread(values: Array, notes: list[str]) -> Array:
+    """Values of which several rows in a row have the same, so that each row has its own.
+
+    A clock that counts seconds, or timecode of 30 for rows of 60 a second, says when a group of
+    rows was seen; they are spread evenly.
+    """
+    known = np.isfinite(values)
+    there = values[known]
+    starts = np.flatnonzero(np.diff(there, prepend=-np.inf) != 0.0)
+    lengths = np.diff(starts, append=len(there))
+    jumps = np.diff(there[starts])
+    if not (jumps > 0.0).any() or np.median(lengths) < 2.0:
+        return values
+    usual = float(np.median(lengths))
+    quantum = float(np.median(jumps[jumps > 0.0]))
+    place = np.arange(len(there)) - np.repeat(starts, lengths).astype(np.float64)
+    place[: lengths[0]] += max(usual - lengths[0], 0.0)  # the first group began before the file
+    found = values.copy()
+    found[known] = there + quantum * place / np.repeat(np.maximum(lengths, usual), lengths)
+    notes.append(f"About {usual:g} rows have the same time, and were spread evenly.")
+    return found
+
+
+def mostly_rises(values: Array) -> bool:
+    """Whether more than half of the steps go up."""
+    steps: npt.NDArray[np.bool_] = np.diff(values) > 0.0
+    return len(values) == 1 or 2 * int(steps.sum()) > len(steps)

@@ -1,0 +1,132 @@
+"""Timecode: frames are counted behind the seconds, as in `10:32:09:07.867`; drop-frame with `;`.
+
+Source: SMPTE 12M.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from .row_times import DAY, frame_times, mostly_rises, spread
+from .take import Array
+
+RATES = (  # [frames / s], as timecode counts them
+    24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 72.0, 75.0, 90.0, 100.0, 120.0, 144.0, 240.0, 1000.0
+)  # fmt: skip
+TIMECODE = re.compile(r"(\d{1,3}):(\d{1,2}):(\d{1,2})([:;])(\d{1,6}(?:\.\d+)?)$")
+NTSC_TOLERANCE = 0.0025  # 29.97 is a thousandth less than 30, 23.976 than 24
+
+
+def timecode_times(cells: Sequence[str], rate: float | None, notes: list[str]) -> Array:
+    """Times [s] of timecode, HH:MM:SS:FF.fraction; NaN where a cell has none.
+
+    rate: frames a second that the user knows; it counts where the timecode agrees.
+    """
+    parts = np.full((len(cells), 4), np.nan)  # hours, minutes, seconds, frames with their fraction
+    has_semicolon = False
+    for row, cell in enumerate(cells):
+        if found := TIMECODE.match(cell):
+            parts[row] = [float(part) for part in found.group(1, 2, 3, 5)]
+            has_semicolon = has_semicolon or found[4] == ";"
+    numbers = parts[:, 3].copy()
+    known = np.isfinite(numbers)
+    seconds = np.unwrap(parts[known, :3] @ (3600.0, 60.0, 1.0), period=DAY)  # also over midnight
+    base, is_sure = _base_of(seconds, numbers[known])
+    pace = base  # frames a second in truth: 29.97 of a timecode that counts to 30
+    if rate is not None:
+        if not is_sure and round(rate) > numbers[known].max():
+            base = float(round(rate))
+        is_agreed = abs(rate / base - 1.0) < NTSC_TOLERANCE
+        pace = rate if is_agreed else base
+        if not is_agreed:
+            notes.append(
+                f"The timecode counts {base:g} frames a second; {rate:g} was not used for it."
+            )
+    elif np.ptp(seconds) > 0.0:
+        highest = int(numbers[known].max())
+        notes.append(f"Timecode of {base:g} frames a second, as it counts to {highest}.")
+    elif len(cells) > 1:
+        base = pace = max(base, 60.0)
+        notes.append(f"Less than a second of timecode: {base:g} frames a second were assumed.")
+    is_dropping = has_semicolon or _jumps_at_minutes(seconds, numbers[known], base)
+    dropped = _dropped(parts[known], base) if is_dropping else 0
+    numbers[known] += seconds * base
+    if dropped:
+        minutes = seconds // 60.0
+        numbers[known] -= dropped * (minutes - minutes // 10.0)
+        if pace == base:
+            pace = base / 1.001
+        notes.append(f"Timecode drops frames: it runs at {pace:.4g} a second.")
+    numbers = spread(numbers, notes)
+    if not mostly_rises(numbers):
+        notes.append("The timecode stands still, and was not used.")
+        return frame_times(None, len(cells), rate or base, notes)
+    return numbers / pace
+
+
+def _base_of(seconds: Array, numbers: Array) -> tuple[float, bool]:
+    """The frames that timecode counts in a second, and whether it turns over often enough to show.
+
+    seconds: whole, shape (T,). numbers: of frames in their second, shape (T,). Where the frames of
+    one second end and the next begin, the usual step is missing just this count.
+    """
+    highest = float(numbers.max())
+    usual = next((rate for rate in RATES if rate > int(highest)), int(highest) + 1.0)
+    steps = np.diff(numbers)
+    turns = np.diff(seconds)
+    within = steps[(turns == 0.0) & (steps > 0.0)]
+    over = steps[turns == 1.0]
+    if not within.size or not over.size:
+        return usual, False
+    counts = np.median(within) - over
+    count = float(round(float(np.median(counts))))
+    share = float(np.mean(np.abs(counts - count) < 0.25))
+    if len(counts) > 1 and share > 0.6 and count > int(highest):
+        return count, True
+    fitting = [rate for rate in RATES if int(highest) < rate and abs(count / rate - 1.0) < 0.04]
+    return min(fitting, key=lambda rate: abs(rate - count), default=usual), True
+
+
+def _dropped(parts: Array, base: float) -> int:
+    """How many numbers drop-frame timecode leaves out at minutes; 0 where those are in the file.
+
+    parts: hours, minutes, seconds, frames, shape (T, 4). Every tenth minute has all numbers.
+    """
+    if base % 30.0 != 0.0:
+        return 0
+    dropped = 2 * int(base // 30.0)
+    is_other_minute = parts[:, 1] % 10.0 != 0.0
+    is_there = is_other_minute & (parts[:, 2] == 0.0) & (parts[:, 3] < dropped)
+    return 0 if is_there.any() else dropped
+
+
+def _jumps_at_minutes(seconds: Array, numbers: Array, base: float) -> bool:
+    """Whether as many frames as drop-frame timecode leaves out are missing at most minutes.
+
+    seconds: whole, shape (T,). numbers: of frames in their second, shape (T,).
+    """
+    steps = np.diff(seconds * base + numbers)
+    minutes = seconds // 60.0
+    is_turn = (np.diff(minutes) == 1.0) & (minutes[1:] % 10.0 != 0.0)
+    if base % 30.0 != 0.0 or not is_turn.any():
+        return False
+    missing = np.median(steps[is_turn]) - np.median(steps[steps > 0.0])
+    return bool(abs(missing - base // 15.0) < 0.5)
+
+
+def with_colons(cells: list[str]) -> list[str]:
+    """Timecode with a colon before its frames, also where the file has a point there.
+
+    Two digits behind the point are hundredths of a second unless they never reach 60: then they
+    count frames, at least 24 of them.
+    """
+    if not cells or not all(re.fullmatch(r"\d+:\d+:\d+\.\d\d", cell) for cell in cells if cell):
+        return cells
+    numbers = {cell[-2:] for cell in cells if cell}
+    seconds = {cell[:-3] for cell in cells if cell}
+    if len(seconds) < 3 or len(numbers) < 24 or max(numbers) >= "60":
+        return cells
+    return [f"{cell[:-3]}:{cell[-2:]}" if cell else "" for cell in cells]
