@@ -14,9 +14,9 @@ refined mesh breaks.
 
 `kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
-turns, `attributes` what rides along. Schemes, criteria and refiners of somebody else join by name:
-`schemes.register`, `criteria.register`, `refiners.register`, or an entry point; `Scheme`,
-`Criterion` and `BaseRefiner` are to derive from.
+turns, `attributes` what rides along, `crease_angle` what stays sharp. Schemes, criteria and
+refiners of somebody else join by name: `schemes.register`, `criteria.register`,
+`refiners.register`, or an entry point; `Scheme`, `Criterion` and `BaseRefiner` are to derive from.
 
 One room for each subject; each may import from those above it, and from jit.py, which compiles it
 all, and geometry/, which lie beside this folder:

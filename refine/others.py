@@ -35,6 +35,7 @@ from .kahler.frame import buffers_for, split_everywhere
 from .kahler.smoothing import place_middles, place_vertices
 from .mesh.arrays import Floats, Indices
 from .mesh.connectivity import Connectivity, connect
+from .mesh.creases import sharpened
 from .mesh.rings import vertex_rings
 
 CHILDREN = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
@@ -185,8 +186,16 @@ class _Refined:
         corners = self.barycentric[split]
         children = _children(corners, (corners + np.roll(corners, -1, axis=1)) / 2)
         barycentric = np.concatenate([children, self.barycentric[whole]])[order]
+        finer = connect(faces, mesh.vertex_count + len(mesh.edges), corner_rows)
+        if mesh.is_sharp.any():  # both halves of a crease are creases
+            is_half = (finer.edges >= mesh.vertex_count).sum(axis=1) == 1
+            owner = finer.edges.max(axis=1) - mesh.vertex_count
+            end = finer.edges.min(axis=1)
+            owner[~is_half] = 0
+            is_half &= (mesh.edges[owner] == end[:, None]).any(axis=1)
+            finer = sharpened(finer, is_half & mesh.is_sharp[owner])
         return _Refined(
-            connect(faces, mesh.vertex_count + len(mesh.edges), corner_rows),
+            finer,
             values,
             self.source[parents[order]],
             barycentric,

@@ -65,7 +65,8 @@ def create_kahler_gl(
     - `blend`: whether points grow out of their edges, so that nothing pops. None, the default,
       chooses True for "cubic", unless it is `coherent`, and False for "loop", which has no other.
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
-    - `values`: `uv`, `face_uv` and `attributes`, as `refine.create` takes them.
+    - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `refine.create` takes them.
+      Cubic edges with creases are refined by the processor.
 
     Where there is no OpenGL 4.3, too little room for the mesh, or a driver that refuses a shader,
     the log says so once, and the refiner `kahler` with the same options is returned.
@@ -81,6 +82,9 @@ def create_kahler_gl(
         blend = scheme == "cubic" and not coherent
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))
     settings = Settings(scheme, decides, blend, bool(coherent))
+    if scheme == "cubic" and values.get("crease_angle") is not None:
+        _warn_once("kahler-gl: cubic edges beside creases are refined by the processor (kahler)")
+        return create_kahler(faces, rest_positions, **settings._asdict(), **values)
     try:
         return KahlerGl(faces, rest_positions, own=own_context(), settings=settings, **values)
     except GpuError as error:

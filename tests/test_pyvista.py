@@ -115,6 +115,29 @@ def test_polygons_strips_and_lines() -> None:
     assert strips.risorius.refine().is_manifold
 
 
+@pytest.mark.parametrize(
+    ("shape", "crease_angle", "growth", "count"),
+    [
+        ("Cylinder", None, 1.67, 572),
+        ("Cylinder", 40.0, 1.026, 348),
+        ("Cube", None, 1.84, 120),
+        ("Cube", 40.0, 1.0, 12),
+    ],
+)
+def test_creases_stay_sharp(
+    shape: str, crease_angle: float | None, growth: float, count: int
+) -> None:
+    """What docs/refinement.md says of volumes: sharp edges are rounded unless they are creases."""
+    sizes = {"Cylinder": {"resolution": 16, "height": 2.0}, "Cube": {}}
+    mesh = getattr(pyvista, shape)(**sizes[shape])
+    refined = mesh.risorius.refine(crease_angle=crease_angle)
+    assert refined.n_cells == pytest.approx(count, abs=20 if crease_angle is None else 4)
+    closed = refined.clean()
+    assert closed.n_open_edges == 0
+    own = mesh.triangulate().clean().volume
+    assert closed.volume == pytest.approx(growth * own, rel=0.005)
+
+
 def padded(cells: list[list[int]]) -> list[int]:
     """Cells as VTK has them: each after the number of its points."""
     return [number for cell in cells for number in (len(cell), *cell)]

@@ -38,7 +38,8 @@ from ..kahler.smoothing import Scheme
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.borders import border_neighbours
 from ..mesh.connectivity import Connectivity, Surroundings
-from ..mesh.fans import fans_of
+from ..mesh.creases import sectors_of
+from ..mesh.fans import Fans, fans_around, fans_of
 from ..mesh.normals import cross_product
 from ..mesh.threads import share
 from ..mesh.vectors import (
@@ -83,11 +84,13 @@ class Tangents(NamedTuple):
     """What the ends of cubic edges go by; compiled code takes it as it is."""
 
     normals: Floats
-    """Unit normals, each corner weighted as at rest, shape (V, 3)."""
+    """Unit normals, each corner weighted as at rest, of the S sectors of vertices: shape (S, 3)."""
     steeper: Floats
-    """Unit normals that go further from those of their neighbours, shape (V, 3)."""
+    """Unit normals that go further from those of their neighbours, shape (S, 3)."""
     off: Floats
-    """How much of each neighbour's normal is taken off, shape (V,)."""
+    """How much of each neighbour's normal is taken off, shape (S,)."""
+    ends: Unsigned
+    """Sectors at both ends of every edge, shape (E, 2); of those on borders no matter."""
     beyond: Unsigned
     """The vertices before and after every border edge, shape (E, 2); of others no matter."""
 
@@ -103,19 +106,28 @@ class CubicScheme(Scheme):
     ) -> None:
         """Weigh the corners of the mesh at rest, and follow its borders."""
         mesh = self._mesh = connectivity
-        self._around, self._fans = mesh.around, fans_of(mesh)
+        self._around = mesh.around
+        sectors = sectors_of(mesh)
+        self._fans = fans_around(sectors.corners, sectors.edges, sectors.sector_count)
         self._displacements = np.zeros((len(mesh.edges), 3, 3), dtype=np.float32)
         self._crosses = np.zeros((len(mesh.faces), 3), dtype=np.float32)
-        self._normals = np.zeros_like(rest_normals)
-        valences = np.bincount(mesh.edges.ravel(), minlength=len(rest_normals))
+        sector_normals = np.zeros((sectors.sector_count, 3), dtype=np.float32)
+        valences = np.bincount(sectors.edges.ravel(), minlength=sectors.sector_count)
         self._weights = np.zeros(mesh.faces.shape, dtype=np.float32)
         weigh_corners(rest_positions, mesh.faces, self._weights)
         self._tangents = Tangents(
-            normals=self._normals,
-            steeper=np.zeros_like(rest_normals),
+            normals=sector_normals,
+            steeper=np.zeros_like(sector_normals),
             off=(STEEPER / np.maximum(valences, 1)).astype(np.float32),
+            ends=sectors.edges[: len(mesh.edges)],
             beyond=follow_borders(mesh, rest_positions),
         )
+        # What light falls on is one surface on both sides of a crease, as in the input.
+        self._normals = sector_normals
+        self._whole_fans: Fans | None = None
+        if mesh.is_sharp.any():
+            self._normals = np.zeros_like(rest_normals)
+            self._whole_fans = fans_of(mesh)
 
     def prepare(self, frame: FrameBuffers) -> None:
         """Find normals of vertices and displacements of all edges, middles as if split once."""
@@ -145,9 +157,15 @@ class CubicScheme(Scheme):
         fans, tangents, crosses = self._fans, self._tangents, self._crosses
         share(cross_products, len(crosses), positions, self._mesh.faces, crosses)
         corners = fans.corner_starts, fans.corners
-        share(weighted_normals, len(positions), *corners, self._weights, crosses, self._normals)
+        count = len(tangents.off)
+        share(weighted_normals, count, *corners, self._weights, crosses, tangents.normals)
+        if self._whole_fans is not None:
+            around = self._whole_fans.corner_starts, self._whole_fans.corners
+            count_of_vertices = len(positions)
+            given = self._weights, crosses, self._normals
+            share(weighted_normals, count_of_vertices, *around, *given)
         neighbours = fans.neighbour_starts, fans.neighbours
-        share(steepen_normals, len(positions), *neighbours, *tangents[:3])
+        share(steepen_normals, count, *neighbours, *tangents[:3])
         edge_count = len(self._displacements)
         share(displace_cubic, edge_count, self._around, positions, tangents, self._displacements)
 
@@ -261,7 +279,8 @@ def displace_cubic(
         a, b = around.points[e, 0], around.points[e, 1]
         d = between(positions, a, b)
         if around.is_interior[e]:
-            at_a, at_b = row_of(steeper, a), row_of(steeper, b)
+            at_a = row_of(steeper, tangents.ends[e, 0])
+            at_b = row_of(steeper, tangents.ends[e, 1])
             height_a, height_b = -FULLNESS * dot(d, at_a), -FULLNESS * dot(d, at_b)
             for i in range(3):
                 write_cubic(displacements, e, i, height_a * at_a[i], height_b * at_b[i])

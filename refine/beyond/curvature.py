@@ -15,8 +15,10 @@ rims of ears, where long and short edges meet.)
 
 import numpy as np
 
-from ..mesh.arrays import Doubles, Floats
+from ...geometry.normals import cross_products
+from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
+from ..mesh.creases import Sectors, sectors_of
 from .blending import RAMP
 from .measuring import Measuring
 
@@ -46,20 +48,39 @@ class RestCurvature(Measuring):
     ) -> None:
         """Decide on all edges."""
         super().bind(connectivity, rest_positions, rest_normals)
-        start, end = connectivity.edges.T
-        turns = rest_normals[end].astype(np.float64) - rest_normals[start]
-        along = rest_positions[end] - rest_positions[start]
-        along /= _diagonal(rest_positions[connectivity.edges])
+        edges = connectivity.edges
+        sectors = sectors_of(connectivity)  # each side of a crease is curved by itself
+        edge_of = sectors.edge_of
+        normals = rest_normals.astype(np.float64)
+        if connectivity.is_sharp.any():
+            normals = _normals_of_sectors(sectors, connectivity.faces, rest_positions)
+        start, end = sectors.edges.T
+        turns = normals[end] - normals[start]
+        along = np.diff(rest_positions[edges[edge_of]], axis=1)[:, 0]
+        along /= _diagonal(rest_positions[edges])
         heights = 0.125 * np.abs(np.einsum("ij,ij->i", turns, along))
         measures = heights * np.cbrt(np.linalg.norm(along, axis=1) / USUAL)
         limits = self.thresholds
-        splits = (measures > limits.once).astype(np.uint8) + (measures > limits.twice)
+        asked = (measures > limits.once).astype(np.uint8) + (measures > limits.twice)
+        splits = np.zeros(len(edges), dtype=np.uint8)
+        np.maximum.at(splits, edge_of, asked)
         # Metrics at which a blended point has grown: there is nothing that it could grow with.
         self._decided = np.array([-np.inf, RAMP, 1.0 + RAMP], np.float32)[splits]
 
     def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
         metric[:] = self._decided
+
+
+def _normals_of_sectors(sectors: Sectors, faces: Unsigned, positions: Doubles) -> Doubles:
+    """Unit normals of sectors, weighted by area, shape (S, 3)."""
+    crosses = cross_products(positions, faces)
+    normals = np.zeros((sectors.sector_count, 3))
+    for corner in range(3):
+        np.add.at(normals, sectors.corners[:, corner], crosses)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    np.divide(normals, lengths, out=normals, where=lengths > 0.0)
+    return normals
 
 
 def _diagonal(positions: Doubles) -> float:

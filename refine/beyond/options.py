@@ -49,7 +49,7 @@ def create_kahler(
       refined surface. None, the default, chooses "linear" for the paper's scheme, and "refined" for
       those that interpolate.
     - `coherent`: whether triangulations continue those of the frame before (section 4.4).
-    - `values`: `uv`, `face_uv` and `attributes`, as `create` takes them.
+    - `values`: `uv`, `face_uv`, `attributes` and `crease_angle`, as `create` takes them.
     """
     chosen = with_normals(scheme_of(scheme, detail), normals)
     decides = criterion_of(criterion, NormalDrop(threshold_once, threshold_twice))

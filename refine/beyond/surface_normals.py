@@ -127,6 +127,9 @@ class RefinedNormals(Scheme):
         self._scheme.bind(connectivity, rest_positions, rest_normals)
         self._mesh = connectivity
         self._surface = WholeSurface(connectivity, rest_positions)
+        on_crease = np.zeros(connectivity.vertex_count, dtype=np.bool_)
+        on_crease[connectivity.edges[connectivity.is_sharp]] = True
+        self._at_creases = np.flatnonzero(on_crease[connectivity.edges].any(axis=1))
 
     def prepare(self, frame: FrameBuffers) -> None:
         """Find the surface of this frame where every edge is split once, and its normals."""
@@ -147,8 +150,13 @@ class RefinedNormals(Scheme):
         share(turn_centres, frame.centre_count, *triangles, frame, self._surface.rows)
 
     def measure(self, displacements: Floats, turns: Floats) -> None:
-        """Write how far middles would stand out, and turn the normal, of every edge, (E,) each."""
+        """Write how far middles would stand out, and turn the normal, of every edge, (E,) each.
+
+        The normal of a vertex on a crease is between those of its sides, so edges that end there
+        turn by what a split would not mend.
+        """
         self._surface.measure(displacements, turns)
+        turns[self._at_creases] = ZERO
 
 
 @njit

@@ -18,6 +18,7 @@ import numpy.typing as npt
 from ...geometry.read_only import read_only
 from ..mesh.arrays import Doubles, Floats, Indices, Small
 from ..mesh.connectivity import Connectivity, connect_writable
+from ..mesh.creases import with_creases
 from ..mesh.normals import vertex_normals
 from ..mesh.validation import as_array, checked_mesh, take_positions, used_vertices
 from .corner_values import AttributeLike, checked_corner_values
@@ -59,6 +60,7 @@ class BaseRefiner(Refiner):
         uv: npt.ArrayLike | None = None,
         face_uv: npt.ArrayLike | None = None,
         attributes: Mapping[str, AttributeLike] | None = None,
+        crease_angle: float | None = None,
     ) -> None:
         """Check and connect (see `registry.create`); a subclass hands the `refine.Values` on."""
         positions, triangles = checked_mesh(rest_positions, faces)
@@ -66,7 +68,8 @@ class BaseRefiner(Refiner):
             triangles, len(positions), uv=uv, face_uv=face_uv, attributes=attributes
         )
         corners = None if self._values is None else self._values.corners
-        self._mesh = connect_writable(triangles, len(positions), corners)
+        mesh = connect_writable(triangles, len(positions), corners)
+        self._mesh = with_creases(mesh, positions, crease_angle)
         self.connectivity = self._mesh.read_only()
         if self._values is not None:
             self._wedge_values = wedge_values(self.connectivity, self._values.values)

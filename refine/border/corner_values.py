@@ -30,6 +30,8 @@ class Values(TypedDict, total=False):
     """The texture coordinate of each corner, shape (F, 3)."""
     attributes: Mapping[str, AttributeLike] | None
     """Other values of vertices or corners, by name."""
+    crease_angle: float | None
+    """Edges stay sharp where triangles at rest turn by more than this [degrees]; None: none do."""
 
 
 @dataclass(frozen=True)

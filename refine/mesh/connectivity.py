@@ -17,6 +17,8 @@ An edge is *interior* when exactly two triangles run through it in opposite dire
 else (one side, three sides, two sides in the same direction) is a *border*: it is split by the
 boundary rules, which read the end points only, and so from all sides in the same way.
 
+A *crease* is an edge inside the mesh that is kept sharp: it is a border, too (creases.py).
+
 Wedges and attribute edges, by which texture seams part, are told in seams.py.
 
 A triangle that names a vertex twice has no area and no edges: it is handed through as it is.
@@ -74,6 +76,8 @@ class Connectivity(NamedTuple):
     """Edge of each attribute edge, shape (R,)."""
     attribute_edge_uv: Indices
     """Texture coordinates at the ends a, b of each attribute edge, shape (R, 2)."""
+    is_sharp: Flags
+    """Edges that are creases and count as borders (creases.py), shape (E,)."""
     vertex_count: int
     """V, isolated vertices included."""
 
@@ -141,6 +145,7 @@ def connect_writable(
         edge_sides=sides,
         more_sides=_more_sides(edge_of, sides, side_counts),
         triangle_edges=edge_of.reshape(-1, 3),
+        is_sharp=np.zeros(len(edges), dtype=np.bool_),
         vertex_count=vertex_count,
         **seams,
     )

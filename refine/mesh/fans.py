@@ -29,10 +29,17 @@ class Fans(NamedTuple):
 
 def fans_of(mesh: Connectivity) -> Fans:
     """Sort the corners of triangles and the ends of edges by the vertices that they lie at."""
-    corner_starts, order = _by_vertex(mesh.faces, mesh.vertex_count)
+    return fans_around(mesh.faces, mesh.edges, mesh.vertex_count)
+
+
+def fans_around(
+    faces: npt.NDArray[np.integer], edges: npt.NDArray[np.integer], vertex_count: int
+) -> Fans:
+    """Do the same for triangles, shape (F, 3), and edges, (E, 2), of vertices or of sectors."""
+    corner_starts, order = _by_vertex(faces, vertex_count)
     corners = (order // 3 * 4 + order % 3).astype(np.uint32)
-    neighbour_starts, order = _by_vertex(mesh.edges, mesh.vertex_count)
-    neighbours = mesh.edges[:, ::-1].ravel()[order].astype(np.uint32)
+    neighbour_starts, order = _by_vertex(edges, vertex_count)
+    neighbours = edges[:, ::-1].ravel()[order].astype(np.uint32)
     return Fans(corner_starts, corners, neighbour_starts, neighbours)
 
 

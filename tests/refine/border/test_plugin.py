@@ -99,10 +99,10 @@ def test_unknown_name() -> None:
     [
         (
             "kahler",
-            r"it takes \['attributes', 'blend', 'coherent', 'criterion', 'detail', 'normals', 's",
+            r"it takes \['attributes', 'blend', 'coherent', 'crease_angle', 'criterion', ",
         ),
-        ("loop", r"it takes \['attributes', 'levels'\]"),
-        ("none", r"it takes \['attributes'\]"),
+        ("loop", r"it takes \['attributes', 'crease_angle', 'levels'\]"),
+        ("none", r"it takes \['attributes', 'crease_angle'\]"),
     ],
 )
 def test_unknown_option(name: str, text: str) -> None:

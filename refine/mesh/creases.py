@@ -1,0 +1,190 @@
+r"""Creases: edges that stay sharp because the surface turns sharply there at rest.
+
+    crease      an interior edge whose two triangles, at rest, look in directions that are farther
+                apart than the crease angle: 90 degrees along the edges of a cube, 0 in a plane
+
+It is treated as a border of both its sides (connectivity.py): by rules that read its two ends, or
+the curve that it is part of. So no crack can open, and no rule rounds it.
+
+A vertex on a crease has several *sectors*, the triangles around it between one crease and the next:
+
+           \  1 /         three creases that meet, and three sectors; curves of edges within a
+            \  /          sector go by the normal of that sector alone
+         0   \/   2
+             |            A crease that ends here has one sector, which is all around.
+             |
+"""
+
+from numbers import Real
+from typing import NamedTuple
+
+import numpy as np
+
+from ...jit import njit
+from .arrays import Doubles, Flags, Indices, Unsigned
+from .connectivity import Connectivity
+
+
+class Sectors(NamedTuple):
+    """A mesh with its vertices told apart by sectors; without creases they are the vertices."""
+
+    corners: Unsigned
+    """Sector of each corner, shape (F, 3). Vertex v has sector v, and others after all V."""
+    edges: Unsigned
+    """Sectors at both ends of every edge, on its first side; and after all E those of creases on
+    their second side, shape (E', 2)."""
+    edge_of: Unsigned
+    """The edge that each of these is of, shape (E',)."""
+    sector_count: int
+    """S, of all sectors."""
+
+
+def with_creases(mesh: Connectivity, rest_positions: Doubles, crease_angle: object) -> Connectivity:
+    """Make borders of the edges that are sharper at rest than `crease_angle` [degrees].
+
+    None keeps the mesh as it is; `rest_positions`: shape (V, 3). Raises ValueError for an angle
+    that is not from 0 to 180.
+    """
+    if crease_angle is None:
+        return mesh
+    is_number = isinstance(crease_angle, Real) and not isinstance(crease_angle, bool)
+    if not is_number or not 0.0 <= float(crease_angle) <= 180.0:  # type: ignore[arg-type]
+        raise ValueError(
+            f"crease_angle must be None or an angle from 0 to 180 degrees, got {crease_angle!r}"
+        )
+    angles = dihedral_angles(mesh, rest_positions)
+    return sharpened(mesh, angles > np.radians(float(crease_angle)))  # type: ignore[arg-type]
+
+
+def sharpened(mesh: Connectivity, is_sharp: Flags) -> Connectivity:
+    """Make borders of interior edges that are flagged, shape (E,)."""
+    is_sharp = is_sharp & mesh.around.is_interior
+    edges = np.flatnonzero(is_sharp)
+    points = mesh.around.points.copy()
+    points[edges, 2:] = points[edges, :1]
+    wings = mesh.around.wings.copy()
+    wings[edges] = edges[:, None]
+    is_interior = mesh.around.is_interior & ~is_sharp
+    around = mesh.around._replace(points=points, wings=wings, is_interior=is_interior)
+    return mesh._replace(around=around, is_sharp=is_sharp)
+
+
+def dihedral_angles(mesh: Connectivity, positions: Doubles) -> Doubles:
+    """Angle between the normals of the two triangles at each interior edge [rad], shape (E,).
+
+    0 for all other edges, and beside triangles without an area.
+    """
+    corners = positions[mesh.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    np.divide(normals, lengths, out=normals, where=lengths > 0.0)
+    angles = np.zeros(len(mesh.edges))
+    edges = np.flatnonzero(mesh.around.is_interior)
+    first, second = normals[mesh.edge_sides[edges] >> 2].swapaxes(0, 1)
+    apart = np.linalg.norm(np.cross(first, second), axis=1)
+    along = np.einsum("ei,ei->e", first, second)
+    angles[edges] = np.arctan2(apart, along)
+    return angles
+
+
+def sectors_of(mesh: Connectivity) -> Sectors:
+    """Find the sectors of all vertices."""
+    edge_count = len(mesh.edges)
+    if not mesh.is_sharp.any():
+        every_edge = np.arange(edge_count, dtype=np.uint32)
+        return Sectors(mesh.faces, mesh.edges.view(np.uint32), every_edge, mesh.vertex_count)
+    on_crease = np.zeros(mesh.vertex_count, dtype=np.bool_)
+    on_crease[mesh.edges[mesh.is_sharp]] = True
+    groups = _joined_corners(
+        mesh.faces, mesh.edges, mesh.edge_sides, mesh.more_sides, mesh.is_sharp, on_crease
+    )
+    # The first group of corners at a vertex is its sector v; others are numbered after all of them.
+    vertices = mesh.faces.ravel().astype(np.int64)
+    roots, first_corner = np.unique(groups, return_index=True)
+    owners = vertices[first_corner]
+    order = np.lexsort((first_corner, owners))
+    is_first = np.ones(len(order), dtype=bool)
+    is_first[1:] = owners[order][1:] != owners[order][:-1]
+    number_of_root = np.zeros(len(roots), dtype=np.int64)
+    number_of_root[order[is_first]] = owners[order[is_first]]
+    more = order[~is_first]
+    number_of_root[more] = mesh.vertex_count + np.arange(len(more))
+    corners = number_of_root[np.searchsorted(roots, groups)].astype(np.uint32).reshape(-1, 3)
+
+    sharp = np.flatnonzero(mesh.is_sharp)
+    first = _ends_on_side(mesh, corners, mesh.edge_sides[:, 0], np.arange(edge_count))
+    second = _ends_on_side(mesh, corners, mesh.edge_sides[sharp, 1], sharp)
+    return Sectors(
+        corners,
+        np.concatenate([first, second]).astype(np.uint32),
+        np.concatenate([np.arange(edge_count), sharp]).astype(np.uint32),
+        mesh.vertex_count + len(more),
+    )
+
+
+def _ends_on_side(
+    mesh: Connectivity, corners: Unsigned, sides: Unsigned, edges: np.ndarray
+) -> Unsigned:
+    """Sectors at the ends a, b of some edges, (N, 2), on given sides, 4 x triangle + i, (N,)."""
+    triangles = (sides >> 2).astype(np.int64)
+    places = (sides & 3).astype(np.int64)
+    start = corners[triangles, places]
+    end = corners[triangles, (places + 1) % 3]
+    runs_along = mesh.faces[triangles, places] == mesh.edges[edges, 0]
+    return np.stack([np.where(runs_along, start, end), np.where(runs_along, end, start)], axis=1)
+
+
+@njit
+def _joined_corners(
+    faces: Unsigned,
+    edges: Indices,
+    edge_sides: Unsigned,
+    more_sides: Unsigned,
+    is_sharp: Flags,
+    on_crease: Flags,
+) -> Indices:
+    """A corner that stands for all of the same sector, for every corner, shape (3 F,).
+
+    Corners at a vertex without creases are one sector, whatever edges join them.
+    """
+    corner_count = faces.size
+    above = np.empty(corner_count, np.int32)
+    first_at = np.full(on_crease.shape[0], np.int32(-1))
+    for c in range(corner_count):
+        v = faces[c // 3, c % 3]
+        above[c] = np.int32(c)
+        if not on_crease[v]:
+            if first_at[v] < 0:
+                first_at[v] = np.int32(c)
+            above[c] = first_at[v]
+    for k in range(edges.shape[0] + more_sides.shape[0]):
+        is_more = k >= edges.shape[0]
+        e = more_sides[k - edges.shape[0], 0] if is_more else np.uint32(k)
+        other = more_sides[k - edges.shape[0], 1] if is_more else edge_sides[e, 1]
+        t, u = edge_sides[e, 0] >> 2, other >> 2
+        if is_sharp[e] or u >= faces.shape[0]:
+            continue
+        for i in range(2):
+            v = np.uint32(edges[e, i])
+            if not on_crease[v]:
+                continue
+            here, there = 0, 0
+            for j in range(3):
+                if faces[t, j] == v:
+                    here = 3 * int(t) + j
+                if faces[u, j] == v:
+                    there = 3 * int(u) + j
+            while above[here] != here:
+                here = above[here]
+            while above[there] != there:
+                there = above[there]
+            if here < there:
+                above[there] = np.int32(here)
+            else:
+                above[here] = np.int32(there)
+    for c in range(corner_count):
+        root = c
+        while above[root] != root:
+            root = above[root]
+        above[c] = np.int32(root)
+    return above
