@@ -226,9 +226,9 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
         # Single strands may be thinner than the pixels that have a class.
         is_hair = shot.known.images["segmentation"] == Segment.HAIR
         inner &= ~binary_dilation(is_hair, iterations=3)[1:-1, 1:-1]
-        assert inner.mean() > 0.1
+        assert inner.mean() > 0.2
         off = np.abs(shot.image[1:-1, 1:-1][inner].astype(int) - (10, 200, 30)).max(axis=1)
-        assert (off > 1).mean() < 0.05  # the rim of hair that hangs on the far side
+        assert (off > 1).mean() < 0.02  # the rim of hair that hangs on the far side
     assert np.abs(behind["colour"].astype(int) - behind["picture"]).max() <= 2
 
 

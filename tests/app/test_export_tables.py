@@ -122,4 +122,4 @@ def test_expressions_become_shapes(scene: FaceScene, tmp_path: Path) -> None:
     assert columns["MouthSmileLeft"][-1] > 0.4
     assert np.allclose(columns["MouthSmileLeft"], columns["MouthSmileRight"], atol=1e-3)
     furthest, usual = apart(clip, replayed(path, scene, AS_IT_IS))
-    assert furthest < 5.0 and usual < 1.0
+    assert furthest < 3.5 and usual < 0.6

@@ -13,11 +13,11 @@ def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
         elif given.name.startswith("teeth"):
             left = (drawn.colours / given.colours).mean(axis=1)
             assert left[given.vertices[:, 2].argmax()] > 0.9
-            assert left[given.vertices[:, 2].argmin()] < 0.9
+            assert left[given.vertices[:, 2].argmin()] < 0.85
     lower = {part.name: part.colours for part in shown}["teeth_lower"]
     given = {part.name: part for part in head}["teeth_lower"]
     red, _, blue = (lower / given.colours)[given.vertices[:, 2].argmin()]
-    assert blue < 0.75 and blue < 0.95 * red  # grey ones look like one broken tooth
+    assert blue < 0.72 and blue < 0.92 * red  # grey ones look like one broken tooth
     tongue = next(part for part in shown if part.name == "tongue")
     light, depth = tongue.colours.mean(axis=1), tongue.vertices[:, 2]
     assert light[depth.argmin()] < 0.6 * light[depth.argmax()]

@@ -80,7 +80,7 @@ def test_angles_are_those_that_the_head_was_turned_by(face: FaceScene) -> None:
 
     alone = np.array([turned(*row) for row in np.eye(3)])
     most = alone.diagonal()
-    assert (most > 10.0).all() and np.abs(alone - np.diag(most)).max() < 4.0
+    assert (most > 10.0).all() and np.abs(alone - np.diag(most)).max() < 3.7
     for values in ((0.7, -0.5, 0.4), (-1.0, 0.8, -0.6)):
         assert np.abs(turned(*values) - most * values).max() < 4.0
 
@@ -91,7 +91,7 @@ def test_eyes_look_where_they_were_told(face: FaceScene) -> None:
     assert np.allclose(gaze(face, "right"), [0.0, 0.0, 1.0])
     face.pose({"gaze_horizontal_left": 1.0, "gaze_vertical_right": 1.0})
     face.step(2.0)
-    assert gaze(face, "left")[0] > 0.3 and abs(gaze(face, "left")[1]) < 0.02
+    assert gaze(face, "left")[0] > 0.3 and abs(gaze(face, "left")[1]) < 0.015
     assert gaze(face, "right")[1] > 0.3 and abs(gaze(face, "right")[0]) < 0.01
 
 

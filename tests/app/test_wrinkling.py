@@ -57,7 +57,7 @@ def test_amounts_grow_with_the_muscle_and_never_jump(
     steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 41)]
     coarse, fine = (np.abs(np.diff(steps[::skip], axis=0)) for skip in (2, 1))
     assert fine.max() < 0.65 * coarse.max() < 0.25  # half a step, half a change: there is no jump
-    assert coarse[0].max() < 0.3  # from nothing
+    assert coarse[0].max() < 0.06  # from nothing
     sums = [step.sum() for step in steps]
     assert sums[-1] > 1.0 and (np.diff(sums) > -0.01 * sums[-1]).all()
 
@@ -95,7 +95,7 @@ def test_furrows_of_age_are_pulled_flat() -> None:
     fold = (x > -2.0) & (x < 22.0) & (y > 13.0) & (y < 26.0)
     fold &= before[:, 0] > 0.0
     lip = (np.abs(aged.rest_positions[:, 0]) < 10.0) & (y > 8.0) & (y < 14.0)
-    assert fold.sum() > 2
-    assert after[fold, 0].mean() < 0.5 * before[fold, 0].mean()
-    assert (after[fold, 0] < 0.8 * before[fold, 0]).all()
+    assert fold.sum() >= 4
+    assert after[fold, 0].mean() < 0.48 * before[fold, 0].mean()
+    assert (after[fold, 0] < 0.75 * before[fold, 0]).all()
     assert after[lip].max() > 1.5 * before[lip].max() > 0.0

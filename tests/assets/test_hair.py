@@ -64,17 +64,15 @@ def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut: str) -> None:
     way, dense = part.striation[:, 2:5], part.striation[:, 5] > 0.8
     tips, roots = part.vertices + 0.4 * way, part.vertices - 0.6 * way
     over = [((each - roots) * part.normals).sum(axis=1)[dense] for each in (part.vertices, tips)]
-    if isinstance(CUTS[cut], Fall):  # which hangs beside the head, and has an inner side
-        assert np.quantile(over[0], 0.01) >= 0.0 and np.median(over[1]) > 1.0
-    else:
-        assert over[0].min() >= 0.0 and np.median(over[1]) > 2.0
+    assert over[0].min() >= 0.0 and np.median(over[1]) > 2.0
+    if not isinstance(CUTS[cut], Fall):  # which hangs beside the head
         nearest = cKDTree(person.vertices).query(roots)[1]
         heights = ((roots - person.vertices[nearest]) * part.normals).sum(axis=1)
         assert np.quantile(np.abs(heights[dense]), 0.95) < 4.0
     face = person.vertices[person.landmarks[17:68]]
     low, high = face.min(axis=0), face.max(axis=0)
     is_before = ((tips > low) & (tips < high + np.array([0.0, 2.0, 60.0]))).all(axis=1)
-    assert (is_before & (part.striation[:, 5] > 0.0)).mean() < 0.002  # at a brow's tail
+    assert not (is_before & (part.striation[:, 5] > 0.0)).any()
 
 
 def test_hair_is_as_long_and_begins_where_it_is_told() -> None:
@@ -136,8 +134,8 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     assert scene.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
     image, classes = label_of(haired("short"))
     is_hair = classes == Segment.HAIR
-    assert is_hair.mean() > 0.04 and (classes[0] == Segment.BACKGROUND).all()
-    assert image[is_hair].mean() < 0.75 * image[classes == Segment.SKIN].mean()
+    assert is_hair.mean() > 0.043 and (classes[0] == Segment.BACKGROUND).all()
+    assert image[is_hair].mean() < 0.4 * image[classes == Segment.SKIN].mean()
     assert (label_of(haired("cropped"))[1] == Segment.HAIR).sum() < is_hair.sum()
     anatomy = Anatomy(scene)
     opened, clay = AnatomyView(("muscles",)), AnatomyView()

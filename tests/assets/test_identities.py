@@ -42,7 +42,7 @@ def test_a_number_is_one_person(seed: int) -> None:
     first, second = sample_identity(seed), sample_identity(seed)
     assert first == second
     assert np.abs(first.weights).max() <= 4.0
-    assert np.sqrt(np.mean(np.square(first.weights))) < 2.2
+    assert np.sqrt(np.mean(np.square(first.weights))) < 2.0
     a, b = make_person(first), make_person(second)
     assert a.vertices.tobytes() == b.vertices.tobytes()
     for one, other in zip(a.parts, b.parts, strict=True):

@@ -68,7 +68,7 @@ def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head: Head, page: s
     is_lower = (middle[:, 1] < seam[1]) & (middle[:, 1] > seam[1] - 12.0)
     in_front = middle[:, 2] > 80.0
     upper, lower = (float(behind[lip & in_front].min()) for lip in (is_upper, is_lower))
-    assert 0.5 < lower < upper < 8.0
+    assert 0.5 < lower < upper < 7.0
     assert f"{upper:.1f} and {lower:.1f} mm behind the line" in page
 
 

@@ -65,7 +65,7 @@ def test_parts_look_outward_or_into_the_mouth(head: Head) -> None:
         away = found.vertices - found.vertices.mean(axis=0)
         assert (found.normals * away).sum(axis=1).mean() > 0.0
     flesh = part(head, "eye_corners")
-    assert flesh.normals[flesh.vertices[:, 2] > 79.5, 2].min() > 0.3  # its sides look aside
+    assert flesh.normals[flesh.vertices[:, 2] > 79.5, 2].min() > 0.5  # its sides look aside
     cavity = part(head, "oral_cavity_upper")
     inward = np.array([0.0, -75.0, 56.0]) - cavity.vertices
     assert ((cavity.normals * inward).sum(axis=1) > 0.0).mean() > 0.95
@@ -161,7 +161,7 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head: Head) -> None:
             np.abs(margin[(np.abs(margin[:, 0]) < 3.0) & (sign * margin[:, 1] > 0.0), 1]).mean()
             for sign in (1.0, -1.0)
         )
-        assert 0.9 < eye.iris_radius - above < 2.0
+        assert 1.0 < eye.iris_radius - above < 2.0
         assert -0.4 < eye.iris_radius - below < 0.8
 
 
@@ -190,9 +190,9 @@ def test_lower_lashes_are_short_and_lean_outward(head: Head) -> None:
     tip, root = lashes.vertices[tips], lashes.vertices[lashes.roots[tips]]
     length = np.linalg.norm(tip - root, axis=1)
     is_lower = root[:, 1] < eye.centre[1]
-    assert 0.2 < length[is_lower].mean() / length[~is_lower].mean() < 0.55
+    assert 0.2 < length[is_lower].mean() / length[~is_lower].mean() < 0.5
     is_outer = root[:, 0] > eye.centre[0]
-    assert ((tip - root)[is_lower & is_outer, 0] > 0.0).mean() > 0.85
+    assert ((tip - root)[is_lower & is_outer, 0] > 0.0).mean() > 0.95
     assert length[~is_lower & is_outer].mean() > 1.1 * length[~is_lower & ~is_outer].mean()
 
 
@@ -231,7 +231,7 @@ def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head: Head) -> None:
     iris = brightness[ahead & (beside > 2.6) & (beside < eye.iris_radius - 0.8)]
     assert 0.2 < iris.mean() < 0.6 and iris.std() > 0.02
     sclera = ahead & (beside > 6.8) & (np.abs(local[:, 0]) < 6.0)
-    assert brightness[sclera & (local[:, 1] < 0.0)].min() > 0.65
+    assert brightness[sclera & (local[:, 1] < 0.0)].min() > 0.69
 
 
 def test_upper_lid_throws_a_shadow_on_the_eye(head: Head) -> None:

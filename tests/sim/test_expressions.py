@@ -64,7 +64,7 @@ def test_joy(simulation: sim.Simulation, head: Head) -> None:
     # The upper lip bares the lower part of the teeth, along whose edge the lower one lies.
     edge = min(part.vertices[:, 1].min() for part in head.parts if part.name == "teeth_upper")
     lips = (head.vertices + moved)[head.landmarks[[62, 66]], 1]
-    assert 5.0 < lips[0] - edge < 9.0 and abs(lips[1] - edge) < 1.8
+    assert 5.0 < lips[0] - edge < 9.0 and abs(lips[1] - edge) < 0.9
 
 
 def test_sadness(simulation: sim.Simulation, head: Head) -> None:
@@ -175,7 +175,7 @@ def test_blink_closes_the_eyes(
     landmarks = simulation.positions[head.landmarks]
     eyeballs = eyeballs_of(head, simulation)
     for name, mesh in meshes_of(simulation, refiner).items():
-        assert max(lid_gaps(*mesh, landmarks, eyeballs).values()) < 0.2, name
+        assert max(lid_gaps(*mesh, landmarks, eyeballs).values()) < 0.1, name
 
 
 @pytest.mark.slow
@@ -228,7 +228,7 @@ def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
         chin = moved_landmarks(head, settled_displacement(simulation, {"jaw_forward": sign}), 8)
         assert chin[2] > 4.0 if sign > 0.0 else -2.5 < chin[2] < -0.5
         chin = moved_landmarks(head, settled_displacement(simulation, {"jaw_sideways": sign}), 8)
-        assert 8.0 < sign * chin[0] < 12.0
+        assert 8.0 < sign * chin[0] < 11.3
         assert abs(chin[2]) < 1.5
         matrix = simulation.bones.transforms()["mandible"]
         condyles = head.jaw_axis @ matrix[:3, :3].T + matrix[:3, 3] - head.jaw_axis
