@@ -234,6 +234,7 @@ def run_all(
     end = object()
 
     def run(share: Any) -> None:
+        """Do one share in a process, and queue its messages, its error or its end."""
         try:
             pool.run(work, share, on_message=messages.put, log=log)
             messages.put(end)

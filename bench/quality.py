@@ -157,6 +157,7 @@ def _slid(
     usual = type(criterion)().thresholds
 
     def refined(logarithm: float) -> refine.RefinedMesh:
+        """The mesh with thresholds scaled by e to this power."""
         scale = float(np.exp(logarithm))
         once = scale * float(usual.once)
         twice = scale * float(usual.twice)

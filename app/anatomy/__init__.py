@@ -17,7 +17,7 @@ from risorius.assets.fitting.skull import build_skull, neck_sections
 from risorius.assets.identities import HAIR
 
 from ..scenes import FaceScene, Scene
-from ..scenes.mouth import MouthWalls
+from ..scenes.mouth import BentPart
 from .muscle_bands import Muscles
 
 STRUCTURES = ("muscles", "skull")
@@ -132,9 +132,10 @@ class Anatomy:
                 aside = part.vertices[part.faces, 0].mean(axis=1) - _middle(scene)[0]
                 self._halves[side, part.name] = replace(part, faces=part.faces[side * aside < 0.0])
             half = self._halves[side, part.name]
-            if isinstance(part, MouthWalls):
+            if isinstance(part, BentPart):
                 half.vertices = part.vertices
                 half.normals = part.normals
+                half.colours = part.colours
         return [self._halves[side, part.name] for part in parts]
 
 

@@ -37,8 +37,8 @@ TONGUE = Gloom(-5.0, 53.0, 0.63, (0.92, 1.25, 1.3))
 UPPER_TEETH, LOWER_TEETH = Gloom(4.0, 40.0, 0.15, REDDENED), Gloom(2.0, 36.0, 0.25, REDDENED)
 
 
-@dataclass(eq=False)
-class Tongue:
+@dataclass(eq=False, kw_only=True)
+class BentPart:
     """A part that changes its shape; drawn as any other (render/parts.py)."""
 
     name: str
@@ -48,61 +48,42 @@ class Tongue:
     colours: Floats
     bone: str
     shine: float
-    unlit: Floats  # its colours in full light
-    front: float  # z of the front teeth [mm]
-    shape: npt.NDArray[np.float64] | None = None  # taken last
     is_enclosed: bool = True
     strand_radius: float = 0.0
     striation: None = None
     roots: None = None
 
-    @classmethod
-    def of(cls, part: Any, front: float) -> Tongue:
-        """The tongue of a head."""
-        return cls(
-            part.name, part.vertices, part.normals, part.faces,
-            read_only(_shaded(part.vertices, part.colours, front, TONGUE)), part.bone, part.shine,
-            part.colours, front,
-        )  # fmt: skip
+    def take_shape(self, vertices: npt.NDArray[np.float64]) -> None:
+        """Have these vertices, shape (n, 3), and the normals that follow from them."""
+        self.vertices = read_only(vertices.astype(np.float32))
+        self.normals = read_only(vertex_normals(vertices, self.faces).astype(np.float32))
+
+
+@dataclass(eq=False, kw_only=True)
+class Tongue(BentPart):
+    """The tongue, which is darker the farther back it is."""
+
+    unlit: Floats  # its colours in full light
+    front: float  # z of the front teeth [mm]
+    shape: npt.NDArray[np.float64] | None = None  # taken last
 
     def bend(self, vertices: npt.NDArray[np.float64]) -> None:
         """Take another shape (n, 3), lit as it is in its place; nothing for the same array."""
         if vertices is self.shape:
             return
         self.shape = vertices
-        self.vertices = read_only(vertices.astype(np.float32))
-        normals = vertex_normals(vertices, self.faces)
-        self.normals = read_only(normals.astype(np.float32))
+        self.take_shape(vertices)
         self.colours = read_only(_shaded(vertices, self.unlit, self.front, TONGUE))
 
 
-@dataclass(eq=False)
-class MouthWalls:
-    """A part that stretches between both jaws; drawn as any other (render/parts.py)."""
+@dataclass(eq=False, kw_only=True)
+class MouthWalls(BentPart):
+    """The walls of the mouth, which stretch between both jaws."""
 
-    name: str
-    vertices: Floats
-    normals: Floats
-    faces: npt.NDArray[np.int32]
-    colours: Floats
-    bone: str
-    shine: float
     shares: Floats  # how far each vertex goes with the mandible, shape (n,)
     rest: Floats
     resting_normals: Floats
     jaw: tuple[float, ...] = ()  # its values when the walls were stretched last
-    is_enclosed: bool = True
-    strand_radius: float = 0.0
-    striation: None = None
-    roots: None = None
-
-    @classmethod
-    def of(cls, part: Any) -> MouthWalls:
-        """The walls of a head."""
-        return cls(
-            part.name, part.vertices, part.normals, part.faces, part.colours, part.bone, part.shine,
-            part.mandible_shares, part.vertices, part.normals,
-        )  # fmt: skip
 
     def stretch(self, jaw: tuple[float, ...], mandible: npt.NDArray[np.float64]) -> None:
         """Go with the mandible; nothing for the same values of the jaw.
@@ -116,9 +97,13 @@ class MouthWalls:
             self.vertices = self.rest
             self.normals = self.resting_normals
             return
-        stretched = stretched_walls(self.rest.astype(np.float64), self.shares, mandible)
-        self.vertices = stretched.astype(np.float32)
-        self.normals = vertex_normals(stretched, self.faces).astype(np.float32)
+        self.take_shape(stretched_walls(self.rest.astype(np.float64), self.shares, mandible))
+
+
+def _drawn(part: Any) -> dict[str, Any]:
+    """The attributes of a part that are drawn."""
+    names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine")
+    return {name: getattr(part, name) for name in names}
 
 
 def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
@@ -128,9 +113,15 @@ def shaded_mouth(parts: Sequence[Any]) -> tuple[Any, ...]:
     def shaded(part: Any) -> Any:
         """The part itself where it is not of the mouth."""
         if part.name == "tongue":
-            return Tongue.of(part, float(front))
+            colours = read_only(_shaded(part.vertices, part.colours, front, TONGUE))
+            drawn = {**_drawn(part), "colours": colours}
+            return Tongue(**drawn, unlit=part.colours, front=float(front))
         if part.mandible_shares is not None:
-            return MouthWalls.of(part)
+            shares = part.mandible_shares
+            rest = part.vertices
+            return MouthWalls(
+                **_drawn(part), shares=shares, rest=rest, resting_normals=part.normals
+            )
         if not part.name.startswith(IN_MOUTH):
             return part
         gloom = {"teeth_upper": UPPER_TEETH, "teeth_lower": LOWER_TEETH}.get(part.name, GUMS)

@@ -1,7 +1,4 @@
-"""Memory: thousands of pictures in one process need no more of it than the first ones.
-
-Without refinement, whose memory tests/refine looks after.
-"""
+"""Memory: thousands of pictures in one process need no more of it than the first ones."""
 
 from pathlib import Path
 
@@ -10,7 +7,6 @@ import pytest
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Studio
-from risorius.app.refining.presets import Refinement
 from risorius.app.scenes import FaceScene
 from tests.memory import held_memory
 
@@ -19,7 +15,7 @@ pytestmark = pytest.mark.slow
 
 def test_a_studio_forgets_the_persons_before(tmp_path: Path) -> None:
     """Thirty samples of about as many persons take less than 15 MB, a tenth of their buffers."""
-    request = request_of(tmp_path, seed=3, size=(96, 96), passes=("segmentation",), refiner="none")
+    request = request_of(tmp_path, seed=3, size=(96, 96), passes=("segmentation",))
     studio = Studio(request)
     for index in range(12):
         studio.shoot(index)
@@ -35,7 +31,7 @@ def test_captures_that_are_opened_and_closed_take_no_memory() -> None:
     What is held goes up and down by tens of megabytes, as drivers give back pictures late.
     """
     scene = FaceScene()
-    options = CaptureOptions(size=(96, 96), refinement=Refinement(refiner="none"))
+    options = CaptureOptions(size=(96, 96))
     held = list[float]()
     for _ in range(12):
         for _ in range(10):

@@ -188,6 +188,7 @@ class Application(ApplicationContext):
         line = None if landmarks is None else marking.open(landmarks)
 
         def mark() -> Message:
+            """Open the marking, in the window's thread."""
             self.leave_marking()
             self.mouse.forget()
             self.session.is_playing = False
