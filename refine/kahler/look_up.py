@@ -142,10 +142,10 @@ def look_up_triangles(
     points[CENTRE] = first_centre
     one, two = np.uint32(1), np.uint32(2)
     count = np.uint32(0)
-    for t in range(corners.shape[0]):
-        row, corner = table_rows[t], row_of(corners, t)
+    for t in range(np.uint32(corners.shape[0])):
+        row = table_rows[t]
         if row == 0:  # most triangles are not split
-            write_row(triangles, count, corner)
+            write_row(triangles, count, row_of(corners, t))
             source[count] = t
             count += one
             continue

@@ -60,7 +60,7 @@ def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(
         module.Quarters([[0, 1, 2]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]]), refine.Refiner
     )
-    with pytest.raises(ValueError, match="takes \\['attributes', 'longest'\\]"):
+    with pytest.raises(ValueError, match="takes \\['attributes', 'crease_angle', 'longest'\\]"):
         refine.create("quarters", [[0, 1, 2]], [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], level=3)
 
 

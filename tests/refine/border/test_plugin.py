@@ -99,7 +99,8 @@ def test_unknown_name() -> None:
     [
         (
             "kahler",
-            r"it takes \['attributes', 'blend', 'coherent', 'crease_angle', 'criterion', ",
+            r"it takes \['attributes', 'blend', 'coherent', 'crease_angle', 'criterion', 'detail', "
+            "'normals', 's",
         ),
         ("loop", r"it takes \['attributes', 'crease_angle', 'levels'\]"),
         ("none", r"it takes \['attributes', 'crease_angle'\]"),
