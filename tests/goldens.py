@@ -74,7 +74,8 @@ def compare(before: Path, after: Path) -> bool:
     names = {file.relative_to(root) for root in (before, after) for file in root.rglob("*.*")}
     same_all = True
     for name in sorted(each for each in names if not (before / each).is_dir()):
-        old, new = before / name, after / name
+        old = before / name
+        new = after / name
         if not (old.exists() and new.exists()):
             print(f"{name}: only {'before' if old.exists() else 'after'}")
             same_all = False

@@ -30,7 +30,8 @@ class Stranger:
         landmarks = changes.get("landmarks", self.landmarks)
         lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in vertices]
         lines += [f"f {a} {b} {c}" for a, b, c in changes.get("faces", self.mesh.faces) + 1]
-        mesh, marks = folder / "stranger.obj", folder / "stranger.json"
+        mesh = folder / "stranger.obj"
+        marks = folder / "stranger.json"
         mesh.write_text("\n".join(lines))
         found = vertices[landmarks].tolist() if points else np.asarray(landmarks).tolist()
         marks.write_text(json.dumps({"landmarks": found}))

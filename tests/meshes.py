@@ -71,7 +71,8 @@ def octahedron() -> Mesh:
 
 def ball(levels: int = 2) -> Mesh:
     """A sphere of radius 1: an octahedron, split `levels` times and blown up."""
-    vertices, faces = octahedron().vertices, octahedron().faces
+    vertices = octahedron().vertices
+    faces = octahedron().faces
     for _ in range(levels):
         vertices, faces = trimesh.remesh.subdivide(vertices, faces)
         vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
@@ -154,13 +155,17 @@ def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> M
     """A bumpy grid with uneven valences and holes; vertices, triangles and corners shuffled."""
     generator = np.random.default_rng(seed)
     grid = open_grid(columns, rows)
-    x, y = grid.vertices[:, 0], grid.vertices[:, 1]
+    x = grid.vertices[:, 0]
+    y = grid.vertices[:, 1]
     jitter = generator.uniform(-0.3, 0.3, (len(x), 2))
     height = 0.8 * np.sin(0.5 * x) * np.cos(0.4 * y) + 0.1 * generator.standard_normal(len(x))
     vertices = np.stack([x + jitter[:, 0], y + jitter[:, 1], height], axis=1)
 
     pairs = grid.faces.reshape(-1, 2, 3)
-    a, b, c, d = pairs[:, 0, 0], pairs[:, 0, 1], pairs[:, 0, 2], pairs[:, 1, 2]
+    a = pairs[:, 0, 0]
+    b = pairs[:, 0, 1]
+    c = pairs[:, 0, 2]
+    d = pairs[:, 1, 2]
     other = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
     is_flipped = generator.random(len(pairs)) < 0.5
     faces = np.where(is_flipped[:, None, None], other, pairs).reshape(-1, 3)
@@ -168,7 +173,8 @@ def irregular(seed: int, columns: int = 12, rows: int = 10, holes: int = 3) -> M
     centres = vertices[faces].mean(axis=1)
     for centre in centres[generator.integers(len(faces), size=holes)]:
         is_far = np.linalg.norm(centres - centre, axis=1) > generator.uniform(0.8, 1.8)
-        faces, centres = faces[is_far], centres[is_far]
+        faces = faces[is_far]
+        centres = centres[is_far]
 
     new_number = generator.permutation(len(vertices))
     shuffled = np.empty_like(vertices)
@@ -185,7 +191,8 @@ def wrinkled(mesh: Mesh, seed: int, amplitude: float = 0.25) -> npt.NDArray[np.f
     deformed = mesh.vertices.copy()
     for _ in range(3):
         wave = generator.uniform(-2.5, 2.5, 3)
-        phase, direction = generator.uniform(0.0, 2.0 * np.pi), generator.standard_normal(3)
+        phase = generator.uniform(0.0, 2.0 * np.pi)
+        direction = generator.standard_normal(3)
         deformed += amplitude * direction * np.sin(mesh.vertices @ wave + phase)[:, None]
     return deformed
 
@@ -200,10 +207,12 @@ def tube(segments: int = 8, rings: int = 4) -> Mesh:
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     vertices = [(x, y, 0.7 * z) for z in range(rings + 1) for x, y in circle]
     uv = [(u / segments, v / rings) for v in range(rings + 1) for u in range(segments + 1)]
-    faces, face_uv = [], []
+    faces = []
+    face_uv = []
     for ring in range(rings):
         for k in range(segments):
-            a, b = ring * segments + k, ring * segments + (k + 1) % segments
+            a = ring * segments + k
+            b = ring * segments + (k + 1) % segments
             faces += [(a, b, b + segments), (a, b + segments, a + segments)]
             s = ring * (segments + 1) + k
             face_uv += [(s, s + 1, s + segments + 2), (s, s + segments + 2, s + segments + 1)]
@@ -237,7 +246,8 @@ def slit(columns: int = 10, rows: int = 6) -> Mesh:
     faces = []
     for row in range(rows):
         for column in range(columns):
-            a, b = across * row + column, across * (row + 1) + column
+            a = across * row + column
+            b = across * (row + 1) + column
             corners = [a, a + 1, b + 1, b]
             if row >= rows // 2:
                 corners = [upper.get(v, v) for v in corners]
@@ -251,7 +261,8 @@ def opened(mesh: Mesh, height: float) -> npt.NDArray[np.float64]:
     """The mesh of `slit` with its sides drawn apart in its plane, as arcs; shape (V, 3)."""
     columns, rows = np.ptp(mesh.vertices, axis=0)[:2]
     positions = mesh.vertices.copy()
-    x, y = mesh.vertices[:, 0], mesh.vertices[:, 1]
+    x = mesh.vertices[:, 0]
+    y = mesh.vertices[:, 1]
     is_upper = np.arange(len(x)) >= (columns + 1) * (rows + 1)
     side = np.where(is_upper, 1.0, np.where(y == 0.0, -1.0, np.sign(y)))
     arc = np.maximum(1.0 - (x / (columns / 2 - 2)) ** 2, 0.0)

@@ -1,4 +1,4 @@
-"""The three sentences of docs/architecture.md, as far as imports can tell, and limits of size."""
+"""The three sentences of docs/architecture.md, as far as imports show, and limits of size."""
 
 import ast
 import subprocess

@@ -137,7 +137,8 @@ def test_own_head(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     hello = (ROOT / "docs" / "hello.toml").read_text(encoding="utf-8")
     (tmp_path / "docs").mkdir()
     capture_as_shown(page, {"docs/hello.toml": hello}, tmp_path, monkeypatch)
-    assert (tmp_path / "anna.png").exists() and (tmp_path / "anna.mp4").exists()
+    assert (tmp_path / "anna.png").exists()
+    assert (tmp_path / "anna.mp4").exists()
 
 
 def capture_as_shown(

@@ -1,4 +1,4 @@
-"""`mesh.risorius`, as PyVista's users find it: data go along, mistakes are told in its words."""
+"""`mesh.risorius`, as PyVista's users find it: data go along, mistakes have its words."""
 
 import doctest
 import subprocess
@@ -70,7 +70,8 @@ def test_data_go_along() -> None:
         name: mesh[name].dtype for name in ("colours", "right", "x", "speed")
     }
     assert set(refined["name"]) <= set(mesh["name"])
-    assert np.isnan(refined["hole"]).any() and np.isfinite(refined["hole"]).any()
+    assert np.isnan(refined["hole"]).any()
+    assert np.isfinite(refined["hole"]).any()
     np.testing.assert_allclose(
         refined.active_texture_coordinates[:, 0] - 0.5, refined["x"], atol=1e-6
     )
@@ -109,7 +110,8 @@ def test_polygons_strips_and_lines() -> None:
     mesh = pyvista.Disc(inner=0.0, c_res=5).merge(pyvista.Line())
     mesh.cell_data["number"] = np.arange(mesh.n_cells)
     refined = mesh.risorius.refine()
-    assert refined.is_all_triangles and refined.n_cells > 0
+    assert refined.is_all_triangles
+    assert refined.n_cells > 0
     np.testing.assert_array_equal(refined["number"], refined["vtkOriginalCellIds"])
     strips = pyvista.Sphere(theta_resolution=10, phi_resolution=10).strip()
     assert strips.risorius.refine().is_manifold
@@ -209,7 +211,7 @@ def test_many_frames(capsys: pytest.CaptureFixture[str]) -> None:
     assert not capsys.readouterr().err
 
 
-def test_mistakes_are_told() -> None:
+def test_mistakes_are_reported() -> None:
     """As PyVista does: its own errors for missing cells, ValueError with both sizes otherwise."""
     mesh = plane()
     with pytest.raises(pyvista.MissingDataError, match="mesh has no faces"):

@@ -47,7 +47,8 @@ def arrays_of(thing: object, name: str, seen: dict[int, object]) -> Iterator[tup
 def is_kept(thing: object, name: str) -> bool:
     """Whether an attribute can be read, and is the same when it is read once more."""
     try:
-        first, second = getattr(thing, name), getattr(thing, name)
+        first = getattr(thing, name)
+        second = getattr(thing, name)
     except Exception:  # of what this head has not, or has not yet
         return False
     if isinstance(first, np.ndarray):

@@ -36,8 +36,8 @@ def started(*words: object, **options: Any) -> subprocess.Popen[bytes]:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-    told = [sys.executable, *map(str, words)]
-    return subprocess.Popen(told, stderr=subprocess.PIPE, preexec_fn=hear, **options)
+    command = [sys.executable, *map(str, words)]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, preexec_fn=hear, **options)
 
 
 def positions_in_blender(path: Path, folder: Path, rate: float, frames: int) -> Path:
@@ -45,7 +45,8 @@ def positions_in_blender(path: Path, folder: Path, rate: float, frames: int) -> 
     python = os.environ.get("RISORIUS_BLENDER_PYTHON", sys.executable)
     if subprocess.run([python, "-c", "import bpy"], capture_output=True, check=False).returncode:
         pytest.skip("no bpy; RISORIUS_BLENDER_PYTHON may name a Python that has it")
-    found, program = folder / "found.npz", Path(__file__).with_name("positions_in_blender.py")
-    told = [python, program, path, found, f"{rate:g}", str(frames)]
-    subprocess.run(told, check=True, capture_output=True)
+    found = folder / "found.npz"
+    program = Path(__file__).with_name("positions_in_blender.py")
+    command = [python, program, path, found, f"{rate:g}", str(frames)]
+    subprocess.run(command, check=True, capture_output=True)
     return found

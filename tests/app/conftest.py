@@ -61,7 +61,8 @@ def calm(viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     replace_state(viewer.session, Session(viewer.session.scene, script))
     viewer.session.work = Work(viewer.session)
     viewer.session.scene.reset()
-    viewer.settings.display, viewer.settings.is_linked = Display(), True
+    viewer.settings.display = Display()
+    viewer.settings.is_linked = True
     viewer.settings.panel_width = Settings().panel_width
     viewer.face_panel.search = ""
     viewer.settings.folds.clear()

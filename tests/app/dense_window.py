@@ -32,7 +32,8 @@ def main() -> None:
 def _dense_screen() -> Iterator[None]:
     """Tell X how dense its screen is, and in the end nothing of it any more."""
     screen = display.Display()
-    root, resources = screen.screen().root, screen.intern_atom("RESOURCE_MANAGER")
+    root = screen.screen().root
+    resources = screen.intern_atom("RESOURCE_MANAGER")
     root.change_property(resources, Xatom.STRING, 8, f"Xft.dpi:\t{DOTS_PER_INCH}\n".encode())
     screen.flush()
     screen.sync()

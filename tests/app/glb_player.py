@@ -83,7 +83,8 @@ class Player:
         local = np.eye(4)
         turn = self._at(node, "rotation", frame, self.file.nodes[node].rotation or [0, 0, 0, 1])
         shift = self._at(node, "translation", frame, self.file.nodes[node].translation or [0, 0, 0])
-        assert self.file.nodes[node].scale is None and self.file.nodes[node].matrix is None
+        assert self.file.nodes[node].scale is None
+        assert self.file.nodes[node].matrix is None
         x, y, z, w = turn
         assert abs(x * x + y * y + z * z + w * w - 1.0) < 1e-5
         local[:3, :3] = [
@@ -116,7 +117,8 @@ class Player:
             self.matrix(joint, frame) @ to_bone
             for joint, to_bone in zip(skin.joints, to_bones, strict=True)
         ]
-        joints, shares = self.attribute(name, "JOINTS_0"), self.attribute(name, "WEIGHTS_0")
+        joints = self.attribute(name, "JOINTS_0")
+        shares = self.attribute(name, "WEIGHTS_0")
         moved = np.zeros_like(points)
         for slot in range(4):
             each = np.array(motions)[joints[:, slot]]

@@ -22,7 +22,9 @@ if suffix == ".glb":
 elif suffix == ".pc2":
     bpy.ops.wm.obj_import(filepath=str(Path(source).with_suffix(".obj")))
     cache = bpy.context.selected_objects[0].modifiers.new("motion", "MESH_CACHE")
-    cache.cache_format, cache.filepath, cache.frame_start = "PC2", source, 0.0
+    cache.cache_format = "PC2"
+    cache.filepath = source
+    cache.frame_start = 0.0
 else:
     bpy.ops.wm.usd_import(filepath=source)
 found = {}

@@ -18,7 +18,7 @@ ANGLES = (
 )  # fmt: skip
 
 
-def told(notes: tuple[str, ...], words: str) -> bool:
+def has_note(notes: tuple[str, ...], words: str) -> bool:
     """Whether a note has these words."""
     return any(words in note for note in notes)
 
@@ -58,7 +58,8 @@ def timecodes(frames: Sequence[float] | Array, rate: int = 60, start: int = 36_0
         whole, part = divmod(round(float(frame) * 1000), 1000)
         second, number = divmod(whole, rate)
         second += start
-        hours, minutes = second // 3600, second // 60 % 60
+        hours = second // 3600
+        minutes = second // 60 % 60
         found.append(f"{hours:02}:{minutes:02}:{second % 60:02}:{number:02}.{part:03}")
     return found
 
@@ -71,7 +72,8 @@ def live_link(count: int = 120, unit: float = 1.0) -> dict[str, Sequence[object]
     axes of the eyeballs stand 4 degrees outwards of where the eyes look.
     """
     time = np.arange(count) / 60.0
-    down, right = 0.3 * np.sin(3.0 * time), 0.2 * np.sin(5.0 * time + 1.0)
+    down = 0.3 * np.sin(3.0 * time)
+    right = 0.2 * np.sin(5.0 * time + 1.0)
     shapes = {name: 0.2 + 0.1 * np.sin(time + place) for place, name in enumerate(ARKIT)}
     for side, inward in (("Left", right), ("Right", -right)):
         shapes[f"eyeLookDown{side}"] = np.maximum(down, 0.0) / 0.61

@@ -39,7 +39,7 @@ def picture(studio: Capture, anatomy: AnatomyView, **style: Any) -> Any:
 
 
 def posed(scene: FaceScene, **pose: float) -> FaceScene:
-    """The face a second after it was told a pose."""
+    """The face a second after its pose was set."""
     scene.reset()
     scene.pose(pose)
     for _ in range(60):
@@ -56,8 +56,10 @@ def structures_of(studio: Capture, **pose: float) -> list[Any]:
 
 def check_surface(part: Any) -> None:
     """Finite, with unit normals, and closed: each edge is used as often in either direction."""
-    assert np.isfinite(part.vertices).all() and np.isfinite(part.colours).all()
-    assert 0.0 <= part.colours.min() and part.colours.max() <= 1.0
+    assert np.isfinite(part.vertices).all()
+    assert np.isfinite(part.colours).all()
+    assert 0.0 <= part.colours.min()
+    assert part.colours.max() <= 1.0
     assert np.abs(np.linalg.norm(part.normals, axis=1) - 1.0).max() < 1e-3
     edges = np.concatenate([part.faces[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
     known, count = np.unique(edges, axis=0, return_counts=True)
@@ -106,8 +108,10 @@ def test_muscles_swell_and_redden_as_they_contract() -> None:
 
     at_rest = belly("zygomaticus_major_left")
     muscles.follow(posed(scene, joy=1.0))
-    left, right = belly("zygomaticus_major_left"), belly("zygomaticus_major_right")
-    assert left[0] > 1.15 * at_rest[0] and left[1] > 1.5 * at_rest[1]
+    left = belly("zygomaticus_major_left")
+    right = belly("zygomaticus_major_right")
+    assert left[0] > 1.15 * at_rest[0]
+    assert left[1] > 1.5 * at_rest[1]
     assert right == pytest.approx(left, rel=0.02)
     late = Muscles.of(scene)  # made in the middle of a smile, they are the same
     assert np.abs(late.vertices - muscles.vertices).max() < 0.05
@@ -122,12 +126,15 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
     longer = head.vertices * np.where(head.vertices[:, 2:] < 0.0, [1.0, 1.0, 1.25], 1.0)
     scene = FaceScene(replace(head, vertices=longer))
     anatomy = Anatomy(scene)
-    low, high = scene.rest_positions.min(axis=0), scene.rest_positions.max(axis=0)
+    low = scene.rest_positions.min(axis=0)
+    high = scene.rest_positions.max(axis=0)
     parts = {part.name: part for part in anatomy.draw_order(BOTH).parts}
     for name in ("skull_cranium", "skull_mandible", "skull_nose", "muscles"):
         points = parts[name].vertices
-        assert np.isfinite(points).all() and len(points) > 300
-        assert (points.max(axis=0) < high + 2.0).all() and (points.min(axis=0) > low - 12.0).all()
+        assert np.isfinite(points).all()
+        assert len(points) > 300
+        assert (points.max(axis=0) < high + 2.0).all()
+        assert (points.min(axis=0) > low - 12.0).all()
     assert parts["skull_cranium"].vertices[:, 2].min() < low[2] + 8.0
     before = parts["muscles"].vertices
     posed(scene, jaw_open=1.0)
@@ -137,24 +144,27 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
 
 @pytest.mark.slow
 def test_the_command_draws_anatomy(tmp_path: Path) -> None:
-    """`--anatomy` opens the side that is told; what is not there is told in one line."""
+    """`--anatomy` opens the given side; a missing structure is reported in one line."""
     always = ["capture", "--set", "AU12=1", "--size", "120x120", "--quiet"]
-    plain, opened = tmp_path / "plain.png", tmp_path / "opened.png"
+    plain = tmp_path / "plain.png"
+    opened = tmp_path / "opened.png"
 
     def run(*more: str) -> Any:
         return risorius(*always, *more)
 
     assert run("-o", str(plain)).exit_code == 0
-    told = ("--anatomy", "--dissect", "left", "--skin-opacity", "0.1")
-    assert run(*told, "--person", "ada", "-o", str(opened)).exit_code == 0  # with long hair
-    assert run(*told, "-o", str(opened)).exit_code == 0
+    message = ("--anatomy", "--dissect", "left", "--skin-opacity", "0.1")
+    assert run(*message, "--person", "ada", "-o", str(opened)).exit_code == 0  # with long hair
+    assert run(*message, "-o", str(opened)).exit_code == 0
     first, second = (np.array(Image.open(path)).astype(int) for path in (plain, opened))
     off = np.abs(first - second).max(axis=2) > 24
     assert off[:, 63:].mean() > 5.0 * off[:, :57].mean()
     wrong = run("--anatomy", "muscles,bones", "-o", str(plain))
-    assert wrong.exit_code == 2 and "muscles, skull" in wrong.output
+    assert wrong.exit_code == 2
+    assert "muscles, skull" in wrong.output
     lonely = run("--skin-opacity", "0.5", "-o", str(plain))
-    assert lonely.exit_code == 2 and "--anatomy" in lonely.output
+    assert lonely.exit_code == 2
+    assert "--anatomy" in lonely.output
 
 
 @pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])
@@ -172,7 +182,8 @@ def test_the_whole_side_is_the_usual_picture(
     midline = studio.scene.positions[is_midline]
     edge = int(pixels_of(studio.camera, midline)[:, 0].min()) - 4
     studio.camera = camera
-    assert shown[:, :edge].mean() < 0.001 and shown.mean() > 0.05
+    assert shown[:, :edge].mean() < 0.001
+    assert shown.mean() > 0.05
 
 
 def pixels_of(camera: render.OrbitCamera, points: Any) -> Any:

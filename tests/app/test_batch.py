@@ -66,12 +66,14 @@ def test_a_list_is_done_and_not_done_again() -> None:
     ended = batch("--jobs", "2")
     assert ended.exit_code == 0, ended.output
     assert "3 lines: 3 ok, 0 failed, 0 skipped; 33 frames" in ended.stdout
-    assert statuses() == ["ok"] * 3 and list(rows()) == [3, 4, 6]
+    assert statuses() == ["ok"] * 3
+    assert list(rows()) == [3, 4, 6]
     assert all(row["frames"] == "11" and float(row["seconds"]) > 0 for row in rows().values())
     made = contents(*MADE)
     assert len(made) == 2 + 11
     log = Path("clips_logs/line_0003.log").read_text()
-    assert log.startswith("risorius capture joy.toml") and "joy: " in log
+    assert log.startswith("risorius capture joy.toml")
+    assert "joy: " in log
 
     alone = f"capture sadness.toml -o alone.mp4 {SMALL} --quiet".split()
     assert risorius(*alone).exit_code == 0
@@ -85,10 +87,11 @@ def test_a_list_is_done_and_not_done_again() -> None:
     assert statuses() == ["skipped", "ok", "ok"]
     again = contents(*MADE)
     assert {name for name in made if again.get(name) != made[name]} == {FILM}
-    assert batch("--resume").exit_code == 0 and statuses() == ["skipped"] * 3
+    assert batch("--resume").exit_code == 0
+    assert statuses() == ["skipped"] * 3
 
 
-def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
+def test_every_wrong_line_is_reported_and_nothing_is_done() -> None:
     """One line for each, with its number; also where lines are in each other's way."""
     Path("mine").mkdir()
     Path("mine/notes.txt").write_text("mine")
@@ -120,29 +123,30 @@ def test_every_wrong_line_is_told_and_nothing_is_done() -> None:
         (10, "not empty"),
         (11, "is read and would be written"),
     )
-    assert ended.exit_code == 2 and ended.stdout == ""
+    assert ended.exit_code == 2
+    assert ended.stdout == ""
     for number, part in words:
-        told = [line for line in lines if line.startswith(f"risorius: clips.txt:{number}: ")]
-        assert any(part in line for line in told), (number, told)
+        message = [line for line in lines if line.startswith(f"risorius: clips.txt:{number}: ")]
+        assert any(part in line for line in message), (number, message)
     assert all(line.startswith("risorius: clips.txt:") and line.isprintable() for line in lines)
     assert contents(".") == before
 
 
 @pytest.mark.parametrize(
-    ("text", "told"), [(None, "no such list"), ("# nothing\n\n", "there is no command")]
+    ("text", "message"), [(None, "no such list"), ("# nothing\n\n", "there is no command")]
 )
-def test_a_list_of_nothing(text: str | None, told: str) -> None:
+def test_a_list_of_nothing(text: str | None, message: str) -> None:
     """One line, exit code 2."""
     Path("clips.txt").unlink()
     if text is not None:
         Path("clips.txt").write_text(text)
-    assert told in refusal(batch())
+    assert message in refusal(batch())
 
 
 def test_jobs_and_scheduler_exclude_each_other() -> None:
     """A cluster has the workers that it has."""
-    told = refusal(batch("--jobs", "2", "--scheduler", "tcp://a:1"))
-    assert "--jobs is for this computer" in told
+    message = refusal(batch("--jobs", "2", "--scheduler", "tcp://a:1"))
+    assert "--jobs is for this computer" in message
 
 
 @pytest.mark.slow
@@ -153,7 +157,8 @@ def test_what_fails_fails_alone() -> None:
     ended = batch("--jobs", "1")
     assert ended.exit_code == 1
     assert statuses() == ["ok", "failed", "ok"]
-    assert "silent.wav" in rows()[4]["error"] and not contents("films")
+    assert "silent.wav" in rows()[4]["error"]
+    assert not contents("films")
     assert [line for line in ended.stderr.splitlines() if "clips.txt:4: " in line]
     Path("sadness.toml").write_text(SCRIPT.format(0.5, "sadness"))
     assert batch("--resume").exit_code == 0
@@ -168,11 +173,12 @@ def test_a_scheduler_that_is_not_there(address: str) -> None:
 
 @pytest.mark.slow
 def test_a_cluster_does_what_is_done_here(cluster: Any) -> None:
-    """The same files; what fails there fails alone, and is told in the same way."""
+    """The same files; a line that fails there fails alone, with the same report."""
     Path("sadness.toml").write_text("duration = [")
     ended = batch("--scheduler", cluster.scheduler_address)
     assert ended.exit_code == 1
-    assert statuses() == ["ok", "failed", "ok"] and "sadness.toml" in rows()[4]["error"]
+    assert statuses() == ["ok", "failed", "ok"]
+    assert "sadness.toml" in rows()[4]["error"]
     assert risorius(*"export fear.toml -o alone.npz --fps 20 --quiet".split()).exit_code == 0
     assert Path("alone.npz").read_bytes() == Path("fear.npz").read_bytes()
 

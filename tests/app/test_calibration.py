@@ -94,13 +94,13 @@ def test_a_gain_names_a_channel_as_the_file_spells_it() -> None:
     "setting",
     ["mouthSmile=1", "jawOpen", "jawOpen=", "jawOpen=wide", "jawOpen=nan", "=1", "all=-1"],
 )
-def test_a_wrong_gain_is_told(setting: str) -> None:
+def test_a_wrong_gain_is_reported(setting: str) -> None:
     with pytest.raises(UserError, match=rf"--gain {setting}: "):
         gains_of([setting], ["jawOpen", "mouthSmileLeft"])
 
 
 @pytest.mark.parametrize("method", ["", "last", "first:x", "first:-1", "first:nan", "percentile:5"])
-def test_a_wrong_neutral_is_told(method: str) -> None:
+def test_a_wrong_neutral_is_reported(method: str) -> None:
     with pytest.raises(UserError, match=rf"--neutral {method}: "):
         neutral_of(take_of(jawOpen=0.1), method)
 

@@ -25,7 +25,8 @@ def test_numbers_stand_around_the_middle_of_the_face(scene: FaceScene) -> None:
 
 def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene: FaceScene) -> None:
     """A camera that stood too near steps back; one that stood further away stays there."""
-    near, far = whole_scene(scene, "0,0,4"), whole_scene(scene, "0,0,0.2")
+    near = whole_scene(scene, "0,0,4")
+    far = whole_scene(scene, "0,0,0.2")
     for camera in (near, far, camera_for(scene, "150,5,1")):
         clip = camera.projection_matrix(1.0) * camera.view_matrix()
         ends = np.column_stack([scene.rest_positions, np.ones(len(scene.rest_positions))])
@@ -39,7 +40,7 @@ def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene: FaceScene) -> No
     "text", ["behind", "1", "1,2,3,4", "nan,0", "0,inf", "0,0,0", "0,0,-1", ""]
 )
 def test_what_no_camera_is(scene: FaceScene, text: str) -> None:
-    """Other names and numbers are told with what is allowed; nothing is the usual view."""
+    """Other names and numbers are refused with the allowed ones; nothing is the usual view."""
     if not text:
         assert camera_for(scene, text).yaw == camera_for(scene, DEFAULT_VIEW).yaw
         return
@@ -47,15 +48,16 @@ def test_what_no_camera_is(scene: FaceScene, text: str) -> None:
         camera_for(scene, text)
 
 
-def test_a_wrong_camera_or_sound_of_a_script_is_told_with_its_name(tmp_path: Path) -> None:
+def test_a_wrong_camera_or_sound_of_a_script_is_reported_with_its_name(tmp_path: Path) -> None:
     """Of many scripts one knows which to mend; what the command line says needs no name."""
-    script, target = tmp_path / "mine.toml", tmp_path / "film.mp4"
+    script = tmp_path / "mine.toml"
+    target = tmp_path / "film.mp4"
     key = "duration = 0.1\n[[pose]]\ntime = 0.0\njoy = 1.0\n"
     script.write_text(f'camera = "behind"\n{key}')
     words = ("capture", script, "-o", target, "--size", "64x64")
     assert f"{script}: camera 'behind': allowed are front, " in refusal(risorius(*words))
-    told = refusal(risorius(*words, "--camera", "above"))
-    assert told.startswith("risorius: camera 'above': allowed are front, ")
+    message = refusal(risorius(*words, "--camera", "above"))
+    assert message.startswith("risorius: camera 'above': allowed are front, ")
     script.write_text(f'sound = "none.wav"\n{key}')
     wanted = f"{script}, 'sound': {tmp_path / 'none.wav'}: no such sound file"
     assert wanted in refusal(risorius(*words))

@@ -18,7 +18,8 @@ def test_a_caption_for_each_half_and_a_line_between() -> None:
     text = is_drawn.copy()
     text[:, 200] = False
     assert not text[:150].any()
-    assert text[150:, :100].any() and text[150:, 300:].any()
+    assert text[150:, :100].any()
+    assert text[150:, 300:].any()
     assert not text[:, 100:300].any()
     assert (GREY == 128).all()
 
@@ -29,10 +30,11 @@ def test_a_caption_without_room_is_left_out() -> None:
     assert [x > 300 for x, _, _ in made] == [True]
 
 
-def test_the_bar_tells_the_colours_of_splits_from_one_to_six() -> None:
+def test_the_bar_shows_the_colours_of_splits_from_one_to_six() -> None:
     """At the upper right, each colour of the palette above the one of fewer splits."""
     ((x, y, image),) = labels([], [(0, 0, 400, 200)], has_bar=True)
-    assert x > 300 and y > 50
+    assert x > 300
+    assert y > 50
     column = image[:, round(0.45 * image.shape[1]), :3].astype(float) / 255.0
     nearest = [np.abs(column - shade).max(axis=1).argmin() for shade in render.SPLIT_PALETTE]
     assert np.abs(column[nearest] - render.SPLIT_PALETTE).max() < 0.01

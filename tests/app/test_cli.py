@@ -34,7 +34,8 @@ def smile(tmp_path: Path) -> Path:
 
 def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> None:
     """`capture --compare` writes a film of the script's length and a sheet of its named poses."""
-    film, sheet = tmp_path / "out.mp4", tmp_path / "out.png"
+    film = tmp_path / "out.mp4"
+    sheet = tmp_path / "out.png"
     result = risorius(
         "capture", smile, "-o", film, "--sheet", sheet, "--compare", "--size", "256x144"
     )
@@ -47,7 +48,8 @@ def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> Non
 
 def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
     """A folder gets one file a frame; a .png is the moment that was asked for."""
-    frames, still = tmp_path / "frames", tmp_path / "still.png"
+    frames = tmp_path / "frames"
+    still = tmp_path / "still.png"
     size = ("--size", "160x120", "--samples", "0", "--quiet")
     assert risorius("capture", smile, "-o", frames, "--fps", "20", *size).exit_code == 0
     assert len(list(frames.iterdir())) == 9
@@ -87,7 +89,8 @@ def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
     for first, second in combinations(pictures, 2):
         assert np.abs(first - second).max() > 20
     counts = [count for _, count in alone]
-    assert most == max(counts) and len(set(counts)) == 4
+    assert most == max(counts)
+    assert len(set(counts)) == 4
     assert np.abs(drawn(320, "--compare")[0][:, :160] - pictures[0]).max() <= 2
 
 
@@ -135,7 +138,8 @@ def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
         result = risorius(*asked, tmp_path / "a.png")
         assert result.exit_code == 0, result.output
         seen.append(np.asarray(Image.open(tmp_path / "a.png")).tobytes())
-    assert seen[1] == seen[-1] and len(set(seen)) == 4
+    assert seen[1] == seen[-1]
+    assert len(set(seen)) == 4
 
 
 def test_reproduce_table1(tmp_path: Path) -> None:

@@ -24,7 +24,10 @@ from risorius.assets import Segment
 
 from .command_line import refusal, risorius
 
-COUNT, SEED, SIZE, PASSES = 4, 11, (80, 64), ("depth", "normal", "segmentation")
+COUNT = 4
+SEED = 11
+SIZE = (80, 64)
+PASSES = ("depth", "normal", "segmentation")
 ENDS = ("_ldmks.txt", "_seg.png", ".exr", ".json", ".png")
 OPTIONS = (
     "--seed", str(SEED), "--size", "x".join(map(str, SIZE)), "--passes", ",".join(PASSES),
@@ -60,8 +63,8 @@ def samples(made: Path) -> list[dict[str, Any]]:
 
 def test_a_set_has_these_files_and_nothing_else(made: Path, samples: list[dict[str, Any]]) -> None:
     """No picture twice, and no face."""
-    told = {"README.md", "dataset.json", "index.csv"}
-    assert set(content(made)) == told | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
+    message = {"README.md", "dataset.json", "index.csv"}
+    assert set(content(made)) == message | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
     assert len({(made / f"{k:06d}.png").read_bytes() for k in range(COUNT)}) == COUNT
     assert len({str(sample["controls"]) for sample in samples}) == COUNT
 
@@ -135,8 +138,8 @@ def test_a_set_can_be_made_longer(made: Path, tmp_path: Path) -> None:
     run(folder, count=2)
     assert "2 of them new" in run(folder, "--resume").output
     assert content(folder) == content(made)
-    told = refusal(run(folder, "--resume", count=3))
-    assert "has sample 3 already; give --count 4 or more" in told
+    message = refusal(run(folder, "--resume", count=3))
+    assert "has sample 3 already; give --count 4 or more" in message
 
 
 def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
@@ -145,7 +148,7 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     other.mkdir()
     (other / "mine.txt").write_text("mine", "utf-8")
-    for folder, options, told in (
+    for folder, options, message in (
         (made, (), "holds a data set; add --resume"),
         (made, ("--resume", "--seed", "12"), "was begun with seed 11, not 12"),
         (made, ("--resume", "--background", "red"), "was begun with background null, not [1.0"),
@@ -153,7 +156,7 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
         (made, ("--resume", "--refiner", "none"), 'was begun with refiner null, not "none"'),
         (other, ("--resume",), "is not empty and no data set"),
     ):
-        assert told in refusal(run(folder, *options))
+        assert message in refusal(run(folder, *options))
     assert content(made) == before
     assert [path.name for path in other.iterdir()] == ["mine.txt"]
 
@@ -161,14 +164,15 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
 def test_two_cannot_make_one_set(made: Path) -> None:
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     with SetFolder(made).held(request.options(), resume=True):
-        told = refusal(run(made, "--resume"))
-    assert "another process is making this set" in told
+        message = refusal(run(made, "--resume"))
+    assert "another process is making this set" in message
 
 
 def test_labels_agree_with_each_other(made: Path, samples: list[dict[str, Any]]) -> None:
     """Points in space, the camera, points in the picture, and the file of landmarks."""
     for sample in samples:
-        camera, landmarks = sample["camera"], sample["landmarks"]
+        camera = sample["camera"]
+        landmarks = sample["landmarks"]
         points = np.array(landmarks["points"])
         seen = points @ np.array(camera["R"]).T + camera["t"]
         pixels = seen @ np.array(camera["K"]).T
@@ -182,7 +186,8 @@ def test_labels_agree_with_each_other(made: Path, samples: list[dict[str, Any]])
                 assert units[name] == pytest.approx(value, abs=1e-4)
         assert len(sample["arkit"]) == 52
         x, y, width, height = sample["face_box"]
-        assert 0 <= x < x + width <= SIZE[0] and 0 <= y < y + height <= SIZE[1]
+        assert 0 <= x < x + width <= SIZE[0]
+        assert 0 <= y < y + height <= SIZE[1]
 
 
 def test_the_index_has_a_row_for_each_sample(made: Path, samples: list[dict[str, Any]]) -> None:
@@ -195,7 +200,7 @@ def test_the_index_has_a_row_for_each_sample(made: Path, samples: list[dict[str,
         assert float(row["head_yaw"]) == sample["head"]["yaw"]
 
 
-def test_the_card_tells_what_is_in_the_set(made: Path, samples: list[dict[str, Any]]) -> None:
+def test_the_card_lists_what_is_in_the_set(made: Path, samples: list[dict[str, Any]]) -> None:
     card = (made / "README.md").read_text("utf-8")
     (command,) = re.findall(r"^    risorius (.* -o FOLDER)$", card, re.MULTILINE)
     assert command.startswith(f"dataset --count {COUNT} --seed {SEED}")
@@ -279,7 +284,7 @@ def test_apertures_grow_with_what_opens(face: FaceScene) -> None:
     assert apertures_of(face, {"AU27": 1.0})["mouth"] > 20.0
 
 
-def test_speech_is_told_in_units(face: FaceScene) -> None:
+def test_speech_is_reported_in_units(face: FaceScene) -> None:
     """A viseme of units alone gives them back; a unit that was set counts as it was set."""
     face.reset()
     face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})

@@ -93,7 +93,7 @@ def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("[kind]", "unknown key 'kind'; did you mean 'kinds'? Allowed: kinds"),
         ("[kinds]\nsmile = 1", "'kinds', 'smile': was 'smile', must be one of neutral"),
@@ -104,9 +104,9 @@ def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
         ("[kinds", "not valid TOML"),
     ],
 )
-def test_a_wrong_table_is_told_in_one_line(tmp_path: Path, text: str, told: str) -> None:
+def test_a_wrong_table_is_reported_in_one_line(tmp_path: Path, text: str, message: str) -> None:
     """File, section and row, and what is allowed."""
     with pytest.raises(UserError) as raised:
         read(tmp_path, text)
     assert str(raised.value).startswith(str(tmp_path / "my.toml"))
-    assert told in str(raised.value)
+    assert message in str(raised.value)

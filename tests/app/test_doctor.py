@@ -14,7 +14,7 @@ from .command_line import risorius
 
 @pytest.fixture
 def ill(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> object:
-    """Makes a machine that lacks what it is told; the rest is there."""
+    """Makes a machine that lacks the given parts and has all others."""
 
     def make(*missing: str) -> None:
         def probe(*, offscreen_only: bool = False) -> list[render.Finding]:
@@ -55,11 +55,12 @@ def test_the_verdict_is_what_works(ill: object, missing: tuple[str, ...]) -> Non
     assert lines.get("Missing", "").startswith(", ".join(missing))
     draws = not {"offscreen", "window"} <= set(missing)
     assert result.exit_code == (0 if not missing else 1 if draws else 2)
-    assert ask("--quiet").output == "" and ask("--quiet").exit_code == result.exit_code
+    assert ask("--quiet").output == ""
+    assert ask("--quiet").exit_code == result.exit_code
 
 
 @pytest.mark.parametrize(
-    ("able", "is_software", "told"),
+    ("able", "is_software", "message"),
     [
         ((), True, "no. It needs OpenGL 4.3; the refiner kahler does the same"),
         (("window",), False, "yes (window)"),
@@ -71,7 +72,7 @@ def test_the_verdict_is_what_works(ill: object, missing: tuple[str, ...]) -> Non
     ],
 )
 def test_refinement_on_the_card(
-    able: tuple[str, ...], is_software: bool, told: str, monkeypatch: pytest.MonkeyPatch
+    able: tuple[str, ...], is_software: bool, message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A line says whether kahler-gl would run, and where; without it nothing is missing."""
     findings = [
@@ -79,7 +80,7 @@ def test_refinement_on_the_card(
         for name in ("offscreen", "window")
     ]
     monkeypatch.setattr(render, "probe", lambda **_: findings)
-    assert f"\nkahler-gl: {told}\n" in ask().output
+    assert f"\nkahler-gl: {message}\n" in ask().output
 
 
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
@@ -88,7 +89,8 @@ def test_offscreen_alone(ill: object, missing: tuple[str, ...]) -> None:
     ill(*missing)  # type: ignore[operator]
     result = ask("--offscreen")
     assert result.exit_code == (2 if "offscreen" in missing else 0)
-    assert "window" not in result.output and "films" not in result.output
+    assert "window" not in result.output
+    assert "films" not in result.output
     assert ("Everything is there." in result.output) == ("offscreen" not in missing)
 
 
@@ -102,6 +104,7 @@ def test_an_ffmpeg_that_does_not_answer(
     fake = tmp_path / "ffmpeg"
     fake.unlink() if program is None else fake.write_text(f"#!/bin/sh\n{program}\n")
     result = ask()
-    assert result.exit_code == 1 and "films: no. " in result.output
+    assert result.exit_code == 1
+    assert "films: no. " in result.output
     assert str(fake) in result.output
     assert "Cure: unset IMAGEIO_FFMPEG_EXE" in result.output

@@ -121,21 +121,26 @@ def test_the_file_is_as_validators_want_it(glb: Path) -> None:
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
     text_length, kind = struct.unpack_from("<I4s", data, 12)
-    assert kind == b"JSON" and text_length % 4 == 0
+    assert kind == b"JSON"
+    assert text_length % 4 == 0
     parts = json.loads(data[20 : 20 + text_length])
     blob_length, kind = struct.unpack_from("<I4s", data, 20 + text_length)
-    assert kind == b"BIN\0" and blob_length % 4 == 0 and len(data) == 28 + text_length + blob_length
+    assert kind == b"BIN\0"
+    assert blob_length % 4 == 0
+    assert len(data) == 28 + text_length + blob_length
     assert parts["buffers"] == [{"byteLength": blob_length}]
     ends = 0
     for view in parts["bufferViews"]:
-        assert view["byteOffset"] % 4 == 0 and ends <= view["byteOffset"] < ends + 4
+        assert view["byteOffset"] % 4 == 0
+        assert ends <= view["byteOffset"] < ends + 4
         ends = view["byteOffset"] + view["byteLength"]
     assert blob_length - ends < 4
     player = Player(glb)
     positions = set()
     for mesh in parts["meshes"]:
         for primitive in mesh["primitives"]:
-            attributes, added = primitive["attributes"], primitive.get("targets", [])
+            attributes = primitive["attributes"]
+            added = primitive.get("targets", [])
             positions |= {attributes["POSITION"], *(each["POSITION"] for each in added)}
             counts = {parts["accessors"][n]["count"] for n in attributes.values()}
             counts |= {parts["accessors"][n]["count"] for each in added for n in each.values()}
@@ -146,26 +151,36 @@ def test_the_file_is_as_validators_want_it(glb: Path) -> None:
             assert np.abs(np.linalg.norm(normals, axis=1) - 1.0).max() < 5e-4
             if "WEIGHTS_0" in attributes:
                 shares, joints = (player.values(attributes[n]) for n in ("WEIGHTS_0", "JOINTS_0"))
-                assert np.abs(shares.sum(axis=1) - 1.0).max() < 1e-6 and shares.min() >= 0.0
-                assert joints.max() < 2 and not joints[shares == 0.0].any()
+                assert np.abs(shares.sum(axis=1) - 1.0).max() < 1e-6
+                assert shares.min() >= 0.0
+                assert joints.max() < 2
+                assert not joints[shares == 0.0].any()
     for number in positions | {each["input"] for each in parts["animations"][0]["samplers"]}:
-        accessor, values = parts["accessors"][number], player.values(number)
+        accessor = parts["accessors"][number]
+        values = player.values(number)
         assert np.array_equal(np.float32(accessor["min"]), np.atleast_1d(values.min(axis=0)))
         assert np.array_equal(np.float32(accessor["max"]), np.atleast_1d(values.max(axis=0)))
     for accessor in parts["accessors"]:
-        assert accessor["count"] > 0 and np.isfinite(accessor.get("max", [0.0])).all()
+        assert accessor["count"] > 0
+        assert np.isfinite(accessor.get("max", [0.0])).all()
     for name in ("skin", "tongue"):
         weights = player.weights(name)
         assert 1 <= len(player.target_names(name)) == weights.shape[1] <= 250
-        assert weights.min() >= 0.0 and weights.max() <= 1.0
+        assert weights.min() >= 0.0
+        assert weights.max() <= 1.0
 
 
 def test_the_texture_is_the_right_way_up(clip: Clip, glb: Path) -> None:
     """Each vertex finds the colour that it has in the scene: v runs down in glTF."""
-    player, skin, albedo = Player(glb), clip.skin, clip.scene.albedo
-    assert albedo is not None and skin.uv is not None and skin.face_uv is not None
+    player = Player(glb)
+    skin = clip.skin
+    albedo = clip.scene.albedo
+    assert albedo is not None
+    assert skin.uv is not None
+    assert skin.face_uv is not None
     material = player.file.materials[player.primitive("skin").material]
-    assert material.doubleSided and material.pbrMetallicRoughness.metallicFactor == 0.0
+    assert material.doubleSided
+    assert material.pbrMetallicRoughness.metallicFactor == 0.0
     picture = player.file.textures[material.pbrMetallicRoughness.baseColorTexture.index].source
     view = player.file.bufferViews[player.file.images[picture].bufferView]
     data = player.blob[view.byteOffset : view.byteOffset + view.byteLength]
@@ -186,8 +201,11 @@ def test_fine_shape_is_a_normal_map(clip: Clip, glb: Path) -> None:
 
     trimesh finds both maps, too.
     """
-    skin, fine = clip.skin, clip.scene.fine_shape
-    assert fine is not None and skin.uv is not None and skin.face_uv is not None
+    skin = clip.skin
+    fine = clip.scene.fine_shape
+    assert fine is not None
+    assert skin.uv is not None
+    assert skin.face_uv is not None
     scene = trimesh.load_scene(glb, process=False)
     material = next(
         mesh.visual.material for name, mesh in scene.geometry.items() if name.startswith("skin")
@@ -195,9 +213,11 @@ def test_fine_shape_is_a_normal_map(clip: Clip, glb: Path) -> None:
     image = np.asarray(material.normalTexture.convert("RGB"), np.float64)
     assert image.shape == (*fine.slopes.shape[:2], 3)
     assert np.asarray(material.occlusionTexture).min() < 100
-    size, checked = np.array(image.shape[1::-1]), 0
+    size = np.array(image.shape[1::-1])
+    checked = 0
     for face in range(0, len(skin.faces), 7):
-        uv, points = skin.uv[skin.face_uv[face]].astype(float), skin.rest[skin.faces[face]]
+        uv = skin.uv[skin.face_uv[face]].astype(float)
+        points = skin.rest[skin.faces[face]]
         column, row = ((uv.mean(axis=0) * [1, -1] + [0, 1]) * size).astype(int)
         slope = (fine.slopes[row, column] - 128.0) * fine.steepest / 127.0
         along, aside = np.linalg.solve(np.diff(uv, axis=0), np.diff(points, axis=0))
@@ -210,7 +230,8 @@ def test_fine_shape_is_a_normal_map(clip: Clip, glb: Path) -> None:
         expected = 127.5 + 127.5 * tilted / np.linalg.norm(tilted)
         assert np.abs(image[row, column] - expected).max() < 1.0
         checked += 1
-    assert checked > 150 and image[..., :2].std() > 2.0
+    assert checked > 150
+    assert image[..., :2].std() > 2.0
 
 
 def test_vertex_colours_are_linear_light(clip: Clip, glb: Path) -> None:
@@ -219,7 +240,8 @@ def test_vertex_colours_are_linear_light(clip: Clip, glb: Path) -> None:
     assert painted is not None
     light = Player(glb).attribute("eyeball_left", "COLOR_0").astype(np.float64)
     shown = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
-    assert np.abs(shown - painted).max() < 1e-4 and np.ptp(painted) > 0.3
+    assert np.abs(shown - painted).max() < 1e-4
+    assert np.ptp(painted) > 0.3
 
 
 def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
@@ -244,7 +266,7 @@ def test_blender_sees_the_same(clip: Clip, glb: Path, tmp_path: Path) -> None:
             assert off.max() < NEAR, surface.name
 
 
-def test_what_targets_cannot_follow_is_told(
+def test_what_targets_cannot_follow_is_reported(
     clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A clip that needs more targets than may be is written, and the error that remains is said."""
@@ -252,7 +274,9 @@ def test_what_targets_cannot_follow_is_told(
     remark = written(clip, tmp_path / "rough.glb")
     player = Player(tmp_path / "rough.glb")
     error = 1000.0 * max(farthest(player, clip, name) for name in ("skin", "tongue"))
-    assert remark is not None and f"{error:.2f} mm" in remark and error > 1.0
+    assert remark is not None
+    assert f"{error:.2f} mm" in remark
+    assert error > 1.0
 
 
 @pytest.mark.slow

@@ -113,7 +113,8 @@ def test_usd_has_the_texture_and_colours(clip: Clip, tmp_path: Path) -> None:
     stage = Usd.Stage.Open(str(path))
     skin = stage.GetPrimAtPath("/face/skin")
     st = UsdGeom.PrimvarsAPI(skin).GetPrimvar("st")
-    assert clip.skin.uv is not None and clip.skin.face_uv is not None
+    assert clip.skin.uv is not None
+    assert clip.skin.face_uv is not None
     assert np.array_equal(np.array(st.ComputeFlattened()), clip.skin.uv[clip.skin.face_uv.ravel()])
     material, _ = UsdShade.MaterialBindingAPI(skin).ComputeBoundMaterial()
     texture = UsdShade.Shader(stage.GetPrimAtPath(f"{material.GetPath()}/texture"))
@@ -139,7 +140,8 @@ def test_usd_is_sound(clip: Clip, tmp_path: Path) -> None:
         pytest.skip("this release of usd-core came without its validators")
     stage = Usd.Stage.Open(str(written(clip, tmp_path / "face.usdz")))
     errors = validation.ValidationContext(validators).Validate(stage)
-    assert len(validators) > 10 and not [error.GetMessage() for error in errors]
+    assert len(validators) > 10
+    assert not [error.GetMessage() for error in errors]
 
 
 def test_usd_has_the_refined_skin(clip: Clip, tmp_path: Path) -> None:
@@ -154,11 +156,13 @@ def test_usd_has_the_refined_skin(clip: Clip, tmp_path: Path) -> None:
         assert len(mesh.GetFaceVertexCountsAttr().Get(frame)) == len(triangles)
         assert is_near(usd_points(stage, "skin", frame), points)
         lengths = np.linalg.norm(np.array(mesh.GetNormalsAttr().Get(frame)), axis=1)
-        assert lengths.shape == points.shape[:1] and np.allclose(lengths, 1.0, atol=1e-4)
+        assert lengths.shape == points.shape[:1]
+        assert np.allclose(lengths, 1.0, atol=1e-4)
         st = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").Get(frame)
         assert len(st) == len(points)
         counts.add(len(points))
-    assert len(counts) > 1 and min(counts) > len(clip.skin.rest)
+    assert len(counts) > 1
+    assert min(counts) > len(clip.skin.rest)
 
 
 # ---------- VTKHDF ------------------------------------------------------------------------------
@@ -166,7 +170,8 @@ def test_usd_has_the_refined_skin(clip: Clip, tmp_path: Path) -> None:
 
 def vtk_steps(path: Path) -> list[tuple[float, Any]]:
     """Time and PolyData of each step, as VTK reads them."""
-    reader, steps = vtkHDFReader(), []
+    reader = vtkHDFReader()
+    steps = []
     reader.SetFileName(str(path))
     reader.UpdateInformation()
     times = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
@@ -271,14 +276,17 @@ def test_an_obj_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> No
     path = folder / f"frame_{FRAMES - 1:05d}.obj"
     rows = obj_rows(path, "v")
     assert is_near(rows[:, :3], whole(clip, FRAMES - 1), METRES)
-    assert rows.shape[1] == 6 and rows[:, 3:].min() >= 0.0 and rows[:, 3:].max() <= 1.0
+    assert rows.shape[1] == 6
+    assert rows[:, 3:].min() >= 0.0
+    assert rows[:, 3:].max() <= 1.0
     assert clip.skin.uv is not None
     assert np.allclose(obj_rows(path, "vt")[: len(clip.skin.uv)], clip.skin.uv, atol=1e-5)
     text = path.read_text()
     assert [line[2:] for line in text.splitlines() if line.startswith("g ")] == [
         each.name for each in clip.surfaces
     ]
-    assert "mtllib frame.mtl" in text and "frame_skin.png" in (folder / "frame.mtl").read_text()
+    assert "mtllib frame.mtl" in text
+    assert "frame_skin.png" in (folder / "frame.mtl").read_text()
     assert (folder / "frame_skin.png").is_file()
 
 

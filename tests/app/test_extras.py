@@ -58,8 +58,8 @@ def each_of(*commands: str, folder: Path) -> list[tuple[int, list[str]]]:
     ended = plain(*commands, folder=folder, code=EACH)
     assert ended.returncode == 0, ended.stderr
     return [
-        (code, [line for line in told.splitlines() if not line.startswith("Compiling")])
-        for code, told in json.loads(ended.stdout)
+        (code, [line for line in message.splitlines() if not line.startswith("Compiling")])
+        for code, message in json.loads(ended.stdout)
     ]
 
 
@@ -68,7 +68,8 @@ def test_a_picture_needs_no_extra(tmp_path: Path) -> None:
     picture = "capture --set joy -o joy.png --size 64x48 --quiet"
     ended = each_of(picture, "export --set joy -o joy.glb --quiet", folder=tmp_path)
     assert [code for code, _ in ended] == [0, 0], ended
-    assert (tmp_path / "joy.png").exists() and (tmp_path / "joy.glb").exists()
+    assert (tmp_path / "joy.png").exists()
+    assert (tmp_path / "joy.glb").exists()
 
 
 def test_help_needs_no_extra(tmp_path: Path) -> None:
@@ -76,7 +77,8 @@ def test_help_needs_no_extra(tmp_path: Path) -> None:
     ended = plain(folder=tmp_path, code=EVERY_HELP)
     assert ended.returncode == 0, ended.stderr
     lines = [line.rstrip() for line in ended.stdout.splitlines()]
-    assert len(lines) > 20 and [line for line in lines if not line.endswith(" 0")] == ["0"]
+    assert len(lines) > 20
+    assert [line for line in lines if not line.endswith(" 0")] == ["0"]
 
 
 def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:

@@ -20,7 +20,10 @@ from risorius.app.script.script_file import parse_script
 from .command_line import risorius
 
 Image = npt.NDArray[np.uint8]
-WIDTH, HEIGHT, COUNT, RATE = 97, 63, 12, 25.0
+WIDTH = 97
+HEIGHT = 63
+COUNT = 12
+RATE = 25.0
 SMALL = CaptureOptions(size=(64, 48), samples=0)
 
 
@@ -38,7 +41,8 @@ def decoded(path: Path, size: tuple[int, int]) -> Image:
     """All pictures of a film, (n, H, W, 3), read by another program where there is one."""
     if path.suffix in (".gif", ".webp"):
         with PIL.Image.open(path) as film:
-            assert film.size == size and film.info["loop"] == 0
+            assert film.size == size
+            assert film.info["loop"] == 0
             pictures = []
             for number in range(getattr(film, "n_frames", 1)):
                 film.seek(number)
@@ -58,7 +62,7 @@ def seconds_of(path: Path) -> float:
     with PIL.Image.open(path) as film:
         for number in range(getattr(film, "n_frames", 1)):
             film.seek(number)
-            film.load()  # only then is it told how long a WebP's picture stays
+            film.load()  # only then Pillow knows how long a WebP's picture stays
             total += film.info["duration"] / 1000.0
     return total
 
@@ -111,7 +115,8 @@ def test_a_transparent_picture_lies_over_any_colour(
     alpha = clear[..., 3:] / 255.0
     over = clear[..., :3] * alpha + np.array(colour) * (1.0 - alpha)
     assert np.abs(over - opaque).max() <= 3.0  # each layer of hair rounds to a byte
-    assert (clear[0, 0] == 0).all() and 0.2 < alpha.mean() < 0.8
+    assert (clear[0, 0] == 0).all()
+    assert 0.2 < alpha.mean() < 0.8
     assert not has_samples or ((alpha > 0.0) & (alpha < 1.0)).sum() > 50
 
 
@@ -126,7 +131,8 @@ def test_backgrounds_by_name(tmp_path: Path, word: str, corner: tuple[int, int, 
     result = risorius(*arguments, "--background", word)
     assert result.exit_code == 0, result.output
     with PIL.Image.open(path) as picture:
-        assert picture.mode == "RGB" and picture.getpixel((0, 0)) == corner
+        assert picture.mode == "RGB"
+        assert picture.getpixel((0, 0)) == corner
 
 
 # Drawn by several processes
@@ -152,4 +158,5 @@ def test_a_range_is_a_part_of_the_film_whoever_draws(
     capture(script, part, output=tmp_path / "two", progress=False)
     films = [sorted((tmp_path / name).iterdir()) for name in ("whole", "alone", "two")]
     read = [[np.asarray(PIL.Image.open(file)) for file in film] for film in films]
-    assert np.array_equal(read[0][2:], read[1]) and np.array_equal(read[1], read[2])
+    assert np.array_equal(read[0][2:], read[1])
+    assert np.array_equal(read[1], read[2])

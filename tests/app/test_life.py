@@ -27,7 +27,8 @@ def lids_gap(scene: FaceScene) -> float:
 
 def pupils(scene: FaceScene) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Where each eyeball is now and which way it looks, by side."""
-    bones, found = scene.bone_transforms(), {}
+    bones = scene.bone_transforms()
+    found = {}
     for eye in scene.head.eyes:
         motion = bones[f"eye_{eye.name}"]
         centre = (motion @ [*eye.centre, 1.0])[:3]
@@ -40,13 +41,16 @@ def test_eyes_blink_as_often_as_people_do_at_rest(seed: int) -> None:
     """17 a minute (Bentivoglio et al. 1997), none while another lasts."""
     waits = np.diff(life_blinks(Life(seed), 300.0))
     assert 15.0 < len(waits) / 5.0 < 19.0
-    assert waits.min() > 0.5 and waits.max() < 8.0 and np.ptp(waits) > 3.0
+    assert waits.min() > 0.5
+    assert waits.max() < 8.0
+    assert np.ptp(waits) > 3.0
 
 
 @pytest.mark.parametrize("seed", range(2))
 def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
     """Glances over his face, and at times beside it; they come back within some seconds."""
-    life, off = Life(seed), []
+    life = Life(seed)
+    off = []
     for time in np.arange(0.0, 600.0, 0.1):
         eyes = life.parts(time)["eyes"]
         off.append(EYE_RANGE * np.hypot(eyes["gaze_horizontal_left"], eyes["gaze_vertical_left"]))
@@ -57,7 +61,8 @@ def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
 
 def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene: FaceScene) -> None:
     """The simulation follows late, and yet lids meet; down they are faster than up."""
-    life, gaps = Life(0), []
+    life = Life(0)
+    gaps = []
     start = life_blinks(life)[0]
     scene.reset()
     open_wide = lids_gap(scene)
@@ -130,7 +135,8 @@ def _look(scene: FaceScene, viewer: np.ndarray) -> None:
 
 def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
     """With all that belongs to it: one lid stands for both, one way of the gaze for both eyes."""
-    viewer, idle = np.array([100.0, 0.0, 900.0]), Idle(scene)
+    viewer = np.array([100.0, 0.0, 900.0])
+    idle = Idle(scene)
     whole = idle.beneath(NOBODY, viewer, 5.6)
     assert {f"{LID}_left", "gaze_vertical_right", "head_roll"} <= whole.keys()
     for control, gone in (

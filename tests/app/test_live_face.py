@@ -14,11 +14,12 @@ from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST
 
 from .live_packets import live_link, osc, vmc
 
-VALUE, APPLY = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply"
+VALUE = "/VMC/Ext/Blend/Val"
+APPLY = "/VMC/Ext/Blend/Apply"
 
 
 class Clock:
-    """A clock that stands until it is told."""
+    """A clock that stands until it is set."""
 
     def __init__(self) -> None:
         self.now = 100.0
@@ -31,7 +32,8 @@ class Wire:
     """A live face, and a socket that sends to it."""
 
     def __init__(self, kind: str) -> None:
-        self.clock, self.woken = Clock(), 0
+        self.clock = Clock()
+        self.woken = 0
         self.face = LiveFace(Listening(kind, port=0), wake=self._wake, clock=self.clock)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
@@ -78,13 +80,18 @@ def wire(request: pytest.FixtureRequest) -> Iterator[Wire]:
 
 
 def test_a_frame_leads_the_controls(wire: Wire) -> None:
-    """What is sent comes out as controls, blinks a little stronger; it is told whose face it is."""
-    assert wire.face.state is State.WAITING and wire.face.presence == 0.0
+    """What is sent comes out as controls, blinks a little stronger; the line names the sender."""
+    assert wire.face.state is State.WAITING
+    assert wire.face.presence == 0.0
     wire.take(live_link({"JawOpen": 0.5, "EyeBlinkLeft": 0.5, "HeadYaw": -0.3927}, subject="Ada"))
     controls = wire.face.controls()
-    assert wire.face.state is State.RECEIVING and wire.face.subject == "Ada"
-    assert wire.woken == 1 and wire.face.has_news and wire.face.rate == 1.0
-    assert controls["jawOpen"] == 0.5 and 0.5 < controls["eyeBlinkLeft"] < 0.65
+    assert wire.face.state is State.RECEIVING
+    assert wire.face.subject == "Ada"
+    assert wire.woken == 1
+    assert wire.face.has_news
+    assert wire.face.rate == 1.0
+    assert controls["jawOpen"] == 0.5
+    assert 0.5 < controls["eyeBlinkLeft"] < 0.65
     assert controls["head_yaw"] == pytest.approx(0.5, abs=1e-3)  # of 45 degrees
     wire.pass_time(0.01)
     assert not wire.face.has_news
@@ -96,16 +103,21 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire: Wir
     wire.take(frame)
     for _ in range(30):
         wire.take(frame, seconds=1.0 / 60.0)
-    assert wire.face.presence == 1.0 and not wire.face.is_easing
+    assert wire.face.presence == 1.0
+    assert not wire.face.is_easing
     assert LOST_AFTER + EASING_OUT <= 1.0
     presences = []
     for _ in range(62):
         wire.pass_time(1.0 / 60.0)
         presences.append(wire.face.presence)
-    assert wire.face.state is State.LOST and wire.face.silence > 1.0
-    assert presences[0] == 1.0 and presences[-1] == 0.0 and not wire.face.is_easing
+    assert wire.face.state is State.LOST
+    assert wire.face.silence > 1.0
+    assert presences[0] == 1.0
+    assert presences[-1] == 0.0
+    assert not wire.face.is_easing
     steps = [before - after for before, after in pairwise(presences)]
-    assert min(steps) >= 0.0 and max(steps) < 0.08
+    assert min(steps) >= 0.0
+    assert max(steps) < 0.08
     assert wire.face.controls()["jawOpen"] == 0.5  # what it fades away from
     wire.take(frame, seconds=1.0 / 60.0)
     assert 0.0 < wire.face.presence < 0.1
@@ -117,10 +129,12 @@ def test_a_sender_that_sees_no_face_lets_go_of_ours(wire: Wire) -> None:
     """Packets without values are no lost signal, but the face eases to rest."""
     wire.take(live_link({"JawOpen": 0.5}))
     wire.take(live_link(None), seconds=0.1)
-    assert wire.face.state is State.NO_FACE and wire.woken == 1
+    assert wire.face.state is State.NO_FACE
+    assert wire.woken == 1
     for _ in range(60):
         wire.take(live_link(None), seconds=1.0 / 60.0)
-    assert wire.face.presence == 0.0 and wire.face.state is State.NO_FACE
+    assert wire.face.presence == 0.0
+    assert wire.face.state is State.NO_FACE
 
 
 def test_calibrating_takes_the_neutral_face_away(wire: Wire) -> None:
@@ -134,15 +148,17 @@ def test_calibrating_takes_the_neutral_face_away(wire: Wire) -> None:
         wire.take(live_link({**neutral, **blink}), seconds=CALIBRATING / 19.5)
     assert not wire.face.is_calibrating
     controls = wire.face.controls()
-    assert controls["browDownLeft"] == 0.0 and controls["eyeBlinkLeft"] == 0.0
+    assert controls["browDownLeft"] == 0.0
+    assert controls["eyeBlinkLeft"] == 0.0
     assert controls["head_pitch"] == pytest.approx(0.0, abs=1e-6)
     wire.take(live_link({**neutral, "BrowDownLeft": 1.0, "EyeBlinkLeft": 1.0}))
     controls = wire.face.controls()
-    assert controls["browDownLeft"] == 1.0 and controls["eyeBlinkLeft"] >= 1.0
+    assert controls["browDownLeft"] == 1.0
+    assert controls["eyeBlinkLeft"] >= 1.0
 
 
 def test_gains_and_mirror_may_be_given_from_the_start() -> None:
-    """As for recordings; what is wrong with them is told before anything is listened to."""
+    """As for recordings; mistakes are reported before the program listens."""
     listening = Listening("livelink", port=0, gains=("jawOpen=2", "mouth*=0.5"), mirror=True)
     face = LiveFace(listening)
     try:
@@ -158,18 +174,21 @@ def test_gains_and_mirror_may_be_given_from_the_start() -> None:
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
 def test_what_is_not_named_keeps_its_value(wire: Wire) -> None:
-    """A sender may tell only what has changed."""
+    """A sender may send only the values that have changed."""
     wire.take(vmc({"jawOpen": 0.5, "cheekPuff": 0.3}))
     wire.take(vmc({"jawOpen": 0.2}))
     channels = wire.face.channels
-    assert channels["jawOpen"] == pytest.approx(0.2) and channels["cheekPuff"] == pytest.approx(0.3)
+    assert channels["jawOpen"] == pytest.approx(0.2)
+    assert channels["cheekPuff"] == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
 def test_parts_of_a_frame_count_together(wire: Wire) -> None:
     """Nothing moves before Apply, and nobody is woken."""
     wire.take(osc((VALUE, "jawOpen", 0.5), (VALUE, "eyeBlinkLeft", 0.6)))
-    assert wire.face.state is State.WAITING and not wire.face.channels and not wire.woken
+    assert wire.face.state is State.WAITING
+    assert not wire.face.channels
+    assert not wire.woken
     wire.take(osc((VALUE, "mouthPucker", 0.25)), osc((APPLY,)))
     assert wire.woken == 1
     wanted = {"jawOpen": 0.5, "mouthPucker": 0.25, "eyeBlinkLeft": 0.6}
@@ -189,7 +208,7 @@ def test_an_address_of_another_computer_is_refused(address: str) -> None:
 
 
 def test_only_the_address_given_is_listened_on() -> None:
-    """Unless told, no other computer can send anything."""
+    """By default no other computer can send anything."""
     for kind in PROTOCOLS:
         assert Listening(kind).address == LOOPBACK
     receiver = Receiver(Listening("livelink", port=0))

@@ -18,7 +18,9 @@ from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEME
 
 from .live_packets import LIVE_LINK, SHAPES, live_link, osc, vmc
 
-VALUE, APPLY, BONE = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply", "/VMC/Ext/Bone/Pos"
+VALUE = "/VMC/Ext/Blend/Val"
+APPLY = "/VMC/Ext/Blend/Apply"
+BONE = "/VMC/Ext/Bone/Pos"
 KINDS = tuple(PROTOCOLS)
 GOOD = {
     "livelink": live_link({name: 0.01 * index for index, name in enumerate(LIVE_LINK)}),
@@ -40,7 +42,9 @@ def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place() -> None:
     for name, shape in zip(LIVE_LINK, SHAPES, strict=False):
         frame = parse_live_link(live_link({name: 0.75}, subject="Ada"))
         channels = channels_of(frame)
-        assert frame is not None and frame.subject == "Ada" and frame.has_face
+        assert frame is not None
+        assert frame.subject == "Ada"
+        assert frame.has_face
         assert {each for each in ARKIT if channels[each]} == {shape}
         assert channels[shape] == 0.75
 
@@ -56,7 +60,8 @@ def test_live_link_angles_are_radians_to_the_right_and_down() -> None:
     assert channels["eye_yaw_right"] == pytest.approx(math.degrees(0.62), abs=5.0)
     ahead = {"LeftEyeYaw": -0.07, "RightEyeYaw": 0.07}
     channels = channels_of(parse_live_link(live_link(ahead)))
-    assert abs(channels["eye_yaw_left"]) < 0.5 and abs(channels["eye_yaw_right"]) < 0.5
+    assert abs(channels["eye_yaw_left"]) < 0.5
+    assert abs(channels["eye_yaw_right"]) < 0.5
 
 
 def test_without_a_face_live_link_sends_no_values() -> None:
@@ -64,7 +69,9 @@ def test_without_a_face_live_link_sends_no_values() -> None:
     packet = live_link(None)
     for cut in (packet, packet[:-1] + b"\x3d", packet[:-1]):
         frame = parse_live_link(cut)
-        assert frame is not None and not frame.has_face and not frame.channels
+        assert frame is not None
+        assert not frame.has_face
+        assert not frame.channels
 
 
 def test_nonsense_among_values_is_left_out() -> None:
@@ -90,7 +97,8 @@ def test_a_name_is_shown_only_as_far_as_it_can_be() -> None:
     """Neither control characters nor a novel come into the window."""
     frame = parse_live_link(live_link({}, subject="A\x1b[2J\n" + 300 * "x"))
     assert frame is not None
-    assert frame.subject.isprintable() and len(frame.subject) <= 40
+    assert frame.subject.isprintable()
+    assert len(frame.subject) <= 40
 
 
 # VMC
@@ -104,7 +112,8 @@ def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled: object) -> No
     assert callable(spelled)
     sent = {spelled(name): 0.01 * index for index, name in enumerate(SHAPES)}
     frame = parse_vmc(vmc(sent))
-    assert frame is not None and frame.is_complete
+    assert frame is not None
+    assert frame.is_complete
     assert channels_of(frame) == pytest.approx({n: 0.01 * i for i, n in enumerate(SHAPES)})
 
 

@@ -27,7 +27,7 @@ def test_eyes_move_by_their_angles_or_else_by_their_shapes() -> None:
     assert set(chosen(angles)) == set(EYE_ANGLES)
 
 
-def test_an_action_unit_counts_where_no_shape_tells_the_same() -> None:
+def test_an_action_unit_counts_where_no_shape_means_the_same() -> None:
     assert set(chosen({"AU12": 1.0, "AU4_left": 1.0})) == {"AU12", "AU4_left"}
     both = {"AU12": 1.0, "AU6": 1.0, "AU26_left": 1.0, "mouthSmileLeft": 0.2, "viseme_PP": 1.0}
     assert set(chosen(both)) == {"AU6", "AU26_left", "mouthSmileLeft", "viseme_PP"}

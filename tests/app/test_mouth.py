@@ -6,7 +6,8 @@ from risorius.app.scenes.mouth import shaded_mouth
 
 def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
     """Molars lose more than incisors, eyes nothing."""
-    head, shown = face.head.parts, face.parts
+    head = face.head.parts
+    shown = face.parts
     for given, drawn in zip(head, shown, strict=False):
         if given.name.startswith("eye"):
             assert drawn is given
@@ -19,6 +20,7 @@ def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
     red, _, blue = (lower / given.colours)[given.vertices[:, 2].argmin()]
     assert blue < 0.72 and blue < 0.92 * red  # grey ones look like one broken tooth
     tongue = next(part for part in shown if part.name == "tongue")
-    light, depth = tongue.colours.mean(axis=1), tongue.vertices[:, 2]
+    light = tongue.colours.mean(axis=1)
+    depth = tongue.vertices[:, 2]
     assert light[depth.argmin()] < 0.6 * light[depth.argmax()]
     assert shaded_mouth(()) == ()

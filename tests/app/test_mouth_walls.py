@@ -42,7 +42,8 @@ class Sitter:
     """A face before a camera."""
 
     def __init__(self, scene: FaceScene, renderer: render.Renderer) -> None:
-        self.scene, self.surface = scene, renderer.surface
+        self.scene = scene
+        self.surface = renderer.surface
         self.pipeline = Pipeline(scene, renderer)
         self.drawn = self.pipeline.bind(Refinement(refiner="none"))
         self.passes = Passes(self.pipeline, self.drawn)
@@ -142,7 +143,8 @@ def test_walls_stretch_with_the_jaw(face: FaceScene) -> None:
     assert face.parts and walls.vertices is rest  # a bone carries them
     face.pose({"jaw_open": 1.0})
     face.step(0.8)
-    assert face.parts and walls.vertices is not rest
+    assert face.parts
+    assert walls.vertices is not rest
     mandible = face.bone_transforms()["mandible"]
     moved = edge @ mandible[:3, :3].T + mandible[:3, 3]
     assert np.linalg.norm(lower_edge(walls) - moved, axis=1).max() < 2.5
@@ -150,9 +152,11 @@ def test_walls_stretch_with_the_jaw(face: FaceScene) -> None:
     assert np.array_equal(walls.vertices[fixed], rest[fixed])
     assert np.allclose(np.linalg.norm(walls.normals, axis=1), 1.0, atol=1e-4)
     stretched = walls.vertices
-    assert face.parts and walls.vertices is stretched
+    assert face.parts
+    assert walls.vertices is stretched
     face.reset()
-    assert face.parts and walls.vertices is rest
+    assert face.parts
+    assert walls.vertices is rest
 
 
 def test_walls_end_above_the_chin(face: FaceScene) -> None:
@@ -160,4 +164,5 @@ def test_walls_end_above_the_chin(face: FaceScene) -> None:
     for head in (face.head, make_person(sample_identity(63)), make_person(sample_identity(6))):
         chin = head.vertices[head.landmarks[8], 1]
         walls = [part.vertices for part in head.parts if part.name.startswith("oral_cavity")]
-        assert len(walls) == 2 and np.vstack(walls)[:, 1].min() > chin + 8.0
+        assert len(walls) == 2
+        assert np.vstack(walls)[:, 1].min() > chin + 8.0

@@ -52,9 +52,11 @@ def test_names_as_text() -> None:
 @needs_bytes
 def test_a_recording_with_such_a_name_becomes_a_script(tmp_path: Path) -> None:
     """Its title and preface are text; it is written under such a name as well, and read again."""
-    recording, script = take(tmp_path / f"{RAW}.csv"), tmp_path / f"{RAW}.toml"
+    recording = take(tmp_path / f"{RAW}.csv")
+    script = tmp_path / f"{RAW}.toml"
     result = risorius("convert", recording, "-o", script)
-    assert result.exit_code == 0 and f"{SHOWN}.toml: " in result.output
+    assert result.exit_code == 0
+    assert f"{SHOWN}.toml: " in result.output
     text = script.read_text("utf-8")
     assert tomllib.loads(text)["title"] == SHOWN
     assert text.startswith(f"# Made of {SHOWN}.csv")
@@ -133,7 +135,8 @@ def test_sets_and_lists_with_such_names(tmp_path: Path) -> None:
     assert json.loads((folder / "000000.json").read_text("utf-8"))["background"] == f"{SHOWN}.png"
     assert f"{SHOWN}_pictures" in (folder / "README.md").read_text("utf-8")
     listing = tmp_path / f"{RAW}.txt"
-    script, target = pose(tmp_path / "pose.toml"), tmp_path / "out.npz"
+    script = pose(tmp_path / "pose.toml")
+    target = tmp_path / "out.npz"
     listing.write_text(f"export '{script}' -o '{target}' --fps 5\n", "utf-8")
     result = risorius("batch", listing, "--jobs", 1, "--quiet")
     assert result.exit_code == 0, result.output
@@ -159,13 +162,14 @@ def test_sets_and_lists_with_such_names(tmp_path: Path) -> None:
         ("NAME",),
     ],
 )
-def test_such_a_name_is_told_in_one_line(
+def test_such_a_name_is_reported_in_one_line(
     words: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where nothing is, or where it means nothing."""
     monkeypatch.chdir(tmp_path)
     line = refusal(risorius(*(word.replace("NAME", RAW) for word in words)))
-    assert "cheln" in line and line.isprintable()
+    assert "cheln" in line
+    assert line.isprintable()
 
 
 @pytest.fixture
@@ -192,12 +196,15 @@ def test_an_output_takes_the_place_of_a_link(secret: Path, tmp_path: Path) -> No
     for name in ("face.png", "nowhere.png"):
         check_file(shared / name)
         save_png(shared / name, grey)
-        assert not (shared / name).is_symlink() and PIL.Image.open(shared / name).size == (8, 8)
+        assert not (shared / name).is_symlink()
+        assert PIL.Image.open(shared / name).size == (8, 8)
     save_text(shared / "face.toml", "text")
-    assert not (shared / "face.toml").is_symlink() and (shared / "face.toml").read_text() == "text"
+    assert not (shared / "face.toml").is_symlink()
+    assert (shared / "face.toml").read_text() == "text"
     with pytest.raises(UserError, match=r"loop.png: is a link that leads back to itself"):
         save_png(shared / "loop.png", grey)
-    assert secret.read_text() == "mine" and [*secret.parent.iterdir()] == [secret]
+    assert secret.read_text() == "mine"
+    assert [*secret.parent.iterdir()] == [secret]
     assert not [item for item in shared.iterdir() if item.name.startswith(".risorius")]
 
 
@@ -206,7 +213,8 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(
     secret: Path, tmp_path: Path
 ) -> None:
     """In a folder that others may write: pictures and their labels, scripts, motion, films."""
-    shared, script = tmp_path / "shared", pose(tmp_path / "pose.toml")
+    shared = tmp_path / "shared"
+    script = pose(tmp_path / "pose.toml")
     recording = take(tmp_path / "take.csv")
     for words in (
         ("capture", script, "-o", shared / "face.png", "--passes", "landmarks", *SMALL),
@@ -220,13 +228,15 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(
         assert result.exit_code == 0, result.output
     left = [item.name for item in shared.iterdir() if item.is_symlink()]
     assert sorted(left) == ["loop.png", "nowhere.png"]
-    assert secret.read_text() == "mine" and [*secret.parent.iterdir()] == [secret]
+    assert secret.read_text() == "mine"
+    assert [*secret.parent.iterdir()] == [secret]
 
 
 @pytest.mark.slow
 def test_frames_and_samples_follow_no_link(secret: Path, tmp_path: Path) -> None:
     """Nor do pictures in folders that are there already, or what a set has not finished."""
-    shared, script = tmp_path / "shared", pose(tmp_path / "pose.toml")
+    shared = tmp_path / "shared"
+    script = pose(tmp_path / "pose.toml")
     frames = shared / "frames"
     frames.mkdir()
     (frames / "frame_00001.png").symlink_to(secret)
@@ -242,7 +252,8 @@ def test_frames_and_samples_follow_no_link(secret: Path, tmp_path: Path) -> None
     assert not any(path.is_symlink() for path in (*frames.iterdir(), *made.iterdir()))
     (made / ".unfinished").symlink_to(secret.parent)
     assert ".unfinished: is a link; remove it" in refusal(risorius(*words, "--resume"))
-    assert secret.read_text() == "mine" and [*secret.parent.iterdir()] == [secret]
+    assert secret.read_text() == "mine"
+    assert [*secret.parent.iterdir()] == [secret]
 
 
 def test_a_link_is_no_way_around_what_is_read(tmp_path: Path) -> None:

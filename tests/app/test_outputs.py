@@ -75,8 +75,9 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
 def test_a_film_that_ffmpeg_does_not_finish(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str | None, message: str
 ) -> None:
-    """No ffmpeg, one that gives up, or fails at the end: it is told, and the old film stays."""
-    fake, film = tmp_path / "ffmpeg", tmp_path / "films" / "film.mp4"
+    """No ffmpeg, one that gives up, or fails at the end: it is reported, and the old film stays."""
+    fake = tmp_path / "ffmpeg"
+    film = tmp_path / "films" / "film.mp4"
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(fake))
     if program is not None:
         fake.write_text(f"#!/bin/sh\n{program}\n")
@@ -86,4 +87,5 @@ def test_a_film_that_ffmpeg_does_not_finish(
     with pytest.raises(UserError, match=message), outputs.film(film, (96, 64), 25.0) as add:
         for _ in range(20):
             add(GREY)
-    assert film.read_bytes() == b"mine" and list(film.parent.iterdir()) == [film]
+    assert film.read_bytes() == b"mine"
+    assert list(film.parent.iterdir()) == [film]

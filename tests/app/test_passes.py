@@ -71,7 +71,8 @@ def first_hits(points: Array, faces: npt.NDArray[np.int32], eye: Array, ways: Ar
     Source: Möller and Trumbore 1997; -1 and infinity for no triangle.
     """
     a, b, c = (points[faces[:, k]] for k in range(3))
-    first, second = b - a, c - a
+    first = b - a
+    second = c - a
     found = np.full((len(ways), 2), [-1.0, np.inf])
     for row, way in enumerate(ways):
         p = np.cross(way, second)
@@ -105,7 +106,7 @@ def test_triangles_and_depth_are_those_that_rays_hit(plain: Capture, yaw: float)
     assert np.abs(hits[is_same, 1] - found["depth"][*places.T][is_same]).max() < 0.01
 
 
-def test_nothing_parts_and_skin_are_told_apart(studio: Capture) -> None:
+def test_nothing_parts_and_skin_differ(studio: Capture) -> None:
     """One background in all passes; no triangle of the mesh on teeth and eyes."""
     posed(studio, EXPRESSIONS["open mouth"])
     seen_from(studio)
@@ -121,13 +122,14 @@ def test_nothing_parts_and_skin_are_told_apart(studio: Capture) -> None:
     parts = (
         Segment.RIGHT_EYE, Segment.LEFT_EYE, Segment.MOUTH_INTERIOR, Segment.CLOTHING, Segment.HAIR
     )  # fmt: skip
-    assert np.isin(found["segmentation"][is_part], parts).all() and is_part.sum() > 1000
+    assert np.isin(found["segmentation"][is_part], parts).all()
+    assert is_part.sum() > 1000
     assert not found["splits"][is_part].any()
     assert found["triangle"].max() < len(studio.scene.faces)
 
 
 def test_splits_are_those_of_the_triangle_that_is_seen(studio: Capture) -> None:
-    """As the refiner tells them."""
+    """As the refiner reports them."""
     posed(studio, EXPRESSIONS["smile"])
     seen_from(studio)
     found = passes_of(studio, ["triangle", "splits"])
@@ -146,7 +148,8 @@ def test_classes_are_the_subjects_own_sides_and_mirror(studio: Capture) -> None:
     mirrored = classes[:, ::-1].copy()
     for right, left in ((3, 4), (5, 6), (7, 8)):
         columns = [np.nonzero(classes == side)[1] for side in (right, left)]
-        assert len(columns[0]) > 30 and columns[0].max() < SIZE[0] / 2 < columns[1].min()
+        assert len(columns[0]) > 30
+        assert columns[0].max() < SIZE[0] / 2 < columns[1].min()
         is_left = mirrored == left
         mirrored[mirrored == right] = left
         mirrored[is_left] = right
@@ -181,7 +184,8 @@ def test_landmarks_lie_on_the_depth_map(
     assert found.visible.sum() >= 30
     columns, rows = np.floor(found.pixels[found.visible]).astype(int).T
     off = np.abs(depth[rows, columns] - camera.to_camera(found.points[found.visible])[:, 2])
-    assert np.median(off) < 0.5 and off.max() <= 2.0
+    assert np.median(off) < 0.5
+    assert off.max() <= 2.0
 
 
 def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio: Capture) -> None:

@@ -39,7 +39,8 @@ def names_in(folder: Path) -> list[str]:
 
 def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
     """Five files a frame, of one picture; passes agree with one another and with the numbers."""
-    script, frames = tmp_path / "smile.toml", tmp_path / "frames"
+    script = tmp_path / "smile.toml"
+    frames = tmp_path / "frames"
     script.write_text(SMILE)
     result = risorius(*CAPTURE, script, "--passes", ALL, "-o", frames)
     assert result.exit_code == 0, result.output
@@ -52,12 +53,16 @@ def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
         **dict.fromkeys(["depth.Z", "normal.X", "normal.Y", "normal.Z"], "float32"),
         **dict.fromkeys(["triangle.ID", "splits"], "uint32"),
     }
-    depth, triangle = channels["depth.Z"], channels["triangle.ID"].astype(np.int32)
-    assert depth.shape == (120, 160) and 400.0 < depth.max() < 1500.0
-    assert triangle.min() == -1 and 1500 < triangle.max() < 2030
+    depth = channels["depth.Z"]
+    triangle = channels["triangle.ID"].astype(np.int32)
+    assert depth.shape == (120, 160)
+    assert 400.0 < depth.max() < 1500.0
+    assert triangle.min() == -1
+    assert 1500 < triangle.max() < 2030
     assert (channels["normal.Z"][depth > 0.0] < 0.0).mean() > 0.98  # folds tilt them
     classes = np.asarray(Image.open(f"{stem}_seg.png"))
-    assert classes.dtype == np.uint8 and np.array_equal(classes > 0, depth > 0.0)
+    assert classes.dtype == np.uint8
+    assert np.array_equal(classes > 0, depth > 0.0)
     colours = np.asarray(Image.open(f"{stem}.png")).astype(int)
     redness = colours[..., 0] - colours[..., 1]
     assert redness[np.isin(classes, (10, 11))].mean() > redness[classes == 1].mean() + 5.0
@@ -69,7 +74,9 @@ def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
     camera = {name: np.array(labels["camera"][name]) for name in ("K", "R", "t")}
     seen = (np.array(labels["landmarks"]["points"]) @ camera["R"].T + camera["t"]) @ camera["K"].T
     assert np.abs(seen[:, :2] / seen[:, 2:] - pixels).max() < 0.001
-    assert labels["controls"] == {"AU12": 1.0} and "head" in labels and "gaze" in labels
+    assert labels["controls"] == {"AU12": 1.0}
+    assert "head" in labels
+    assert "gaze" in labels
 
 
 def test_only_what_is_asked_for_is_written(tmp_path: Path) -> None:
@@ -99,5 +106,7 @@ def test_no_input_is_written_over(tmp_path: Path) -> None:
     recording = tmp_path / "take.json"
     recording.write_text("[]")
     result = risorius(*CAPTURE, recording, "--passes", "depth", "-o", tmp_path / "take.png")
-    assert result.exit_code == 2 and "take.json: is read and would be written" in result.output
-    assert names_in(tmp_path) == ["take.json"] and recording.read_text() == "[]"
+    assert result.exit_code == 2
+    assert "take.json: is read and would be written" in result.output
+    assert names_in(tmp_path) == ["take.json"]
+    assert recording.read_text() == "[]"

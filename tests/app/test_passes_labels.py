@@ -50,9 +50,12 @@ def test_a_head_at_rest_is_turned_as_the_camera_is_not(
 ) -> None:
     """A camera on the subject's left sees it turned to its right, one above sees it bowed."""
     scene.reset()
-    camera, size = camera_at(yaw, pitch), (640, 480)
-    pose, points = labels_of(scene, camera, size)["head"], scene.rest_positions
-    rotation, seen = np.array(pose["R"]), CameraLabels.of(camera, size).to_camera(points)
+    camera = camera_at(yaw, pitch)
+    size = (640, 480)
+    pose = labels_of(scene, camera, size)["head"]
+    points = scene.rest_positions
+    rotation = np.array(pose["R"])
+    seen = CameraLabels.of(camera, size).to_camera(points)
     assert np.allclose(points @ rotation.T + pose["t"], seen, atol=1e-5)
     towards_camera = camera_at(yaw, pitch).axes()[2]  # in the head's axes
     assert math.copysign(1.0, pose["yaw"]) == -math.copysign(1.0, yaw) or abs(yaw) < 1e-6
@@ -80,19 +83,22 @@ def test_angles_are_those_that_the_head_was_turned_by(face: FaceScene) -> None:
 
     alone = np.array([turned(*row) for row in np.eye(3)])
     most = alone.diagonal()
-    assert (most > 10.0).all() and np.abs(alone - np.diag(most)).max() < 3.7
+    assert (most > 10.0).all()
+    assert np.abs(alone - np.diag(most)).max() < 3.7
     for values in ((0.7, -0.5, 0.4), (-1.0, 0.8, -0.6)):
         assert np.abs(turned(*values) - most * values).max() < 4.0
 
 
-def test_eyes_look_where_they_were_told(face: FaceScene) -> None:
+def test_eyes_look_where_they_were_set(face: FaceScene) -> None:
     """Each in the scene: straight ahead at rest, to the subject's left is x, up is y."""
     face.reset()
     assert np.allclose(gaze(face, "right"), [0.0, 0.0, 1.0])
     face.pose({"gaze_horizontal_left": 1.0, "gaze_vertical_right": 1.0})
     face.step(2.0)
-    assert gaze(face, "left")[0] > 0.3 and abs(gaze(face, "left")[1]) < 0.015
-    assert gaze(face, "right")[1] > 0.3 and abs(gaze(face, "right")[0]) < 0.01
+    assert gaze(face, "left")[0] > 0.3
+    assert abs(gaze(face, "left")[1]) < 0.015
+    assert gaze(face, "right")[1] > 0.3
+    assert abs(gaze(face, "right")[0]) < 0.01
 
 
 def test_labels_hold_what_was_set_and_what_it_moves(face: FaceScene) -> None:
@@ -102,7 +108,8 @@ def test_labels_hold_what_was_set_and_what_it_moves(face: FaceScene) -> None:
     face.step(0.5)
     labels = labels_of(face, camera_at(0.0, 0.0), (64, 48))
     assert labels["controls"] == {"AU12_left": 0.5}
-    assert labels["activations"] and all("left" in name for name in labels["activations"])
+    assert labels["activations"]
+    assert all("left" in name for name in labels["activations"])
     assert json.loads(json.dumps(labels, allow_nan=False)) == labels
     assert "landmarks" not in labels
     assert (labels["camera"]["width"], labels["camera"]["height"]) == (64, 48)

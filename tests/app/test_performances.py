@@ -52,7 +52,8 @@ def test_the_lead_shifts_what_is_played(lead: float, moment: float) -> None:
 
 def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
     """A jaw that opens in a wave is open when it was recorded open, within a frame."""
-    scene, take = face, take_of(jawOpen=0.6 * wave())
+    scene = face
+    take = take_of(jawOpen=0.6 * wave())
     lips = scene.landmarks[[62, 66]]
     late = {}
     for lead in (0.0, LEAD):
@@ -76,7 +77,8 @@ def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
 def test_one_frame_is_a_pose() -> None:
     one = Take("MediaPipe", "one.json", np.zeros(1), {"mouthSmileLeft": np.array([0.4])})
     script, report = script_of(one, Playback(), limits_of("face"))
-    assert script.poses[0].values == {"mouthSmileLeft": 0.4} and not script.tracks
+    assert script.poses[0].values == {"mouthSmileLeft": 0.4}
+    assert not script.tracks
     assert report.recognised == "MediaPipe, one frame"
 
 
@@ -90,22 +92,25 @@ def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
     assert report.lines[0] == "take.csv: Live Link Face, 181 frames in 3.00 s, 60 a second"
     assert said["used"] == "2 of ARKit's shapes, 1 of the head's angles"
     assert said["constant"] == "cheekPuff head_roll"
-    assert "mouthSmileLeft/Right" in said["missing"] and "jawOpen" not in said["missing"].split()
+    assert "mouthSmileLeft/Right" in said["missing"]
+    assert "jawOpen" not in said["missing"].split()
     assert "browDownLeft" in said["neutral"]
-    assert len(report.lines) <= 24 and max(map(len, report.lines)) <= 100
+    assert len(report.lines) <= 24
+    assert max(map(len, report.lines)) <= 100
 
 
 def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path: Path) -> None:
-    path, output = written(tmp_path), tmp_path / "script.toml"
+    path = written(tmp_path)
+    output = tmp_path / "script.toml"
     result = risorius("convert", path, "-o", output, "--gain", "mouth*=0.5")
     assert result.exit_code == 0, result.output
-    assert "Table of named columns" in result.stderr and "unknown" in result.stderr
+    assert "Table of named columns" in result.stderr
+    assert "unknown" in result.stderr
     assert "mood" in result.stderr
-    script, converted = (
-        load_script(output),
-        read_performance(path, Playback(gains=("mouth*=0.5",)))[0],
-    )
-    assert script.tracks == converted.tracks and script.duration == converted.duration
+    script = load_script(output)
+    converted = read_performance(path, Playback(gains=("mouth*=0.5",)))[0]
+    assert script.tracks == converted.tracks
+    assert script.duration == converted.duration
     assert script.at(1.0)["mouthSmileLeft"] == pytest.approx(0.5, abs=0.01)
     assert script.at(1.0)["head_yaw"] == pytest.approx(-20.0 / 45.0, abs=0.01)
 

@@ -204,7 +204,7 @@ def test_all_kinds_are_drawn(tmp_path: Path, options: list[str], count: int) -> 
         (["--refiner", "three"], "must be a class or a function, got 3"),
     ],
 )
-def test_what_is_of_no_use_is_told_in_one_line(
+def test_what_is_of_no_use_is_reported_in_one_line(
     tmp_path: Path, options: list[str], text: str
 ) -> None:
     """A wrong name brings the right ones, and a package that is broken its reason."""
@@ -218,7 +218,8 @@ def test_they_are_offered() -> None:
     lines = risorius("doctor").output.splitlines()
     named = {line.partition(": ")[0]: line.split(", ") for line in lines}
     assert {"half", "gone"} <= set(named["refiners"])
-    assert named["schemes"][-1] == "straight" and named["criteria"][-1] == "everywhere"
+    assert named["schemes"][-1] == "straight"
+    assert named["criteria"][-1] == "everywhere"
 
 
 BROKEN = {
@@ -244,7 +245,7 @@ def chosen(name: str) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_an_error_in_one_is_told_with_its_name(tmp_path: Path, name: str) -> None:
+def test_an_error_in_one_is_reported_with_its_name(tmp_path: Path, name: str) -> None:
     """Whatever it raises, and whenever: one line, in pictures and in motion."""
     draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
     move = ("export", "-o", tmp_path / "face.vtkhdf", "--refined", "--fps", "5")
@@ -263,7 +264,8 @@ def test_the_traceback_is_there_for_whoever_asks(
     for name in ("criterion=unborn", "lost", "gone"):
         result = capture(tmp_path, *chosen(name))
         lines = result.output.splitlines()
-        assert result.exit_code == 2 and lines[-1].startswith("risorius: ")
+        assert result.exit_code == 2
+        assert lines[-1].startswith("risorius: ")
         assert "Traceback (most recent call last):" in lines
     assert "ModuleNotFoundError: No module named 'nowhere_at_all'" in lines
 
@@ -278,13 +280,13 @@ def test_one_in_other_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     words = " ".join(map(str, ("capture", "-o", tmp_path / "face.png", *still)))
     listing.write_text(f"{words}\n", encoding="utf-8")
     result = risorius("batch", listing, "--jobs", "1", "--quiet")
-    assert (
-        result.exit_code == 1 and "(broken_for_a_test:Moody) raised RuntimeError" in result.output
-    )
+    assert result.exit_code == 1
+    assert "(broken_for_a_test:Moody) raised RuntimeError" in result.output
     monkeypatch.setattr(processes, "worthwhile", lambda *_: 2)
     monkeypatch.setenv("RISORIUS_DEBUG", "1")
     result = risorius("capture", "-o", tmp_path / "face.mp4", "--fps", "5", *still)
-    assert result.exit_code == 2 and "Traceback (most recent call last):" in result.output
+    assert result.exit_code == 2
+    assert "Traceback (most recent call last):" in result.output
     assert "criterion 'moody'" in result.output.splitlines()[-1]
     assert not (tmp_path / "face.mp4").exists()
 

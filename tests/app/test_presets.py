@@ -45,7 +45,8 @@ def test_every_look_is_drawn_by_every_refiner(
     surface: Any, scenes: dict[str, Scene], name: str, look: str, refiner: str | None
 ) -> None:
     """On every scene, without a crack, and as something that can be seen."""
-    scene, refinement = scenes[name], Refinement(look, refiner)
+    scene = scenes[name]
+    refinement = Refinement(look, refiner)
     pipeline = Pipeline(scene, render.Renderer(surface))
     drawn = pipeline.bind(refinement)
     camera = whole_scene(scene, "front")
@@ -74,7 +75,7 @@ def test_the_papers_look_is_the_papers_rule(scenes: dict[str, Scene]) -> None:
 
 
 def test_a_comparison_is_of_looks_and_refiners(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In their order; a refiner is told what the look tells it; a stranger may be among them."""
+    """In their order; a refiner gets the options of the look, also one of a plug-in."""
     strangers = {**refiners._factories, "far": refine.PassThrough}
     monkeypatch.setattr(refiners, "_factories", strangers)
     shown = Refinement("paper", "kahler", {"blend": True})

@@ -11,7 +11,7 @@ from risorius.app.errors import UserError
 from risorius.app.recordings import is_recording, read_take
 from risorius.app.recordings.names import ARKIT
 
-from .recording_files import told
+from .recording_files import has_note
 
 NAMES = [name for name in sorted(ARKIT) if name != "tongueOut"]
 
@@ -109,7 +109,7 @@ def test_frames_without_a_face(tmp_path: Path) -> None:
     frames = [{"faceBlendshapes": [categories(jaw)] if jaw else []} for jaw in (0.2, 0, 0.4)]
     take = read_take(written(tmp_path / "take", {"frames": frames}))
     assert take.channels["jawOpen"] == pytest.approx([0.2, 0.3, 0.4])
-    assert told(take.notes, "No face in 1 of 3")
+    assert has_note(take.notes, "No face in 1 of 3")
 
 
 def test_several_faces(tmp_path: Path) -> None:
@@ -117,7 +117,7 @@ def test_several_faces(tmp_path: Path) -> None:
     frames = [{"faceBlendshapes": [categories(0.2), categories(0.6)]} for _ in range(3)]
     path = written(tmp_path / "take", frames)
     assert read_take(path).channels["jawOpen"] == pytest.approx([0.2] * 3)
-    assert told(read_take(path).notes, "Up to 2 faces")
+    assert has_note(read_take(path).notes, "Up to 2 faces")
     with pytest.raises(UserError, match="names no faces"):
         read_take(path, face="1")
 
@@ -125,7 +125,8 @@ def test_several_faces(tmp_path: Path) -> None:
 @pytest.mark.parametrize("layout", ["rows", "columns", "data"])
 def test_the_matrix_of_the_head(layout: str, tmp_path: Path) -> None:
     """A head turned 20 degrees to its left, in all layouts of MediaPipe's matrix."""
-    cos, sin = np.cos(np.radians(20.0)), np.sin(np.radians(20.0))
+    cos = np.cos(np.radians(20.0))
+    sin = np.sin(np.radians(20.0))
     matrix = np.array([[cos, 0, sin, 1.0], [0, 1, 0, 2.0], [-sin, 0, cos, -40.0], [0, 0, 0, 1.0]])
     packed: Any = {
         "rows": [matrix.tolist()],
@@ -141,7 +142,8 @@ def test_the_matrix_of_the_head(layout: str, tmp_path: Path) -> None:
 
 def test_the_nod_and_tilt_of_a_matrix(tmp_path: Path) -> None:
     """Up is up, and a tilt to the left shoulder is positive; x is to the subject's left, y up."""
-    up, tilt = np.radians(10.0), np.radians(15.0)
+    up = np.radians(10.0)
+    tilt = np.radians(15.0)
     nod = np.array([[1, 0, 0], [0, np.cos(up), np.sin(up)], [0, -np.sin(up), np.cos(up)]])
     roll = np.array([[np.cos(tilt), np.sin(tilt), 0], [-np.sin(tilt), np.cos(tilt), 0], [0, 0, 1]])
     for turn, name, angle in ((nod, "head_pitch", 10.0), (roll, "head_roll", 15.0)):

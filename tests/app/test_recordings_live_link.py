@@ -9,7 +9,7 @@ import pytest
 from risorius.app.recordings import is_recording, read_take
 from risorius.app.recordings.names import ARKIT
 
-from .recording_files import ANGLES, live_link, timecodes, told, written
+from .recording_files import ANGLES, has_note, live_link, timecodes, written
 
 
 def test_a_raw_take(tmp_path: Path) -> None:
@@ -55,18 +55,19 @@ def test_values_that_are_none(tmp_path: Path) -> None:
     """A value like -9.8e5 is no measurement, the frames beside it count; 1.2 is one."""
     columns = live_link()
     jaw = np.full(120, 0.5)
-    jaw[7], jaw[9] = -9.8e5, 1.2
+    jaw[7] = -9.8e5
+    jaw[9] = 1.2
     take = read_take(written(tmp_path / "take.csv", columns | {"JawOpen": jaw}))
     assert take.channels["jawOpen"][7] == pytest.approx((0.5 + 0.5) / 2.0)
     assert take.channels["jawOpen"][9] == 1.2
-    assert told(take.notes, "far from 0 to 1")
+    assert has_note(take.notes, "far from 0 to 1")
 
 
 @pytest.mark.parametrize(("name", "unit"), [("radians", 1.0), ("degrees", math.pi / 180.0)])
 def test_units_of_angles(name: str, unit: float, tmp_path: Path) -> None:
-    """Their size tells the unit, for no head turns by more than a quarter of a circle."""
+    """Their size shows the unit, for no head turns by more than a quarter of a circle."""
     take = read_take(written(tmp_path / "take.csv", live_link(unit=unit)))
-    assert told(take.notes, f"taken for {name}")
+    assert has_note(take.notes, f"taken for {name}")
     known = live_link()
     for ours, theirs in (("head_yaw", "HeadYaw"), ("eye_pitch_left", "LeftEyePitch")):
         there = -np.degrees(np.array(known[theirs], dtype=float))
@@ -76,7 +77,8 @@ def test_units_of_angles(name: str, unit: float, tmp_path: Path) -> None:
 def test_axes_of_the_eyeballs(tmp_path: Path) -> None:
     """The app's axes stand 4 degrees outwards of where an eye looks; a face must not squint out."""
     take = read_take(written(tmp_path / "take.csv", live_link()))
-    left, right = take.channels["eye_yaw_left"], take.channels["eye_yaw_right"]
+    left = take.channels["eye_yaw_left"]
+    right = take.channels["eye_yaw_right"]
     assert np.abs(left - right).max() < 1e-3
     wanted = -np.degrees(0.62 * take.channels["eyeLookInLeft"])
     wanted += np.degrees(0.59 * take.channels["eyeLookOutLeft"])
@@ -89,11 +91,11 @@ def test_angles_that_are_switched_off(tmp_path: Path) -> None:
     take = read_take(written(tmp_path / "take.csv", live_link() | off))
     assert "head_yaw" not in take.channels
     assert "eye_yaw_left" in take.channels
-    assert told(take.notes, "switched off")
+    assert has_note(take.notes, "switched off")
 
 
 def test_a_calibrated_take(tmp_path: Path) -> None:
-    """A calibrated take is told from a raw one by brows and nose, which otherwise never rest."""
+    """A calibrated take has brows and a nose that rest; those of a raw one never do."""
     columns = live_link()
     shapes = {name[0].upper() + name[1:] for name in ARKIT}
     calibrated = {
@@ -119,20 +121,20 @@ def take_of(path: Path, codes: list[str], rate: float | None = None) -> tuple[ob
 
 
 def test_the_fraction_of_a_frame(tmp_path: Path) -> None:
-    """Where frames come a little slower than 60 a second, the fraction tells each one's time."""
+    """Where frames come a little slower than 60 a second, the fraction gives each one's time."""
     frames = 37.867 + 1.003 * np.arange(400)
     times, notes = take_of(tmp_path, timecodes(frames))
     assert times == pytest.approx(1.003 * np.arange(400) / 60.0, abs=1e-4)
-    assert told(notes, "60 frames a second")
+    assert has_note(notes, "60 frames a second")
 
 
 @pytest.mark.parametrize("rate", [24, 25, 30, 50, 60])
 def test_rates(rate: int, tmp_path: Path) -> None:
-    """The highest number of a frame in a second tells the rate, also without a fraction."""
+    """The highest number of a frame in a second gives the rate, also without a fraction."""
     codes = [code[:-4] for code in timecodes(np.arange(3 * rate), rate)]
     times, notes = take_of(tmp_path, codes)
     assert times == pytest.approx(np.arange(3 * rate) / rate, abs=1e-9)
-    assert told(notes, f"{rate} frames a second")
+    assert has_note(notes, f"{rate} frames a second")
 
 
 def test_a_rate_that_the_user_knows(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from risorius.app.recordings import calibration_for, read_take
 from risorius.app.recordings.report import report_of
 from risorius.app.script import Script
 
-from .recording_files import openface, told, written
+from .recording_files import has_note, openface, written
 
 CUES = [(0.0, 0.1, "X"), (0.1, 0.2, "B"), (0.2, 2.2, "A"), (2.2, 2.3, "D"), (2.3, 3.0, "X")]
 
@@ -65,7 +65,7 @@ def test_the_sound_of_rhubarb(name: str, tmp_path: Path) -> None:
     sound.write_bytes(b"RIFF")
     path = rhubarb(tmp_path / "take.json", str(sound) if name == "full" else name)
     assert script_of(path).sound == sound
-    assert told(read_take(path).notes, "The sound is 'voice.wav'")
+    assert has_note(read_take(path).notes, "The sound is 'voice.wav'")
 
 
 def test_a_sound_that_is_gone(tmp_path: Path) -> None:
@@ -87,7 +87,9 @@ def test_one_of_a_kind(tmp_path: Path) -> None:
     """One place, one row, one cell and one value are not several."""
     times: list[object] = [*np.arange(30) / 30.0, *(3.0 + np.arange(30) / 30.0)]
     jaw: list[object] = [0.5] * 60
-    times[5], jaw[20], jaw[40] = "", "wide", 50.0
+    times[5] = ""
+    jaw[20] = "wide"
+    jaw[40] = 50.0
     report = lines_of(written(tmp_path / "take.csv", {"time": times, "jawOpen": jaw}))
     assert "Rows are missing in 1 place, " in report
     assert "1 row without a time of their own was left out" in report

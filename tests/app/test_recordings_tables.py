@@ -10,7 +10,7 @@ import pytest
 
 from risorius.app.recordings import is_recording, read_take
 
-from .recording_files import table, told
+from .recording_files import has_note, table
 
 JAW = np.sin(np.arange(180) / 30.0) ** 2
 COLUMNS = {"timestamp": np.arange(180) / 60.0, "jawOpen": JAW, "mouthSmile_L": JAW / 2.0}
@@ -104,7 +104,7 @@ def test_layouts(kind: str, tmp_path: Path) -> None:
     assert take.channels.keys() == {"jawOpen", "mouthSmileLeft"}
     assert take.channels["jawOpen"] == pytest.approx(JAW, abs=1e-6)
     assert not take.unknown
-    assert told(take.notes, note) or not note
+    assert has_note(take.notes, note) or not note
 
 
 def test_a_separator_in_a_name(tmp_path: Path) -> None:
@@ -148,7 +148,7 @@ def test_encodings(codec: str, name: str, tmp_path: Path) -> None:
     take = read_take(path)
     assert take.unknown == ("für später",)
     assert take.channels["jawOpen"] == pytest.approx(JAW, abs=1e-6)
-    assert told(take.notes, f"read as {name}")
+    assert has_note(take.notes, f"read as {name}")
 
 
 def test_json_in_utf_16(tmp_path: Path) -> None:
@@ -158,7 +158,7 @@ def test_json_in_utf_16(tmp_path: Path) -> None:
     assert is_recording(path)
     take = read_take(path)
     assert take.channels["jawOpen"] == pytest.approx([0.1, 0.5])
-    assert told(take.notes, "read as UTF-16")
+    assert has_note(take.notes, "read as UTF-16")
 
 
 def test_a_quoted_text_beside_numbers(tmp_path: Path) -> None:
@@ -199,4 +199,4 @@ def test_a_column_that_stands_twice(header: str, note: str, tmp_path: Path) -> N
     take = read_take(path)
     (values,) = take.channels.values()
     assert values[0] < values[1]
-    assert told(take.notes, note)
+    assert has_note(take.notes, note)

@@ -10,7 +10,7 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.recordings import is_recording, read_take
 
-from .recording_files import live_link, table, told, written
+from .recording_files import has_note, live_link, table, written
 
 COLUMNS = {"time": np.arange(6) / 30.0, "jawOpen": np.arange(6) / 10.0, "AU4": np.full(6, 0.25)}
 
@@ -62,10 +62,10 @@ def test_odd_tables(change: object, tmp_path: Path) -> None:
 
 
 def test_a_torn_last_row(tmp_path: Path) -> None:
-    """It is left out, and told."""
+    """It is left out and reported."""
     path = tmp_path / "take.csv"
     path.write_text(table(COLUMNS) + "0.2,0.6")
-    assert told(check(path), "The last row, line 8, is torn")
+    assert has_note(check(path), "The last row, line 8, is torn")
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_what_is_no_recording(content: bytes, words: str, tmp_path: Path) -> Non
 
 
 def test_no_file(tmp_path: Path) -> None:
-    """What is not there, a folder and a pipe are told at once, and are no recordings."""
+    """A missing file, a folder and a pipe are refused at once."""
     os.mkfifo(tmp_path / "pipe")
     for name, words in (("nowhere", "no such recording"), ("", "folder"), ("pipe", "pipe")):
         assert not is_recording(tmp_path / name)
@@ -121,7 +121,7 @@ def test_a_rate_that_is_none(rate: float, tmp_path: Path) -> None:
     ],
 )
 def test_files_of_ours_are_no_recordings(text: str, tmp_path: Path) -> None:
-    """Scripts, landmarks and heads are told from takes by what is in them."""
+    """Scripts, landmarks and heads are not taken for recordings: their content differs."""
     path = tmp_path / "take.csv"
     path.write_text(text)
     assert not is_recording(path)

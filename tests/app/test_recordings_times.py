@@ -10,7 +10,7 @@ import pytest
 
 from risorius.app.recordings import Take, read_take
 
-from .recording_files import told, written
+from .recording_files import has_note, written
 
 JAW = np.linspace(0.0, 0.9, 90)
 
@@ -62,7 +62,7 @@ def test_a_rate_that_timecode_contradicts(tmp_path: Path) -> None:
     cells = [timecode(frame, 60) for frame in range(0, 240, 2)]
     take = take_of(tmp_path, cells, name="Timecode", rate=30.0)
     assert take.duration == pytest.approx(238 / 60.0)
-    assert told(take.notes, "counts 60 frames a second; 30 was not used")
+    assert has_note(take.notes, "counts 60 frames a second; 30 was not used")
 
 
 @pytest.mark.parametrize("separator", [";", ":"])
@@ -73,7 +73,7 @@ def test_drop_frame(base: int, separator: str, tmp_path: Path) -> None:
     cells = [drop_frame(int(frame), base, separator) for frame in frames]
     take = take_of(tmp_path, cells, name="Timecode")
     assert take.times == pytest.approx(frames * 1.001 / base, abs=1e-4)
-    assert told(take.notes, "Timecode drops frames")
+    assert has_note(take.notes, "Timecode drops frames")
 
 
 @pytest.mark.parametrize(("start", "step"), [(0, 1), (3, 5), (7, 10)])
@@ -108,7 +108,7 @@ def test_rows_that_share_a_frame_of_timecode(tmp_path: Path) -> None:
     cells = [timecode(row // 2, 30) for row in range(180)]
     take = take_of(tmp_path, cells, name="Timecode")
     assert take.times == pytest.approx(np.arange(180) / 60.0)
-    assert told(take.notes, "spread evenly")
+    assert has_note(take.notes, "spread evenly")
 
 
 def clock(form: str) -> Callable[[float], str]:
@@ -172,7 +172,7 @@ def test_clocks_and_stamps(kind: str, tmp_path: Path) -> None:
     for rate in (None, 30.0):
         take = take_of(tmp_path, cells, rate=rate)
         assert take.times == pytest.approx(times, abs=6e-3)
-        assert not told(take.notes, "No times are given")
+        assert not has_note(take.notes, "No times are given")
     frames = [{"time": cell, "jawOpen": jaw} for cell, jaw in zip(cells, JAW, strict=True)]
     path = tmp_path / "take.json"
     path.write_text(json.dumps(frames))
@@ -210,13 +210,13 @@ def test_a_clock_of_whole_seconds(tmp_path: Path) -> None:
     """Rows of one second are spread over it."""
     take = take_of(tmp_path, [f"12:00:{row // 30:02}" for row in range(90)])
     assert take.times == pytest.approx(np.arange(90) / 30.0)
-    assert told(take.notes, "spread evenly")
+    assert has_note(take.notes, "spread evenly")
 
 
 def test_times_that_cannot_be_read(tmp_path: Path) -> None:
     """The column is named, and frames are played one by one."""
     take = take_of(tmp_path, ["half past: ten"] * 90)
     assert take.duration == pytest.approx(89 / 30.0)
-    assert told(take.notes, "The times in 'time' cannot be read, and were not used")
-    assert told(take.notes, "Instead 30 frames a second were assumed")
-    assert not told(take.notes, "No times are given")
+    assert has_note(take.notes, "The times in 'time' cannot be read, and were not used")
+    assert has_note(take.notes, "Instead 30 frames a second were assumed")
+    assert not has_note(take.notes, "No times are given")

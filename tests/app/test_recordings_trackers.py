@@ -8,7 +8,7 @@ import pytest
 from risorius.app.errors import UserError
 from risorius.app.recordings import read_take
 
-from .recording_files import openface, pyfeat, pyfeat_2, table, told, written
+from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, written
 
 # OpenFace
 
@@ -41,16 +41,17 @@ def test_openface_sees_the_gaze_from_the_camera(tmp_path: Path) -> None:
     """Eyes that stay on the camera turn against the head, and look ahead in the middle."""
     columns = openface()
     take = read_take(written(tmp_path / "take.csv", columns))
-    head, eye = take.channels["head_yaw"], take.channels["eye_yaw_left"]
+    head = take.channels["head_yaw"]
+    eye = take.channels["eye_yaw_left"]
     assert np.ptp(head + eye) < 1e-3
     up = -np.degrees(np.array(columns["gaze_angle_y"], dtype=float))
     assert np.ptp(take.channels["head_pitch"] + take.channels["eye_pitch_left"] - up) < 1e-3
     assert np.median(eye) == pytest.approx(0.0, abs=1e-9)
-    assert told(take.notes, "camera")
+    assert has_note(take.notes, "camera")
 
 
 def test_openface_1(tmp_path: Path) -> None:
-    """No face_id, no gaze_angle, blanks before names; the vectors of both eyes tell the gaze."""
+    """No face_id, no gaze_angle, blanks before names; gaze from the vectors of both eyes."""
     columns = openface()
     for name in ("face_id", "gaze_angle_x", "gaze_angle_y"):
         del columns[name]
@@ -75,7 +76,7 @@ def test_stamps_in_other_units(unit: float, name: str, tmp_path: Path) -> None:
     columns["timestamp"] = [round(stamp * unit) for stamp in np.arange(60) / 30.0]
     take = read_take(written(tmp_path / "take.csv", columns))
     assert take.duration == pytest.approx(59 / 30.0, abs=1e-3)
-    assert told(take.notes, name)
+    assert has_note(take.notes, name)
 
 
 def test_no_face_at_all(tmp_path: Path) -> None:
@@ -91,22 +92,26 @@ def test_rows_of_nan(tmp_path: Path) -> None:
     cells: list[object] = list(np.full(60, 2.0))
     cells[10:14] = ["nan", "inf", "NaN", "1e99"]
     take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
-    assert told(take.notes, "4 cells hold no usable number")
-    cells[11], cells[20] = "", "two"
+    assert has_note(take.notes, "4 cells hold no usable number")
+    cells[11] = ""
+    cells[20] = "two"
     take = read_take(written(tmp_path / "take.csv", columns | {"AU12_r": cells}))
     assert take.channels["AU12"] == pytest.approx(0.4)
-    assert told(take.notes, "5 cells hold no usable number, the first in line 12, column 'AU12_r'")
+    assert has_note(
+        take.notes, "5 cells hold no usable number, the first in line 12, column 'AU12_r'"
+    )
 
 
 def test_several_faces(tmp_path: Path) -> None:
     """The face that most rows show is taken, or the one that is asked for."""
-    one, other = openface(), openface(20)
+    one = openface()
+    other = openface(20)
     rows = table(one).splitlines() + table(other | {"face_id": [3] * 20}).splitlines()[1:]
     path = tmp_path / "take.csv"
     path.write_text("\n".join(rows))
     take = read_take(path)
     assert len(take.times) == 60
-    assert told(take.notes, "2 faces are in the file; taken was '0'")
+    assert has_note(take.notes, "2 faces are in the file; taken was '0'")
     assert len(read_take(path, face="3").times) == 20
     with pytest.raises(UserError, match=r"no face '7'; in it are '0', '3'"):
         read_take(path, face="7")
@@ -125,7 +130,7 @@ def test_pyfeat_1(tmp_path: Path) -> None:
     assert take.channels["head_pitch"][-1] == pytest.approx(10.0)
     assert take.channels["head_yaw"][-1] == pytest.approx(-20.0)
     assert take.channels["head_roll"][-1] == pytest.approx(3.0)
-    assert told(take.notes, "degrees")
+    assert has_note(take.notes, "degrees")
 
 
 def test_pyfeat_2(tmp_path: Path) -> None:
@@ -141,8 +146,8 @@ def test_pyfeat_2(tmp_path: Path) -> None:
     assert "AU12" not in take.channels
     assert "cheekSquintLeft" not in take.channels
     assert take.channels["AU6"] == pytest.approx(0.4)
-    assert told(take.notes, "twice")
-    assert told(take.notes, "one in 2 frames")
+    assert has_note(take.notes, "twice")
+    assert has_note(take.notes, "one in 2 frames")
 
 
 def test_pyfeat_names_persons(tmp_path: Path) -> None:
@@ -199,11 +204,11 @@ def test_units_of_action_units(largest: float, tmp_path: Path) -> None:
     columns = {"t": np.arange(11) / 30.0, "AU12": np.linspace(0.0, largest, 11)}
     take = read_take(written(tmp_path / "take.csv", columns))
     assert take.channels["AU12"] == pytest.approx(np.linspace(0.0, 1.0, 11))
-    assert told(take.notes, "divided") == (largest > 1.0)
+    assert has_note(take.notes, "divided") == (largest > 1.0)
 
 
 def test_a_table_of_something_else(tmp_path: Path) -> None:
-    """A table in which nothing is known is told from no table at all."""
+    """A table of unknown columns is another fault than no table at all."""
     path = written(tmp_path / "take.csv", {"date": ["x"] * 3, "price": [1.0] * 3})
     with pytest.raises(UserError, match=r"no column is known \('date', 'price'.*Live Link Face"):
         read_take(path)

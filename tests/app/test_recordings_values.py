@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from risorius.app.recordings import Take, is_recording, read_take
 
-from .recording_files import told, written
+from .recording_files import has_note, written
 
 COUNT = 150
 RISE = np.sin(np.linspace(0.0, np.pi, COUNT)) ** 2
@@ -69,8 +69,8 @@ def test_units(kind: str, tmp_path: Path) -> None:
     take = of_table(tmp_path, columns)
     assert take.channels.keys() == {channel}
     assert take.channels[channel].max() == pytest.approx(peak, abs=2e-3)
-    assert told(take.notes, note) or not note
-    assert not told(take.notes, "No face")
+    assert has_note(take.notes, note) or not note
+    assert not has_note(take.notes, "No face")
 
 
 def test_stray_values_are_no_percent(tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_stray_values_are_no_percent(tmp_path: Path) -> None:
     jaw[[20, 70]] = 80.0
     take = of_table(tmp_path, {"jawOpen": jaw})
     assert take.channels["jawOpen"].max() == pytest.approx(1.0, abs=1e-3)
-    assert told(take.notes, "2 values of shapes are far from 0 to 1")
+    assert has_note(take.notes, "2 values of shapes are far from 0 to 1")
 
 
 def lost_columns(value: float) -> tuple[dict[str, Any], np.ndarray]:
@@ -122,7 +122,7 @@ def test_rows_without_a_face(
     else:
         take = of_table(tmp_path, columns)
     assert not take.is_calibrated
-    assert told(take.notes, "No face in 40 of 150 frames")
+    assert has_note(take.notes, "No face in 40 of 150 frames")
     assert take.channels["browDownLeft"].min() > 0.39
     assert not take.unknown
 
@@ -140,7 +140,7 @@ def test_zeros_of_a_calibrated_face_are_rest(tmp_path: Path) -> None:
     shapes = {name: np.maximum(RISE - 0.5, 0.0) for name in RESTING}
     take = of_table(tmp_path, shapes)
     assert take.is_calibrated
-    assert not told(take.notes, "No face")
+    assert not has_note(take.notes, "No face")
 
 
 YAW = 20.0 * np.sin(TIMES + 0.1)
@@ -221,7 +221,7 @@ def test_what_json_says_besides(tmp_path: Path) -> None:
     take = of_json(tmp_path, frames)
     assert take.unknown == ("emotion",)
     assert take.channels["jawOpen"][3] == 0.25
-    assert told(take.notes, "these were left out: 'JawOpen'")
+    assert has_note(take.notes, "these were left out: 'JawOpen'")
 
 
 @pytest.mark.parametrize("form", ["{:.1f}%", "{:.1f} %"])
@@ -243,4 +243,4 @@ def test_percent_signs_in_cells(form: str, tmp_path: Path) -> None:
         take = read_take(path)
         assert take.channels["jawOpen"][-5:] == pytest.approx(values[-5:])
         assert take.channels["cheekPuff"] == pytest.approx(0.5)
-        assert told(take.notes, "No face in")
+        assert has_note(take.notes, "No face in")

@@ -1,4 +1,4 @@
-"""What refiners can be told: read from their declarations, with any version of numpy."""
+"""The options of refiners: read from their declarations, with any version of numpy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from risorius.refine.border import registry
 def test_only_switches_numbers_and_words_are_options(monkeypatch: pytest.MonkeyPatch) -> None:
     """An array that may also be a bool, as numpy 2.2 declares them, is no switch."""
 
-    def told(
+    def declared(
         faces: npt.ArrayLike,
         rest_positions: npt.ArrayLike,
         *,
@@ -27,8 +27,10 @@ def test_only_switches_numbers_and_words_are_options(monkeypatch: pytest.MonkeyP
         """A refiner of somebody else, whose annotations are text."""
         return refine.PassThrough(faces, rest_positions)
 
-    monkeypatch.setattr(registry.refiners, "_factories", {"told": told, "loop": refine.Loop})
-    assert options_of("told") == {"grown": None, "share": 0.5}
+    monkeypatch.setattr(
+        registry.refiners, "_factories", {"declared": declared, "loop": refine.Loop}
+    )
+    assert options_of("declared") == {"grown": None, "share": 0.5}
     assert options_of("loop") == {"levels": 1}
 
 

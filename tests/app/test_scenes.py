@@ -29,7 +29,9 @@ def test_a_value_beyond_its_limits_is_cut_off_from_each_door(
     scene: FaceScene, value: float, gain: float
 ) -> None:
     """A script, a hand, a recording and a live face; and not before all has been added to it."""
-    limits, rest, frame = scene.limits, scene.limits.pose({}), dict[str, float]()
+    limits = scene.limits
+    rest = scene.limits.pose({})
+    frame = dict[str, float]()
     script = Script("", 1.0, "", poses=(Pose(0.0, {"jaw_open": 0.5}),))
     tracked = replace(script, tracks={"jaw_open": Channel([0.0], [value])})
     session = Session(scene, script)
@@ -69,7 +71,8 @@ def test_the_face_takes_controls_of_every_layer(face: FaceScene) -> None:
         face.pose({"c": 1.0})
     assert len(face.expressions) >= 9
     face.pose({"joy": 0.5, "AU4_left": 1.7, "viseme_aa": 0.2, "jaw_open": 0.1})
-    assert face.values["joy"] == 0.5 and face.values["AU4_left"] == 1.0
+    assert face.values["joy"] == 0.5
+    assert face.values["AU4_left"] == 1.0
     face.pose({"AU12": 1.0})
     assert {name for name, value in face.values.items() if value} == {"AU12"}
 

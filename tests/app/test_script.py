@@ -48,8 +48,10 @@ def test_lines_are_keys_as_tables_are() -> None:
         "{ time = 1.5, value = 1, easing = 'hold' }, { time = 2, value = 0, easing = 'linear' }]",
         source="s",
     )
-    assert lines == tables and lines.tracks["joy"].keys == tables.tracks["joy"].keys
-    assert lines.at(1.75) == {"joy": 0.5} and lines.at(1.0) == {"joy": 0.5}
+    assert lines == tables
+    assert lines.tracks["joy"].keys == tables.tracks["joy"].keys
+    assert lines.at(1.75) == {"joy": 0.5}
+    assert lines.at(1.0) == {"joy": 0.5}
 
 
 @st.composite
@@ -71,7 +73,8 @@ def test_what_is_written_reads_back(tracks: dict[str, Channel]) -> None:
     """To the last digit, whether a track is written as tables or as lines, and in its order."""
     script = Script("t", 1.0, "t", poses=(Pose(0.0),), tracks=tracks)
     read = parse_script(script_text(script), source="t")
-    assert read == script and list(read.tracks) == list(tracks)
+    assert read == script
+    assert list(read.tracks) == list(tracks)
     assert script_text(read) == script_text(script)
 
 
@@ -79,7 +82,8 @@ def test_what_is_written_reads_back(tracks: dict[str, Channel]) -> None:
 def test_a_channel_has_the_values_of_its_keys(channel: Channel, data: st.DataObject) -> None:
     """At a key its own value; between two keys what their easing makes of them."""
     keys = channel.keys
-    assert channel == Channel.of(keys) and len(channel) == len(keys)
+    assert channel == Channel.of(keys)
+    assert len(channel) == len(keys)
     assert [channel.value(key.time) for key in keys] == [key.value for key in keys]
     time = data.draw(st.floats(0.0, LARGEST))
     before = [key for key in keys if key.time <= time][-1:] or keys[:1]
@@ -98,8 +102,11 @@ def test_a_drawn_curve_is_what_is_played(channel: Channel, start: float, span: f
     keys = [time for time in channel.times.tolist() if start <= time <= start + span]
     if len(keys) <= 40:
         assert values.tolist() == pytest.approx([channel.value(time) for time in times.tolist()])
-        assert set(keys) <= set(times.tolist()) and np.all(np.diff(times) > 0.0)
-    assert len(times) <= 4 * 41 and start <= times[1] and times[-1] <= start + span
+        assert set(keys) <= set(times.tolist())
+        assert np.all(np.diff(times) > 0.0)
+    assert len(times) <= 4 * 41
+    assert start <= times[1]
+    assert times[-1] <= start + span
 
 
 @given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(ALL_EASINGS)))
@@ -131,13 +138,13 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
     ],
 )
 def test_what_is_wrong_is_named(text: str, message: str) -> None:
-    """Each mistake is told with the file, the key and what is allowed."""
+    """Each mistake is reported with the file, the key and the allowed values."""
     with pytest.raises(UserError, match=message):
         parse_script(text, source="bad.toml")
 
 
 def test_unknown_names_get_a_suggestion() -> None:
-    """A name that the scene does not have is told with the nearest ones."""
+    """An unknown name is reported with the nearest known ones."""
     script = parse_script(HELLO, source="hello.toml")
     with pytest.raises(UserError, match=r"hello.toml: unknown name 'joy'; did you mean joyful"):
         script.check(dict.fromkeys(("joyful", "jaw_open", "blink"), (0.0, 1.0)))
@@ -152,7 +159,7 @@ def test_unknown_names_get_a_suggestion() -> None:
     ],
 )
 def test_values_out_of_limits_are_named(text: str, message: str) -> None:
-    """Too much, or too little, is told with the control, the moment and its limits."""
+    """Too much, or too little, is reported with the control, the time and its limits."""
     script = parse_script(text, source="bad.toml")
     with pytest.raises(UserError, match=message):
         script.check({"joy": (0.0, 1.0), "jaw": (-1.0, 1.0)})
@@ -173,7 +180,7 @@ def test_missing_and_unreadable_files(tmp_path: Path) -> None:
         load_script(long)
 
 
-def test_names_are_told_on_one_line() -> None:
+def test_names_are_reported_on_one_line() -> None:
     """What a terminal would obey, or break the line at, is escaped; long names are cut."""
     for name, shown in (
         ("a\\nrisorius: b", r"a\nrisorius: b"),
@@ -182,11 +189,11 @@ def test_names_are_told_on_one_line() -> None:
         ("é ü", "é ü"),
     ):
         script = parse_script(f'[[pose]]\ntime=1\n"{name}"=1', source="x.toml")
-        with pytest.raises(UserError) as told:
+        with pytest.raises(UserError) as raised:
             script.check({"joy": (0.0, 1.0)})
-        assert f"x.toml: unknown name '{shown}'; `risorius controls`" in str(told.value)
+        assert f"x.toml: unknown name '{shown}'; `risorius controls`" in str(raised.value)
     with pytest.raises(
         UserError, match=r"x.toml: unknown name 'aaaa.* \.\.\. aaa.*lists every"
-    ) as told:
+    ) as raised:
         parse_script(f"[[pose]]\ntime=1\n{10**6 * 'a'}=1", source="x.toml").check({})
-    assert len(str(told.value)) < 2100
+    assert len(str(raised.value)) < 2100

@@ -44,7 +44,8 @@ def test_a_take_comes_in_as_it_went_out(heard: socket.socket) -> None:
     found = []
     while len(found) < 4:
         frame = parse(heard.recv(9000))
-        assert frame is not None and frame.is_complete
+        assert frame is not None
+        assert frame.is_complete
         found.append((frame.channels["mouthSmileLeft"], frame.channels["head_yaw"]))
     assert [each[0] for each in found] == pytest.approx(smile, abs=1e-6)
     assert [each[1] for each in found] == pytest.approx(turn, abs=1e-3)
@@ -71,7 +72,8 @@ class Stopped(Exception):  # noqa: N818, what ends the test is no error
 
 def clock_until(end: float) -> tuple[Callable[[], float], Callable[[float], None], list[float]]:
     """A clock, a sleep that moves it and ends the test, and what was slept."""
-    now, slept = [0.0], []
+    now = [0.0]
+    slept = []
 
     def sleep(seconds: float) -> None:
         """Move on."""
@@ -92,7 +94,8 @@ def test_a_take_keeps_its_time_and_may_go_round(heard: socket.socket) -> None:
         pytest.raises(Stopped),
     ):
         sender.play(take, is_looping=True, clock=clock, sleep=sleep)
-    assert slept[0] == 0.0 and slept[1:] == pytest.approx([STEP] * (len(slept) - 1))
+    assert slept[0] == 0.0
+    assert slept[1:] == pytest.approx([STEP] * (len(slept) - 1))
     assert len(slept) > 25
 
 
@@ -114,4 +117,6 @@ def test_the_command_sends_a_file(tmp_path: Path, heard: socket.socket) -> None:
     assert result.exit_code == 0, result.output
     assert f"to 127.0.0.1, port {port}; " in result.output
     frame = parse(heard.recv(9000))
-    assert frame is not None and frame.subject == "take" and frame.channels["jawOpen"] == 0.5
+    assert frame is not None
+    assert frame.subject == "take"
+    assert frame.channels["jawOpen"] == 0.5

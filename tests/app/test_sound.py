@@ -49,7 +49,8 @@ def test_a_wav_is_read_to_the_sample(tmp_path: Path) -> None:
     for sides in (1, 2):
         samples = np.stack([noise(0.5, 48_000, seed=seed) for seed in range(sides)], axis=1)
         sound = load_sound(write_wav(tmp_path / "a b, ü.wav", samples, 48_000))
-        assert sound.samples.shape == (24_000, sides) and sound.duration == 0.5
+        assert sound.samples.shape == (24_000, sides)
+        assert sound.duration == 0.5
         assert np.abs(sound.samples / 32_767 - samples).max() < 1e-4
     six = load_sound(write_wav(tmp_path / "six.wav", np.zeros((100, 6)), 48_000))
     assert six.samples.shape == (100, 2)
@@ -66,7 +67,7 @@ def test_other_rates_are_in_step(tmp_path: Path, rate: int) -> None:
     assert lag(again, load_sound(tmp_path / "high.wav")) == pytest.approx(0.0, abs=5e-4)
 
 
-def test_what_is_no_sound_is_told_in_one_line(tmp_path: Path) -> None:
+def test_what_is_no_sound_is_reported_in_one_line(tmp_path: Path) -> None:
     """Missing, empty, damaged, mute, a folder, a pipe: what it is, and what would do."""
     (tmp_path / "text.wav").write_text("no sound")
     (tmp_path / "empty.wav").touch()
@@ -75,9 +76,9 @@ def test_what_is_no_sound_is_told_in_one_line(tmp_path: Path) -> None:
     with outputs.film(tmp_path / "mute.mp4", (64, 48), 25.0) as add:
         add(GREY)
     for name in ("text.wav", "empty.wav", "mute.wav", "list.m3u8", "mute.mp4"):
-        with pytest.raises(UserError, match=f"{name}: there is no sound in it") as told:
+        with pytest.raises(UserError, match=f"{name}: there is no sound in it") as raised:
             load_sound(tmp_path / name)
-        assert "\n" not in str(told.value)
+        assert "\n" not in str(raised.value)
     with pytest.raises(UserError, match=r"nothing\.wav: no such sound file"):
         load_sound(tmp_path / "nothing.wav")
     with pytest.raises(UserError, match="is a folder"):
@@ -177,11 +178,13 @@ class HandDevice:
     """A device that asks for samples when a test says so, by a clock of the test's."""
 
     def __init__(self) -> None:
-        self.running, self.now = False, 0.0
+        self.running = False
+        self.now = 0.0
         self._samples: Generator[Any, int, None] | None = None
 
     def start(self, samples: Generator[Any, int, None]) -> None:
-        self.running, self._samples = True, samples
+        self.running = True
+        self._samples = samples
 
     def stop(self) -> None:
         self.running = False
@@ -206,7 +209,7 @@ def device(monkeypatch: pytest.MonkeyPatch) -> HandDevice:
 
 
 def ramp(seconds: float) -> Sound:
-    """A sound whose samples tell their time [ms]."""
+    """A sound whose samples hold their own time [ms]."""
     samples = (np.arange(round(seconds * 48_000)) // 48).astype(np.int16)
     return Sound(Path("ramp"), np.stack([samples, samples], axis=1))
 
@@ -217,19 +220,26 @@ def test_a_player_gives_the_sound_from_the_place_on(device: HandDevice, speed: f
     played = Player(ramp(2.0), clock=lambda: device.now)
     played.play(1.0, speed)
     first = device.ask(COUNT)
-    assert first[0, 0] == 1000 and abs(first[-1, 0] - (1000 + 1000 * speed * player.PERIOD)) <= 1
+    assert first[0, 0] == 1000
+    assert abs(first[-1, 0] - (1000 + 1000 * speed * player.PERIOD)) <= 1
     second = device.ask(COUNT)
     assert abs(int(second[0, 0]) - int(first[-1, 0])) <= 2
     played.play(0.5)
-    assert device.ask(COUNT)[0, 0] == 500 and played.speed == 1.0
+    assert device.ask(COUNT)[0, 0] == 500
+    assert played.speed == 1.0
     played.play(1.99)
     end = device.ask(COUNT)
-    assert end[0, 0] == 1990 and not end[-1].any() and not device.ask(COUNT).any()
+    assert end[0, 0] == 1990
+    assert not end[-1].any()
+    assert not device.ask(COUNT).any()
     played.play(0.5, seconds=0.01)
     snippet = device.ask(COUNT)
-    assert snippet[0, 0] == 500 and not snippet[round(0.01 * 48_000) :].any()
+    assert snippet[0, 0] == 500
+    assert not snippet[round(0.01 * 48_000) :].any()
     played.stop()
-    assert not device.ask(COUNT).any() and device.running and not played.is_heard
+    assert not device.ask(COUNT).any()
+    assert device.running
+    assert not played.is_heard
     played.rest()
     assert not device.running
 
@@ -254,13 +264,15 @@ def test_the_picture_keeps_to_the_sound(
     sound = replace(sound, samples=np.tile(sound.samples, (3, 1)))
     monkeypatch.setattr("risorius.app.viewer.session.soundtrack.load_sound", lambda file: sound)
     session = Session(PlaneScene(), Script("", 80.0, "s", "plane", sound=Path("ramp")))
-    soundtrack, clock = Soundtrack(session), Clock()
+    soundtrack = Soundtrack(session)
+    clock = Clock()
     soundtrack.refresh()
     session.toggle_playing()
     soundtrack.elapsed(0.0)  # it begins to play, and the device fills itself
     for _ in range(player.PERIODS):
         device.ask(COUNT)
-    due, off = player.PERIOD / pace, []
+    due = player.PERIOD / pace
+    off = []
     for frame in range(1, round(60.0 * frames_per_second)):
         now = frame / frames_per_second
         while due <= now:

@@ -41,10 +41,10 @@ def test_nothing_half_written_is_left(
     while process.poll() is None and not is_there(tmp_path, pattern):
         time.sleep(0.01)
     os.killpg(process.pid, number)
-    _, told = process.communicate(timeout=60)
+    _, message = process.communicate(timeout=60)
     assert process.returncode == -number
     # The first start on a machine also says that it compiles.
-    lines = [line for line in told.splitlines() if not line.startswith(b"Compiling")]
+    lines = [line for line in message.splitlines() if not line.startswith(b"Compiling")]
     assert lines == ([b"risorius: stopped"] if number == signal.SIGINT else [])
     assert list(tmp_path.iterdir()) == []
 
@@ -67,8 +67,8 @@ def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     try:
-        _, told = process.communicate(timeout=20)
+        _, message = process.communicate(timeout=20)
     finally:
         process.kill()
-    assert (process.returncode, told) == (-signal.SIGINT, b"risorius: stopped\n")
+    assert (process.returncode, message) == (-signal.SIGINT, b"risorius: stopped\n")
     assert list(folder.iterdir()) == []

@@ -38,7 +38,8 @@ def test_a_skin_that_only_moves_takes_them_along(
     turned = Rotation.from_rotvec(turn)
     skin = turned.apply(np.array(scene.rest_positions)) + shift
     bone = np.eye(4)
-    bone[:3, :3], bone[:3, 3] = turned.as_matrix(), shift
+    bone[:3, :3] = turned.as_matrix()
+    bone[:3, 3] = shift
     made = {part.name: part for part in assets.load("head").parts}
     for part in attached(scene):
         part.follow(skin, np.eye(4))

@@ -22,7 +22,8 @@ def test_no_sample_is_further_off_than_the_tolerance(
     played = [channel.value(time) for time in times.tolist()]
     assert np.abs(np.array(played) - values).max() <= tolerance * (1.0 + 1e-6)
     assert set(channel.times) <= set(times)
-    assert channel.times[0] == times[0] and channel.times[-1] == times[-1]
+    assert channel.times[0] == times[0]
+    assert channel.times[-1] == times[-1]
     assert {key.easing for key in channel.keys} == {"linear"}
 
 

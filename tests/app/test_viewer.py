@@ -163,7 +163,8 @@ def test_a_hovered_expression_lights_its_muscles(viewer: Viewer) -> None:
     drawn = pointed_lines(scene, shares)
     brows = scene.rest_positions[scene.head.landmarks[27], 1]
     points = np.concatenate([line for lines in drawn for line in lines.polylines])
-    assert len(drawn) >= 6 and points[:, 1].max() < brows
+    assert len(drawn) >= 6
+    assert points[:, 1].max() < brows
     assert max(lines.opacity for lines in drawn) > 0.8 > min(lines.opacity for lines in drawn)
     xdotool(viewer, "mousemove", *on_screen(viewer, 880, 300))
     assert until(viewer, lambda: not viewer.view.pointed)
@@ -190,13 +191,15 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     assert stage.refined.triangle_count == 16 * len(stage.scene.faces)
     click(viewer, "Look")
     click(viewer, "Look: paper")
-    assert stage.refined.triangle_count == paper and stage.refined.label == "paper"
+    assert stage.refined.triangle_count == paper
+    assert stage.refined.label == "paper"
     xdotool(viewer, "key", "p")
     assert display.look == stage.refined.label == "smooth"
     assert stage.refined.triangle_count == smooth
     click(viewer, "menu View")
     click(viewer, "menu View: Paper's look")
-    assert display.look == "paper" and stage.refined.triangle_count == paper
+    assert display.look == "paper"
+    assert stage.refined.triangle_count == paper
     assert not viewer.messages.is_error
 
 
@@ -204,9 +207,11 @@ def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
     """Closing with a pose made by hand asks; going back keeps it, going on closes."""
     viewer.session.set("jaw_open", 0.5)
     xdotool(viewer, "key", "ctrl+q")
-    assert viewer.question.is_open and not viewer.surface.should_close
+    assert viewer.question.is_open
+    assert not viewer.surface.should_close
     click(viewer, "question: Back")
-    assert not viewer.question.is_open and viewer.session.values["jaw_open"] == 0.5
+    assert not viewer.question.is_open
+    assert viewer.session.values["jaw_open"] == 0.5
     xdotool(viewer, "key", "ctrl+q")
     click(viewer, "question: Close without saving")
     assert viewer.surface.should_close
@@ -247,7 +252,8 @@ def test_the_window_remembers(tmp_path: Path) -> None:
     start = time.monotonic()
     settings = replayed("--size", "500x400", "--wireframe", "--look", "paper")
     assert time.monotonic() - start > 0.6
-    assert settings.size == (500, 400) and settings.recent == [str(script)]
+    assert settings.size == (500, 400)
+    assert settings.recent == [str(script)]
     assert settings.display == Display(look="paper", wireframe=True)
     assert replayed().display == settings.display
     assert replayed("--look", "smooth").display == Display()  # asked for, though it is the first

@@ -76,8 +76,10 @@ def test_a_film_is_that_of_capture(viewer: Viewer, tmp_path: Path) -> None:
     viewer.settings.display.look = "paper"
     before = scene.positions.copy()
     finish(viewer)
-    assert not viewer.messages.is_error and np.array_equal(scene.positions, before)
-    assert str(tmp_path / "smile") in viewer.messages.text and viewer.messages.stays
+    assert not viewer.messages.is_error
+    assert np.array_equal(scene.positions, before)
+    assert str(tmp_path / "smile") in viewer.messages.text
+    assert viewer.messages.stays
     style = Style(light=LIGHTS["side"], background=LIGHT)
     options = CaptureOptions(SMALL, 12.0, Refinement("paper"), camera="three-quarter", style=style)
     film_of(viewer.session.script, options, output=tmp_path / "captured", progress=False)
@@ -98,7 +100,8 @@ def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -
     begin(viewer, "moved")
     assert until(viewer, lambda: viewer.exporter.job is not None), viewer.messages.text
     assert until(viewer, lambda: viewer.exporter.job is None, LONG)
-    assert "moved.npz" in viewer.messages.text and not viewer.messages.is_error
+    assert "moved.npz" in viewer.messages.text
+    assert not viewer.messages.is_error
     with np.load(tmp_path / "moved.npz") as arrays:
         assert len(arrays["positions"]) == 7
 
@@ -119,15 +122,18 @@ def test_the_window_lives_and_cancel_leaves_nothing(
     xdotool(viewer, "key", "1")
     assert viewer.session.is_alone("joy")
     xdotool(viewer, "key", "ctrl+q")
-    assert "mp4 is being written" in viewer.messages.text and not viewer.surface.should_close
+    assert "mp4 is being written" in viewer.messages.text
+    assert not viewer.surface.should_close
     process = job.task._pool._workers[0].process
     process.send_signal(signal.SIGSTOP)  # it takes its time to end
     click(viewer, "export: stop")
     xdotool(viewer, "key", "2")
-    assert viewer.session.is_alone("sadness") and viewer.exporter.job is job
+    assert viewer.session.is_alone("sadness")
+    assert viewer.exporter.job is job
     process.send_signal(signal.SIGCONT)
     assert until(viewer, lambda: viewer.exporter.job is None)
-    assert "Cancelled" in viewer.messages.text and not viewer.messages.is_error
+    assert "Cancelled" in viewer.messages.text
+    assert not viewer.messages.is_error
     assert list(tmp_path.iterdir()) == []
 
 
@@ -138,5 +144,7 @@ def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
     xdotool(viewer, "key", "F10")
     begin(viewer, "/proc/none/moved")
     assert until(viewer, lambda: "cannot be written" in viewer.messages.text)
-    assert viewer.messages.is_error and "\n" not in viewer.messages.text
-    assert viewer.exporter.job is None and viewer.settings.export.kind == kind
+    assert viewer.messages.is_error
+    assert "\n" not in viewer.messages.text
+    assert viewer.exporter.job is None
+    assert viewer.settings.export.kind == kind

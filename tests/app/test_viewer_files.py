@@ -47,7 +47,8 @@ def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) ->
     pose.write_text(POSE)
     drop(viewer, script)
     assert viewer.session.script.duration == 2.0
-    assert "smile.toml" in viewer.messages.text and not viewer.messages.is_error
+    assert "smile.toml" in viewer.messages.text
+    assert not viewer.messages.is_error
     drop(viewer, pose)
     assert viewer.session.values["jaw_open"] == 0.5
     assert viewer.session.script.duration == 2.0
@@ -59,14 +60,17 @@ def test_a_bad_file_dropped_is_reported_and_survived(viewer: Viewer, tmp_path: P
     bad = tmp_path / "bad.toml"
     bad.write_text(POSE.replace("jaw_open", "no_such_muscle"))
     put(viewer, bad)
-    assert viewer.messages.is_error and "no_such_muscle" in viewer.messages.text
-    assert "\n" not in viewer.messages.text and "message" in viewer.gui.places
+    assert viewer.messages.is_error
+    assert "no_such_muscle" in viewer.messages.text
+    assert "\n" not in viewer.messages.text
+    assert "message" in viewer.gui.places
     bad.write_bytes(bytes(range(256)))
     put(viewer, bad)
     assert "cannot be read" in viewer.messages.text
     put(viewer, bad, tmp_path)
     assert "one of them is enough" in viewer.messages.text
-    assert viewer.messages.is_error and viewer.session.script is before
+    assert viewer.messages.is_error
+    assert viewer.session.script is before
     bad.write_text(POSE)
     put(viewer, bad)
     assert viewer.session.values["jaw_open"] == 0.5
@@ -85,7 +89,8 @@ def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> No
     assert until(viewer, lambda: "folder takes" in viewer.gui.places)
     click(viewer, "folder takes")
     click(viewer, "file smile.toml", times=2)
-    assert viewer.session.script.duration == 2.0 and not viewer.files.is_waiting
+    assert viewer.session.script.duration == 2.0
+    assert not viewer.files.is_waiting
     xdotool(viewer, "key", "ctrl+o")
     assert "file smile.toml" in viewer.gui.places  # begins where it was last
     xdotool(viewer, "key", "Escape")
@@ -99,15 +104,18 @@ def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) ->
     viewer.session.set("jaw_open", 0.4)
     xdotool(viewer, "key", "ctrl+p")
     xdotool(viewer, "key", "Return")
-    assert viewer.files.is_waiting and taken.read_text() == "precious"
+    assert viewer.files.is_waiting
+    assert taken.read_text() == "precious"
     xdotool(viewer, "key", "Return")
-    assert not viewer.files.is_waiting and "jaw_open = 0.4" in taken.read_text()
+    assert not viewer.files.is_waiting
+    assert "jaw_open = 0.4" in taken.read_text()
     viewer.session.set("jaw_open", 0.5)
     xdotool(viewer, "key", "ctrl+p")
     xdotool(viewer, "key", "ctrl+a")
     write(viewer, "/proc/none/pose")
     xdotool(viewer, "key", "Return")
-    assert viewer.messages.is_error and "/proc/none/pose.toml" in viewer.messages.text
+    assert viewer.messages.is_error
+    assert "/proc/none/pose.toml" in viewer.messages.text
     assert "the pose" in viewer.session.work.unsaved
 
 
@@ -118,7 +126,8 @@ def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) 
     assert until(viewer, lambda: viewer.session.recorded_seconds > 0.3)
     viewer.surface.should_close = False
     xdotool(viewer, "key", "ctrl+q")
-    assert "the recording" in viewer.session.work.unsaved and not viewer.surface.should_close
+    assert "the recording" in viewer.session.work.unsaved
+    assert not viewer.surface.should_close
     click(viewer, "question: Save recording ...")
     xdotool(viewer, "key", "Return")
     assert "jaw_open" in (tmp_path / "script.toml").read_text()
@@ -145,7 +154,8 @@ def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
     xdotool(viewer, "key", "k")
     assert title_of(viewer) == "Risorius: smile.toml *"
     xdotool(viewer, "key", "ctrl+s")
-    assert not viewer.files.is_waiting and title_of(viewer) == "Risorius: smile.toml"
+    assert not viewer.files.is_waiting
+    assert title_of(viewer) == "Risorius: smile.toml"
     assert script.read_text().startswith("# mine\n") and len(load_script(script).poses) == 3
     xdotool(viewer, "key", "ctrl+shift+s")
     assert viewer.files.is_waiting
@@ -166,7 +176,8 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     xdotool(viewer, "key", "ctrl+n", "k", "ctrl+s")
     assert viewer.files.is_waiting
     xdotool(viewer, "key", "Return")
-    assert viewer.files.is_waiting and taken.read_text() == "precious"
+    assert viewer.files.is_waiting
+    assert taken.read_text() == "precious"
     xdotool(viewer, "key", "Escape")
     viewer.session.work.open(load_script(Path(str(resources.files("risorius.assets"))) / EXAMPLE))
     xdotool(viewer, "key", "ctrl+s")
@@ -177,7 +188,8 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
     put(viewer, script)
     script.write_text(SCRIPT.replace("joy", "anger"))
     xdotool(viewer, "key", "k", "ctrl+s")
-    assert viewer.files.is_waiting and "another program" in viewer.messages.text
+    assert viewer.files.is_waiting
+    assert "another program" in viewer.messages.text
     assert "anger" in script.read_text()
     xdotool(viewer, "key", "Escape")
 
@@ -191,11 +203,13 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
         viewer.session.set("jaw_open", 0.5)
         viewer.session.note()
         put(viewer, landmarks)
-        assert viewer.messages.is_error and "half of a head" in viewer.messages.text
+        assert viewer.messages.is_error
+        assert "half of a head" in viewer.messages.text
         put(viewer, landmarks, mesh)
         assert until(viewer, lambda: "opened" in viewer.messages.text)
         assert len(viewer.session.scene.faces) > len(before.faces)
-        assert viewer.session.values["jaw_open"] == 0.5 and viewer.session.work.has_unsaved_pose
+        assert viewer.session.values["jaw_open"] == 0.5
+        assert viewer.session.work.has_unsaved_pose
         assert until(viewer, lambda: moved(viewer) > 5.0)
         assert viewer.stage.refined.triangle_count >= len(viewer.session.scene.faces)
         xdotool(viewer, "key", "ctrl+z")
@@ -248,7 +262,8 @@ def test_a_recording_is_dropped_played_and_saved_as_a_script(
     before = take.read_bytes()
     viewer.session.set("jaw_open", 0.4)
     put(viewer, take)
-    assert viewer.question.is_open and viewer.session.work.has_unsaved_pose
+    assert viewer.question.is_open
+    assert viewer.session.work.has_unsaved_pose
     click(viewer, "question: Open without saving")
     assert "take.csv: Table of named columns, 31 frames in 1.00 s" in viewer.messages.text
     assert viewer.session.script.duration == pytest.approx(1.0)
@@ -289,16 +304,20 @@ def test_a_sound_is_dropped_and_played(viewer: Viewer, sound: Path, has_device: 
     """It gets a row of its own, plays and pauses with the script; without a device in peace."""
     before = viewer.timeline.height()
     put(viewer, sound)
-    assert "noise.wav" in viewer.messages.text and not viewer.messages.is_error
-    assert viewer.session.script.sound == sound and viewer.session.work.script_is_unsaved
+    assert "noise.wav" in viewer.messages.text
+    assert not viewer.messages.is_error
+    assert viewer.session.script.sound == sound
+    assert viewer.session.work.script_is_unsaved
     settle(viewer)
-    assert viewer.timeline.height() > before and viewer.soundtrack.sound is not None
+    assert viewer.timeline.height() > before
+    assert viewer.soundtrack.sound is not None
     xdotool(viewer, "key", "space")
     assert viewer.session.is_playing
     assert until(viewer, lambda: viewer.session.time > 0.2)
     assert until(viewer, lambda: viewer.soundtrack.is_heard == has_device)
     xdotool(viewer, "key", "space")
-    assert not viewer.session.is_playing and not viewer.soundtrack.is_heard
+    assert not viewer.session.is_playing
+    assert not viewer.soundtrack.is_heard
     assert not viewer.messages.is_error
     viewer.messages.text = ""
     assert until(viewer, lambda: viewer.is_idle)
@@ -325,7 +344,8 @@ def test_the_waveform_is_seen_and_scrubs(viewer: Viewer, sound: Path, has_device
     place = on_screen(viewer, axis.x(1.5), bottom - 6)
     drag_and_release(viewer, place, (0, 0))
     assert viewer.session.time == pytest.approx(1.5, abs=0.1)
-    assert left < axis.x(0.0) and middle(viewer, "time")
+    assert left < axis.x(0.0)
+    assert middle(viewer, "time")
 
 
 @pytest.mark.parametrize("has_device", ["null device"], indirect=True)
@@ -333,26 +353,31 @@ def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_devi
     """Ctrl+S writes it, undo and the menu take it away, a lost file is reported once."""
     put(viewer, sound)
     xdotool(viewer, "key", "ctrl+s")
-    assert load_script(sound.parent / "s.toml").sound == sound and not viewer.session.work.unsaved
+    assert load_script(sound.parent / "s.toml").sound == sound
+    assert not viewer.session.work.unsaved
     assert 'sound = "noise.wav"' in (sound.parent / "s.toml").read_text()
     xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script.sound is None and viewer.soundtrack.sound is None
+    assert viewer.session.script.sound is None
+    assert viewer.soundtrack.sound is None
     xdotool(viewer, "key", "ctrl+shift+z")
     assert viewer.soundtrack.sound is not None
     viewer.scripts.remove_sound()
     settle(viewer)
-    assert viewer.soundtrack.sound is None and not viewer.scripts.has_sound
+    assert viewer.soundtrack.sound is None
+    assert not viewer.scripts.has_sound
     bad = sound.parent / "bad.mp3"
     bad.write_text("no sound")
     put(viewer, bad)
-    assert viewer.messages.is_error and "there is no sound in it" in viewer.messages.text
+    assert viewer.messages.is_error
+    assert "there is no sound in it" in viewer.messages.text
     sound.unlink()
     viewer.session.work.open(load_script(sound.parent / "s.toml"))
     settle(viewer)
     assert "no such sound file; the script plays without" in viewer.messages.text
     viewer.messages.text = ""
     xdotool(viewer, "key", "space")
-    assert until(viewer, lambda: viewer.session.time > 0.2) and not viewer.messages.text
+    assert until(viewer, lambda: viewer.session.time > 0.2)
+    assert not viewer.messages.text
 
 
 def test_a_name_that_is_no_utf8(viewer: Viewer, tmp_path: Path) -> None:
@@ -360,7 +385,8 @@ def test_a_name_that_is_no_utf8(viewer: Viewer, tmp_path: Path) -> None:
     script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/l\xe4cheln.toml"))
     script.write_text(SCRIPT)
     drop(viewer, script)
-    assert viewer.session.file.path == script and not viewer.messages.is_error
+    assert viewer.session.file.path == script
+    assert not viewer.messages.is_error
     assert viewer.messages.text == r"l\xe4cheln.toml: opened"
     assert title_of(viewer) == r"Risorius: l\xe4cheln.toml"
     viewer.session.set("jaw_open", 0.4)
@@ -371,9 +397,11 @@ def test_a_name_that_is_no_utf8(viewer: Viewer, tmp_path: Path) -> None:
     put(viewer, tmp_path / "none.toml")
     xdotool(viewer, "key", "ctrl+o")
     click(viewer, r"file l\xe4cheln.toml", times=2)
-    assert viewer.session.file.path == script and not viewer.files.is_waiting
+    assert viewer.session.file.path == script
+    assert not viewer.files.is_waiting
     xdotool(viewer, "key", "ctrl+shift+s")
-    assert viewer.files.request is not None and viewer.files.request.target == script
+    assert viewer.files.request is not None
+    assert viewer.files.request.target == script
     xdotool(viewer, "key", "Escape")
     xdotool(viewer, "key", "F12")
     assert not viewer.messages.is_error

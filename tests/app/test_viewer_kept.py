@@ -79,7 +79,8 @@ def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
         expected.display.options = {"kahler": {}}
     assert settings == expected
     place = ", ".join(map(repr, where.split(".")))
-    assert complaint.startswith(f"{path}: as at first: {place}") and "must be " in complaint
+    assert complaint.startswith(f"{path}: as at first: {place}")
+    assert "must be " in complaint
     save_settings(path, settings)
     assert load_settings(path) == (settings, "")
 
@@ -93,7 +94,9 @@ def test_a_file_of_no_use_is_reported(path: Path, content: bytes) -> None:
     path.write_bytes(content)
     settings, complaint = load_settings(path)
     assert settings == Settings()
-    assert complaint.startswith(f"{path}: ") and len(complaint) < 500 and "\n" not in complaint
+    assert complaint.startswith(f"{path}: ")
+    assert len(complaint) < 500
+    assert "\n" not in complaint
     save_settings(path, settings)
     assert load_settings(path) == (Settings(), "")
 
@@ -112,7 +115,8 @@ def test_no_settings_keep_the_window_shut(path: Path, name: str) -> None:
         fault = (
             "'theme': was 'zzz'" if name == "theme" else "threshold_once was x, must be a number"
         )
-        assert viewer.messages.is_error and fault in viewer.messages.text
+        assert viewer.messages.is_error
+        assert fault in viewer.messages.text
         assert viewer.settings.display == Display()
 
 
@@ -139,7 +143,8 @@ def test_a_full_disk_is_reported_and_closes_the_window(
     ]
     assert path.read_text() == '{"theme": "dark"}'
     recovery = Recovery(path.parent, viewer.session)
-    assert recovery.found and load_script(recovery.found).posed_names
+    assert recovery.found
+    assert load_script(recovery.found).posed_names
     recovery.close()
 
 
@@ -200,7 +205,8 @@ def test_work_is_written_soon_and_goes_when_it_is_undone(
 ) -> None:
     """Nothing at first; a pose a moment later, though it is dragged on; nothing when undone."""
     recovery.watch()
-    assert recovery.due_in() == float("inf") and not stored(tmp_path)
+    assert recovery.due_in() == float("inf")
+    assert not stored(tmp_path)
     for step in range(round(1.5 * INTERVAL / STEP)):
         session.set("jaw_open", 0.2 + 0.001 * (step % 100))
         recovery.watch()
@@ -311,7 +317,8 @@ def test_a_window_that_ended_is_recovered(
     script = script_for(None, "face")
     with Viewer(script, SIZE, settings_path=folder / "viewer.json") as viewer:
         settle(viewer)
-        assert not viewer.session.work.unsaved and viewer.messages.is_error
+        assert not viewer.session.work.unsaved
+        assert viewer.messages.is_error
         assert "work is in File > Recent: unsaved-face-" in viewer.messages.text
         viewer.drop(viewer.settings.recent[0].split("\n"))
         moved = {name: value for name, value in viewer.session.values.items() if value}

@@ -40,7 +40,8 @@ def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene)
         key for key in hello.tracks["blink"].keys if key.time != 2.12
     ]
     again = keyframes.keyed(hello, 1.0, limits.pose({"jaw_open": 0.7}))
-    assert again.poses[1].name == "joy" and again.poses[1].easing == "ease-out"
+    assert again.poses[1].name == "joy"
+    assert again.poses[1].easing == "ease-out"
     assert again.poses[1].values == {"jaw_open": 0.7}
 
 
@@ -50,13 +51,15 @@ def test_a_key_in_a_recording(scene: FaceScene) -> None:
     script = parse_script(text + "jaw_open=[{time=0,value=0.5}]", source="take.toml")
     pose = scene.limits.pose
     changed = keyframes.keyed(script, 1.0, pose({"joy": 0.5, "jaw_open": 0.1}))
-    assert changed.poses == () and changed.tracks["joy"] == script.tracks["joy"]
+    assert changed.poses == ()
+    assert changed.tracks["joy"] == script.tracks["joy"]
     assert [(key.time, key.value) for key in changed.tracks["jaw_open"].keys] == [
         (0, 0.5),
         (1, 0.1),
     ]
     held = keyframes.keyed(script, 1.0, pose({"joy": 0.5, "jaw_open": 0.5}))
-    assert len(held.tracks["joy"].keys) == 3 and len(held.tracks["jaw_open"].keys) == 2
+    assert len(held.tracks["joy"].keys) == 3
+    assert len(held.tracks["jaw_open"].keys) == 2
     for time in np.linspace(0.0, 2.0, 9):
         assert held.at(time) == pytest.approx(script.at(time))
 
@@ -78,19 +81,23 @@ def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None
     other = tmp_path / "other.toml"
     other.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 1.0\njoy = 1.0\n")
     session.work.open(load_script(other))
-    assert session.file.path == other and session.work.name == "other.toml"
+    assert session.file.path == other
+    assert session.work.name == "other.toml"
     session.undo()
-    assert session.file.path == own and not session.work.script_is_unsaved
+    assert session.file.path == own
+    assert not session.work.script_is_unsaved
     session.redo()
     session.work.begin_script()
-    assert session.file.path is None and session.work.name == "Untitled"
+    assert session.file.path is None
+    assert session.work.name == "Untitled"
     assert Session(session.scene, script_for(None, "face")).file.path is None
 
 
 def test_losses_of_a_file_are_noticed(session: Session) -> None:
     """Changes by another program, and comments that are not kept; not a # in a title."""
     path = session.file.path
-    assert path is not None and session.file.objection == ""
+    assert path is not None
+    assert session.file.objection == ""
     session.work.save_script(path)
     assert session.file.objection == ""
     text = path.read_text()

@@ -75,10 +75,13 @@ def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:
         click(viewer, f"menu File: {path.name}   {path.parent}")
 
     choose(paths[0])
-    assert viewer.session.script.source == str(paths[0]) and not viewer.messages.is_error
+    assert viewer.session.script.source == str(paths[0])
+    assert not viewer.messages.is_error
     paths[1].unlink()
     choose(paths[1])
-    assert viewer.messages.is_error and "no such file" in viewer.messages.text
-    assert "\n" not in viewer.messages.text and viewer.session.script.source == str(paths[0])
+    assert viewer.messages.is_error
+    assert "no such file" in viewer.messages.text
+    assert "\n" not in viewer.messages.text
+    assert viewer.session.script.source == str(paths[0])
     xdotool(viewer, "key", "Escape")
     assert not viewer.messages.text

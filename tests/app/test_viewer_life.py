@@ -28,7 +28,8 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) > 0.5)
     settle(viewer)
     assert not any(viewer.session.values.values())
-    assert not viewer.session.work.unsaved and not viewer.session.can_undo
+    assert not viewer.session.work.unsaved
+    assert not viewer.session.can_undo
     eye = viewer.view.camera.eye
     motion = viewer.session.scene.bone_transforms()["eye_left"][:3, :3]
     assert (motion @ [0.0, 0.0, 1.0]) @ (eye / np.linalg.norm(eye)) > 0.97
@@ -42,7 +43,8 @@ def test_a_key_switches_it_off_and_on(viewer: Viewer) -> None:
     assert until(viewer, lambda: viewer.is_idle)
     assert moved(viewer) < 0.05
     xdotool(viewer, "key", "a")
-    assert viewer.settings.is_alive and not viewer.is_idle
+    assert viewer.settings.is_alive
+    assert not viewer.is_idle
     assert until(viewer, lambda: moved(viewer) > 0.1)
 
 
@@ -53,7 +55,8 @@ def test_a_script_moves_the_face_alone(viewer: Viewer) -> None:
     assert not viewer.life.is_on
     session.advance(0.1)
     session.toggle_playing()
-    assert session.is_following and not viewer.life.is_on
+    assert session.is_following
+    assert not viewer.life.is_on
     session.seek(session.script.duration)
     assert viewer.life.is_on
 

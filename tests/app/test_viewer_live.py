@@ -117,8 +117,10 @@ def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path)
     assert until(viewer, lambda: "live state" in viewer.gui.places)
     with sending(face, write_take(tmp_path / "take.csv", jawOpen=0.9, browInnerUp=0.5)):
         assert until(viewer, lambda: moved(viewer) > 8.0)
-        assert face.state is State.RECEIVING and not viewer.is_idle
-        assert viewer.session.current["jawOpen"] > 0.1 and not face.unusable
+        assert face.state is State.RECEIVING
+        assert not viewer.is_idle
+        assert viewer.session.current["jawOpen"] > 0.1
+        assert not face.unusable
     assert until(viewer, lambda: face.presence == 0.0)
     assert face.state is State.LOST
     assert until(viewer, lambda: moved(viewer) < 0.3)
@@ -161,7 +163,8 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     hold(viewer, face, 0.5, **{**frown, "mouthSmileLeft": 0.6})
     assert viewer.session.current["mouthSmileRight"] == pytest.approx(0.6, abs=1e-6)
     click(viewer, "listen")
-    assert viewer.live.face is None and viewer.session.current == viewer.session.values
+    assert viewer.live.face is None
+    assert viewer.session.current == viewer.session.values
 
 
 def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
@@ -173,7 +176,8 @@ def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
         sender.send({"jawOpen": 0.8})
         viewer.pause()
         viewer.frame()
-        assert face.silence < 60.0 and not viewer.is_idle
+        assert face.silence < 60.0
+        assert not viewer.is_idle
 
 
 def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
@@ -184,7 +188,8 @@ def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
     try:
         viewer.live.wanted = Listening("livelink", port=other.face.port)
         xdotool(viewer, "key", "ctrl+l")
-        assert viewer.messages.is_error and "cannot listen" in viewer.messages.text
+        assert viewer.messages.is_error
+        assert "cannot listen" in viewer.messages.text
         assert viewer.live.face is None
         with pytest.raises(UserError):
             viewer.live.start(viewer.live.wanted)

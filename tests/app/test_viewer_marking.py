@@ -71,12 +71,15 @@ def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path
     assert marking.unsaved
     marking.file = target
     marking.save()
-    assert not marking.unsaved and json.loads(target.read_text())["landmarks"].count(None) == 65
+    assert not marking.unsaved
+    assert json.loads(target.read_text())["landmarks"].count(None) == 65
     with pytest.raises(AssetError, match="65 of 68"):
         read_landmarks(target, marking.mesh)
     again = Marking(marking.path, FileDialogs())
     again.open(target)
-    assert again.marks == marking.marks and again.current == FIRST[3] and not again.unsaved
+    assert again.marks == marking.marks
+    assert again.current == FIRST[3]
+    assert not again.unsaved
     for number in FIRST[3:]:
         again.put(number, again.placing.points(true_places()[number]))
         again.note()
@@ -87,19 +90,22 @@ def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path
     third.undo()
     assert not third.marks.places and not third.is_upright  # and may be turned again
     third.undo(-1)
-    assert third.marks == again.marks and third.is_upright
+    assert third.marks == again.marks
+    assert third.is_upright
 
 
 def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> None:
     """A landmark file of another program is taken up, and saved as points."""
     _, numbers = stranger().write(tmp_path)
     marking.open(numbers)
-    assert off(marking).max() < 1e-8 and not marking.marks.guessed
+    assert off(marking).max() < 1e-8
+    assert not marking.marks.guessed
     wrong = Marking(marking.path, FileDialogs())
     numbers.write_text(json.dumps({"landmarks": np.roll(stranger().landmarks, 20).tolist()}))
     with pytest.raises(UserError, match=r"\.json: these points are no face's"):
         wrong.open(numbers)
-    assert not wrong.marks.places and wrong.file is None
+    assert not wrong.marks.places
+    assert wrong.file is None
     numbers.write_text('{"landmarks": [1, 2]}')
     with pytest.raises(UserError, match="68 iBug points"):
         marking.open(numbers)
@@ -205,7 +211,8 @@ class TestInTheWindow:
         left, top, width, height = mode.view.area
         place = on_screen(viewer, left + 0.5 * width, top + 0.5 * height)
         xdotool(viewer, "mousemove", *place, "click", 1)
-        assert not mode.marking.marks.places and "No skin looks at you" in viewer.messages.text
+        assert not mode.marking.marks.places
+        assert "No skin looks at you" in viewer.messages.text
 
     def test_a_head_is_marked_from_the_first_click_to_the_picture(
         self, viewer: Viewer, mesh: Path, tmp_path: Path
@@ -214,7 +221,8 @@ class TestInTheWindow:
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
         self.mark_first(viewer)
-        assert np.median(off(marking)) < 2.0 * METRES and off(marking).max() < 2.0 * NEAR
+        assert np.median(off(marking)) < 2.0 * METRES
+        assert off(marking).max() < 2.0 * NEAR
         before = marking.marks
         number = 37
         start = self.place(viewer, np.array(before.places[number]))
@@ -224,7 +232,8 @@ class TestInTheWindow:
         xdotool(viewer, "mousemove_relative", "--", 2, -8)
         xdotool(viewer, "mouseup", 1)
         moved = np.subtract(marking.marks.places[number], before.places[number])
-        assert np.linalg.norm(moved) > 2.0 * METRES and marking.current == number
+        assert np.linalg.norm(moved) > 2.0 * METRES
+        assert marking.current == number
         assert [n for n in ORDER if marking.marks.places[n] != before.places[n]] == [number]
         xdotool(viewer, "key", "ctrl+z")
         assert marking.marks == before
@@ -235,7 +244,8 @@ class TestInTheWindow:
         self.mode(viewer).view.camera.orbit(80.0, 0.0)  # whose side hides it
         xdotool(viewer, "key", "Left")
         settle(viewer)
-        assert number == marking.current and number in self.mode(viewer).view.places()
+        assert number == marking.current
+        assert number in self.mode(viewer).view.places()
         click(viewer, "Use this head")
         assert viewer.files.is_waiting
         xdotool(viewer, "key", "ctrl+a")
@@ -262,7 +272,8 @@ class TestInTheWindow:
         self.mark_first(viewer)
         mode = viewer.marking_mode
         click(viewer, "Leave")
-        assert viewer.question.is_open and "question: Save pose ..." not in viewer.gui.places
+        assert viewer.question.is_open
+        assert "question: Save pose ..." not in viewer.gui.places
         xdotool(viewer, "key", "Escape")
         assert viewer.marking_mode is mode
         viewer.drop([str(mesh)])
@@ -278,4 +289,5 @@ class TestInTheWindow:
         write(viewer, "kept")
         xdotool(viewer, "key", "Return")
         assert until(viewer, lambda: viewer.marking_mode is None)
-        assert mesh.with_name("kept.json").exists() and viewer.session.values["jaw_open"] == 0.5
+        assert mesh.with_name("kept.json").exists()
+        assert viewer.session.values["jaw_open"] == 0.5

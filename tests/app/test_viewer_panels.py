@@ -156,7 +156,8 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer: Viewer) -> None:
     in_panel(viewer, ("Refiner", "kahler-gl"))
     assert isinstance(viewer.stage.refined.stream, render.GpuStream)
     pictures.append(viewer.stage.draw_image(viewer.view))
-    assert viewer.stage.refined.label == "kahler-gl" and not viewer.messages.text
+    assert viewer.stage.refined.label == "kahler-gl"
+    assert not viewer.messages.text
     assert np.array_equal(*pictures)
     in_panel(viewer, ("scheme", "detail"))
     assert "scheme must be one of ('loop', 'cubic')" in viewer.messages.text
@@ -215,7 +216,8 @@ def test_headings_stay_folded(viewer: Viewer) -> None:
     assert "joy" in viewer.gui.places
     clear_search(viewer)
     settle(viewer)
-    assert "joy" not in viewer.gui.places and "jaw_open" in viewer.gui.places
+    assert "joy" not in viewer.gui.places
+    assert "jaw_open" in viewer.gui.places
 
 
 def test_the_panel_can_be_made_wider(viewer: Viewer) -> None:
@@ -234,7 +236,8 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
         viewer.settings.zoom = zoom
         settle(viewer)
         left, _, width, height = viewer.view.area
-        assert width > 0.5 * SIZE[0] and height > 0.4 * SIZE[1]
+        assert width > 0.5 * SIZE[0]
+        assert height > 0.4 * SIZE[1]
         for name in ("Mirror", "Link sides", "search", "show joy", "show blink"):
             assert viewer.gui.places[name][2] <= left, name
         for name in ("play", "record", "loop", "speed", "time"):

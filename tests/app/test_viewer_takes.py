@@ -27,7 +27,9 @@ def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -
     before = session.script
     session.seek(1.5)
     line = session.toggle_recording()
-    assert line is not None and "1.50 s" in line and session.is_playing
+    assert line is not None
+    assert "1.50 s" in line
+    assert session.is_playing
     run(session, 6)
     session.set("jaw_open", 0.7)
     run(session, 30)
@@ -36,13 +38,15 @@ def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -
     line = session.toggle_recording()
     after = session.script
     assert line == "1 control recorded from 1.50 to 2.10 s"
-    assert after.poses == before.poses and after.duration == before.duration
+    assert after.poses == before.poses
+    assert after.duration == before.duration
     assert set(after.tracks) == {"blink", "jaw_open"}
     assert after.at(1.9)["jaw_open"] == pytest.approx(0.7, abs=2e-3)
     for time in (0.0, 1.0, 1.6, 2.1, 3.0, 4.0):
         assert after.at(time) == before.at(time) | {"jaw_open": before.at(time)["jaw_open"]}
     session.undo()
-    assert session.script == before and not session.work.script_is_unsaved
+    assert session.script == before
+    assert not session.work.script_is_unsaved
 
 
 LIMITS = Limits(dict.fromkeys(("a", "b", "c"), (0.0, 1.0)))
@@ -103,7 +107,8 @@ def test_punching_in_changes_nothing_else(
         assert all(value == scripted[name] for name, value in held.items())
         return
     script.check(LIMITS)
-    assert script.poses == played.poses and script.duration == max(4.0, end)
+    assert script.poses == played.poses
+    assert script.duration == max(4.0, end)
     assert set(script.tracks) == set(played.tracks) | set(recorder.samples)
     for name in LIMITS:
         if name not in recorder.samples:
@@ -146,15 +151,20 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
     session.set("AU4", 0.8)
     session.set("jaw_open", 0.1)
     line = session.toggle_recording()
-    assert line is not None and "1 control recorded" in line and "2 controls" in line
+    assert line is not None
+    assert "1 control recorded" in line
+    assert "2 controls" in line
     assert "not keyed" in line
-    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
-    assert session.differing == {"AU4", "jaw_open"} and session.work.has_unsaved_pose
+    assert session.values["AU4"] == 0.8
+    assert session.values["jaw_open"] == 0.1
+    assert session.differing == {"AU4", "jaw_open"}
+    assert session.work.has_unsaved_pose
     assert session.script.at(1.8)["jaw_open"] == pytest.approx(0.5, abs=0.002)
     assert "AU4" not in session.script.tracks
     assert "[Undo]" in (session.seek(0.0) or "")
     session.undo()
-    assert session.values["AU4"] == 0.8 and session.values["jaw_open"] == 0.1
+    assert session.values["AU4"] == 0.8
+    assert session.values["jaw_open"] == 0.1
 
 
 def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path: Path) -> None:

@@ -47,28 +47,35 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> N
     time = pose_times(viewer)[1]
     assert time == on_frame(time) > 1.1
     assert viewer.selection.places == {KeyPlace(POSES, time)}
-    assert viewer.session.work.name == "own.toml" and viewer.session.work.script_is_unsaved
+    assert viewer.session.work.name == "own.toml"
+    assert viewer.session.work.script_is_unsaved
     xdotool(viewer, "key", "ctrl+s")
-    assert not viewer.session.work.unsaved and load_script(own) == viewer.session.script
+    assert not viewer.session.work.unsaved
+    assert load_script(own) == viewer.session.script
     assert load_script(own).poses[1].time == time
     xdotool(viewer, "key", "ctrl+z")
-    assert viewer.session.script == before and viewer.session.work.script_is_unsaved
+    assert viewer.session.script == before
+    assert viewer.session.work.script_is_unsaved
     xdotool(viewer, "key", "ctrl+shift+z")
-    assert pose_times(viewer)[1] == time and not viewer.session.work.script_is_unsaved
+    assert pose_times(viewer)[1] == time
+    assert not viewer.session.work.script_is_unsaved
 
 
 def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
     """The pose under the mouse is selected and shown; Shift adds another and stays."""
     press(viewer, key_at(viewer, JOY))
     assert viewer.selection.places == {JOY}
-    assert viewer.session.time == 1.0 and viewer.session.values["joy"] == 1.0
+    assert viewer.session.time == 1.0
+    assert viewer.session.values["joy"] == 1.0
     press(viewer, key_at(viewer, REST), "shift")
-    assert viewer.selection.places == {JOY, REST} and viewer.session.time == 1.0
+    assert viewer.selection.places == {JOY, REST}
+    assert viewer.session.time == 1.0
     press(viewer, key_at(viewer, JOY), "shift")
     assert viewer.selection.places == {REST}
     x, y = key_at(viewer, KeyPlace(POSES, 1.0))
     press(viewer, (x + 50, y))
-    assert not viewer.selection.places and not viewer.session.work.unsaved
+    assert not viewer.selection.places
+    assert not viewer.session.work.unsaved
 
 
 def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
@@ -77,7 +84,8 @@ def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
     drag_and_release(viewer, (x - 30, y - 4), (right + 12 - x + 30, low - y + 8))
     chosen = viewer.selection.places
-    assert {place.track for place in chosen} == {POSES, "blink"} and len(chosen) == 5
+    assert {place.track for place in chosen} == {POSES, "blink"}
+    assert len(chosen) == 5
     drag_and_release(viewer, key_at(viewer, JOY), (-30, 0))
     by = viewer.session.script.poses[1].time - 1.0
     assert by < -0.1
@@ -98,11 +106,14 @@ def test_delete_and_paste(viewer: Viewer) -> None:
     assert viewer.session.script.poses[2].name == "joy"
     assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
     xdotool(viewer, "key", "Delete")
-    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0] and "1 key deleted" in viewer.messages.text
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    assert "1 key deleted" in viewer.messages.text
     xdotool(viewer, "key", "ctrl+a", "Delete")
-    assert viewer.messages.is_error and "at least one key" in viewer.messages.text
+    assert viewer.messages.is_error
+    assert "at least one key" in viewer.messages.text
     xdotool(viewer, "key", "ctrl+z")
-    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0] and not viewer.messages.text
+    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert not viewer.messages.text
     xdotool(viewer, "key", "ctrl+z")
     assert not viewer.session.work.script_is_unsaved
 
@@ -134,7 +145,8 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
     xdotool(viewer, "mouseup", 1)
     kept = axis.time(x - on_screen(viewer, 0, 0)[0] + 30)
     xdotool(viewer, "click", "--repeat", 3, 4)
-    assert axis.span < 3.0 and not axis.is_whole
+    assert axis.span < 3.0
+    assert not axis.is_whole
     assert axis.time(x - on_screen(viewer, 0, 0)[0] + 30) == pytest.approx(kept, abs=0.02)
     start = axis.start
     xdotool(viewer, "keydown", "shift")
@@ -142,7 +154,8 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
     xdotool(viewer, "keyup", "shift")
     assert axis.start > start
     xdotool(viewer, "key", "shift+f")
-    assert axis.is_whole and axis.start == 0.0
+    assert axis.is_whole
+    assert axis.start == 0.0
     end = on_screen(viewer, axis.x(4.0) + 3, 0)[0]
     drag_and_release(viewer, (end, y), (-60, 0))
     assert 2.0 < session.script.duration < 3.9
@@ -157,7 +170,8 @@ def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
     _, y = where_key(viewer, KeyPlace("blink", 2.0))
     xdotool(viewer, "mousemove", *on_screen(viewer, left + 8, y))
     xdotool(viewer, "click", 1)
-    assert viewer.timeline.height() > rows and viewer.settings.folds["Tracks"]
+    assert viewer.timeline.height() > rows
+    assert viewer.settings.folds["Tracks"]
     settle(viewer)
     x, y = where_key(viewer, KeyPlace("blink", 2.4))
     press(viewer, on_screen(viewer, x, y + imgui.get_font_size() * 1.35))
@@ -252,7 +266,8 @@ def test_a_key_is_dragged_in_time_and_value(viewer: Viewer) -> None:
     drag(viewer, at(viewer, 1.0, 1.0), (-10, 10))
     xdotool(viewer, "mousemove_relative", "--", -10, 10)
     pose = viewer.session.script.poses[1]
-    assert pose.time == on_frame(pose.time) < 0.9 and 0.3 < pose.values["joy"] < 0.95
+    assert pose.time == on_frame(pose.time) < 0.9
+    assert 0.3 < pose.values["joy"] < 0.95
     xdotool(viewer, "mousemove_relative", "--", 0, -300)
     assert viewer.session.script.poses[1].values["joy"] == 1.0
     xdotool(viewer, "key", "Escape")
@@ -275,7 +290,9 @@ def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
     xdotool(viewer, "mousemove", *at(viewer, 2.9, 1.0))  # on the curve that now stays
     graph = viewer.timeline.dope_sheet.graph
     hit = graph.at(*place_of(viewer, 2.9, 1.0))
-    assert hit is not None and hit.curve.name == "pose joy" and not hit.key
+    assert hit is not None
+    assert hit.curve.name == "pose joy"
+    assert not hit.key
 
 
 @pytest.mark.usefixtures("curves")
@@ -293,7 +310,8 @@ def test_handles_set_slopes(viewer: Viewer) -> None:
     move(viewer, 0, 12)
     pose = viewer.session.script.poses[1]
     start, end = map(float, pose.easing.split(","))
-    assert start == 0.0 < end < 3.0 and pose.values == before.poses[1].values
+    assert start == 0.0 < end < 3.0
+    assert pose.values == before.poses[1].values
     again = parse_script(script_text(viewer.session.script), source="again")
     assert again.at(0.4) == viewer.session.script.at(0.4) != before.at(0.4)
     viewer.session.seek(0.4)

@@ -30,13 +30,16 @@ def test_a_pose_that_is_let_go_is_reported_and_comes_back(session: Session, how:
         "button": session.let_go,
     }
     line = does[how]()
-    assert line is not None and "Jaw open" in line and "[Undo]" in line
+    assert line is not None
+    assert "Jaw open" in line
+    assert "[Undo]" in line
     run(session, 10)
-    assert not session.differing and session.values["jaw_open"] < 0.6
+    assert not session.differing
+    assert session.values["jaw_open"] < 0.6
     session.undo()
-    assert (
-        session.values["jaw_open"] == 0.6 and session.time == 2.0 and session.work.has_unsaved_pose
-    )
+    assert session.values["jaw_open"] == 0.6
+    assert session.time == 2.0
+    assert session.work.has_unsaved_pose
     session.redo()
     assert session.values["jaw_open"] < 0.6
 
@@ -109,7 +112,8 @@ def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -
     selection.delete()
     session.work.begin_script()
     session.seek(0.5)
-    assert selection.copied and selection.paste() == "2 keys copied to 0.50 s"
+    assert selection.copied
+    assert selection.paste() == "2 keys copied to 0.50 s"
     assert selection.places == {KeyPlace(POSES, 0.5), KeyPlace("blink", 1.62)}
     assert places_of(session.script) == selection.places | {KeyPlace(POSES, 0.0)}
     assert session.script.poses[1].name == "joy"

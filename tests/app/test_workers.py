@@ -66,7 +66,8 @@ def test_every_share_is_done_in_a_process_of_its_own() -> None:
 
 def test_what_dies_is_done_again(tmp_path: Path) -> None:
     """A killed process is replaced, and the log says of what it died."""
-    log, other = tmp_path / "log", tmp_path / ".risorius-0123456789ab"
+    log = tmp_path / "log"
+    other = tmp_path / ".risorius-0123456789ab"
     other.mkdir()  # what another process is at
     assert run(working.die_once, tmp_path / "mark", log=log) == ["mark"]
     assert "risorius: the process of attempt 1 died of SIGKILL\n" in log.read_text()
@@ -83,7 +84,7 @@ def test_what_kills_every_process_is_given_up(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "told"),
+    ("kind", "message"),
     [
         ("user", "^the nose is too long$"),
         ("defect", "^ZeroDivisionError: one by zero$"),
@@ -91,10 +92,12 @@ def test_what_kills_every_process_is_given_up(tmp_path: Path) -> None:
         ("unfit", "pickle"),
     ],
 )
-def test_what_is_raised_is_told_and_not_tried_again(tmp_path: Path, kind: str, told: str) -> None:
+def test_what_is_raised_is_reported_and_not_tried_again(
+    tmp_path: Path, kind: str, message: str
+) -> None:
     """In one line; a defect leaves a traceback in the log, what the user can mend does not."""
     log = tmp_path / "log"
-    with pytest.raises(UserError, match=told):
+    with pytest.raises(UserError, match=message):
         run(working.fail, kind, log=log)
     assert ("Traceback" in log.read_text()) == (kind in ("defect", "unfit"))
     assert "the process of attempt" not in log.read_text()

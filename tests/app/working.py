@@ -58,7 +58,7 @@ def talk(word: str, send: Send) -> None:
 
 
 def write_slowly(target: Path, send: Send) -> None:
-    """Write a file for ever; its folder tells that it has begun."""
+    """Write a file for ever; its folder shows that it has begun."""
     with written_atomically(target) as part:
         part.write_text("half")
         while True:

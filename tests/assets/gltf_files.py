@@ -37,7 +37,8 @@ class GltfMaker:
         array = np.atleast_2d(np.asarray(rows))
         array = array.T if array.shape[0] == 1 and np.ndim(rows) == 1 else array
         array = array.astype("<" + kind)
-        data, view = array.tobytes(), {}
+        data = array.tobytes()
+        view = {}
         if gap:
             data = b"".join(row.tobytes() + b"\x55" * gap for row in array)
             view = {"byteStride": array.shape[1] * array.itemsize + gap}

@@ -18,7 +18,8 @@ ON_MIDLINE = (8, 27, 28, 29, 30, 33, 51, 57, 62, 66)
 def test_landmarks_are_68_different_vertices(head: Head) -> None:
     """No landmark is missing and no two share a vertex."""
     assert len(set(head.landmarks.tolist())) == 68
-    assert head.landmarks.min() >= 0 and head.landmarks.max() < len(head.vertices)
+    assert head.landmarks.min() >= 0
+    assert head.landmarks.max() < len(head.vertices)
 
 
 def test_landmarks_are_mirrored(head: Head) -> None:
@@ -36,9 +37,11 @@ def test_landmarks_lie_where_the_scheme_says(head: Head) -> None:
     assert np.all(np.diff(at[0:17, 0]) > 0)  # from the right ear to the left
     assert at[8, 1] == at[0:17, 1].min()
     assert np.all(np.diff(at[17:27, 0]) > 0)
-    assert np.all(np.diff(at[27:31, 1]) < 0) and at[30, 2] == at[:, 2].max()
+    assert np.all(np.diff(at[27:31, 1]) < 0)
+    assert at[30, 2] == at[:, 2].max()
     assert np.all(np.diff(at[31:36, 0]) > 0)
-    assert at[42, 0] < at[43, 0] < at[44, 0] < at[45, 0] and at[45, 0] > at[46, 0] > at[47, 0]
+    assert at[42, 0] < at[43, 0] < at[44, 0] < at[45, 0]
+    assert at[45, 0] > at[46, 0] > at[47, 0]
     assert min(at[43, 1], at[44, 1]) > max(at[46, 1], at[47, 1])
     assert at[51, 1] > at[62, 1] > at[66, 1] - 0.2 > at[57, 1]
     assert at[50, 1] > at[51, 1]  # Cupid's bow
@@ -93,8 +96,10 @@ def test_rows_exist_on_both_sides(head: Head) -> None:
 
 def test_bone_depth_is_what_was_chosen(head: Head) -> None:
     """Thin on nose bridge and forehead, thick in the cheek; the same on both sides."""
-    depth, anatomy = head.bone_depth, head.anatomy
-    assert depth.min() > 2.0 and depth.max() < 30.0
+    depth = head.bone_depth
+    anatomy = head.anatomy
+    assert depth.min() > 2.0
+    assert depth.max() < 30.0
     assert np.allclose(depth, depth[head.mirror])
     chosen = {
         "glabella": 5.5, "nasion": 6.5, "rhinion": 3.0, "subnasale": 13.0, "sublabiale": 11.0,
@@ -108,8 +113,10 @@ def test_bone_depth_is_what_was_chosen(head: Head) -> None:
 
 def test_mandible_carries_lower_lip_and_chin_only(head: Head) -> None:
     """Lower lip and chin 1, upper lip and all above 0, in between at the corners."""
-    weight, rings = head.mandible_weight, head.rings
-    assert weight.min() == 0.0 and weight.max() <= 1.0
+    weight = head.mandible_weight
+    rings = head.rings
+    assert weight.min() == 0.0
+    assert weight.max() <= 1.0
     assert np.allclose(weight, weight[head.mirror])
     for name in ("pogonion", "gnathion", "menton", "sublabiale", "labiale_inferius"):
         assert weight[head.anatomy[name]] > 0.95, name
@@ -117,7 +124,8 @@ def test_mandible_carries_lower_lip_and_chin_only(head: Head) -> None:
         assert weight[head.anatomy[name]] < 0.05, name
     for row in range(2, 7):
         along = weight[rings[f"mouth_{row}_left"]]
-        assert np.all(np.diff(along) > -0.02) and 0.2 < along[7] < 0.6
+        assert np.all(np.diff(along) > -0.02)
+        assert 0.2 < along[7] < 0.6
     assert weight[head.vertices[:, 1] > -20.0].max() == 0.0
 
 
@@ -133,7 +141,8 @@ def test_mandible_weight_is_smooth(head: Head) -> None:
 def test_jaw_axis_runs_through_both_condyles(head: Head) -> None:
     """Right first; in front of the ear, below the skin."""
     right, left = head.jaw_axis
-    assert np.array_equal(right * [-1.0, 1.0, 1.0], left) and left[0] > 0.0
+    assert np.array_equal(right * [-1.0, 1.0, 1.0], left)
+    assert left[0] > 0.0
     tragion = head.vertices[head.anatomy["tragion_left"]]
     assert 5.0 < left[2] - tragion[2] < 25.0
     assert abs(left[1] - tragion[1]) < 10.0

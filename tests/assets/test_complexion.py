@@ -40,7 +40,8 @@ def light_at(head: Head, image: npt.NDArray[np.uint8], *names: str) -> Light:
     found = []
     for name in names:
         u, v = head.uv[head.anatomy[name]]
-        x, y = int(u * width), int((1.0 - v) * height)
+        x = int(u * width)
+        y = int((1.0 - v) * height)
         found.append(image[y - 5 : y + 6, x - 5 : x + 6].reshape(-1, 3))
     return np.median(to_linear(np.concatenate(found) / 255.0), axis=0)
 
@@ -159,13 +160,15 @@ def test_features_do_what_their_names_say(head: Head) -> None:
         off = recoloured(40.0, features=Features(**features)).astype(int) - plain
         return np.array([off[head.segments == n].mean(axis=0) for n in range(1, 14)])
 
-    brow, lip = Segment.LEFT_BROW - 1, Segment.TOP_LIP - 1
+    brow = Segment.LEFT_BROW - 1
+    lip = Segment.TOP_LIP - 1
     thin, thick = (Brows(wide, 11.0, 3.0, 8.0, 40.0, 1.0, 0.2, 1) for wide in (4.0, 9.0))
     assert changed(brows=thin)[brow].mean() > 4.0 + changed(brows=thick)[brow].mean()
     assert not changed(brows=thin)[lip].any()
     assert changed(beard=0.5)[Segment.NECK - 1].mean() < changed(beard=0.5)[brow].mean()
     reddened = changed(lips=0.3)[lip]
-    assert reddened[1] < -7.5 and reddened[0] > -4.0
+    assert reddened[1] < -7.5
+    assert reddened[0] > -4.0
     assert changed(grey=0.9)[Segment.HAIR - 1].mean() > 15.0
     receded = Features(hairline=Hairline(front=20.0), brows=thick)
     usual, balder = (recoloured(40.0, features=f, haired_as=40.0) for f in (Features(), receded))
@@ -188,4 +191,5 @@ def test_hair_turns_grey_as_in_the_survey() -> None:
 
     assert 0.2 < grey(50.0, (45.0, 65.0)) < 0.34
     assert grey(-40.0, (45.0, 65.0)) < 0.6 * grey(50.0, (45.0, 65.0))
-    assert grey(50.0, (20.0, 30.0)) == 0.0 and grey(50.0, (72.0, 75.0)) > 0.7
+    assert grey(50.0, (20.0, 30.0)) == 0.0
+    assert grey(50.0, (72.0, 75.0)) > 0.7

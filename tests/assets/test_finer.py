@@ -108,10 +108,8 @@ def test_boundaries_become_smooth(head: Head) -> None:
             found.append(float(np.median(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))))
         return found
 
-    coarse, fine = (
-        turns(head.vertices, head.faces),
-        turns(head.finer(2).vertices, head.finer(2).faces),
-    )
+    coarse = turns(head.vertices, head.faces)
+    fine = turns(head.finer(2).vertices, head.finer(2).faces)
     for before, after in zip(coarse, fine, strict=True):
         assert after < 0.5 * before
 

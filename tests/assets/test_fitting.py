@@ -74,7 +74,8 @@ def test_eyes_lie_behind_their_lids(fitted: FittedHead) -> None:
 def test_the_built_in_head_fits_itself(tmp_path: Path) -> None:
     """Its own landmarks give it back its own eyes: lids close over them as they did."""
     head = assets.load("head")
-    mesh, numbers = tmp_path / "same.ply", tmp_path / "same.json"
+    mesh = tmp_path / "same.ply"
+    numbers = tmp_path / "same.json"
     trimesh.Trimesh(head.vertices, head.faces, process=False).export(mesh)
     numbers.write_text(json.dumps(head.landmarks.tolist()))
     same = fit_head(mesh, numbers)
@@ -89,7 +90,8 @@ def test_the_edge_of_the_neck_fades(fitted: FittedHead) -> None:
     assert plane is not None
     shown = fitted.vertices @ plane[:3] + plane[3]
     edge = max(boundary_loops(fitted.faces), key=lambda x: -fitted.vertices[x, 1].mean())
-    assert shown[edge].max() < 0.05 and shown[fitted.landmarks].min() > 1.0
+    assert shown[edge].max() < 0.05
+    assert shown[fitted.landmarks].min() > 1.0
     middle = len(fitted.vertices)
     cap = [(b, a, middle) for a, b in zip(edge, np.roll(edge, -1), strict=True)]
     points = np.vstack([fitted.vertices, fitted.vertices[edge].mean(axis=0)])
@@ -119,7 +121,8 @@ def test_depth_and_texture_come_from_the_same_place(fitted: FittedHead) -> None:
 
 def test_texture_runs_evenly_beside_the_mouth(fitted: FittedHead) -> None:
     """Neighbouring triangles have nearly the same slopes in the picture: furrows do not break."""
-    corners, uv = fitted.vertices[fitted.faces], fitted.uv.astype(np.float64)[fitted.faces]
+    corners = fitted.vertices[fitted.faces]
+    uv = fitted.uv.astype(np.float64)[fitted.faces]
     slopes = np.linalg.pinv(corners[:, 1:] - corners[:, :1]) @ (uv[:, 1:] - uv[:, :1])
     mouth = fitted.vertices[fitted.landmarks[[48, 54]]]
     away = np.linalg.norm(corners.mean(axis=1)[:, None] - mouth, axis=2).min(axis=1)
@@ -149,7 +152,8 @@ def test_the_tongue_of_a_fitted_head_comes_out(
 ) -> None:
     """Its own lips are what it lies on."""
     settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})
-    bent, jaw = simulation.anatomy.tongue(), simulation.bones.transforms()["mandible"]
+    bent = simulation.anatomy.tongue()
+    jaw = simulation.bones.transforms()["mandible"]
     assert bent is not None
     reach = (bent @ jaw[:3, :3].T + jaw[:3, 3])[:, 2].max()
     assert 4.0 < reach - simulation.positions[fitted.landmarks[66], 2] < 20.0
@@ -167,7 +171,8 @@ def test_expressions_keep_a_fitted_mesh_sound(
 @pytest.mark.slow
 def test_other_pieces_and_inside_out_meshes_do_no_harm(other: Stranger) -> None:
     """Eyeballs of the file's own are left away, triangles that face inward are turned."""
-    vertices, faces = other.mesh.vertices, other.mesh.faces
+    vertices = other.mesh.vertices
+    faces = other.mesh.faces
     ball = vertices[:3] + 0.01
     mesh = Mesh(
         np.vstack([ball, vertices]), np.vstack([[[0, 1, 2]], faces[:, ::-1] + 3]).astype(np.int32)

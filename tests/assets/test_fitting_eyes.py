@@ -40,7 +40,8 @@ def _across(edge: Array) -> Array:
 def _meets(points: Array, triangles: Array) -> npt.NDArray[np.bool_]:
     """Where lines along z meet a triangle (m, 3, 3) that faces the viewer, shape (n,)."""
     a, b, c = (triangles[:, corner, :2] for corner in range(3))
-    u, v = b - a, c - a
+    u = b - a
+    v = c - a
     area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
     a, u, v, area = (each[area > 0.0] for each in (a, u, v, area))
     to = points[:, None] - a
@@ -55,7 +56,8 @@ def _meets(points: Array, triangles: Array) -> npt.NDArray[np.bool_]:
 @pytest.mark.parametrize("yaw", [-50.0, -40.0, -25.0, 0.0, 25.0, 40.0, 50.0])
 def test_nothing_is_seen_behind_an_eye(fitted: FittedHead, yaw: float) -> None:
     """Every line of sight that goes in between the lids ends on the ball, or on flesh."""
-    across, ahead = np.cos(np.radians(yaw)), np.sin(np.radians(yaw))
+    across = np.cos(np.radians(yaw))
+    ahead = np.sin(np.radians(yaw))
     view = np.array([[across, 0.0, ahead], [0.0, 1.0, 0.0], [-ahead, 0.0, across]])
     parts = np.concatenate([part.vertices.astype(np.float64)[part.faces] for part in fitted.parts])
     loops = [fitted.vertices[loop] for loop in boundary_loops(fitted.faces)]

@@ -18,7 +18,8 @@ SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float64)
 FACES = np.array([[0, 1, 2], [0, 2, 3]])
 UV = np.array([[0.125, 0.75], [0.5, 0.75], [0.5, 0.25], [0.125, 0.25]])  # v down
 UP = UV * [1, -1] + [0, 1]
-RED, GREEN = (250, 10, 20), (10, 240, 30)
+RED = (250, 10, 20)
+GREEN = (10, 240, 30)
 
 
 @pytest.fixture
@@ -76,7 +77,8 @@ def test_texture_coordinates_may_be_shares(
 
 def test_a_picture_may_have_the_second_coordinates(maker: GltfMaker, tmp_path: Path) -> None:
     """The material says which set; any number."""
-    first, third = maker.accessor(np.zeros((4, 2))), maker.accessor(UV)
+    first = maker.accessor(np.zeros((4, 2)))
+    third = maker.accessor(UV)
     painted(maker, first, {"texCoord": 2}, TEXCOORD_1=first, TEXCOORD_2=third)
     assert np.allclose(uv_of(read(maker, tmp_path)), UP[FACES])
 
@@ -145,7 +147,8 @@ def test_colours_of_vertices_are_linear_light(
     square = maker.primitive(SQUARE, FACES, attributes={"COLOR_0": colours})
     maker.shown({"mesh": maker.mesh(square)})
     found = read(maker, tmp_path).colours
-    assert found is not None and np.abs(found.astype(int) - (124, 188, 243)).max() <= 1
+    assert found is not None
+    assert np.abs(found.astype(int) - (124, 188, 243)).max() <= 1
 
 
 def test_materials_tint(maker: GltfMaker, tmp_path: Path) -> None:
@@ -160,12 +163,14 @@ def test_materials_tint(maker: GltfMaker, tmp_path: Path) -> None:
     ]
     maker.shown({"mesh": maker.mesh(*squares)})
     found = read(maker, tmp_path)
-    assert found.texture is not None and found.colours is not None
+    assert found.texture is not None
+    assert found.colours is not None
     assert found.texture.picture.tolist() == [0, 0, 1, 1]
     tinted, whole = (picture() for picture in found.texture.pictures)
     assert np.abs(tinted[0, 0].astype(int) - (147, 200, 0)).max() <= 1
     assert whole[0, 0].tolist() == [200, 200, 200]
-    assert found.colours[0].tolist() == [188, 255, 0] and found.colours[4].tolist() == [255] * 3
+    assert found.colours[0].tolist() == [188, 255, 0]
+    assert found.colours[4].tolist() == [255] * 3
 
 
 def test_older_materials_have_a_picture(maker: GltfMaker, tmp_path: Path) -> None:
@@ -176,7 +181,8 @@ def test_older_materials_have_a_picture(maker: GltfMaker, tmp_path: Path) -> Non
     square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
     maker.shown({"mesh": maker.mesh(square)})
     found = read(maker, tmp_path)
-    assert found.texture is not None and np.allclose(uv_of(found), UP[FACES])
+    assert found.texture is not None
+    assert np.allclose(uv_of(found), UP[FACES])
     assert found.texture.pictures[0]()[0, 0].tolist() == list(GREEN)
 
 
@@ -189,7 +195,8 @@ def test_webp_and_transparent_pictures_are_read(maker: GltfMaker, tmp_path: Path
     square = maker.primitive(SQUARE, FACES, attributes=attributes, material=number)
     maker.shown({"mesh": maker.mesh(square)})
     found = read(maker, tmp_path)
-    assert found.texture is not None and found.texture.pictures[0]().shape == (4, 4, 3)
+    assert found.texture is not None
+    assert found.texture.pictures[0]().shape == (4, 4, 3)
 
 
 def test_nodes_place_meshes(maker: GltfMaker, tmp_path: Path) -> None:
@@ -264,7 +271,8 @@ def test_parts_of_a_mesh_hang_together(maker: GltfMaker, tmp_path: Path, is_one_
     meshes = [maker.mesh(*parts)] if is_one_mesh else [maker.mesh(part) for part in parts]
     maker.shown(*({"mesh": number} for number in meshes))
     found = read(maker, tmp_path)
-    assert len(found.vertices) == 6 and len(np.unique(found.faces)) == (4 if is_one_mesh else 6)
+    assert len(found.vertices) == 6
+    assert len(np.unique(found.faces)) == (4 if is_one_mesh else 6)
 
 
 @pytest.mark.parametrize("moved", ["shape", "bone", "nothing"])
@@ -292,7 +300,8 @@ def test_vertices_that_move_apart_are_two(maker: GltfMaker, tmp_path: Path, move
     maker.shown(node)
     found = read(maker, tmp_path)
     assert len(np.unique(found.faces)) == (4 if moved == "nothing" else 6)
-    assert found.same is not None and found.corners is not None
+    assert found.same is not None
+    assert found.corners is not None
     assert np.array_equal(found.same[found.corners], found.faces)
 
 
@@ -460,7 +469,8 @@ def test_a_document_may_have_its_data_beside_it(
     path = tmp_path / "head.gltf"
     path.write_bytes(maker.document(uri="head%20data.bin" if is_beside else inline))
     found = assets.read_mesh(path)
-    assert np.allclose(shape_of(found), SQUARE[FACES]) and np.allclose(uv_of(found), UP[FACES])
+    assert np.allclose(shape_of(found), SQUARE[FACES])
+    assert np.allclose(uv_of(found), UP[FACES])
     assert found.texture is not None
     assert found.texture.pictures[0]()[0, 0].tolist() == list(RED)
 

@@ -49,13 +49,15 @@ def test_unit_axes_and_other_pieces_do_not_matter() -> None:
     balls = [true[list(eye)].mean(axis=0) for eye in (range(36, 42), range(42, 48))]
     corners = np.vstack([np.eye(3), -np.eye(3)]) * 14.0 * METRES
     ball = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5]])
-    vertices, faces = other.mesh.vertices, other.mesh.faces[:, ::-1]
+    vertices = other.mesh.vertices
+    faces = other.mesh.faces[:, ::-1]
     for middle in balls:
         faces = np.vstack([faces, ball + len(vertices)])
         vertices = np.vstack([vertices, corners + middle])
     mesh = Mesh(vertices, faces.astype(np.int32))
     off = errors(mesh, true) / METRES
-    assert np.median(off) < 2.0 and off[JAW:].max() < 6.0
+    assert np.median(off) < 2.0
+    assert off[JAW:].max() < 6.0
     found = guess(mesh, {number: true[number] for number in FIRST})
     skin = nearest_on(found, np.zeros((68, 3)), other.mesh.vertices, other.mesh.faces)
     gap = np.linalg.norm(skin.interpolate(other.mesh.vertices) - found, axis=1)
@@ -66,7 +68,8 @@ def test_unit_axes_and_other_pieces_do_not_matter() -> None:
 def test_more_points_make_it_better_and_stay() -> None:
     """What is placed by hand is left alone, and draws its neighbours along."""
     person = make_person(sample_identity(1))
-    mesh, true = Mesh(person.vertices, person.faces), person.vertices[person.landmarks]
+    mesh = Mesh(person.vertices, person.faces)
+    true = person.vertices[person.landmarks]
     few = errors(mesh, true)
     known = {number: true[number] for number in (*FIRST, 4, 8, 12)}
     many = np.linalg.norm(guess(mesh, known) - true, axis=1)
@@ -84,7 +87,7 @@ def test_more_points_make_it_better_and_stay() -> None:
     ],
 )
 def test_points_of_no_face_are_refused(order: npt.NDArray[np.int64], words: str) -> None:
-    """In another order than theirs, they are told in one line."""
+    """Landmarks in an unknown order are refused in one line."""
     head = assets.load("head")
     points = head.vertices[head.landmarks][order]
     with pytest.raises(AssetError, match=words) as raised:

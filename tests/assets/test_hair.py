@@ -44,10 +44,13 @@ def hair_of(person: Person, name: str = HAIR) -> Part:
 def test_hair_is_a_sound_part(cut: str) -> None:
     """Arrays fit each other, and triangles are seen from the side to which normals point."""
     for part in [each for each in haired(cut).parts if each.name in (HAIR, HAIR + "_tied")]:
-        assert part.striation is not None and part.bone == "cranium"
+        assert part.striation is not None
+        assert part.bone == "cranium"
         rows = np.hstack([part.vertices, part.normals, part.colours, part.striation])
-        assert rows.shape == (len(part.vertices), 15) and np.isfinite(rows).all()
-        assert 0 <= part.faces.min() and part.faces.max() < len(rows)
+        assert rows.shape == (len(part.vertices), 15)
+        assert np.isfinite(rows).all()
+        assert 0 <= part.faces.min()
+        assert part.faces.max() < len(rows)
         assert np.allclose(np.linalg.norm(part.normals, axis=1), 1.0, atol=1e-5)
         corners = part.vertices[part.faces].astype(np.float64)
         facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -61,21 +64,25 @@ def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut: str) -> None:
     person = haired(cut)
     part = hair_of(person)
     assert part.striation is not None
-    way, dense = part.striation[:, 2:5], part.striation[:, 5] > 0.8
-    tips, roots = part.vertices + 0.4 * way, part.vertices - 0.6 * way
+    way = part.striation[:, 2:5]
+    dense = part.striation[:, 5] > 0.8
+    tips = part.vertices + 0.4 * way
+    roots = part.vertices - 0.6 * way
     over = [((each - roots) * part.normals).sum(axis=1)[dense] for each in (part.vertices, tips)]
-    assert over[0].min() >= 0.0 and np.median(over[1]) > 2.0
+    assert over[0].min() >= 0.0
+    assert np.median(over[1]) > 2.0
     if not isinstance(CUTS[cut], Fall):  # which hangs beside the head
         nearest = cKDTree(person.vertices).query(roots)[1]
         heights = ((roots - person.vertices[nearest]) * part.normals).sum(axis=1)
         assert np.quantile(np.abs(heights[dense]), 0.95) < 4.0
     face = person.vertices[person.landmarks[17:68]]
-    low, high = face.min(axis=0), face.max(axis=0)
+    low = face.min(axis=0)
+    high = face.max(axis=0)
     is_before = ((tips > low) & (tips < high + np.array([0.0, 2.0, 60.0]))).all(axis=1)
     assert not (is_before & (part.striation[:, 5] > 0.0)).any()
 
 
-def test_hair_is_as_long_and_begins_where_it_is_told() -> None:
+def test_hair_is_as_long_and_begins_where_it_is_set() -> None:
     """Longer hair reaches farther, receded hair begins farther back."""
     usual, longer, receded = (
         hair_of(haired("brushed", length=length, receded=by))
@@ -89,22 +96,26 @@ def test_hair_is_as_long_and_begins_where_it_is_told() -> None:
 def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below() -> None:
     """It hangs, clear of neck and shoulders."""
     person = haired("tailed")
-    tail, ear = hair_of(person, HAIR + "_tied").vertices, person.anatomy["tragion_left"]
+    tail = hair_of(person, HAIR + "_tied").vertices
+    ear = person.anatomy["tragion_left"]
     low = tail[tail[:, 1] < person.vertices[ear, 1] - 50.0]
     assert tail[:, 2].max() < person.vertices[ear, 2] - 50.0
-    assert len(low) and cKDTree(person.vertices).query(low)[0].min() > 8.0
+    assert len(low)
+    assert cKDTree(person.vertices).query(low)[0].min() > 8.0
 
 
 def test_hair_keeps_its_colour_in_other_tones_of_skin() -> None:
     """The scalp under it stays as it is where skin gets another tone; anew, hair follows it."""
     ada = person_called("ada")
-    assert ada.in_tone is not None and make_person(sample_identity(0)).in_tone is None
+    assert ada.in_tone is not None
+    assert make_person(sample_identity(0)).in_tone is None
     change = np.abs(ada.in_tone(-40.0).astype(float) - ada.albedo).mean(axis=2)
     scale = len(change) // len(ada.segments)
     segments = np.kron(ada.segments, np.ones((scale, scale), np.uint8))
     assert change[segments == Segment.NOSE].mean() > 30.0
     assert np.median(change[segments == Segment.HAIR]) < 10.0
-    mine, darker = hair_of(ada), hair_of(coloured(ada, angle=-50.0))
+    mine = hair_of(ada)
+    darker = hair_of(coloured(ada, angle=-50.0))
     assert darker.colours.mean() < 0.8 * mine.colours.mean()
 
 
@@ -112,13 +123,15 @@ def label_of(person: Person, size: int = 200) -> tuple[Any, Any]:
     """A picture and its classes."""
     options = CaptureOptions(size=(size, size), passes=("segmentation",))
     with Capture(FaceScene(person), options) as capture:
-        image, passes = capture.draw_image(), Passes(capture.pipeline, capture.viewports[-1].drawn)
+        image = capture.draw_image()
+        passes = Passes(capture.pipeline, capture.viewports[-1].drawn)
         return image, passes.draw(capture.camera, ("segmentation",))["segmentation"]
 
 
 def test_sparse_hair_is_called_what_is_behind_it() -> None:
     """Where fewer than half of its strands are, as at its tips."""
-    long, few = haired("parted"), np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2])
+    long = haired("parted")
+    few = np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2])
     parts = [
         each if each.striation is None else replace(each, striation=each.striation * few)
         for each in long.parts
@@ -134,10 +147,13 @@ def test_hair_is_seen_framed_and_labelled() -> None:
     assert scene.framed[:, 1].max() >= hair_of(person_called("ada")).vertices[:, 1].max()
     image, classes = label_of(haired("short"))
     is_hair = classes == Segment.HAIR
-    assert is_hair.mean() > 0.043 and (classes[0] == Segment.BACKGROUND).all()
+    assert is_hair.mean() > 0.043
+    assert (classes[0] == Segment.BACKGROUND).all()
     assert image[is_hair].mean() < 0.4 * image[classes == Segment.SKIN].mean()
     assert (label_of(haired("cropped"))[1] == Segment.HAIR).sum() < is_hair.sum()
     anatomy = Anatomy(scene)
-    opened, clay = AnatomyView(("muscles",)), AnatomyView()
+    opened = AnatomyView(("muscles",))
+    clay = AnatomyView()
     for parts in (anatomy.draw_order(opened).parts, anatomy.draw_order(clay, has_hair=False).parts):
-        assert parts and not [part for part in parts if part.name.startswith(HAIR)]
+        assert parts
+        assert not [part for part in parts if part.name.startswith(HAIR)]

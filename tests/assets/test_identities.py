@@ -39,11 +39,13 @@ def person(request: pytest.FixtureRequest) -> Person:
 @settings(max_examples=4, deadline=None)
 def test_a_number_is_one_person(seed: int) -> None:
     """The same number gives the same bytes; nobody is beyond the deviations that are allowed."""
-    first, second = sample_identity(seed), sample_identity(seed)
+    first = sample_identity(seed)
+    second = sample_identity(seed)
     assert first == second
     assert np.abs(first.weights).max() <= 4.0
     assert np.sqrt(np.mean(np.square(first.weights))) < 2.0
-    a, b = make_person(first), make_person(second)
+    a = make_person(first)
+    b = make_person(second)
     assert a.vertices.tobytes() == b.vertices.tobytes()
     for one, other in zip(a.parts, b.parts, strict=True):
         assert one.vertices.tobytes() == other.vertices.tobytes()
@@ -108,7 +110,8 @@ def test_upper_lids_cover_a_part_of_the_iris() -> None:
         for eye in person.eyes:
             lids = [person.anatomy[f"palpebrale_{lid}erius_{eye.name}"] for lid in ("sup", "inf")]
             off = np.abs(person.vertices[lids, 1] - eye.centre[1])
-            assert 0.4 < eye.iris_radius - off[0] < 3.2 and abs(eye.iris_radius - off[1]) < 1.0
+            assert 0.4 < eye.iris_radius - off[0] < 3.2
+            assert abs(eye.iris_radius - off[1]) < 1.0
 
 
 @pytest.mark.slow
@@ -183,7 +186,8 @@ def test_person_is_a_scene(person: Person, head: Head) -> None:
     """A scene takes it as any head, with light of its own at once: that of the built-in head."""
     scene = FaceScene(person)
     assert scene.ambient_occlusion is person.ambient_occlusion
-    assert scene.albedo is not None and scene.albedo.shape == head.albedo.shape
+    assert scene.albedo is not None
+    assert scene.albedo.shape == head.albedo.shape
     scene.pose({"joy": 1.0})
     scene.step(0.1)
     assert np.isfinite(scene.positions).all()

@@ -80,7 +80,8 @@ def test_numbers_counted_from_1_are_refused(other: Stranger, tmp_path: Path) -> 
 
 def test_a_point_on_a_lash_means_the_skin_beneath(other: Stranger, tmp_path: Path) -> None:
     """The mesh may have lashes and eyeballs of its own, on which one clicks beside the eye."""
-    points, count = other.mesh.vertices[other.landmarks], len(other.mesh.vertices)
+    points = other.mesh.vertices[other.landmarks]
+    count = len(other.mesh.vertices)
     lash = points[36] + 0.001 * np.eye(3)
     faces = np.vstack([other.mesh.faces, [[count, count + 1, count + 2]]]).astype(np.int32)
     mesh = Mesh(np.vstack([other.mesh.vertices, lash]), faces)

@@ -41,14 +41,20 @@ def test_types_and_shapes_are_those_of_the_docstrings() -> None:
     """Other packages rely on dtypes without looking."""
     head = assets.load("head")
     count = len(head.vertices)
-    assert head.vertices.dtype == np.float64 and head.vertices.shape == (count, 3)
-    assert head.faces.dtype == np.int32 and head.faces.shape == (2030, 3)
-    assert head.landmarks.dtype == np.int32 and head.landmarks.shape == (68,)
-    assert head.bone_depth.dtype == np.float64 and head.bone_depth.shape == (count,)
-    assert head.mandible_weight.dtype == np.float64 and head.mandible_weight.shape == (count,)
+    assert head.vertices.dtype == np.float64
+    assert head.vertices.shape == (count, 3)
+    assert head.faces.dtype == np.int32
+    assert head.faces.shape == (2030, 3)
+    assert head.landmarks.dtype == np.int32
+    assert head.landmarks.shape == (68,)
+    assert head.bone_depth.dtype == np.float64
+    assert head.bone_depth.shape == (count,)
+    assert head.mandible_weight.dtype == np.float64
+    assert head.mandible_weight.shape == (count,)
     assert head.jaw_axis.shape == (2, 3)
     assert [eye.name for eye in head.eyes] == ["right", "left"]
-    assert isinstance(head.rig, dict) and len(head.layers) == 4
+    assert isinstance(head.rig, dict)
+    assert len(head.layers) == 4
 
 
 def test_arrays_cannot_be_written() -> None:
@@ -75,7 +81,9 @@ ASKED: dict[str, Callable[[Head], object]] = {
 
 
 @pytest.mark.parametrize("name", ASKED)
-def test_missing_and_broken_files_are_told_when_they_are_needed(name: str, tmp_path: Path) -> None:
+def test_missing_and_broken_files_are_reported_when_they_are_needed(
+    name: str, tmp_path: Path
+) -> None:
     """The cure is in the message; neither garbage nor half a file is a traceback of a library."""
     folder = shutil.copytree(HEAD_FILE.parent, tmp_path / "data", symlinks=True)
     whole = (folder / name).read_bytes()
@@ -95,10 +103,11 @@ def test_files_are_made_from_this_head() -> None:
     head = assets.load("head")
     own = zlib.crc32(head.faces.tobytes(), zlib.crc32(head.vertices.tobytes()))
     found = [np.load(file).get("made_from") for file in tracked("assets/data", "head_*.npz")]
-    assert found == len(found) * [own] and len(found) > 4
+    assert found == len(found) * [own]
+    assert len(found) > 4
 
 
-def test_broken_text_files_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_broken_text_files_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A broken rig is an error that names the file."""
     broken = tmp_path / "rig.toml"
     broken.write_text("[muscle\n", encoding="utf-8")

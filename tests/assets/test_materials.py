@@ -42,7 +42,8 @@ def read(folder: Path, material: str, library: str, /, **names: str) -> Mesh:
 
 def colour_of(mesh: Mesh) -> tuple[int, ...]:
     """The colour of its picture."""
-    assert mesh.texture is not None and mesh.texture.picture.tolist() == [0]
+    assert mesh.texture is not None
+    assert mesh.texture.picture.tolist() == [0]
     red, green, blue = mesh.texture.pictures[0]()[0, 0].tolist()
     return red, green, blue
 
@@ -71,7 +72,8 @@ def test_libraries_are_read_as_programs_write_them(
     """Tabs, blanks, ends of lines, names with blanks, quotes, folders, options."""
     mesh = read(tmp_path, "skin", library, picture=picture)
     assert colour_of(mesh) == RED
-    assert mesh.texture is not None and np.allclose(mesh.texture.uv[mesh.texture.face_uv], [UV])
+    assert mesh.texture is not None
+    assert np.allclose(mesh.texture.uv[mesh.texture.face_uv], [UV])
 
 
 @pytest.mark.parametrize(
@@ -88,7 +90,8 @@ def test_options_say_how_a_picture_lies(tmp_path: Path, options: str, wanted: np
     """They are scaled first, and then shifted."""
     mesh = read(tmp_path, "skin", f"newmtl skin\nmap_Kd {options} skin.png\n")
     assert colour_of(mesh) == RED
-    assert mesh.texture is not None and np.allclose(mesh.texture.uv[mesh.texture.face_uv], [wanted])
+    assert mesh.texture is not None
+    assert np.allclose(mesh.texture.uv[mesh.texture.face_uv], [wanted])
 
 
 @pytest.mark.parametrize(
@@ -125,7 +128,8 @@ def test_pictures_may_lie_otherwise_each(tmp_path: Path) -> None:
     library = "newmtl a\nmap_Kd -o 0.5 0 skin.png\nnewmtl b\nmap_Kd skin.png\n"
     (tmp_path / "a.mtl").write_text(library)
     texture = assets.read_mesh(path).texture
-    assert texture is not None and texture.picture[2] == -1
+    assert texture is not None
+    assert texture.picture[2] == -1
     assert np.allclose(texture.uv[texture.face_uv][:2], [UV, UV + np.array([0.5, 0])])
 
 
@@ -164,7 +168,8 @@ def _palette() -> PIL.Image.Image:
 def test_pictures_of_every_kind_keep_their_colours(content: bytes, wanted: tuple[int, ...]) -> None:
     """Grey of 16 bits, palettes, ink, and how transparent they are."""
     found = decoded(content, "skin")
-    assert found.dtype == np.uint8 and found.shape[2] == 3
+    assert found.dtype == np.uint8
+    assert found.shape[2] == 3
     assert np.abs(found[1, 1].astype(int) - wanted).max() <= 3
 
 

@@ -66,7 +66,8 @@ def test_lips_are_closed_but_not_welded(head: Head) -> None:
     """Upper and lower lip nearly touch, and remain different vertices at least 0.3 mm apart."""
     row = head.rings["mouth_2_left"]
     columns = len(row) // 2
-    upper, lower = head.vertices[row[:columns]], head.vertices[row[: -columns - 1 : -1]]
+    upper = head.vertices[row[:columns]]
+    lower = head.vertices[row[: -columns - 1 : -1]]
     gap = np.linalg.norm(upper - lower, axis=1)
     assert gap.max() < 0.6
     assert gap.min() > 0.3
@@ -98,14 +99,16 @@ def test_outline_of_the_crown_is_smooth(head: Head) -> None:
     ends = head.vertices[edges]
     on_crown = ends[:, :, 1].min(axis=1) > 45.0
     length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-    assert on_crown.sum() > 200 and length[on_crown].max() < 34.5
+    assert on_crown.sum() > 200
+    assert length[on_crown].max() < 34.5
 
 
 def test_head_is_closed_behind(head: Head) -> None:
     """The one free border is the collar."""
     rim = head.vertices[head.rings["rim_left"]]
     assert rim[:, 1].max() < -130.0
-    assert rim[0, 0] == rim[-1, 0] == 0.0 and rim[0, 2] < 0.0 < rim[-1, 2]
+    assert rim[0, 0] == rim[-1, 0] == 0.0
+    assert rim[0, 2] < 0.0 < rim[-1, 2]
 
 
 def test_no_face_is_inside_out(head: Head) -> None:
@@ -136,7 +139,8 @@ def ear_faces(head: Head) -> npt.NDArray[np.bool_]:
 def test_ears_have_their_size_and_place(head: Head) -> None:
     """59 by 32 mm, from below the brow to the base of the nose, leaning back, off the head."""
     edge = head.vertices[head.rings["ear_1_left"]]
-    high, low = edge[edge[:, 1].argmax()], edge[edge[:, 1].argmin()]
+    high = edge[edge[:, 1].argmax()]
+    low = edge[edge[:, 1].argmin()]
     along = np.linalg.svd(edge - edge.mean(axis=0))[2][0]  # as long as it is at most
     along *= np.sign(along[1])
     assert 58.0 < np.ptp(edge @ along) < 67.0
@@ -158,15 +162,18 @@ def test_ear_looks_outward_in_front_and_toward_the_head_behind(head: Head) -> No
     rows = [set(head.rings[f"ear_{row}_left"].tolist()) for row in range(5)]
     root = rows[0]
     cross = cross_products(head.vertices, head.faces)
-    front, behind = [], []
+    front = []
+    behind = []
     for number, face in enumerate(head.faces.tolist()):
         corners = set(face)
         if corners <= (rows[2] | rows[3]) - root:
             front.append(cross[number, 0])
         if corners <= rows[0] | rows[1] and corners - root and len(corners & root) < 3:
             behind.append(cross[number, 2])
-    assert len(front) > 15 and np.mean(np.array(front) > 0.0) > 0.8
-    assert len(behind) > 15 and np.mean(np.array(behind) < 0.0) > 0.6
+    assert len(front) > 15
+    assert np.mean(np.array(front) > 0.0) > 0.8
+    assert len(behind) > 15
+    assert np.mean(np.array(behind) < 0.0) > 0.6
 
 
 def _nostril_faces(head: Head) -> npt.NDArray[np.bool_]:
@@ -185,7 +192,8 @@ def test_holes_that_meet_in_a_vertex_have_loops() -> None:
     corners = [x + 5 * y for y in range(4) for x in range(4) if (x, y) not in ((1, 1), (2, 2))]
     squares = [[[a, a + 1, a + 6], [a, a + 6, a + 5]] for a in corners]
     outer, inner = boundary_loops(np.array(squares, dtype=np.int32).reshape(-1, 3))
-    assert len(outer) == 16 and inner == [6, 11, 12, 17, 18, 13, 12, 7]
+    assert len(outer) == 16
+    assert inner == [6, 11, 12, 17, 18, 13, 12, 7]
 
 
 def test_checks_find_faults() -> None:

@@ -1,4 +1,4 @@
-"""Meshes that somebody brings: order kept, mistakes told."""
+"""Meshes that somebody brings: order kept, mistakes reported."""
 
 import struct
 from collections.abc import Sequence
@@ -60,7 +60,8 @@ def test_a_ply_file_may_have_texture_coordinates(tmp_path: Path, names: str) -> 
         + "".join(f"3 {face}{' 6 0 0 1 0 1 1' * (not second)}\n" for face in ("0 1 2", "0 2 3"))
     )
     mesh = assets.read_mesh(path)
-    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]] and len(mesh.vertices) == 4
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert len(mesh.vertices) == 4
 
 
 def test_polygons_become_triangles(tmp_path: Path) -> None:
@@ -144,7 +145,8 @@ def test_polygons_of_ply_may_be_of_any_sizes(
     mesh = assets.read_mesh(path)
     assert mesh.vertices.tolist() == [list(map(float, each)) for each in CORNERS]
     fans = [[a[0], a[k], a[k + 1]] for a in lists for k in range(1, len(a) - 1)]
-    assert mesh.faces.tolist() == fans and mesh.colours is None
+    assert mesh.faces.tolist() == fans
+    assert mesh.colours is None
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -178,7 +180,8 @@ def test_colours_of_ply_may_be_of_any_kind(
     path.write_bytes(ply(form, HOUSE, **colours))
     mesh = assets.read_mesh(path)
     wanted = [1, 1, 1] if row == (1, 1, 1) else [250, 125, 1]
-    assert mesh.colours is not None and mesh.colours.tolist() == [wanted] * 5
+    assert mesh.colours is not None
+    assert mesh.colours.tolist() == [wanted] * 5
     assert mesh.faces.tolist() == HOUSE
 
 

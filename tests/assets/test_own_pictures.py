@@ -29,7 +29,7 @@ def other() -> Stranger:
 
 
 def _striped() -> PIL.Image.Image:
-    """A picture whose colour tells the place: red along u, green along v."""
+    """A picture whose colour gives the place: red along u, green along v."""
     steps = np.arange(SIZE, dtype=np.uint8) * (256 // SIZE)
     rows = np.dstack([*np.meshgrid(steps, steps[::-1]), np.full((SIZE, SIZE), 60, np.uint8)])
     return PIL.Image.fromarray(rows)
@@ -52,7 +52,8 @@ def _write_obj(folder: Path, other: Stranger, picture: str = "skin.png") -> tupl
     lines += [f"vt {u:.7f} {v:.7f}" for u, v in uv] + ["usemtl skin"]
     for face, places in zip(other.mesh.faces + 1, face_uv + 1, strict=True):
         lines.append("f " + " ".join(f"{a}/{b}" for a, b in zip(face, places, strict=True)))
-    mesh, marks = folder / "head.obj", folder / "head.json"
+    mesh = folder / "head.obj"
+    marks = folder / "head.json"
     mesh.write_text("\n".join(lines))
     (folder / "head.mtl").write_text(f"newmtl skin\nKd 1 1 1\nmap_Kd {picture}\n")
     marks.write_text(json.dumps(other.landmarks.tolist()))
@@ -67,7 +68,8 @@ def _write_glb(folder: Path, other: Stranger) -> tuple[Path, Path]:
     material = trimesh.visual.material.PBRMaterial(baseColorTexture=_striped())
     visual = trimesh.visual.TextureVisuals(uv=uv[corners], material=material)
     faces = numbers.reshape(-1, 3)
-    mesh, marks = folder / "head.glb", folder / "head.json"
+    mesh = folder / "head.glb"
+    marks = folder / "head.json"
     mesh.write_bytes(
         trimesh.Trimesh(vertices, faces, process=False, visual=visual).export(file_type="glb")
     )
@@ -89,8 +91,10 @@ def test_own_picture_lies_where_the_file_has_it(
     """Each triangle has the colour of its place; the form is one piece across the seam."""
     files = write(tmp_path, other)
     _striped().save(tmp_path / "skin.png")
-    head, plain = fit_head(*files), fit(other.mesh, other.landmarks)
-    assert head.albedo.shape == (SIZE, SIZE, 3) and head.ambient_occlusion.shape == (SIZE, SIZE)
+    head = fit_head(*files)
+    plain = fit(other.mesh, other.landmarks)
+    assert head.albedo.shape == (SIZE, SIZE, 3)
+    assert head.ambient_occlusion.shape == (SIZE, SIZE)
     assert len(head.vertices) == len(plain.vertices)
     assert np.allclose(head.vertices[head.faces], plain.vertices[plain.faces], atol=1e-3)
     uv, face_uv = _uv(other)
@@ -105,7 +109,8 @@ def test_maps_go_along_to_the_own_layout(other: Stranger, tmp_path: Path) -> Non
     """Lips are lips and furrows furrows wherever the mesh's texture coordinates lie."""
     files = _write_obj(tmp_path, other)
     _striped().save(tmp_path / "skin.png")
-    head, plain = fit_head(*files), fit(other.mesh, other.landmarks)
+    head = fit_head(*files)
+    plain = fit(other.mesh, other.landmarks)
     for of_head, of_plain in (
         (head.segments, plain.segments),
         (head.wrinkles.map[..., 2], plain.wrinkles.map[..., 2]),
@@ -137,7 +142,8 @@ def test_maps_turn_with_the_layout() -> None:
         sampled(each, where.astype(np.float64)).astype(int)
         for each, where in ((known.ambient_occlusion, place), (light, image))
     )
-    assert np.median(abs(found - dark)) < 3 and (dark < 128).sum() > 50 < (found < 128).sum()
+    assert np.median(abs(found - dark)) < 3
+    assert (dark < 128).sum() > 50 < (found < 128).sum()
     wanted = 2.0 * np.column_stack([-before[:, 1], before[:, 0]])
     is_within = (abs(wanted) < 0.9 * wrinkles.steepest).all(axis=1)
     assert np.median(abs(after - wanted)[is_within].max(axis=1)) < 0.05 * wrinkles.steepest
@@ -180,9 +186,9 @@ def test_pictures_that_cannot_be_used_are_refused(
     files = _write_obj(tmp_path, other, name)
     if content is not None:
         (tmp_path / name).write_bytes(content)
-    with pytest.raises(AssetError, match=message.replace("\\", "\\\\")) as told:
+    with pytest.raises(AssetError, match=message.replace("\\", "\\\\")) as raised:
         fit_head(*files)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(raised.value)
 
 
 def test_a_link_out_of_the_folder_is_refused(other: Stranger, tmp_path: Path) -> None:
@@ -209,7 +215,7 @@ def test_huge_pictures_are_refused_before_they_unfold(other: Stranger, tmp_path:
 
 @pytest.mark.slow
 def test_a_missing_library_paints_nothing(other: Stranger, tmp_path: Path) -> None:
-    """Many files name one that was never sent along; it is told in one line."""
+    """Many files name one that was never sent along; it is reported in one line."""
     files = _write_obj(tmp_path, other)
     (tmp_path / "head.mtl").unlink()
     assert read_mesh(files[0]).texture is None
@@ -230,7 +236,8 @@ def test_pictures_are_drawn_from_one_layout_to_another() -> None:
     picture = np.asarray(_striped())
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
-    upright, mirrored = Layout(square, faces), Layout(square[[1, 0, 3, 2]], faces)
+    upright = Layout(square, faces)
+    mirrored = Layout(square[[1, 0, 3, 2]], faces)
     once = drawn_over(picture, mirrored, (picture, upright))
     assert np.array_equal(once, picture[:, ::-1])
     assert np.array_equal(drawn_over(once, mirrored, (once, upright)), picture)

@@ -10,8 +10,10 @@ LARGEST_IMAGE_FILE = 1_250_000  # bytes
 
 def test_albedo_is_a_picture(head: Head) -> None:
     """Square, 8 bits, three channels, read-only, light on disk, and read only once."""
-    assert head.albedo.dtype == np.uint8 and head.albedo.ndim == 3
-    assert head.albedo.shape[0] == head.albedo.shape[1] >= 1024 and head.albedo.shape[2] == 3
+    assert head.albedo.dtype == np.uint8
+    assert head.albedo.ndim == 3
+    assert head.albedo.shape[0] == head.albedo.shape[1] >= 1024
+    assert head.albedo.shape[2] == 3
     assert head.albedo is head.albedo
     assert head.file.with_suffix(".png").stat().st_size < LARGEST_IMAGE_FILE
     with pytest.raises(ValueError, match="read-only"):
@@ -26,7 +28,8 @@ def test_picture_is_mirrored_but_for_patches_and_grain(head: Head) -> None:
     size = len(image) // 40
     blocks = image[: 40 * size, : 40 * size].reshape(40, size, 40, size, 3).mean(axis=(1, 3))
     off = np.abs(blocks - blocks[:, ::-1])
-    assert off.mean() < 3.0 and off.max() < 25.0
+    assert off.mean() < 3.0
+    assert off.max() < 25.0
 
 
 def test_picture_goes_on_outside_the_skin(head: Head) -> None:

@@ -39,13 +39,15 @@ def test_parts_are_well_formed(head: Head) -> None:
         assert 0.0 <= found.shine <= 1.0
         assert found.vertices.dtype == found.normals.dtype == found.colours.dtype == np.float32
         assert found.faces.dtype == np.int32
-        assert found.faces.min() >= 0 and found.faces.max() < len(found.vertices)
+        assert found.faces.min() >= 0
+        assert found.faces.max() < len(found.vertices)
         assert np.allclose(np.linalg.norm(found.normals, axis=1), 1.0, atol=1e-4)
-        assert found.colours.min() >= 0.0 and found.colours.max() <= 1.0
+        assert found.colours.min() >= 0.0
+        assert found.colours.max() <= 1.0
 
 
 def test_part_normals_agree_with_their_faces(head: Head) -> None:
-    """Lighting and culling must tell the same story."""
+    """Lighting and culling see the same side of each triangle."""
     for found in head.parts:
         cross = cross_products(found.vertices.astype(np.float64), found.faces)
         normal = found.normals[found.faces].sum(axis=1)
@@ -82,8 +84,10 @@ def test_everything_in_the_mouth_is_inside_the_head(head: Head) -> None:
 def test_teeth_darken_toward_the_corners_of_the_mouth(head: Head) -> None:
     """Molars and premolars stand in the shade of the cheeks, though their neighbours are white."""
     teeth = part(head, "teeth_upper")
-    lightness, aside = teeth.colours.mean(axis=1), np.abs(teeth.vertices[:, 0])
-    incisors, premolars = lightness[aside < 12.0].mean(), lightness[(aside > 20) & (aside < 25)]
+    lightness = teeth.colours.mean(axis=1)
+    aside = np.abs(teeth.vertices[:, 0])
+    incisors = lightness[aside < 12.0].mean()
+    premolars = lightness[(aside > 20) & (aside < 25)]
     assert 0.45 < premolars.mean() / incisors < 0.6
 
 
@@ -104,12 +108,14 @@ def test_teeth_are_pairs_of_fourteen_and_ivory(head: Head) -> None:
         assert len(teeth.vertices) % 14 == 0
         assert teeth.vertices[:, 0].min() == pytest.approx(-teeth.vertices[:, 0].max())
         red, _, blue = teeth.colours.max(axis=0)
-        assert red < 0.96 and blue < red - 0.05
+        assert red < 0.96
+        assert blue < red - 0.05
 
 
 def test_upper_incisors_overlap_the_lower(head: Head) -> None:
     """Overbite and overjet of one to four millimetres."""
-    upper, lower = part(head, "teeth_upper").vertices, part(head, "teeth_lower").vertices
+    upper = part(head, "teeth_upper").vertices
+    lower = part(head, "teeth_lower").vertices
     front = [teeth[np.abs(teeth[:, 0]) < 4.0] for teeth in (upper, lower)]
     assert 1.0 < front[1][:, 1].max() - front[0][:, 1].min() < 4.0
     assert 1.0 < front[0][:, 2].max() - front[1][:, 2].max() < 4.0
@@ -119,7 +125,8 @@ def test_mouth_is_darker_toward_the_throat(head: Head) -> None:
     """Teeth and cheeks lose light with depth, yet the throat is no black hole."""
     for name in ("teeth_lower", "teeth_upper", "oral_cavity_upper"):
         found = part(head, name)
-        depth, brightness = found.vertices[:, 2], found.colours.mean(axis=1)
+        depth = found.vertices[:, 2]
+        brightness = found.colours.mean(axis=1)
         front = brightness[depth > np.percentile(depth, 80)].mean()
         back = brightness[depth < np.percentile(depth, 20)].mean()
         assert 0.01 < back < 0.75 * front, name
@@ -128,7 +135,8 @@ def test_mouth_is_darker_toward_the_throat(head: Head) -> None:
 def test_gums_hold_the_teeth(head: Head) -> None:
     """Every crown is rooted in gum, and what stands out of it is as high as in a mouth."""
     for row, up in (("upper", 1.0), ("lower", -1.0)):
-        teeth, gums = part(head, f"teeth_{row}").vertices, part(head, f"gums_{row}").vertices
+        teeth = part(head, f"teeth_{row}").vertices
+        gums = part(head, f"gums_{row}").vertices
         margin = up * gums[:, 1]
         for low, high, least, most in ((0.0, 9.0, 6.5, 10.0), (24.0, 30.0, 2.0, 7.0)):
             beside = [(np.abs(p[:, 0]) > low) & (np.abs(p[:, 0]) < high) for p in (teeth, gums)]
@@ -168,7 +176,8 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head: Head) -> None:
 def test_lashes_are_rooted_in_the_lids_edges(head: Head) -> None:
     """Each stands on a margin, leaves the eye, and keeps clear of the eyeball."""
     lashes = part(head, "lashes")
-    assert lashes.roots is not None and lashes.strand_radius > 0.0
+    assert lashes.roots is not None
+    assert lashes.strand_radius > 0.0
     edges = np.vstack([head.vertices[head.rings[f"eye_2_{side}"]] for side in ("right", "left")])
     roots = np.unique(lashes.roots)
     along = np.vstack([edges, 0.5 * (edges + np.roll(edges, 1, axis=0))])
@@ -184,10 +193,12 @@ def test_lashes_are_rooted_in_the_lids_edges(head: Head) -> None:
 
 def test_lower_lashes_are_short_and_lean_outward(head: Head) -> None:
     """Long ones that stand straight below the eye look like a doll's."""
-    lashes, eye = part(head, "lashes"), head.eyes[1]
+    lashes = part(head, "lashes")
+    eye = head.eyes[1]
     tips = np.flatnonzero(np.diff(lashes.roots, append=-1))
     tips = tips[lashes.vertices[tips, 0] > 0.0]
-    tip, root = lashes.vertices[tips], lashes.vertices[lashes.roots[tips]]
+    tip = lashes.vertices[tips]
+    root = lashes.vertices[lashes.roots[tips]]
     length = np.linalg.norm(tip - root, axis=1)
     is_lower = root[:, 1] < eye.centre[1]
     assert 0.2 < length[is_lower].mean() / length[~is_lower].mean() < 0.5
@@ -199,7 +210,8 @@ def test_lower_lashes_are_short_and_lean_outward(head: Head) -> None:
 def test_wet_edges_lie_between_lid_and_eyeball(head: Head) -> None:
     """On the lower lids, facing up and forward, hardly above the ball."""
     wet = part(head, "wet_edges")
-    assert wet.roots is not None and (wet.roots == np.arange(len(wet.vertices))).all()
+    assert wet.roots is not None
+    assert (wet.roots == np.arange(len(wet.vertices))).all()
     assert wet.normals.mean(axis=0)[1:].min() > 0.3
     centres = np.array([eye.centre for eye in head.eyes])
     away = np.linalg.norm(wet.vertices[:, None] - centres, axis=2).min(axis=1)
@@ -229,7 +241,8 @@ def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head: Head) -> None:
     brightness = ball.colours.mean(axis=1)
     assert brightness[ahead & (beside < 1.5)].max() < 0.1
     iris = brightness[ahead & (beside > 2.6) & (beside < eye.iris_radius - 0.8)]
-    assert 0.2 < iris.mean() < 0.6 and iris.std() > 0.02
+    assert 0.2 < iris.mean() < 0.6
+    assert iris.std() > 0.02
     sclera = ahead & (beside > 6.8) & (np.abs(local[:, 0]) < 6.0)
     assert brightness[sclera & (local[:, 1] < 0.0)].min() > 0.69
 

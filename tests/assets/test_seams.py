@@ -31,7 +31,8 @@ def plain(head: Head) -> FittedHead:
 
 def assert_same(found: FittedHead, plain: FittedHead) -> None:
     """The same triangles in the same places."""
-    assert found.faces.shape == plain.faces.shape and len(found.vertices) == len(plain.vertices)
+    assert found.faces.shape == plain.faces.shape
+    assert len(found.vertices) == len(plain.vertices)
     assert np.abs(found.vertices[found.faces] - plain.vertices[plain.faces]).max() < 1e-2
 
 
@@ -75,7 +76,8 @@ def test_lips_that_touch_exactly_are_two(head: Head, tmp_path: Path, way: str) -
         apart[lower] = [0, -20, 0]
         more["targets"] = [{"POSITION": maker.accessor(apart)}]
     maker.shown({"mesh": maker.mesh(maker.primitive(vertices, head.faces, **more))})
-    mesh, marks = maker.write(tmp_path / "head.glb"), tmp_path / "head.json"
+    mesh = maker.write(tmp_path / "head.glb")
+    marks = tmp_path / "head.json"
     marks.write_text(json.dumps(head.landmarks.tolist()))
     found = fit_head(mesh, marks)
     assert len(found.vertices) == len(head.vertices)
@@ -110,7 +112,8 @@ def test_pieces_that_are_left_away_may_be_painted_with_anything(head: Head, tmp_
     maker.shown({"mesh": maker.mesh(hair)}, {"mesh": maker.mesh(skin)})
     mesh = assets.read_mesh(maker.write(tmp_path / "head.glb"))
     found = fit(mesh, head.landmarks)
-    assert found.albedo.shape == (4, 4, 3) and found.albedo[0, 0].tolist() == [250, 10, 20]
+    assert found.albedo.shape == (4, 4, 3)
+    assert found.albedo[0, 0].tolist() == [250, 10, 20]
 
 
 def test_colours_of_the_skin_count_alone(head: Head) -> None:
@@ -127,4 +130,5 @@ def test_colours_of_the_skin_count_alone(head: Head) -> None:
     blue_share = [
         (abs(each.astype(int) - blue[0]).max(axis=2) < 3).mean() for each in (painted, plain)
     ]
-    assert blue_share[0] > 0.4 and blue_share[1] < 0.01
+    assert blue_share[0] > 0.4
+    assert blue_share[1] < 0.01

@@ -42,7 +42,8 @@ def test_the_right_half_is_the_left_one_mirrored(head: assets.Head) -> None:
     mirrored = head.segments[:, ::-1]
     expected = head.segments.copy()
     for right, left in MIRRORED.items():
-        expected[head.segments == right], expected[head.segments == left] = left, right
+        expected[head.segments == right] = left
+        expected[head.segments == left] = right
         assert np.nonzero(head.segments == left)[1].min() >= head.segments.shape[1] // 2
     assert np.array_equal(mirrored, expected)
 

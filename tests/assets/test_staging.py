@@ -32,7 +32,8 @@ def test_a_folder_is_gone_after_the_work(tmp_path: Path) -> None:
     """However the work ends."""
     with StagingFolder(tmp_path) as folder:
         (folder / "x").touch()
-        assert is_staging_folder(folder) and list(tmp_path.iterdir()) == [folder]
+        assert is_staging_folder(folder)
+        assert list(tmp_path.iterdir()) == [folder]
     with pytest.raises(RuntimeError, match="in the middle"), StagingFolder(tmp_path):
         raise RuntimeError("in the middle")
     assert list(tmp_path.iterdir()) == []

@@ -17,12 +17,14 @@ def signed_areas(flat: Points, faces: npt.NDArray[np.int32]) -> Points:
 
 def stretches(head: Head) -> Points:
     """Largest and smallest scale of each face in the picture [1/m], shape (F, 2)."""
-    corner, flat = head.vertices[head.faces], head.uv.astype(np.float64)[head.face_uv]
+    corner = head.vertices[head.faces]
+    flat = head.uv.astype(np.float64)[head.face_uv]
     along = corner[:, 1] - corner[:, 0]
     length = np.linalg.norm(along, axis=1)
     second = corner[:, 2] - corner[:, 0]
     edges = np.zeros((len(corner), 2, 2))
-    edges[:, 0, 0], edges[:, 0, 1] = length, (along * second).sum(axis=1) / length
+    edges[:, 0, 0] = length
+    edges[:, 0, 1] = (along * second).sum(axis=1) / length
     edges[:, 1, 1] = np.linalg.norm(np.cross(along, second), axis=1) / length
     pictured = np.stack([flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]], axis=2)
     jacobian = 1000.0 * pictured @ np.linalg.inv(edges)
@@ -39,9 +41,12 @@ def seen_in_front(head: Head) -> npt.NDArray[np.bool_]:
 
 def test_coordinates_are_one_piece_within_the_picture(head: Head) -> None:
     """Every vertex has one pair of coordinates, and some margin is left for filters."""
-    assert head.uv.dtype == np.float32 and head.uv.shape == (len(head.vertices), 2)
-    assert head.face_uv.dtype == np.int32 and np.array_equal(head.face_uv, head.faces)
-    assert head.uv.min() > 0.005 and head.uv.max() < 0.995
+    assert head.uv.dtype == np.float32
+    assert head.uv.shape == (len(head.vertices), 2)
+    assert head.face_uv.dtype == np.int32
+    assert np.array_equal(head.face_uv, head.faces)
+    assert head.uv.min() > 0.005
+    assert head.uv.max() < 0.995
 
 
 def test_no_triangle_is_turned_over(head: Head) -> None:
@@ -54,7 +59,8 @@ def test_no_two_triangles_share_a_texel(head: Head) -> None:
     side = 300
     covered = np.zeros((side, side), dtype=np.int64)
     for a, b, c in head.uv.astype(np.float64)[head.face_uv] * side:
-        low, high = np.floor(np.min([a, b, c], axis=0)), np.ceil(np.max([a, b, c], axis=0))
+        low = np.floor(np.min([a, b, c], axis=0))
+        high = np.ceil(np.max([a, b, c], axis=0))
         x, y = np.meshgrid(*(np.arange(s, e) for s, e in zip(low, high, strict=True)))
         place = np.stack([x + 0.503, y + 0.507], axis=-1)  # off the lines of symmetry
         turns = [

@@ -25,8 +25,10 @@ def is_plain(found: npt.NDArray[np.uint8]) -> bool:
 def test_arrays_fit_the_head(head: assets.Head) -> None:
     """Shapes and types as `Wrinkles` says, directions of a sensible length, all read-only."""
     wrinkles = head.wrinkles
-    assert wrinkles.map.ndim == 3 and wrinkles.map.shape[2] == 4
-    assert wrinkles.map.dtype == np.uint8 and not wrinkles.map.flags.writeable
+    assert wrinkles.map.ndim == 3
+    assert wrinkles.map.shape[2] == 4
+    assert wrinkles.map.dtype == np.uint8
+    assert not wrinkles.map.flags.writeable
     assert wrinkles.across.shape == (len(head.vertices), 2, 3)
     length = np.linalg.norm(wrinkles.across, axis=2)
     assert ((length == 0.0) | ((length > 0.5) & (length < 2.0))).all()
@@ -58,7 +60,8 @@ def test_furrows_follow_the_amount_of_their_own_region(
     column, row = (head.uv[head.anatomy[place]] * [size, -size] + [0.0, size]).astype(int)
     around = head.wrinkles.map[row - 12 : row + 13, column - 25 : column + 26].reshape(-1, 4)
     furrows = around[around[:, 2] > 20]
-    assert len(furrows) > 20 and (furrows[:, 3] == slot).mean() > 0.95
+    assert len(furrows) > 20
+    assert (furrows[:, 3] == slot).mean() > 0.95
 
 
 def test_none_behind_the_face(head: assets.Head) -> None:
@@ -82,6 +85,7 @@ def test_left_and_right_are_not_alike(head: assets.Head) -> None:
     np.testing.assert_allclose(same_way * mirrored, across, atol=1e-4)
     depth = head.wrinkles.map[..., 2].astype(float)
     half = depth.shape[1] // 2
-    left, right = depth[:, half:], depth[:, :half][:, ::-1]
+    left = depth[:, half:]
+    right = depth[:, :half][:, ::-1]
     assert 0.5 < left.sum() / right.sum() < 2.0
     assert np.abs(left - right).sum() > 0.3 * (left + right).sum()

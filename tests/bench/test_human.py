@@ -53,7 +53,7 @@ def test_a_person_of_the_space_is_explained(space: IdentitySpace) -> None:
     assert all(target.is_met for target in targets({"coarse": rest, "finer": rest}))
 
 
-def test_a_bump_that_nobody_has_is_told_where_it_is(space: IdentitySpace) -> None:
+def test_a_bump_that_nobody_has_is_reported_where_it_is(space: IdentitySpace) -> None:
     """4 mm on the chin are left there, hardly elsewhere, and printed."""
     vertices = space.person(WEIGHTS)
     chin = vertices[space.landmarks[8]]
@@ -88,7 +88,7 @@ def test_what_looks_at_skin_is_no_region(space: IdentitySpace) -> None:
     assert (regions[marks[[31, 8, 19, 24]]] != "").all()
 
 
-def test_a_folder_without_modes_is_told(tmp_path: Path) -> None:
+def test_a_folder_without_modes_is_reported(tmp_path: Path) -> None:
     """The file that is missing, or holds other vertices, is named."""
     head = assets.load("head")
     np.savez(

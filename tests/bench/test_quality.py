@@ -62,8 +62,12 @@ def test_error_of_the_truth_is_zero() -> None:
     found = Subject(faces, faces, PosePair(rest, rest), poses)
     same, wider = quality.measure(found, methods=[STATIC])
     assert same.method == STATIC
-    assert same.distance < 1e-6 and same.picture < 0.1 and same.outline == 0.0
-    assert wider.distance > 0.01 and wider.picture > 1.0 and wider.outline > 1000.0
+    assert same.distance < 1e-6
+    assert same.picture < 0.1
+    assert same.outline == 0.0
+    assert wider.distance > 0.01
+    assert wider.picture > 1.0
+    assert wider.outline > 1000.0
 
 
 def test_scans_are_read(tmp_path: Path) -> None:

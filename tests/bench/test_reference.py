@@ -112,7 +112,7 @@ def test_bench_quality_runs_on_it(checkout: Path) -> None:
         ),
     ],
 )
-def test_a_broken_checkout_is_told_in_one_line(checkout: Path, spoil: Any, words: str) -> None:
+def test_a_broken_checkout_is_reported_in_one_line(checkout: Path, spoil: Any, words: str) -> None:
     """The file is named, and nothing is written."""
     spoil(checkout)
     result = risorius("bench", "reference", checkout, "-o", checkout.parent / "made")

@@ -39,4 +39,5 @@ def test_calls_are_timed_in_turn() -> None:
     order: list[str] = []
     calls = [lambda name=name: order.append(f"{name}{gc.isenabled():d}") for name in "ab"]
     assert refine.interleaved(calls, 2).shape == (2, 2)
-    assert order == ["a0", "b0", "b0", "a0"] and gc.isenabled()
+    assert order == ["a0", "b0", "b0", "a0"]
+    assert gc.isenabled()

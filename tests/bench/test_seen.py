@@ -44,7 +44,8 @@ def test_a_pair_counts_by_its_mean() -> None:
     scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
     shape = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
     assert shape == (pytest.approx(0.4), "eyeSquint", pytest.approx(0.35))
-    assert shape.verdict == "seen" and seen.Shape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"
+    assert shape.verdict == "seen"
+    assert seen.Shape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"
 
 
 def test_without_mediapipe_one_line_says_so(

@@ -38,7 +38,10 @@ def sheet():
     thing.location = (1.0, 2.0, 3.0)
     bpy.context.scene.collection.objects.link(thing)
     wave = thing.modifiers.new("wave", "WAVE")
-    wave.height, wave.width, wave.narrowness, wave.start_position_x = 0.3, 0.5, 3.0, -1.0
+    wave.height = 0.3
+    wave.width = 0.5
+    wave.narrowness = 3.0
+    wave.start_position_x = -1.0
     return thing
 
 
@@ -79,9 +82,11 @@ def render(frames):
     camera.location = (1.0, 2.0, 8.0)
     scene.collection.objects.link(camera)
     scene.camera = camera
-    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 1
     scene.render.resolution_x = scene.render.resolution_y = 32
-    scene.frame_start, scene.frame_end = frames[0], frames[-1]
+    scene.frame_start = frames[0]
+    scene.frame_end = frames[-1]
     scene.render.filepath = str(FOLDER / "frame_")
     counts = []
     bpy.app.handlers.render_post.append(

@@ -60,7 +60,8 @@ def test_it_follows_the_source(seen: dict[str, Any]) -> None:
 def test_the_copy_looks_like_its_source(seen: dict[str, Any]) -> None:
     """Same place, materials by face, the UV map that is shown; the source hides, once."""
     assert seen["finished"] == ["FINISHED"]
-    assert seen["hidden"] and not seen["again"]
+    assert seen["hidden"]
+    assert not seen["again"]
     assert seen["materials"] == ["skin", "cloth"]
     assert seen["uv_shown"] == "Second"
     assert seen["uv_off"] < 0.02  # cubic curves move points along the sheet, too
@@ -70,7 +71,8 @@ def test_the_copy_looks_like_its_source(seen: dict[str, Any]) -> None:
 @pytest.mark.blender
 def test_settings(seen: dict[str, Any]) -> None:
     """They count at once: other looks split otherwise."""
-    assert seen["paper"] > 338 and seen["unblended"] > 338
+    assert seen["paper"] > 338
+    assert seen["unblended"] > 338
     assert seen["paper"] != seen["unblended"]
 
 
@@ -84,7 +86,8 @@ def test_renders_files_and_undo(seen: dict[str, Any]) -> None:
     assert seen["mended"] == ["", seen["triangles_there"][2]]
     undone, redone = seen["steps"]
     assert undone == ["SMOOTH", seen["triangles_there"][2]]
-    assert redone[0] == "PAPER" and redone[1] != undone[1]
+    assert redone[0] == "PAPER"
+    assert redone[1] != undone[1]
     assert not seen["registered"]
 
 
@@ -108,8 +111,8 @@ def test_the_zip_has_all_that_it_needs(tmp_path: Path) -> None:
     }
     if BLENDER:
         find = "import bpy; print(bpy.utils.resource_path('LOCAL'))"
-        told = subprocess.run([BLENDER, "-c", find], capture_output=True, text=True, check=True)
-        (judge,) = Path(told.stdout.strip()).rglob("blender_ext.py")
+        message = subprocess.run([BLENDER, "-c", find], capture_output=True, text=True, check=True)
+        (judge,) = Path(message.stdout.strip()).rglob("blender_ext.py")
         subprocess.run([BLENDER, judge, "validate", file], check=True, capture_output=True)
 
 
@@ -123,7 +126,8 @@ def test_the_manifest_keeps_the_rules() -> None:
     assert manifest["schema_version"] == "1.0.0"
     assert manifest["id"] == "risorius_refine"
     assert manifest["version"] == risorius.__version__
-    assert len(manifest["tagline"]) <= 64 and not manifest["tagline"].endswith(".")
+    assert len(manifest["tagline"]) <= 64
+    assert not manifest["tagline"].endswith(".")
     assert set(manifest["permissions"]) == {"files"}
     assert manifest["license"] == ["SPDX:MIT"]
 

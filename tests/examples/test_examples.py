@@ -19,7 +19,8 @@ FOLDER = Path(__file__).parents[2] / "examples"
 def example(name: str) -> ModuleType:
     """Import a program without running it."""
     spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -73,9 +74,11 @@ def test_read_dataset(tmp_path: Path) -> None:
     faces = module.Faces(tmp_path)
     assert len(faces) == 4
     sample = faces[2]
-    assert sample["image"].shape == (3, 40, 48) and 0.0 <= sample["image"].min()
+    assert sample["image"].shape == (3, 40, 48)
+    assert 0.0 <= sample["image"].min()
     assert sample["units"].shape == (len(module.UNITS),)
-    assert sample["pixels"].shape == (70, 2) and sample["visible"].shape == (70,)
+    assert sample["pixels"].shape == (70, 2)
+    assert sample["visible"].shape == (70,)
     assert sample["classes"].shape == (40, 48)
     training, testing = faces.split(0.5)
     assert sorted(training + testing) == [0, 1, 2, 3]

@@ -1,4 +1,4 @@
-"""Inputs of the command line: a table of mistakes with the words they are told in, and hostile
+"""Inputs of the command line: a table of mistakes with the words of their messages, and hostile
 values for every option of every command."""
 
 import shlex

@@ -117,7 +117,7 @@ def bounded(seconds: float = LONGEST, memory: int = MOST_MEMORY) -> Iterator[Non
 
 
 def _kilobytes(name: str) -> int:
-    """A figure of this process, 0 where the system does not tell."""
+    """A figure of this process, 0 where the system has no such figure."""
     if not STATUS.exists():
         return 0
     found = re.search(rf"{name}:\s+(\d+) kB", STATUS.read_text())

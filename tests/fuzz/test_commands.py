@@ -27,7 +27,7 @@ def test_good_commands(line: str, sandbox: Path) -> None:
 
 @pytest.mark.parametrize("line", REFUSED, ids=_short)
 def test_mistakes(line: str, sandbox: Path) -> None:
-    """Each is told in one line, in the words of the table."""
+    """Each is reported in one line, in the words of the table."""
     before = contents(sandbox)
     ended = run_command(tuple(shlex.split(line)))
     assert ended.code == 2, ended

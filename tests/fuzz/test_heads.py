@@ -28,11 +28,11 @@ def quiet_and_bounded() -> Iterator[None]:
 
     An underflow shows nothing (numpy's default), and where it happens depends on the processor.
     """
-    with warnings.catch_warnings(record=True) as told, np.errstate(all="warn", under="ignore"):
+    with warnings.catch_warnings(record=True) as caught, np.errstate(all="warn", under="ignore"):
         warnings.simplefilter("always")
         with bounded(LONGEST, MOST_MEMORY):
             yield
-    shown = [str(w.message) for w in told if not issubclass(w.category, DeprecationWarning)]
+    shown = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning)]
     assert shown == []
 
 
@@ -43,14 +43,16 @@ def test_odd_heads(odd: OddHead, tmp_path: Path, capfd: pytest.CaptureFixture[st
     if isinstance(odd.expected, str):
         with quiet_and_bounded(), pytest.raises(AssetError) as refusal:
             open_brought(brought)
-        told = str(refusal.value)
-        assert told.isprintable() and len(told) < 500
-        assert str(tmp_path) in told
-        assert re.search(odd.expected, told), told
+        message = str(refusal.value)
+        assert message.isprintable()
+        assert len(message) < 500
+        assert str(tmp_path) in message
+        assert re.search(odd.expected, message), message
     else:
         with quiet_and_bounded():
             found = open_brought(brought)
         assert isinstance(found, Mesh if odd.expected is Kind.MESH else FittedHead)
         assert np.isfinite(found.vertices).all()
-        assert 0 <= found.faces.min() and found.faces.max() < len(found.vertices)
+        assert 0 <= found.faces.min()
+        assert found.faces.max() < len(found.vertices)
     assert capfd.readouterr() == ("", "")

@@ -41,10 +41,10 @@ def test_places_of_settings(folder: str, sandbox: Path, monkeypatch: pytest.Monk
     """Wherever they are said to be: the window opens as it was first."""
     monkeypatch.setenv("XDG_CONFIG_HOME", folder)
     monkeypatch.setenv("HOME", str(sandbox))
-    settings, told = load_settings(settings_path())
+    settings, message = load_settings(settings_path())
     assert settings == Settings()
-    if told:
-        check_line(told)
+    if message:
+        check_line(message)
 
 
 def start(
@@ -132,7 +132,8 @@ def test_streams_of_the_shell(name: str, sandbox: Path) -> None:
         timeout=STARTING,
         check=False,
     )
-    assert "Traceback" not in process.stderr and "Exception ignored" not in process.stderr
+    assert "Traceback" not in process.stderr
+    assert "Exception ignored" not in process.stderr
     assert len(process.stderr.splitlines()) <= 1, process.stderr
     assert process.returncode in (0, 1, 2), process
     assert contents(sandbox) == before

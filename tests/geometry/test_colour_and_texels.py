@@ -20,7 +20,9 @@ def test_texels_of_a_square() -> None:
     corners = square[[[0, 1, 2], [0, 2, 3]]]
     found = Texels.within(corners, (64, 64))
     places = np.unique(np.stack([found.rows, found.columns]), axis=1)
-    assert places.shape[1] == 32 * 32 and places.min() == 16 and places.max() == 47
+    assert places.shape[1] == 32 * 32
+    assert places.min() == 16
+    assert places.max() == 47
     uv = found.interpolate(corners)
     expected = np.stack([(found.columns + 0.5) / 64, 1.0 - (found.rows + 0.5) / 64], axis=1)
     np.testing.assert_allclose(uv, expected, atol=1e-9)

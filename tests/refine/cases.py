@@ -25,7 +25,7 @@ def kahler(mesh: meshes.Mesh, **options: Any) -> refine.Kahler:
 
 
 class GivenMetric(refine.Criterion):
-    """A criterion that measures what it is told."""
+    """A criterion that measures the given values."""
 
     def __init__(self, metric: npt.ArrayLike) -> None:
         self.metric = np.asarray(metric, dtype=np.float32)
@@ -43,7 +43,7 @@ class GivenMetric(refine.Criterion):
 
 
 class Forced(refine.Criterion):
-    """A criterion that splits as it is told, whatever the mesh does."""
+    """A criterion that splits given edges in any pose."""
 
     def __init__(self, splits: npt.ArrayLike) -> None:
         self.wanted = np.asarray(splits, dtype=np.uint8)
@@ -124,7 +124,8 @@ def surface_at(
     rows = np.concatenate([refined.positions, refined.normals], axis=1).astype(np.float64)
     is_proper = np.array([len(set(face)) == 3 for face in faces.tolist()])
     is_shown = is_proper[refined.source]
-    corners, source = refined.triangles[is_shown], refined.source[is_shown]
+    corners = refined.triangles[is_shown]
+    source = refined.source[is_shown]
     local = places_in_source(origins, corners, faces[source])
     shares = places @ np.linalg.inv(local.astype(np.float64))
     triangle, place = np.nonzero((shares > -1e-9).all(axis=2))

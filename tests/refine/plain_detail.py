@@ -32,7 +32,8 @@ def detail_rules(
     rest: list[Vector], positions: list[Vector], faces: list[Face], seen: Seen
 ) -> CurveRules:
     """Cubic edges, and what was missing in them at rest, along the axes now as it lay then."""
-    before, now = cubic(rest, rest, faces), cubic(rest, positions, faces)
+    before = cubic(rest, rest, faces)
+    now = cubic(rest, positions, faces)
 
     def curve(edge: EdgeName, quarters: int) -> Vector:
         missing = mix((1, seen["edge", *edge, quarters]), (-1, before.curve(edge, quarters)))

@@ -33,7 +33,8 @@ class RefinedNormals:
     """The points of a scheme, with the normals of its surface as far as they have grown."""
 
     def __init__(self, rules: Rules, faces: list[Face]) -> None:
-        self.rules, self.faces = rules, faces
+        self.rules = rules
+        self.faces = faces
         self.around = Surroundings(faces)
         self.fans: dict[int, list[Vector]] = {}
         """Corners and middles of each triangle in turn, by its number."""

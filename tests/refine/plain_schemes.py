@@ -76,7 +76,9 @@ def cubic_normals(rest: list[Vector], positions: list[Vector], faces: list[Face]
     sums: list[Vector] = [(0.0, 0.0, 0.0)] * len(positions)
     for face in faces:
         for i in range(3):
-            a, b, c = face[i], face[(i + 1) % 3], face[(i + 2) % 3]
+            a = face[i]
+            b = face[(i + 1) % 3]
+            c = face[(i + 2) % 3]
             u, v = (mix((1, rest[k]), (-1, rest[a])) for k in (b, c))
             area = length(cross(u, v))
             if area > 1e-9 * length(u) * length(v):
@@ -100,13 +102,15 @@ def steepened(normals: list[Vector], edges: set[EdgeName]) -> list[Vector]:
 
 def is_corner(before: Vector, here: Vector, after: Vector) -> bool:
     """Whether a border turns by more than 60 degrees."""
-    u, v = mix((1, here), (-1, before)), mix((1, after), (-1, here))
+    u = mix((1, here), (-1, before))
+    v = mix((1, after), (-1, here))
     return dot(u, v) < (0.5 - 1e-9) * length(u) * length(v)
 
 
 def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> CurveRules:
     """Cubic edges, 1.2 times as full; borders end at corners."""
-    around, normals = Surroundings(faces), cubic_normals(rest, positions, faces)
+    around = Surroundings(faces)
+    normals = cubic_normals(rest, positions, faces)
     steeper = steepened(normals, set(around.opposite))
 
     def tangents(a: int, b: int) -> tuple[Vector, Vector]:
@@ -130,7 +134,8 @@ def cubic(rest: list[Vector], positions: list[Vector], faces: list[Face]) -> Cur
     def curve(edge: EdgeName, quarters: int) -> Vector:
         t, (at_a, at_b) = quarters / 4, tangents(*edge)
         hermite = (2 * t**3 - 3 * t**2 + 1, t**3 - 2 * t**2 + t, t**3 - t**2, 3 * t**2 - 2 * t**3)
-        a, b = positions[edge[0]], positions[edge[1]]
+        a = positions[edge[0]]
+        b = positions[edge[1]]
         return mix(*zip(hermite, (a, at_a, at_b, b), strict=True))
 
     return CurveRules(positions, faces, curve, normals)

@@ -72,7 +72,8 @@ def vertex_normals(positions: list[Vector], faces: list[tuple[int, int, int]]) -
     sums: list[Vector] = [(0.0, 0.0, 0.0)] * len(positions)
     for face in faces:
         a, b, c = (positions[v] for v in face)
-        u, v = mix((1, b), (-1, a)), mix((1, c), (-1, a))
+        u = mix((1, b), (-1, a))
+        v = mix((1, c), (-1, a))
         cross = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
         for vertex in face:
             sums[vertex] = mix((1, sums[vertex]), (1, cross))
@@ -96,7 +97,9 @@ class Surroundings:
         self.opposite: dict[EdgeName, list[int]] = defaultdict(list)
         for face in filter(is_proper, faces):
             for i in range(3):
-                a, b, c = face[i], face[(i + 1) % 3], face[(i + 2) % 3]
+                a = face[i]
+                b = face[(i + 1) % 3]
+                c = face[(i + 2) % 3]
                 runs[edge_name(a, b)].append(a < b)
                 self.opposite[edge_name(a, b)].append(c)
         self.inner = {edge for edge, run in runs.items() if sorted(run) == [False, True]}
@@ -111,7 +114,8 @@ class Surroundings:
 
 def moved_vertex(v: int, positions: list[Vector], around: Surroundings) -> Vector:
     """Fig. 3, right."""
-    ring, border = around.ring[v], around.border_ring[v]
+    ring = around.ring[v]
+    border = around.border_ring[v]
     if len(border) == 2:
         return mix((0.75, positions[v]), *((0.125, positions[u]) for u in border))
     if border or not ring:
@@ -159,11 +163,13 @@ class PaperRules:
     """The paper's scheme; normals of new points are interpolated along the edge."""
 
     def __init__(self, positions: list[Vector], faces: list[tuple[int, int, int]]) -> None:
-        self.positions, self.faces = positions, faces
+        self.positions = positions
+        self.faces = faces
 
     def placed(self, count: Counter[EdgeName], grown: GeomorphWeights) -> Placed:
         """Section 4.2."""
-        normals, at_points = vertex_normals(self.positions, self.faces), {}
+        normals = vertex_normals(self.positions, self.faces)
+        at_points = {}
         for a, b in grown:
             middle = unit(mix((1, normals[a]), (1, normals[b])))
             beside = {1: normals[a], 2: middle, 3: normals[b]}
@@ -191,12 +197,14 @@ def refine(
     `geomorph`: how far the points of an edge have grown on both levels, for blending, which also
     makes fans of the triangles; `rules`: the scheme, by default the paper's.
     """
-    twin, count = Twin(), Counter(splits)
+    twin = Twin()
+    count = Counter(splits)
     grown = {e: (1.0, 1.0) if geomorph is None else geomorph[e] for e in count if count[e]}
     rules = rules or PaperRules(positions, faces)
     place = rules.placed(count, grown)
     for v in range(len(positions)):
-        twin.positions["vertex", v], twin.normals["vertex", v] = place.vertices[v], place.normals[v]
+        twin.positions["vertex", v] = place.vertices[v]
+        twin.normals["vertex", v] = place.normals[v]
     for (a, b), points in place.points.items():
         for quarters in (1, 2, 3) if count[a, b] == 2 else (2,):
             twin.positions["edge", a, b, quarters] = points[quarters]
@@ -281,7 +289,8 @@ def _fan(
                 terms.append((weight, values["edge", *edge, 2]))
                 terms += [(-weight / 2, values["vertex", v]) for v in edge]
         sums[kind] = mix(*terms)
-    twin.positions[centre], twin.normals[centre] = sums["positions"], unit(sums["normals"])
+    twin.positions[centre] = sums["positions"]
+    twin.normals[centre] = unit(sums["normals"])
     for i, edge in enumerate(edges):
         outline.append(("vertex", face[i]))
         places = {0: [], 1: [2], 2: [1, 2, 3]}[count[edge]]
@@ -334,7 +343,8 @@ def _subtriangles(
     corner = turned[k]
     points: dict[str, Name] = {str(i): ("vertex", corner[i]) for i in range(3)}
     for i in range(3):
-        start, end = corner[i], corner[(i + 1) % 3]
+        start = corner[i]
+        end = corner[(i + 1) % 3]
         low, high = edge_name(start, end)
         for letter, quarters in (("a", 1), ("m", 2), ("b", 3)):
             points[f"{letter}{i}"] = ("edge", low, high, quarters if start == low else 4 - quarters)

@@ -67,7 +67,7 @@ def test_arrays_go_with_their_refiner(look: str) -> None:
 @pytest.mark.parametrize("look", LOOKS)
 def test_a_hundred_refiners_take_the_memory_of_one(look: str) -> None:
     """Each is made for 20 000 triangles, refines a frame and is dropped: less than 5 MB is left."""
-    pytest.importorskip("resource", reason="tells how much memory a process takes; not on Windows")
+    pytest.importorskip("resource", reason="measures the memory of a process; not on Windows")
     call = [sys.executable, "-c", MANY, look]
     found = subprocess.run(call, capture_output=True, text=True, check=True)
     units = 2**20 if sys.platform == "darwin" else 2**10  # of ru_maxrss in a megabyte

@@ -97,7 +97,8 @@ def assert_no_crack(
             assert [names[pieces[0]].tolist()] == [face]
             continue
         for i, rows in enumerate(borders(mesh, face, pieces, names)):
-            a, b = face[i], face[(i + 1) % 3]
+            a = face[i]
+            b = face[(i + 1) % 3]
             along = rows if a < b else rows[::-1]
             seen[min(a, b), max(a, b)].add(shown[along].tobytes())
             counts[min(a, b), max(a, b)] = len(rows) - 1
@@ -160,7 +161,8 @@ def assert_linear(
     """Texture coordinates are those of their place in their own triangle, (F, 3, 2) at corners."""
     origins = refiner.origins()
     proper = np.array([len(set(face)) == 3 for face in faces.tolist()])[mesh.source]
-    triangles, source = mesh.triangles[proper], mesh.source[proper]
+    triangles = mesh.triangles[proper]
+    source = mesh.source[proper]
     places = places_in_source(origins, triangles, faces[source])
     expected = np.einsum("tci,tiu->tcu", places, corner_values[source])
     assert mesh.uv is not None

@@ -9,7 +9,8 @@ from risorius import refine
 from tests import meshes
 
 Array = npt.NDArray[np.float64]
-ALONG, ACROSS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+ALONG = (1.0, 0.0, 0.0)
+ACROSS = (0.0, 1.0, 0.0)
 
 
 def grid(count: int = 9) -> tuple[npt.NDArray[np.int32], Array]:

@@ -48,7 +48,8 @@ def test_carried_as_if_bound(name: str, seed: int, options: dict[str, Any]) -> N
         **{"scheme": "cubic", "criterion": "displacement+rest", **options},
     )
     moved = points * [1.0, 1.0, 0.5] + 0.2 * np.sin(3.0 * points[:, [1, 2, 0]])
-    got, expected = welded.refine(moved), bound.refine(moved[used])
+    got = welded.refine(moved)
+    expected = bound.refine(moved[used])
     np.testing.assert_array_equal(got.positions, expected.positions)
     np.testing.assert_array_equal(got.triangles, expected.triangles)
     assert expected.uv is not None
@@ -60,9 +61,11 @@ def test_carried_as_if_bound(name: str, seed: int, options: dict[str, Any]) -> N
 def box() -> tuple[Points, npt.NDArray[np.int64]]:
     """A tube of four sides, each with four vertices of its own."""
     corners = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
-    points, faces = [], []
+    points = []
+    faces = []
     for k in range(4):
-        a, b = corners[k], corners[(k + 1) % 4]
+        a = corners[k]
+        b = corners[(k + 1) % 4]
         faces += [[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]]
         points += [[*a, 0.0], [*b, 0.0], [*b, 2.0], [*a, 2.0]]
     return np.array(points), np.array(faces)
@@ -120,7 +123,7 @@ def test_words_come_from_an_end() -> None:
     assert set(refiner.carry(["a", "b", "c"])) == {"a", "b", "c"}
 
 
-def test_mistakes_are_told() -> None:
+def test_mistakes_are_reported() -> None:
     """Wrong numbers of points and values, and too early a call."""
     points, faces = box()
     refiner = refine.WeldedRefiner(points, faces)
@@ -142,7 +145,10 @@ def vase() -> tuple[Points, npt.NDArray[np.int64]]:
     radius = 0.6 + 0.25 * np.sin(3.0 * heights)
     grid = np.stack([radius * np.cos(turns), radius * np.sin(turns), heights], axis=2)
     number = np.arange(13 * 7).reshape(13, 7)
-    a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    a = number[:-1, :-1]
+    b = number[1:, :-1]
+    c = number[1:, 1:]
+    d = number[:-1, 1:]
     faces = np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)])
     return grid.reshape(-1, 3), faces.reshape(-1, 3)
 
@@ -168,7 +174,7 @@ def test_seams_equal_but_for_the_last_bits(kind: type[np.floating], moved: float
 
 
 def test_how_far_apart_welded_vertices_may_lie() -> None:
-    """In sizes of the mesh; 1e-9 unless told otherwise, 0 for what is equal."""
+    """In sizes of the mesh; 1e-9 by default, 0 joins only equal points."""
     points, faces = box()
     size = 2.0
     for apart, tolerance, count in (
@@ -239,7 +245,8 @@ def test_points_of_the_input_keep_their_values(values: npt.NDArray[Any], blend: 
     assert carried[:3].tolist() == values.tolist() or str(carried[:3]) == str(values)
     if values.dtype.kind in "iu":
         exact = [int(value) for value in carried.ravel()]
-        assert min(exact) == int(values.min()) and max(exact) == int(values.max())
+        assert min(exact) == int(values.min())
+        assert max(exact) == int(values.max())
     if values.dtype.kind == "f" and np.isfinite(values).all():
         assert (carried == values[0]).all()
 
@@ -249,7 +256,9 @@ def test_wide_integers_are_rounded_as_all_numbers_are() -> None:
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     refiner = refine.WeldedRefiner(points, [[0, 1, 2]], criterion=Forced([1, 1, 1]), blend=False)
     refiner.refine(points)
-    a, b, c = 2**62, 2**62 + 1, 2**62 + 5
+    a = 2**62
+    b = 2**62 + 1
+    c = 2**62 + 5
     for kind in (np.int64, np.uint64):
         carried = refiner.carry(np.array([a, b, c], kind))
         assert carried[3:].tolist() == [2**62, 2**62 + 3, 2**62 + 2]

@@ -84,7 +84,8 @@ def test_small_meshes(name: str, rules: str) -> None:
 def test_attributes(rules: str) -> None:
     """Texture coordinates and other values of corners are mixed alike, of wide rows, too."""
     mesh = meshes.tube()
-    assert mesh.uv is not None and mesh.face_uv is not None
+    assert mesh.uv is not None
+    assert mesh.face_uv is not None
     generator = np.random.default_rng(5)
     values = {"colour": generator.random((len(mesh.vertices), 3)), "id": (mesh.uv, mesh.face_uv)}
     processor, card = bound_twice(
@@ -187,7 +188,8 @@ def test_coherent_frames(frames: int, rules: str, head: Head) -> None:
             face.controls.set(name, float(frame // 20 % 3 == place))
         face.step(1 / 60)
         assert_same(processor, card, face.positions)
-    assert isinstance(processor, refine.Kahler) and processor.history is not None
+    assert isinstance(processor, refine.Kahler)
+    assert processor.history is not None
     assert card.removals_out_of_order == processor.history.removals_out_of_order > 0
 
 

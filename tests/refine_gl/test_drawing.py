@@ -88,9 +88,11 @@ def test_a_card_takes_large_meshes_by_itself(
     before = pipeline.bind(smooth)
     drawn_by(monkeypatch, "hardware")
     now = pipeline.bind(smooth)
-    assert isinstance(now.refiner, KahlerGl) and not isinstance(before.refiner, KahlerGl)
+    assert isinstance(now.refiner, KahlerGl)
+    assert not isinstance(before.refiner, KahlerGl)
     pictures = [image(pipeline, each, render.Style()).astype(int) for each in (before, now)]
-    assert np.abs(pictures[0] - pictures[1]).max() <= 2 and now.caption == before.caption
+    assert np.abs(pictures[0] - pictures[1]).max() <= 2
+    assert now.caption == before.caption
     for other in (Refinement("smooth", "kahler"), replace(smooth, options={"blend": False})):
         assert not isinstance(pipeline.bind(other).refiner, KahlerGl)
     monkeypatch.setattr(app_pipeline, "LARGE", count + 1)
@@ -106,7 +108,8 @@ def test_pictures_are_the_same(
     drawn_by(monkeypatch, kind)
     processor, card = both(pipeline)
     wanted, got = (image(pipeline, each, STYLES[style]) for each in (processor, card))
-    assert np.array_equal(wanted, got) and wanted.std() > 10.0
+    assert np.array_equal(wanted, got)
+    assert wanted.std() > 10.0
     assert card.caption.endswith(f"\n{processor.triangle_count} triangles")
 
 
@@ -143,7 +146,8 @@ def test_samples_of_data_sets_are_the_same(tmp_path: Path) -> None:
         for name in ("kahler-gl", "kahler")
     )
     card, processor = (Studio(request).shoot(0) for request in requests)
-    assert np.array_equal(card.image, processor.image) and card.image.std() > 10.0
+    assert np.array_equal(card.image, processor.image)
+    assert card.image.std() > 10.0
     assert card.known.labels == processor.known.labels
     for name in passes:
         np.testing.assert_array_equal(card.known.images[name], processor.known.images[name])
@@ -165,7 +169,8 @@ def test_a_window_that_is_resized(scene: FaceScene, look: str) -> None:
         for size in ((200, 150), (320, 200), (100, 240)):
             resize(window, size)
             wanted, got = (image(pipeline, each, PLAIN) for each in (processor, card))
-            assert got.shape[:2] == size[::-1] and np.array_equal(wanted, got)
+            assert got.shape[:2] == size[::-1]
+            assert np.array_equal(wanted, got)
 
 
 def resize(window: render.WindowSurface, size: tuple[int, int]) -> None:

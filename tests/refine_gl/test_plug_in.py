@@ -27,7 +27,8 @@ def bound(**options: Any) -> tuple[refine.Refiner, KahlerGl]:
 
 def test_it_joins_as_anybodys_would() -> None:
     """By an entry point, with options of its own; others are refused as ever."""
-    assert "kahler-gl" in refine.refiners.available() and "kahler-gl" in refine.refiners.installed()
+    assert "kahler-gl" in refine.refiners.available()
+    assert "kahler-gl" in refine.refiners.installed()
     names = [each.name for each in refine.parameters("kahler-gl")]
     assert {"threshold_once", "threshold_twice", "coherent"} <= set(names)
     with pytest.raises(ValueError, match="unknown option 'sharpness' for refiner 'kahler-gl'"):
@@ -158,7 +159,8 @@ def test_a_driver_that_refuses_a_shader(
     with caplog.at_level(logging.WARNING):
         assert type(refine.create("kahler-gl", MESH.faces, MESH.vertices)) is refine.Kahler
     (line,) = caplog.messages
-    assert line.startswith("kahler-gl: the driver refuses mark.glsl: ") and "error" in line
+    assert line.startswith("kahler-gl: the driver refuses mark.glsl: ")
+    assert "error" in line
 
 
 def test_shaders_take_eight_buffers() -> None:

@@ -33,7 +33,8 @@ def test_views_look_from_where_they_say() -> None:
     eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
     assert eyes["front"] == pytest.approx((0, 0, 1))
     assert eyes["profile"] == pytest.approx((1, 0, 0))
-    assert eyes["three-quarter"][0] > 0.4 and eyes["three-quarter-right"][0] < -0.4
+    assert eyes["three-quarter"][0] > 0.4
+    assert eyes["three-quarter-right"][0] < -0.4
     assert eyes["below"][1] < -0.4
     assert eyes["top"] == pytest.approx((0, 1, 0))
 
@@ -42,7 +43,8 @@ def test_orbit_stops_at_the_poles() -> None:
     """However far one rises, up stays up."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.orbit(0.0, 500.0)
-    assert camera.pitch < 90.0 and camera.axes()[1][1] > 0.0
+    assert camera.pitch < 90.0
+    assert camera.axes()[1][1] > 0.0
     assert np.isfinite(np.asarray(camera.view_matrix())).all()
 
 
@@ -62,7 +64,8 @@ def test_clipping_planes_hold_the_scene_from_anywhere() -> None:
         camera.zoom(zoom)
         camera.orbit(47.0, 19.0)
         depth = seen(camera, HEAD)[:, 2]
-        assert -1.0 <= depth.min() and depth.max() <= 1.0
+        assert -1.0 <= depth.min()
+        assert depth.max() <= 1.0
 
 
 @pytest.mark.parametrize(

@@ -48,13 +48,15 @@ def test_split_colours_of_many_triangles(surface: render.Surface) -> None:
     frame = draw_image(surface, shape, SPLITS, values=values)
     upper = frame[30, 30:66]
     lower = frame[66, 30:66]
-    assert (upper[:, 2] > upper[:, 0]).all() and (lower[:, 0] > lower[:, 2]).all()
+    assert (upper[:, 2] > upper[:, 0]).all()
+    assert (lower[:, 0] > lower[:, 2]).all()
 
 
 def test_palette_darkens_with_the_number_of_splits() -> None:
     """The order of the palette can be seen without colour: luminance falls at each step."""
     luminance = np.array(render.SPLIT_PALETTE) @ (0.2126, 0.7152, 0.0722)
-    assert len(luminance) == 6 and (np.diff(luminance) < -0.08).all()
+    assert len(luminance) == 6
+    assert (np.diff(luminance) < -0.08).all()
 
 
 def test_split_values_must_be_there(surface: render.Surface) -> None:

@@ -73,7 +73,8 @@ def test_no_screen_is_one_line_without_warnings() -> None:
         "try: render.open_window((8, 8), 'test')\n"
         "except render.GLError as error: print(error)"
     )
-    assert "no screen to open a window on" in output and "DISPLAY" in output
+    assert "no screen to open a window on" in output
+    assert "DISPLAY" in output
     assert "Cure: run it under `xvfb-run -a`, or render offscreen" in output
     assert output.count("\n") == 1
 
@@ -97,7 +98,8 @@ def test_known_texts_have_a_cure(monkeypatch: pytest.MonkeyPatch, raw: str, cure
     for name in [name for name in os.environ if name.startswith("GLCONTEXT_")]:
         monkeypatch.delenv(name)
     text = str(diagnose("opening", raw))
-    assert text.startswith("opening failed") and cure in text
+    assert text.startswith("opening failed")
+    assert cure in text
 
 
 def test_shader_error_names_file_and_stage(
@@ -120,8 +122,10 @@ def test_shader_error_names_file_and_stage(
 def test_probe_finds_what_is_there() -> None:
     """The machine that runs these tests can draw offscreen, and the finding says with what."""
     (finding,) = render.probe(offscreen_only=True)
-    assert finding.is_ok and finding.message == ""
-    assert finding.renderer in str(finding) and finding.version[0].isdigit()
+    assert finding.is_ok
+    assert finding.message == ""
+    assert finding.renderer in str(finding)
+    assert finding.version[0].isdigit()
     assert finding.samples >= 1
 
 
@@ -132,8 +136,10 @@ def test_probe_reports_failures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     monkeypatch.setenv("GLCONTEXT_LINUX_LIBEGL", "nonexistent")
     offscreen, window = render.probe()
-    assert not offscreen.is_ok and "nonexistent not loaded" in str(offscreen)
-    assert not window.is_ok and "xvfb-run" in window.message
+    assert not offscreen.is_ok
+    assert "nonexistent not loaded" in str(offscreen)
+    assert not window.is_ok
+    assert "xvfb-run" in window.message
 
 
 @on_linux
@@ -144,4 +150,5 @@ def test_probe_survives_a_crash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     killer.chmod(0o755)
     monkeypatch.setattr(sys, "executable", str(killer))
     (finding,) = render.probe(offscreen_only=True)
-    assert not finding.is_ok and "crashed the process that tried it" in finding.message
+    assert not finding.is_ok
+    assert "crashed the process that tried it" in finding.message

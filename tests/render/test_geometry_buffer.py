@@ -59,7 +59,8 @@ def test_a_sphere_is_as_far_away_as_it_should_be(
     expected = (-b - np.sqrt(np.maximum(under_root, 0.0))) / a
     assert found.depth.shape == is_hit.shape
     inner = is_hit & (under_root > 0.05 * under_root.max())  # an outline of chords is narrower
-    assert inner.sum() > 50 and (found.depth[inner] > 0.0).all()
+    assert inner.sum() > 50
+    assert (found.depth[inner] > 0.0).all()
     assert not found.depth[~is_hit].any()
     steepness = np.sqrt(under_root[inner]) / 50.0
     assert (np.abs(found.depth[inner] - expected[inner]) < CHORD / steepness).all()
@@ -105,22 +106,25 @@ def test_triangles_are_numbered_through_all_parts(surface: render.Surface) -> No
     shape = square(10.0, z=45.0)
     ball = Ball()
     found = drawn(surface, shape, facing(70.0), parts=(ball,))
-    assert found.triangle[0, 0] == -1 and found.depth[0, 0] == 0.0
+    assert found.triangle[0, 0] == -1
+    assert found.depth[0, 0] == 0.0
     assert set(found.triangle[(found.triangle >= 0) & (found.triangle < 2)]) == {0, 1}
     seen = np.unique(found.triangle[found.triangle >= 2]) - 2
     front = ball.shape.positions[ball.shape.triangles].mean(axis=1)[:, 2] > 0.0
-    assert front[seen].all() and len(seen) > 0.4 * front.sum()
+    assert front[seen].all()
+    assert len(seen) > 0.4 * front.sum()
     twice = drawn(surface, shape, facing(70.0), parts=(Ball(), Ball()))
     assert twice.triangle.max() < 2 + 2 * len(ball.faces)
 
 
-def test_the_back_of_the_mesh_is_told_from_its_front(surface: render.Surface) -> None:
+def test_the_back_of_the_mesh_differs_from_its_front(surface: render.Surface) -> None:
     """Normals point to the camera on either side."""
     camera = facing()
     assert not drawn(surface, square(), camera).is_inside.any()
     camera.orbit(180.0)
     found = drawn(surface, square(), camera)
-    assert found.is_inside[48, 48] and found.normal[48, 48, 2] < -0.99
+    assert found.is_inside[48, 48]
+    assert found.normal[48, 48, 2] < -0.99
 
 
 def test_a_picture_is_the_same_before_and_after(surface: render.Surface) -> None:
@@ -139,4 +143,5 @@ def test_a_picture_is_the_same_before_and_after(surface: render.Surface) -> None
             renderer.draw_parts([ball], STILL, renderer.view(camera), style)
         renderer.draw_geometry(stream, [ball], STILL, renderer.view(camera))
         pictures.append(surface.read())
-    assert np.array_equal(pictures[0], pictures[1]) and np.array_equal(pictures[0], pictures[2])
+    assert np.array_equal(pictures[0], pictures[1])
+    assert np.array_equal(pictures[0], pictures[2])

@@ -61,7 +61,8 @@ def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
             renderer.draw_parts([ball], STILL, renderer.view(facing(25.0)), PLAIN)
         frames.append(surface.read().astype(int).sum(axis=2))
     dull, wet = frames
-    assert dull.max() < 400 and wet.max() > 600
+    assert dull.max() < 400
+    assert wet.max() > 600
     assert ((wet - dull) > 150).mean() < 0.03
 
 
@@ -91,7 +92,8 @@ def test_parts_have_one_side(surface: render.Surface) -> None:
             renderer.draw_parts([part], STILL, renderer.view(facing()), PLAIN)
         shown.append(at(surface.read().astype(np.int32), 0.0, 0.0))
     assert shown[0].min() >= 254
-    assert 60 < shown[1][2] < 250 and shown[1][2] > 2 * shown[1][0]
+    assert 60 < shown[1][2] < 250
+    assert shown[1][2] > 2 * shown[1][0]
 
 
 def test_part_errors(surface: render.Surface) -> None:
@@ -146,7 +148,8 @@ def test_hair_is_dense_up_to_its_outline(surface: render.Surface) -> None:
         covers.append(row[48:])
     assert not covers[1].any()
     pixels = covers[0]  # 0.86 of a millimetre each; roots are 20 mm from the middle
-    assert pixels[:20].min() > 150.0 and not pixels[27:].any()
+    assert pixels[:20].min() > 150.0
+    assert not pixels[27:].any()
     assert ((pixels > 5.0) & (pixels < 200.0)).sum() <= 2
 
 

@@ -84,7 +84,8 @@ def test_a_lost_renderer_leaves_nothing(samples: int, monkeypatch: pytest.Monkey
         images = [draw_all(surface) for _ in range(10)]
         assert surface.gl.objects  # let go, and waiting to be given back
         surface.begin()
-        assert count() == {} and not surface.gl.objects
+        assert count() == {}
+        assert not surface.gl.objects
         assert surface.gl.error == "GL_NO_ERROR"
     assert all((image == images[0]).all() for image in images)
 
@@ -104,7 +105,8 @@ def test_a_lost_part_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
                 renderer.draw_parts(parts, STILL, renderer.view(camera), style)
             surface.begin()
             left.append(count())
-    assert left[0]["Buffer"] == 6 and left[1:] == left[:-1]
+    assert left[0]["Buffer"] == 6
+    assert left[1:] == left[:-1]
 
 
 def test_a_part_without_weak_references_is_drawn() -> None:
@@ -121,7 +123,8 @@ def test_a_part_without_weak_references_is_drawn() -> None:
             with fresh_frame(renderer):
                 renderer.draw_parts([part], STILL, renderer.view(facing()), PLAIN)
             images.append(surface.read())
-    assert (images[0] == images[1]).all() and len(np.unique(images[0])) > 10
+    assert (images[0] == images[1]).all()
+    assert len(np.unique(images[0])) > 10
 
 
 def test_a_closed_frame_hands_its_context_on(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -137,8 +140,10 @@ def test_a_closed_frame_hands_its_context_on(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv("GLCONTEXT_GLVERSION", "330")
     with render.open_offscreen((64, 48)) as fifth:
         pass
-    assert second.gl in (first.gl, beside.gl) and third.gl is second.gl
-    assert fourth.gl is not third.gl and fifth.gl is not fourth.gl
+    assert second.gl in (first.gl, beside.gl)
+    assert third.gl is second.gl
+    assert fourth.gl is not third.gl
+    assert fifth.gl is not fourth.gl
 
 
 @pytest.mark.slow

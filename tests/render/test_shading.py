@@ -63,7 +63,8 @@ def test_inner_side_is_dark_flesh(surface: render.Surface) -> None:
         front = at(draw_image(surface, shape, style), 5.0, 5.0)
         behind = at(draw_image(surface, turned, style), 5.0, 5.0)
         assert behind.sum() < 0.4 * front.sum()
-        assert behind[0] > 1.5 * behind[1] and behind[0] > 20
+        assert behind[0] > 1.5 * behind[1]
+        assert behind[0] > 20
 
 
 def test_skin_fades_toward_a_plane(surface: render.Surface) -> None:
@@ -78,4 +79,6 @@ def test_skin_fades_toward_a_plane(surface: render.Surface) -> None:
     whole, faded = pictures
     rows = np.flatnonzero(whole[:, 48] > 1.0)
     top, middle, bottom = (faded[rows, 48] / whole[rows, 48])[[1, len(rows) // 2, -2]]
-    assert top > 0.98 and abs(middle - 0.5) < 0.05 and bottom < 0.02
+    assert top > 0.98
+    assert abs(middle - 0.5) < 0.05
+    assert bottom < 0.02

@@ -59,8 +59,10 @@ def test_shadows_have_soft_edges() -> None:
     lightness = within.sum(axis=1) / without.sum(axis=1)
     darkest = int(lightness.argmin())
     edge = lightness[darkest:]
-    assert edge[-1] > 0.99 and edge[0] < 0.75
-    assert (np.diff(edge) > -0.01).all() and np.diff(edge).max() < 0.1
+    assert edge[-1] > 0.99
+    assert edge[0] < 0.75
+    assert (np.diff(edge) > -0.01).all()
+    assert np.diff(edge).max() < 0.1
     share = (edge - edge[0]) / (edge[-1] - edge[0])
     pixel = 2.0 * 250.0 * np.tan(np.radians(12.5)) / 480.0
     on_a_head = pixel / facing().scene_radius * 150.0  # [mm]
@@ -75,7 +77,8 @@ def test_convex_things_do_not_shadow_themselves(
     style = replace(PLAIN, shading=shading)
     without = draw_image(surface, sphere(2), style)
     within = draw_image(surface, sphere(2), replace(style, shadows=True))
-    assert np.abs(within - without).max() < 25 and np.abs(within - without).mean() < 0.7
+    assert np.abs(within - without).max() < 25
+    assert np.abs(within - without).mean() < 0.7
 
 
 @pytest.mark.parametrize("shadows", [True, False])

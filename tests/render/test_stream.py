@@ -11,10 +11,14 @@ from .scenes import PLAIN, draw_image, facing, fresh_frame, lent, sphere, square
 def test_lent_arrays_fit_the_contract(surface: render.Surface) -> None:
     """A borrower gets C-contiguous float32, uint32 and int32 arrays of the asked size."""
     stream = render.Renderer(surface).lend_stream(100, 50, 8)
-    assert stream.vertices.shape == (100, 8) and stream.vertices.dtype == np.float32
-    assert stream.triangles.shape == (50, 3) and stream.triangles.dtype == np.uint32
-    assert stream.source.shape == (50,) and stream.source.dtype == np.int32
-    assert stream.vertices.flags.c_contiguous and stream.vertices.flags.writeable
+    assert stream.vertices.shape == (100, 8)
+    assert stream.vertices.dtype == np.float32
+    assert stream.triangles.shape == (50, 3)
+    assert stream.triangles.dtype == np.uint32
+    assert stream.source.shape == (50,)
+    assert stream.source.dtype == np.int32
+    assert stream.vertices.flags.c_contiguous
+    assert stream.vertices.flags.writeable
 
 
 def test_eight_columns_draw_the_same(surface: render.Surface) -> None:

@@ -20,7 +20,8 @@ def test_read_gives_the_top_row_first(samples: int) -> None:
     with render.open_offscreen((64, 48), samples=samples) as surface:
         frame = draw_image(surface, upper_square())
     assert frame.shape == (48, 64, 3)
-    assert drawn(frame)[:24].any() and not drawn(frame)[24:].any()
+    assert drawn(frame)[:24].any()
+    assert not drawn(frame)[24:].any()
 
 
 def test_read_is_a_new_array_each_time(surface: render.Surface) -> None:
@@ -30,7 +31,8 @@ def test_read_is_a_new_array_each_time(surface: render.Surface) -> None:
     kept = first.copy()
     surface.begin()
     surface.end()
-    assert first.dtype == np.uint8 and (first == kept).all()
+    assert first.dtype == np.uint8
+    assert (first == kept).all()
     assert (surface.read() == 0).all()
 
 
@@ -73,8 +75,10 @@ def test_two_surfaces_do_not_mix(surface: render.Surface) -> None:
         for _ in range(2):
             large = draw_image(surface, sphere())
             small = draw_image(other, square())
-        assert large.shape == (96, 96, 3) and small.shape == (30, 40, 3)
-        assert (surface.read() == large).all() and (other.read() == small).all()
+        assert large.shape == (96, 96, 3)
+        assert small.shape == (30, 40, 3)
+        assert (surface.read() == large).all()
+        assert (other.read() == small).all()
 
 
 def test_begin_repairs_what_a_panel_changed(surface: render.Surface) -> None:

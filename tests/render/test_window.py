@@ -41,7 +41,8 @@ def test_window_that_is_resized(window: render.WindowSurface) -> None:
         glfw.wait_events_timeout(0.01)
     frame = draw_image(window, sphere())
     assert window.size == tuple(glfw.get_framebuffer_size(window.handle)) == (130, 70)
-    assert frame.shape == (70, 130, 3) and (frame[:, :3] >= 254).all()
+    assert frame.shape == (70, 130, 3)
+    assert (frame[:, :3] >= 254).all()
     assert window.gl.error == "GL_NO_ERROR"
 
 
@@ -85,7 +86,9 @@ def test_window_and_offscreen_take_turns(window: render.WindowSurface) -> None:
 def test_probe_finds_the_window(window: render.WindowSurface) -> None:
     """Where a window opens, the probe says so."""
     finding = render.probe()[1]
-    assert finding.name == "window" and finding.is_ok and finding.renderer
+    assert finding.name == "window"
+    assert finding.is_ok
+    assert finding.renderer
 
 
 def test_a_coarser_scene_fills_the_window(window: render.WindowSurface) -> None:

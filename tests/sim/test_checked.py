@@ -89,7 +89,7 @@ def refused(call: Callable[[], object], begins: str) -> None:
 
 
 @pytest.mark.parametrize(("method", "argument", "begins", "values"), WRONG)
-def test_wrong_arguments_are_told(
+def test_wrong_arguments_are_reported(
     small: sim.Simulation, method: str, argument: str, begins: str, values: tuple[Any, ...]
 ) -> None:
     """Each is a ValueError with the argument's name, and nothing has changed by it."""
@@ -151,13 +151,13 @@ def test_wrong_heads_are_refused(attribute: str, begins: str, values: tuple[Any,
 
 
 @pytest.mark.parametrize("given", LISTS)
-def test_what_is_no_layer_is_told(given: Any) -> None:
+def test_what_is_no_layer_is_reported(given: Any) -> None:
     """A head's layers are a list of objects with titles and rows."""
     refused(lambda: read_layers(given, ["a"]), "head.layers")
 
 
 @pytest.mark.parametrize("head", [None, 3, "head", [], {}, object(), SimpleNamespace(vertices=1)])
-def test_what_is_no_head_is_told(head: object) -> None:
+def test_what_is_no_head_is_reported(head: object) -> None:
     """Without vertices and faces there is nothing to simulate."""
     with pytest.raises(ValueError, match=r"head: .* has no attribute '(vertices|faces)'; give any"):
         sim.create(head)

@@ -229,7 +229,8 @@ def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
 
     turned = angle(state.carried) - angle(rest)
     assert np.allclose(turned, lids.closing - np.where(lids.upper, lids.overlap, 0.0), atol=1e-9)
-    assert turned[lids.upper].min() < -0.5 and (lids.sink != 0.0).any()
+    assert turned[lids.upper].min() < -0.5
+    assert (lids.sink != 0.0).any()
 
 
 def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
@@ -247,7 +248,8 @@ def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
     assert np.array_equal(state.hold, held)
     turn_lids(state, rest, lids, drive, up)
     fold = lids.vertex[lids.fold_hold > 0.0]
-    assert len(fold) > 10 and (state.hold[fold] > held[fold]).all()
+    assert len(fold) > 10
+    assert (state.hold[fold] > held[fold]).all()
     assert (state.carried - rest)[fold, 1].max() > 1.0
 
 

@@ -78,7 +78,7 @@ def planted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED)
 
 
-def test_a_missed_tolerance_is_told_after_all_is_written(planted: None, tmp_path: Path) -> None:
+def test_a_missed_tolerance_is_reported_after_all_is_written(planted: None, tmp_path: Path) -> None:
     """Exit code 1, a line for each that is missed, and every file is there."""
     result = risorius("reproduce", "all", "-o", tmp_path / "new")
     assert result.exit_code == 1
@@ -93,8 +93,11 @@ def test_the_page_stands_alone(planted: None, tmp_path: Path) -> None:
     risorius("reproduce", "all", "-o", tmp_path)
     text = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert re.findall(r"(?:src|href)=\"([^\"]*)\"", text) == ["good.png"]
-    assert "url(" not in text and "@import" not in text
-    assert "<c_rt>" not in text and "&lt;c_rt&gt;" in text and "Good &amp; sound" in text
+    assert "url(" not in text
+    assert "@import" not in text
+    assert "<c_rt>" not in text
+    assert "&lt;c_rt&gt;" in text
+    assert "Good &amp; sound" in text
     assert "1 of 2 statements" in text
     for words in ("met ", "MISSED ", "not too slow", "3.00"):
         assert words in text
@@ -107,4 +110,5 @@ def test_every_experiment_can_be_named() -> None:
     for experiment in EXPERIMENTS:
         module, name = experiment.function.split(".")
         code = import_module(f"{commands.__package__}.{module}")
-        assert experiment.name in help_text and callable(getattr(code, name))
+        assert experiment.name in help_text
+        assert callable(getattr(code, name))

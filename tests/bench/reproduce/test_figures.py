@@ -19,8 +19,10 @@ DRAWN = [each for each in EXPERIMENTS if each.picture]
 def test_figures_are_as_the_paper_says(experiment: Experiment) -> None:
     """Every claim is met, or differs as we know; and there is a picture with ink on it."""
     result = experiment.run()
-    assert result.findings and not result.missed
-    assert result.outcome.picture is not None and result.outcome.picture.std() > 10.0
+    assert result.findings
+    assert not result.missed
+    assert result.outcome.picture is not None
+    assert result.outcome.picture.std() > 10.0
 
 
 def rolled(cells: int, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -37,7 +37,9 @@ def jumps(
     detail = {"detail": (mesh.vertices + 0.02, mesh.faces)} if scheme == "detail" else {}
     refiner = kahler(mesh, scheme=scheme, blend=blend, criterion=criterion, **detail)
     places = np.random.default_rng(6).dirichlet([1, 1, 1], 12)
-    before, most, turn = None, 0.0, 0.0
+    before = None
+    most = 0.0
+    turn = 0.0
     positions_before = mesh.vertices
     seen = set()
     for step in range(1, STEPS):
@@ -48,7 +50,8 @@ def jumps(
         if before is not None and moved > 1e-6:  # the motion turns back once
             most = max(most, float(np.linalg.norm((now - before)[..., :3], axis=2).max() / moved))
             turn = max(turn, float(np.linalg.norm((now - before)[..., 3:], axis=2).max()))
-        before, positions_before = now, positions
+        before = now
+        positions_before = positions
     assert len(seen) > 20
     return most, turn
 
@@ -104,7 +107,8 @@ def test_outlines_do_not_pop(name: str, scheme: str) -> None:
             blend=blend,
             criterion="silhouette",
         )
-        largest, before = 0.0, None
+        largest = 0.0
+        before = None
         for step in range(STEPS):
             turn = Rotation.from_rotvec(np.array([0.3, 0.5, 0.1]) * step / STEPS)
             positions = turn.apply(body.vertices)
@@ -145,7 +149,8 @@ def test_any_change_of_needs_is_followed(scheme: str) -> None:
         refine.check(refiner, refined, positions)
         return surface_at(refiner, refined, faces, places)[0, :, :3]
 
-    generator, step = np.random.default_rng(0), 1e-4
+    generator = np.random.default_rng(0)
+    step = 1e-4
     for _ in range(300):
         metrics = generator.uniform(-0.2, 1.5, 3)
         metrics[generator.integers(3)] = generator.choice([0.0, 0.25, 1.0, 1.25, metrics[0]])
@@ -159,7 +164,8 @@ def test_folds_have_no_scales() -> None:
     Lines from the centroid to the corners would tilt them by up to 5.5 degrees.
     """
     grid = meshes.open_grid(9, 9)
-    angle, along = 0.5 * grid.vertices[:, 0], grid.vertices[:, 1]
+    angle = 0.5 * grid.vertices[:, 0]
+    along = grid.vertices[:, 1]
     rolled = np.stack([2.0 * np.sin(angle), along, 2.0 * np.cos(angle)], axis=1)
     refiner = kahler(grid, scheme="cubic", criterion=GivenMetric(_across(grid)))
     refined = refiner.refine(rolled)

@@ -66,7 +66,8 @@ def test_a_slit_that_opens_in_its_plane() -> None:
     deformed = meshes.opened(SLIT, 0.8)
     assert not splits_of(SLIT, deformed, "normal+rest").any()
     splits = splits_of(SLIT, deformed)
-    x, y = np.abs(SLIT.vertices[EDGES][..., 0]), np.abs(SLIT.vertices[EDGES][..., 1])
+    x = np.abs(SLIT.vertices[EDGES][..., 0])
+    y = np.abs(SLIT.vertices[EDGES][..., 1])
     runs_along = np.ptp(y, axis=1) == 0.0
     on_sides = runs_along & (y == 0.0).all(axis=1) & (x <= 3.0).all(axis=1)
     next_row = runs_along & (y == 1.0).all(axis=1) & (x <= 2.0).all(axis=1)
@@ -123,7 +124,8 @@ def plain_metric(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
 
     def turn(v: int, points: np.ndarray, n: np.ndarray) -> np.ndarray:
         p, q = sorted(around.border_ring[v])
-        u, w = unit(p, v, points), unit(v, q, points)
+        u = unit(p, v, points)
+        w = unit(v, q, points)
         return np.array([u @ w, n[v] @ np.cross(u, w), n[v] @ (w - u)])
 
     turns: dict[int, float] = {}

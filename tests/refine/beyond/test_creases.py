@@ -84,7 +84,8 @@ def test_a_cube_stays_one() -> None:
     refined = refiner.refine(points)
     assert refined.triangle_count == 120
     assert volume(refined.positions, refined.triangles) == pytest.approx(1.0, abs=1e-6)
-    assert refined.positions.min() >= -1e-6 and refined.positions.max() <= 1.0 + 1e-6
+    assert refined.positions.min() >= -1e-6
+    assert refined.positions.max() <= 1.0 + 1e-6
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
@@ -94,7 +95,10 @@ def test_new_points_of_creases_lie_on_them(scheme: str) -> None:
     flat = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
     points = flat + [0.0, 0.0, 1.0] * np.abs(x.ravel() - 2.0)[:, None]
     number = np.arange(x.size).reshape(x.shape)
-    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    a = number[:-1, :-1]
+    b = number[:-1, 1:]
+    c = number[1:, 1:]
+    d = number[1:, :-1]
     faces = np.concatenate([np.stack([a, b, c], 2), np.stack([a, c, d], 2)]).reshape(-1, 3)
     refiner = refine.create(
         "kahler", faces, points, scheme=scheme, crease_angle=45.0, blend=False,
@@ -102,7 +106,8 @@ def test_new_points_of_creases_lie_on_them(scheme: str) -> None:
     )  # fmt: skip
     assert isinstance(refiner, refine.Kahler)
     is_sharp = refiner.connectivity.is_sharp
-    assert is_sharp.sum() == 6 and (points[refiner.edges[is_sharp]][..., 0] == 2.0).all()
+    assert is_sharp.sum() == 6
+    assert (points[refiner.edges[is_sharp]][..., 0] == 2.0).all()
     refined = refiner.refine(points)
     refine.check(refiner, refined, points)
     np.testing.assert_allclose(
@@ -116,7 +121,8 @@ def test_uniform_subdivision_keeps_them(levels: int) -> None:
     points, faces = cube()
     refiner = refine.create("loop", faces, points, levels=levels, crease_angle=60.0)
     refined = refiner.refine(points)
-    assert refined.positions.min() == 0.0 and refined.positions.max() == 1.0
+    assert refined.positions.min() == 0.0
+    assert refined.positions.max() == 1.0
     assert volume(refined.positions, refined.triangles) == pytest.approx(1.0, abs=1e-6)
     refine.check(refiner, refined, points)
 

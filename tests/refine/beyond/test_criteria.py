@@ -192,7 +192,7 @@ def test_displacement(scheme: str) -> None:
 
 
 def test_displacement_needs_measures() -> None:
-    """The paper's scheme does not tell how far it moves edges; its refined normals know."""
+    """The paper's scheme does not measure how far it moves edges; its refined normals do."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme tells with normals="refined" only'):
         kahler(mesh, criterion="displacement")

@@ -19,12 +19,14 @@ def bumpy(columns: int, rows: int) -> meshes.Mesh:
     """A grid of 4 x 3 with bumps that a coarse grid cannot show."""
     grid = meshes.open_grid(columns, rows)
     vertices = grid.vertices * [4.0 / columns, 3.0 / rows, 1.0]
-    x, y = vertices[:, 0], vertices[:, 1]
+    x = vertices[:, 0]
+    y = vertices[:, 1]
     vertices[:, 2] = 0.1 * np.sin(4.0 * x) * np.cos(5.0 * y) + 0.2 * np.sin(x)
     return meshes.Mesh(vertices, grid.faces)
 
 
-COARSE, FINE = bumpy(8, 6), bumpy(48, 36)
+COARSE = bumpy(8, 6)
+FINE = bumpy(48, 36)
 
 
 def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -85,7 +87,8 @@ def test_no_stars_in_folds() -> None:
     x = flat.vertices[:, 0] - 4.0
     folded = np.stack([x, flat.vertices[:, 1], np.sqrt(x * x + 0.2)], axis=1)
     edge_count = len(refine.connect(flat.faces, len(folded)).edges)
-    shown, off = {}, {}
+    shown = {}
+    off = {}
     for scheme, detail in (("cubic", {}), ("detail", {"detail": (flat.vertices, flat.faces)})):
         refiner = kahler(
             flat, scheme=scheme, criterion=GivenMetric(np.full(edge_count, 9.0)), **detail

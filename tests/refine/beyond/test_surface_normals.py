@@ -57,7 +57,8 @@ def test_does_not_depend_on_what_is_split(scheme: str) -> None:
     count = len(mesh.vertices)
     whole = bound(mesh, scheme, GivenMetric(metrics(mesh, metric=0.9)))
     still = whole.refine(deformed)
-    vertices, middles = still.normals[:count].copy(), {}
+    vertices = still.normals[:count].copy()
+    middles = {}
     for edge, normal in zip(whole.edges.tolist(), still.normals[count:], strict=False):
         middles[tuple(edge)] = normal.copy()
     for criterion in ("displacement", "normal", "rest", 0, 1, 2):
@@ -79,7 +80,8 @@ def test_does_not_depend_on_what_is_split(scheme: str) -> None:
 
 def smooth_wave(mesh: meshes.Mesh, height: float) -> Points:
     """A grid with one wave along each axis: every normal of an edge's ends within 50 degrees."""
-    x, y = mesh.vertices[:, 0], mesh.vertices[:, 1]
+    x = mesh.vertices[:, 0]
+    y = mesh.vertices[:, 1]
     heights = height * (np.sin(0.9 * x) + 0.6 * np.cos(0.8 * y + 0.3 * x))
     return np.column_stack([x, y, heights])
 
@@ -98,7 +100,9 @@ def test_normals_do_not_pop(scheme: str) -> None:
     def most(blend: bool) -> float:
         refiner = bound(mesh, scheme, [refine.Displacement(0.02, 0.08)], blend=blend)
         own = bound(mesh, scheme, GivenMetric(metrics(mesh, metric=0.9)))
-        before, largest, seen = None, 0.0, set()
+        before = None
+        largest = 0.0
+        seen = set()
         for step in range(STEPS):
             positions = smooth_wave(mesh, 0.6 * step / STEPS)
             shown = surface_at(refiner, refiner.refine(positions), mesh.faces, places)[..., 3:]
@@ -144,10 +148,12 @@ def test_geomorph_has_no_steps(seed: int, scheme: str, edge: int, at: float) -> 
 def torus(around: int = 16, across: int = 10) -> meshes.Mesh:
     """A torus of radii 1 and 0.4."""
     grid = meshes.open_grid(around, across)
-    u, v = 2.0 * np.pi * grid.vertices[:, 0] / around, 2.0 * np.pi * grid.vertices[:, 1] / across
+    u = 2.0 * np.pi * grid.vertices[:, 0] / around
+    v = 2.0 * np.pi * grid.vertices[:, 1] / across
     out = 1.0 + 0.4 * np.cos(v)
     points = np.column_stack([out * np.cos(u), out * np.sin(u), 0.4 * np.sin(v)])
-    column, row = grid.vertices[:, 0].astype(int), grid.vertices[:, 1].astype(int)
+    column = grid.vertices[:, 0].astype(int)
+    row = grid.vertices[:, 1].astype(int)
     number = (row % across) * around + column % around
     first = np.unique(number, return_index=True)[1]
     return meshes.Mesh(points[first], number[grid.faces].astype(np.int32))
@@ -198,7 +204,8 @@ def test_symmetric_stays_symmetric(scheme: str) -> None:
     """An opened slit that is symmetric in x and y has normals that are symmetric, too."""
     mesh = meshes.slit()
     positions = meshes.opened(mesh, 0.8)
-    x, y = positions[:, 0], positions[:, 1]
+    x = positions[:, 0]
+    y = positions[:, 1]
     positions[:, 2] = 0.5 * np.cos(0.8 * x) * np.cos(0.9 * y)
     refined = bound(mesh, scheme, [refine.Displacement(0.01, 0.05)]).refine(positions)
     assert len(refined.positions) > 1.5 * len(positions)
@@ -228,7 +235,8 @@ def test_planar_is_exact(scheme: str, blend: bool) -> None:
 def test_moves_with_the_mesh(scheme: str) -> None:
     """A rigid motion turns all normals along; a hundred thousand edges away they are the same."""
     mesh = meshes.irregular(8)
-    deformed, turn = meshes.wrinkled(mesh, 9, 0.2), meshes.rotation(1)
+    deformed = meshes.wrinkled(mesh, 9, 0.2)
+    turn = meshes.rotation(1)
     refiner = bound(mesh, scheme, GivenMetric(metrics(mesh, 2)))
     still = refiner.refine(deformed).normals.copy()
     moved = refiner.refine(deformed @ turn.T + [3.0, -2.0, 5.0]).normals

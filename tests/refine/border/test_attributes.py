@@ -22,7 +22,8 @@ REFINERS = [
 def test_attributes_are_linear(name: str, options: dict[str, object]) -> None:
     """Every attribute has the value of its place in its triangle, on both sides of seams."""
     tube = meshes.tube(10, 6)
-    assert tube.uv is not None and tube.face_uv is not None
+    assert tube.uv is not None
+    assert tube.face_uv is not None
     deformed = meshes.wrinkled(tube, 3, 0.3)
     generator = np.random.default_rng(4)
     colours = generator.random((len(tube.vertices), 4))

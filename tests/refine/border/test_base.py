@@ -36,8 +36,9 @@ class Middles(refine.BaseRefiner):
         return 3 * len(self.connectivity.faces)
 
     def fill(self, stream: refine.Stream, view: refine.View | None) -> tuple[int, int]:
-        """Reserve for the worst case, and tell what became of it."""
-        mesh, wedge_count = self.connectivity, len(self.connectivity.wedge_vertices)
+        """Reserve for the worst case, and report the result."""
+        mesh = self.connectivity
+        wedge_count = len(self.connectivity.wedge_vertices)
         out = self.reserve(stream, self.vertex_capacity, self.triangle_capacity)
         self.find_normals()
         out.vertices[: len(self.points), :3] = self.points
@@ -48,17 +49,16 @@ class Middles(refine.BaseRefiner):
         lengths = np.linalg.norm(middles[:, 3:6], axis=1, keepdims=True)
         middles[:, 3:6] /= np.where(lengths > 0.0, lengths, 1.0)
         middles[:, :3] += self.raised * middles[:, 3:6]
-        triangles, source = [mesh.corners[mesh.is_degenerate]], [np.flatnonzero(mesh.is_degenerate)]
+        triangles = [mesh.corners[mesh.is_degenerate]]
+        source = [np.flatnonzero(mesh.is_degenerate)]
         for k in range(3):
             ends = mesh.corners[self.cut][:, [k, (k + 1) % 3]]
             numbers = wedge_count + np.arange(len(self.cut), dtype=np.uint32)
             triangles.append(np.column_stack([ends, numbers]))
             source.append(self.cut)
         count = sum(map(len, source))
-        out.triangles[:count], out.source[:count] = (
-            np.concatenate(triangles),
-            np.concatenate(source),
-        )
+        out.triangles[:count] = np.concatenate(triangles)
+        out.source[:count] = np.concatenate(source)
         return self.vertex_capacity, count
 
     def origins(self) -> refine.Origins:

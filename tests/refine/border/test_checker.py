@@ -169,7 +169,7 @@ def test_crack_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> 
 
 
 def test_edge_flip_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
-    """Subtriangles that overlap and miss the same area are told by their inner sub-edges."""
+    """Subtriangles that overlap and miss the same area are found by their inner sub-edges."""
     mesh = meshes.triangle()
     refiner = Wrapped(kahler(mesh))
     refined = refine.create("none", mesh.faces, mesh.vertices).refine(mesh.vertices)
@@ -307,7 +307,7 @@ def test_thin_subtriangle_on_an_edge() -> None:
 
 
 def test_three_levels() -> None:
-    """Edges of eight parts pass; told to be of four, they do not."""
+    """Edges of eight parts pass; checked as edges of four, they fail."""
     mesh = meshes.irregular(3)
     refiner = Wrapped(refine.create("loop", mesh.faces, mesh.vertices, levels=3))
     refined = refiner._refiner.refine(mesh.vertices)

@@ -34,9 +34,11 @@ class Outside:
     ) -> None:
         self._faces = np.asarray(faces, dtype=np.uint32)
         connectivity = refine.connect(faces, len(rest_positions))
-        self.edges, self.triangle_edges = connectivity.edges, connectivity.triangle_edges
+        self.edges = connectivity.edges
+        self.triangle_edges = connectivity.triangle_edges
         self.splits = np.zeros(len(self.edges), dtype=np.uint8)
-        self.vertex_capacity, self.triangle_capacity = len(rest_positions), len(faces)
+        self.vertex_capacity = len(rest_positions)
+        self.triangle_capacity = len(faces)
         self.offset = offset
 
     def refine(self, positions: np.ndarray, out: refine.Stream | None = None) -> refine.RefinedMesh:
@@ -167,7 +169,8 @@ def test_bad_binding(name: str, changes: dict[str, object], text: str) -> None:
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 def test_binding_copies(name: str) -> None:
     """Changing the bound arrays afterwards changes nothing, and they are not changed."""
-    faces, rest = FINE.faces.copy(), FINE.vertices.copy()
+    faces = FINE.faces.copy()
+    rest = FINE.vertices.copy()
     refiner = refine.create(name, faces, rest)
     deformed = FINE.vertices * 1.5
     expected = refiner.refine(deformed).positions.copy()
@@ -206,7 +209,8 @@ def test_units_of_length(unit: float, scheme: str) -> None:
         refiner = refine.create("kahler", grid.faces, scale * grid.vertices, scheme=scheme)
         return refiner.refine(scale * deformed)
 
-    here, there = refined(1.0), refined(unit)
+    here = refined(1.0)
+    there = refined(unit)
     np.testing.assert_array_equal(there.triangles, here.triangles)
     np.testing.assert_allclose(there.positions / unit, here.positions, atol=1e-5)
     np.testing.assert_allclose(there.normals, here.normals, atol=1e-3)

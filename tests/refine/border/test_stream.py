@@ -108,7 +108,8 @@ def test_any_row_of_streams() -> None:
     rng = np.random.default_rng(5)
     kept: dict[int, list[bytes]] = {}
     for _ in range(60):
-        k, stream = int(rng.integers(3)), streams[int(rng.integers(4))]
+        k = int(rng.integers(3))
+        stream = streams[int(rng.integers(4))]
         if stream is not None and rng.random() < 0.1:
             stream.triangles = stream.triangles.copy()
         refined = refiner.refine(frames[k], out=stream)

@@ -98,7 +98,8 @@ def test_transitions_by_hand(
     removed: int,
 ) -> None:
     """Removals in and out of order, and both at once with new splits."""
-    state, configuration = NUMBER[sequence], configuration_of(splits)
+    state = NUMBER[sequence]
+    configuration = configuration_of(splits)
     assert TABLES.sequences[TABLES.transitions[state, configuration]] == following
     assert TABLES.removals[state, configuration] == removed
 
@@ -135,12 +136,14 @@ def test_states_follow_the_tables() -> None:
     face_count = 500
     coherent = Coherent(face_count)
     configurations = np.zeros(face_count + 1, dtype=np.uint16)
-    states, removed = np.zeros(face_count, dtype=int), 0
+    states = np.zeros(face_count, dtype=int)
+    removed = 0
     for _ in range(12):
         configurations[:-1] = wanted = generator.integers(0, 27, face_count)
         rows = coherent.follow(configurations)
         removed += int(TABLES.removals[states, wanted].sum())
         states = TABLES.transitions[states, wanted]
-        assert np.shares_memory(rows, coherent.states) and (rows == states).all()
+        assert np.shares_memory(rows, coherent.states)
+        assert (rows == states).all()
         assert (coherent.patterns.counts[rows] == table.CONFIGURATIONS.counts[wanted]).all()
     assert coherent.removals_out_of_order == removed > 0

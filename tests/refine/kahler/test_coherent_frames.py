@@ -29,7 +29,8 @@ def point_rows(refiner: refine.Refiner) -> dict[Point, int]:
         parts = sorted(
             (int(v), round(4.0 * float(w))) for v, w in zip(vertices, weights, strict=True) if w
         )
-        first, last = parts[0][0], parts[-1][0]
+        first = parts[0][0]
+        last = parts[-1][0]
         if len(parts) == 3:  # a point in the middle of a triangle: blending makes them
             rows[first, parts[1][0], -1 - last] = row
         else:

@@ -33,10 +33,17 @@ def test_second_level_by_hand() -> None:
     refiner = kahler(mesh, criterion=Forced(2 * connectivity.around.is_interior))
     lifted = mesh.vertices + np.array([[0, 0, 0], [0, 0, 64], [0, 0, 128], [0, 0, 256]])
     height = refiner.refine(lifted).positions[:, 2]
-    a, b, c, d = 64.0, 128.0, 0.0, 256.0
+    a = 64.0
+    b = 128.0
+    c = 0.0
+    d = 256.0
     m = 3 / 8 * (a + b) + 1 / 8 * (c + d)
-    moved_a, moved_b = 3 / 4 * a + (c + d) / 8, 3 / 4 * b + (c + d) / 8
-    p, q, r, s = (a + c) / 2, (b + c) / 2, (a + d) / 2, (b + d) / 2
+    moved_a = 3 / 4 * a + (c + d) / 8
+    moved_b = 3 / 4 * b + (c + d) / 8
+    p = (a + c) / 2
+    q = (b + c) / 2
+    r = (a + d) / 2
+    s = (b + d) / 2
     assert height[4] == 3 / 8 * (moved_a + m) + (p + r) / 8
     assert height[5] == 5 / 8 * m + (moved_a + moved_b + p + q + r + s) / 16
     assert height[6] == 3 / 8 * (moved_b + m) + (q + s) / 8

@@ -51,7 +51,8 @@ def test_wedges_of_tube() -> None:
 def test_weld() -> None:
     """A mesh doubled along its seam becomes closed, and its texture coordinates stay apart."""
     tube = meshes.tube(segments=6, rings=2)
-    assert tube.uv is not None and tube.face_uv is not None
+    assert tube.uv is not None
+    assert tube.face_uv is not None
     vertex_of_uv = np.zeros(len(tube.uv), dtype=int)
     vertex_of_uv[tube.face_uv] = tube.faces
     doubled = tube.vertices[vertex_of_uv]

@@ -30,7 +30,8 @@ def lengths(normals: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:
 @pytest.mark.parametrize("name", OPTIONS)
 def test_unit_or_zero(name: str) -> None:
     """Tiny, huge, pressed flat: no normal is half long, and nothing is infinite."""
-    mesh, options = meshes.irregular(3), dict(OPTIONS[name])
+    mesh = meshes.irregular(3)
+    options = dict(OPTIONS[name])
     if options.get("scheme") == "detail":
         finer = refine.create("loop", mesh.faces, mesh.vertices).refine(mesh.vertices)
         options["detail"] = (finer.positions, finer.triangles)

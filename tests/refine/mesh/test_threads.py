@@ -77,7 +77,7 @@ def test_every_item_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_small_meshes_start_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A face is refined where it is, and anything is where numba is told of one thread."""
+    """A face is refined where it is, and so is every mesh where numba has one thread."""
 
     def refuse() -> None:
         raise AssertionError("a thread was started")
