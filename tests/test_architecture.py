@@ -26,7 +26,7 @@ LONGEST_FILE, LONGEST_FUNCTION = 400, 60  # lines
         ("render", {"numba"}),
     ],
 )
-def test_fresh_import(package: str, banned: set[str]) -> None:
+def test_fresh_import(package, banned):
     """In a fresh interpreter a package brings none of its neighbours with it."""
     code = f"import sys; from risorius import {package}; print(*sys.modules)"
     result = subprocess.run(
@@ -49,7 +49,7 @@ def test_fresh_import(package: str, banned: set[str]) -> None:
         ("assets", {"PIL", "fast_simplification", "numpy", "pygltflib", "scipy", "trimesh"}),
     ],
 )
-def test_packages_import_only_what_they_may(folder: str, allowed: set[str]) -> None:
+def test_packages_import_only_what_they_may(folder, allowed):
     """Not even within a function; a package can be lifted out, and needs no more than this."""
     found = {
         name.partition(".")[0]
@@ -69,7 +69,7 @@ def _imported(node: ast.AST) -> list[str]:
     return []
 
 
-def test_files_and_functions_are_short() -> None:
+def test_files_and_functions_are_short():
     """One screen for a function, a few for a file; what is excused is too long indeed."""
     sources = [path for folder in FOLDERS for path in tracked(folder, "*.py")]
     assert len(sources) > 100

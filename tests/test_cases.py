@@ -70,32 +70,30 @@ def keys_of(track: object) -> list[tuple[float, float]]:
         ("e_timecode90.csv", ("--rate", "90"), 2.99),
     ],
 )
-def test_a_take_lasts_as_long_as_its_file_says(
-    name: str, options: tuple[str, ...], seconds: float, tmp_path: Path
-) -> None:
+def test_a_take_lasts_as_long_as_its_file_says(name, options, seconds, tmp_path):
     """Clocks, timecode of any base and tables of any dialect keep their time, whatever --rate."""
     assert Take(name, tmp_path, *options).duration == pytest.approx(seconds, abs=0.06)
 
 
-def test_units_of_0_to_1_stay(tmp_path: Path) -> None:
+def test_units_of_0_to_1_stay(tmp_path):
     """Action units of a file that goes to 1 are not divided by 5."""
     assert Take("a_openface_units_0_to_1.csv", tmp_path).peak("AU12") > 0.9
 
 
-def test_shapes_in_percent_are_divided(tmp_path: Path) -> None:
+def test_shapes_in_percent_are_divided(tmp_path):
     """Shapes of 0 to 100 become shapes of 0 to 1, and no frame is dropped."""
     take = Take("a_shapes_in_percent.json", tmp_path)
     assert 0.3 < take.reach("jawOpen") < 0.7
     assert "No face in" not in take.report
 
 
-def test_intensities_count_before_detections(tmp_path: Path) -> None:
+def test_intensities_count_before_detections(tmp_path):
     """AU12 rises and falls as its intensity does; the detection of 0 or 1 is passed over."""
     values = Take("a_libreface_like.csv", tmp_path).tracks["AU12"][:, 1]
     assert np.abs(np.diff(values)).max() < 0.4
 
 
-def test_the_head_turns_by_angles_beside_shapes(tmp_path: Path) -> None:
+def test_the_head_turns_by_angles_beside_shapes(tmp_path):
     """The head's rotation in JSON moves the head, or the report names it."""
     take = Take("a_json_head_rotation.json", tmp_path)
     turned = max(map(take.reach, ("head_yaw", "headYaw")))
@@ -103,7 +101,7 @@ def test_the_head_turns_by_angles_beside_shapes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["e_lost_frames_zero.json", "e_lost_frames_zero_livelink.csv"])
-def test_frames_without_a_face_are_left_out(name: str, tmp_path: Path) -> None:
+def test_frames_without_a_face_are_left_out(name, tmp_path):
     """Rows of zeros while nobody is seen neither move the face nor count as calibrated."""
     take = Take(name, tmp_path)
     control = Take("e_lost_frames_control.json", tmp_path)
@@ -136,14 +134,14 @@ def picture_of(head: str, landmarks: Path, output: Path) -> npt.NDArray[np.float
     ],
     ids=lambda value: value if isinstance(value, str) else value.stem,
 )
-def test_a_head_of_a_file_is_drawn(head: str, landmarks: Path, tmp_path: Path) -> None:
+def test_a_head_of_a_file_is_drawn(head, landmarks, tmp_path):
     """Heads with hair cards, a mouth that stands open, strips and masks are drawn."""
     picture = picture_of(head, landmarks, tmp_path / "head.png")
     middle = picture[40:80, 60:100]
     assert middle.mean() < 230.0
 
 
-def test_glb_is_read_as_its_accessors_say(tmp_path: Path) -> None:
+def test_glb_is_read_as_its_accessors_say(tmp_path):
     """Normalized, transformed and quantized attributes give the same form and the same picture."""
     pictures = [
         picture_of(f"b_glb_{kind}.glb", POINTS, tmp_path / f"{kind}.png")
@@ -154,14 +152,14 @@ def test_glb_is_read_as_its_accessors_say(tmp_path: Path) -> None:
     assert pictures[0][40:80, 60:100].mean() < 230.0
 
 
-def test_colours_of_vertices_are_linear() -> None:
+def test_colours_of_vertices_are_linear():
     """Linear colours of 16 bits, 0.2 0.5 0.9, become the blue (124, 188, 243)."""
     mesh = assets.read_mesh(CASES / "b_glb_colours_u16.glb")
     assert mesh.colours is not None
     assert np.abs(mesh.colours.reshape(-1, 3) - np.array([124.0, 188.0, 243.0])).max() < 2.0
 
 
-def test_a_material_with_tabs_has_its_picture(tmp_path: Path) -> None:
+def test_a_material_with_tabs_has_its_picture(tmp_path):
     """Words of an MTL are parted by tabs, too: squares of green and yellow are drawn."""
     picture = picture_of("mtl_tab/head.obj", LANDMARKS, tmp_path / "head.png")
     middle = picture[40:80, 60:100]

@@ -39,7 +39,7 @@ def blocks(page: Path, language: str) -> str:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_links_lead_somewhere(page: Path) -> None:
+def test_links_lead_somewhere(page):
     """Every file and heading that a page links to exists."""
     for target in re.findall(r"(?:\]\(|src=\")([^)\s\"]+)", page.read_text(encoding="utf-8")):
         if target.startswith("http"):
@@ -53,7 +53,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_commands_are_known(page: Path) -> None:
+def test_commands_are_known(page):
     """Every command that a page shows has the options that it is shown with."""
     for words in COMMAND.findall(page.read_text(encoding="utf-8")):
         command: click.Command = risorius()
@@ -67,28 +67,28 @@ def test_commands_are_known(page: Path) -> None:
                 assert word.partition("=")[0] in options, words
 
 
-def test_pages_of_the_documentation_are_read() -> None:
+def test_pages_of_the_documentation_are_read():
     """The patterns above find what they look for."""
     shown = [words for page in PAGES for words in COMMAND.findall(page.read_text("utf-8"))]
     assert len(shown) > 40
     assert any("--compare" in words for words in shown)
 
 
-def test_pictures_are_few_and_small() -> None:
+def test_pictures_are_few_and_small():
     """They travel with every clone: at most 40 files, and 8 MB in all."""
     pictures = tracked("docs/pictures")
     assert len(pictures) <= 40
     assert sum(path.stat().st_size for path in pictures) < 8_000_000
 
 
-def test_every_picture_is_shown() -> None:
+def test_every_picture_is_shown():
     """No picture of the documentation is forgotten; forgotten pages stop the site's build."""
     texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
     shown = {Path(target).name for target in re.findall(r"\]\(([^)\s#]+)", texts)}
     assert {path.name for path in tracked("docs/pictures")} <= shown
 
 
-def test_pages_have_short_lines() -> None:
+def test_pages_have_short_lines():
     """The README has at most 130 lines; prose has at most 120 columns, tables and code aside."""
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 130
     for page in [README, ROOT / "CHANGELOG.md", *tracked("docs", "*.md")]:
@@ -101,7 +101,7 @@ def test_pages_have_short_lines() -> None:
 @pytest.mark.parametrize(
     "page", [page for page in PAGES if "```python" in page.read_text("utf-8")], ids=lambda p: p.name
 )
-def test_code_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_code_runs(page, tmp_path, monkeypatch):
     """The Python on a page is one program, and it runs in an empty folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(refiners, "_factories", dict(refiners._factories))
@@ -112,14 +112,14 @@ def test_code_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         exec(compile(program, page, "exec"), {"__name__": page.stem})
 
 
-def test_a_page_with_code_is_found() -> None:
+def test_a_page_with_code_is_found():
     """The pattern above finds fenced blocks."""
     assert "refiner.refine(positions)" in blocks(README, "python")
     assert "risorius replay smile.toml" in blocks(TUTORIALS / "first_film.md", "sh")
 
 
 @pytest.mark.slow
-def test_first_film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_first_film(tmp_path, monkeypatch):
     """The script of the tutorial becomes what its commands name."""
     page = TUTORIALS / "first_film.md"
     capture_as_shown(page, {"smile.toml": blocks(page, "toml")}, tmp_path, monkeypatch)
@@ -129,7 +129,7 @@ def test_first_film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
-def test_own_head(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_own_head(tmp_path, monkeypatch):
     """The head that the tutorial writes is fitted and filmed by its commands."""
     page = TUTORIALS / "own_head.md"
     monkeypatch.chdir(tmp_path)
@@ -175,7 +175,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("package", ["refine", "sim", "render", "assets", "app.recordings"])
-def test_the_reference_has_every_public_name(site: Path, package: str) -> None:
+def test_the_reference_has_every_public_name(site, package):
     """What a package exports has a place on its page; special methods have none."""
     name = package.rpartition(".")[2]
     page = (site / "reference" / name / "index.html").read_text(encoding="utf-8")

@@ -74,7 +74,7 @@ def package(tmp_path: Path) -> Package:
     return Package(tmp_path)
 
 
-def test_code_is_kept_and_never_old(package: Package) -> None:
+def test_code_is_kept_and_never_old(package):
     """A second start compiles nothing, whichever file changed counts, and the folder is private."""
     assert package.run() == [*COMPILED, RESULT]
     assert package.run() == [RESULT]
@@ -87,7 +87,7 @@ def test_code_is_kept_and_never_old(package: Package) -> None:
 
 
 @pytest.mark.parametrize("fault", ["no folder", "open", "a link", "of somebody else"])
-def test_without_a_folder_code_is_compiled_anew(package: Package, fault: str) -> None:
+def test_without_a_folder_code_is_compiled_anew(package, fault):
     """What others could have written is not run; one line says what it costs."""
     if fault == "no folder":
         package.code.parent.write_text("")
@@ -109,20 +109,20 @@ def test_without_a_folder_code_is_compiled_anew(package: Package, fault: str) ->
     assert "NUMBA_CACHE_DIR" in warned
 
 
-def test_runs_as_python(package: Package) -> None:
+def test_runs_as_python(package):
     """With NUMBA_DISABLE_JIT=1 kernels are the functions that are written; nothing is stored."""
     assert package.run(NUMBA_DISABLE_JIT="1") == [RESULT]
     assert not package.kept()
 
 
-def test_processes_that_start_together(package: Package) -> None:
+def test_processes_that_start_together(package):
     """Several that start at once on nothing all end well, and the next compiles nothing."""
     with ThreadPoolExecutor(2) as threads:
         assert {lines[-1] for lines in threads.map(lambda _: package.run(), range(2))} == {RESULT}
     assert package.run() == [RESULT]
 
 
-def test_functions_without_a_module_compile() -> None:
+def test_functions_without_a_module_compile():
     """Kernels of other programs that come from `exec` are no concern of the log."""
     program = (
         "import numba, risorius.jit; names = {}; exec('def twice(x): return 2 * x', names); "

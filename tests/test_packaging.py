@@ -42,14 +42,14 @@ def files_of_packages() -> Iterator[tuple[str, Path]]:
             yield ".".join((top, *inside)), file
 
 
-def test_every_package_is_listed() -> None:
+def test_every_package_is_listed():
     """A folder that pyproject.toml does not name would be missing where it is installed."""
     found = {package for package, file in files_of_packages() if file.suffix == ".py"}
     assert sorted(SETUPTOOLS["packages"]) == sorted(found)
     assert all((ROOT / folder / "__init__.py").exists() for folder in FOLDERS.values())
 
 
-def test_every_data_file_is_listed() -> None:
+def test_every_data_file_is_listed():
     """Shaders, rigs, scripts, tables and the head's data go along."""
     listed = {
         file
@@ -62,7 +62,7 @@ def test_every_data_file_is_listed() -> None:
     assert listed & set(tracked()) == data
 
 
-def test_what_an_editor_leaves_is_not_listed(tmp_path: Path) -> None:
+def test_what_an_editor_leaves_is_not_listed(tmp_path):
     """Locks, copies and halves of files beside ours, also where they end as ours do."""
     for package, patterns in SETUPTOOLS["package-data"].items():
         for pattern in patterns:
@@ -74,7 +74,7 @@ def test_what_an_editor_leaves_is_not_listed(tmp_path: Path) -> None:
             assert not setuptools.glob.glob(str(tmp_path / package / pattern)), pattern
 
 
-def test_python_versions_agree() -> None:
+def test_python_versions_agree():
     """What is claimed is what continuous integration runs."""
     workflow = (ROOT / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
     (matrix,) = re.findall(r"python: (\[.*\])", workflow)
@@ -87,7 +87,7 @@ def test_python_versions_agree() -> None:
     assert PROJECT["tool"]["ruff"]["target-version"] == f"py{lowest.replace('.', '')}"
 
 
-def test_the_release_is_the_same_everywhere() -> None:
+def test_the_release_is_the_same_everywhere():
     """Version and date in pyproject.toml, the package, CHANGELOG.md, CITATION.cff, README."""
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     newest = re.search(r"^## \[Unreleased\]$.*?^## \[(\S+)\] - (\S+)$", changes, re.M | re.S)
@@ -99,7 +99,7 @@ def test_the_release_is_the_same_everywhere() -> None:
     assert f"version = {{{version}}}" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def test_nothing_is_imported_by_its_folder() -> None:
+def test_nothing_is_imported_by_its_folder():
     """In the checkout `import render` would find a second copy of `risorius.render`."""
     names = "|".join(TOP_NAMES)
     looks_so = re.compile(rf"^\s*(from\s+({names})\b|import\s.*\b({names})\b)", re.MULTILINE)
@@ -177,7 +177,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
 
 
 @pytest.mark.slow
-def test_wheel_of_the_sdist_is_that_of_the_checkout(built: Built) -> None:
+def test_wheel_of_the_sdist_is_that_of_the_checkout(built):
     """The same files in both, each module and data file among them, under one name."""
     contents = []
     for wheel in built.wheels:
@@ -190,7 +190,7 @@ def test_wheel_of_the_sdist_is_that_of_the_checkout(built: Built) -> None:
 
 
 @pytest.mark.slow
-def test_sdist_holds_what_its_tests_need(built: Built) -> None:
+def test_sdist_holds_what_its_tests_need(built):
     """Whoever packages it for a system can run the tests, and read the documentation."""
     with tarfile.open(built.sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
@@ -213,7 +213,7 @@ def test_sdist_holds_what_its_tests_need(built: Built) -> None:
 
 
 @pytest.mark.slow
-def test_installed_wheel_works_beside_files_of_the_same_names(built: Built, tmp_path: Path) -> None:
+def test_installed_wheel_works_beside_files_of_the_same_names(built, tmp_path):
     """A user's own sim.py, refine.py and app/ disturb nothing; only `risorius` is installed."""
     for name in TOP_NAMES - {"app"}:
         (tmp_path / f"{name}.py").write_text("raise ImportError('of the user')\n")

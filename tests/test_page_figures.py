@@ -34,7 +34,7 @@ def numbers_of(page: Path, pattern: str) -> list[float]:
     return [float(group) for group in groups]
 
 
-def test_triangles_of_table_1() -> None:
+def test_triangles_of_table_1():
     """Two pages have the most triangles of face and plane that `reproduce table1` counts."""
     values = table1.outcome(rounds=1).values
     ours = [values["face, most triangles"], values["plane, most triangles"]]
@@ -45,7 +45,7 @@ def test_triangles_of_table_1() -> None:
 
 
 @pytest.mark.parametrize("script", ["face", "speech"])
-def test_table_of_exported_files(script: str, tmp_path: Path) -> None:
+def test_table_of_exported_files(script, tmp_path):
     """The page on export has frames, targets and size of the built-in scripts as they are."""
     row = rf"\| `{script}\.toml`, built in \| (\d+) \| (\d+) \| ([\d.]+) MB \| ([\d.]+) mm"
     frames, targets, size, _ = numbers_of(DOCS / "export.md", row)
@@ -57,7 +57,7 @@ def test_table_of_exported_files(script: str, tmp_path: Path) -> None:
     assert path.stat().st_size / 1e6 == pytest.approx(size, rel=0.1)
 
 
-def test_size_of_a_sample(tmp_path: Path) -> None:
+def test_size_of_a_sample(tmp_path):
     """The page on data sets has the mean size of a sample, with and without floats."""
     plain, floats = numbers_of(
         DOCS / "dataset.md", r"A sample has ([\d.]+) kB; floats add ([\d.]+) MB"
@@ -72,7 +72,7 @@ def test_size_of_a_sample(tmp_path: Path) -> None:
     assert exr / 6e6 == pytest.approx(floats, rel=0.2)
 
 
-def test_code_that_reads_a_set(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_code_that_reads_a_set(tmp_path, monkeypatch):
     """The page's lines that read a set run in a checkout as they stand."""
     page = (DOCS / "dataset.md").read_text("utf-8")
     code = re.search(r"(?:^    .*\n|^\n)*^    sample = faces.*$", page, re.MULTILINE)

@@ -45,7 +45,7 @@ def plane() -> Any:
 
 
 @pytest.mark.slow
-def test_it_is_found_by_itself() -> None:
+def test_it_is_found_by_itself():
     """A program imports pyvista alone; importing the refiner brings no PyVista."""
     code = (
         "import sys, pyvista; assert 'risorius' not in sys.modules; mesh = pyvista.Sphere(); "
@@ -57,7 +57,7 @@ def test_it_is_found_by_itself() -> None:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-def test_data_go_along() -> None:
+def test_data_go_along():
     """Point data by place and type, cell data by cell, fields, texture, normals, active scalars."""
     mesh = plane()
     refined = mesh.risorius.refiner(criterion="displacement", blend=False).refine(wavy(mesh))
@@ -84,7 +84,7 @@ def test_data_go_along() -> None:
     assert (refined.point_data.active_normals[:, 2] > 0.0).all()
 
 
-def test_the_paper_asks_what_has_bent() -> None:
+def test_the_paper_asks_what_has_bent():
     """By the paper's rule, a mesh is refined against its own form at rest."""
     mesh = plane()
     frame = mesh.copy()
@@ -94,7 +94,7 @@ def test_the_paper_asks_what_has_bent() -> None:
     assert frame.risorius.refine(rest=mesh, **paper).n_cells > 2 * mesh.n_cells
 
 
-def test_doubled_points_do_not_crack() -> None:
+def test_doubled_points_do_not_crack():
     """A cylinder's caps have points of their own; its sharp edge stays closed, textures apart."""
     mesh = pyvista.Cylinder(resolution=16)
     assert mesh.n_open_edges > 0
@@ -105,7 +105,7 @@ def test_doubled_points_do_not_crack() -> None:
     assert mesh.risorius.refine().n_open_edges == 0
 
 
-def test_polygons_strips_and_lines() -> None:
+def test_polygons_strips_and_lines():
     """Whatever has a surface is cut into triangles, whose cells are known; the rest drops out."""
     mesh = pyvista.Disc(inner=0.0, c_res=5).merge(pyvista.Line())
     mesh.cell_data["number"] = np.arange(mesh.n_cells)
@@ -126,9 +126,7 @@ def test_polygons_strips_and_lines() -> None:
         ("Cube", 40.0, 1.0, 12),
     ],
 )
-def test_creases_stay_sharp(
-    shape: str, crease_angle: float | None, growth: float, count: int
-) -> None:
+def test_creases_stay_sharp(shape, crease_angle, growth, count):
     """What docs/refinement.md says of volumes: sharp edges are rounded unless they are creases."""
     sizes = {"Cylinder": {"resolution": 16, "height": 2.0}, "Cube": {}}
     mesh = getattr(pyvista, shape)(**sizes[shape])
@@ -145,7 +143,7 @@ def padded(cells: list[list[int]]) -> list[int]:
     return [number for cell in cells for number in (len(cell), *cell)]
 
 
-def test_cells_that_are_no_triangles() -> None:
+def test_cells_that_are_no_triangles():
     """Beside lines and lone points, every triangle has the data of its own cell."""
     points = np.array([[0, 0, 0], [0.5, 0.5, 0], [1, 0, 0], [1.01, 0, 0], [0.5, 1, 0.3]], float)
     mesh = pyvista.PolyData(points, padded([[0, 1, 2], [1, 3, 2], [0, 4, 1]]))
@@ -156,7 +154,7 @@ def test_cells_that_are_no_triangles() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_cells_of_all_kinds(seed: int) -> None:
+def test_cells_of_all_kinds(seed):
     """Cells lie at heights of their own, so that each triangle shows which cell it is of."""
     generator = np.random.default_rng(seed)
     points: list[list[float]] = []
@@ -186,7 +184,7 @@ def test_cells_of_all_kinds(seed: int) -> None:
     assert len(np.unique(refined["vtkOriginalCellIds"])) == surfaces
 
 
-def test_polygons_that_vtk_leaves_holes_in() -> None:
+def test_polygons_that_vtk_leaves_holes_in():
     """Points on one line or named twice: the polygon is covered; two points are no polygon."""
     points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0], [3, 1, 0]], float)
     polygons = [[0, 1, 2, 3], [0, 1], [0, 1, 2, 3, 5, 4], [4, 5, 5, 0]]
@@ -198,7 +196,7 @@ def test_polygons_that_vtk_leaves_holes_in() -> None:
         mesh.risorius.refine()
 
 
-def test_many_frames(capsys: pytest.CaptureFixture[str]) -> None:
+def test_many_frames(capsys):
     """Frames come one by one, as meshes of their own, with a bar if it is asked for."""
     mesh = plane()
     heights = (0.0, 0.1, 0.2)
@@ -211,7 +209,7 @@ def test_many_frames(capsys: pytest.CaptureFixture[str]) -> None:
     assert not capsys.readouterr().err
 
 
-def test_mistakes_are_reported() -> None:
+def test_mistakes_are_reported():
     """As PyVista does: its own errors for missing cells, ValueError with both sizes otherwise."""
     mesh = plane()
     with pytest.raises(pyvista.MissingDataError, match="mesh has no faces"):
@@ -229,7 +227,7 @@ def test_mistakes_are_reported() -> None:
         pyvista.ImageData(dimensions=(2, 2, 2)).risorius  # noqa: B018
 
 
-def test_the_examples_of_the_docstrings() -> None:
+def test_the_examples_of_the_docstrings():
     """They run as they are printed; nothing is plotted."""
     import risorius.pyvista
 

@@ -102,7 +102,7 @@ def moved(head: Head) -> sim.Simulation:
 
 
 @pytest.mark.parametrize("name", THINGS)
-def test_nothing_of_it_can_be_written(name: str, head: Head) -> None:
+def test_nothing_of_it_can_be_written(name, head):
     """Whatever its public attributes lead to."""
     found = dict(arrays_of(THINGS[name](head), name, {}))
     assert found
@@ -110,7 +110,7 @@ def test_nothing_of_it_can_be_written(name: str, head: Head) -> None:
 
 
 @pytest.mark.parametrize("name", REFINERS)
-def test_nothing_of_a_refiner_can_be_written(name: str, head: Head) -> None:
+def test_nothing_of_a_refiner_can_be_written(name, head):
     """But for what each frame writes anew."""
     kind, options = REFINERS[name]
     refiner = refine.create(kind, head.faces, head.vertices, head.uv, head.face_uv, **options)
@@ -121,7 +121,7 @@ def test_nothing_of_a_refiner_can_be_written(name: str, head: Head) -> None:
     assert {way.removeprefix(".") for way in writable} <= OF_A_FRAME
 
 
-def test_one_in_place_addition_harms_nobody(head: Head) -> None:
+def test_one_in_place_addition_harms_nobody(head):
     """Numbers of vertices that compiled code reads are refused, with numpy's own error."""
     simulation = sim.create(head)
     refiner = refine.create("kahler", simulation.faces, simulation.rest_positions, coherent=True)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -70,7 +69,7 @@ def check_surface(part: Any) -> None:
 
 
 @pytest.mark.slow
-def test_skin_that_hides_everything_is_drawn_as_ever(studio: Capture) -> None:
+def test_skin_that_hides_everything_is_drawn_as_ever(studio):
     """At opacity 1, and without anything beneath, every byte is that of the usual picture."""
     posed(studio.scene)  # type: ignore[arg-type]
     usual = picture(studio, AnatomyView())
@@ -82,7 +81,7 @@ def test_skin_that_hides_everything_is_drawn_as_ever(studio: Capture) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("pose", [{}, {"joy": 1.0}, {"jaw_open": 1.0, "head_yaw": 0.6}])
-def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
+def test_surfaces_are_sound(studio, pose):
     """At rest, in a smile, in a turned head that yawns."""
     made = structures_of(studio, **pose)
     assert len(made) == 5
@@ -91,7 +90,7 @@ def test_surfaces_are_sound(studio: Capture, pose: dict[str, float]) -> None:
 
 
 @pytest.mark.slow
-def test_muscles_swell_and_redden_as_they_contract() -> None:
+def test_muscles_swell_and_redden_as_they_contract():
     """The zygomaticus of a smile is thicker in the middle, and redder, on both sides alike."""
     scene = posed(FaceScene())
     muscles = Muscles.of(scene)
@@ -120,7 +119,7 @@ def test_muscles_swell_and_redden_as_they_contract() -> None:
 
 
 @pytest.mark.slow
-def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> None:
+def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path):
     """They lie in it, a long head's skull is long, and the mandible goes down with the jaw."""
     head = fit_head(*stranger().write(tmp_path))
     longer = head.vertices * np.where(head.vertices[:, 2:] < 0.0, [1.0, 1.0, 1.25], 1.0)
@@ -143,7 +142,7 @@ def test_a_head_that_somebody_brings_has_muscles_and_a_skull(tmp_path: Path) -> 
 
 
 @pytest.mark.slow
-def test_the_command_draws_anatomy(tmp_path: Path) -> None:
+def test_the_command_draws_anatomy(tmp_path):
     """`--anatomy` opens the given side; a missing structure is reported in one line."""
     always = ["capture", "--set", "AU12=1", "--size", "120x120", "--quiet"]
     plain = tmp_path / "plain.png"
@@ -168,9 +167,7 @@ def test_the_command_draws_anatomy(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("pose", "view"), [({}, "-30,-10,1.3"), ({"surprise": 1.0}, "-12,0,2")])
-def test_the_whole_side_is_the_usual_picture(
-    studio: Capture, pose: dict[str, float], view: str
-) -> None:
+def test_the_whole_side_is_the_usual_picture(studio, pose, view):
     """Seen from its own side, nothing comes through skin; the mouth is lined, lashes are there."""
     posed(studio.scene, **pose)  # type: ignore[arg-type]
     camera, studio.camera = studio.camera, camera_for(studio.scene, view)

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import pytest
 from click.testing import Result
@@ -61,7 +60,7 @@ def contents(*names: str) -> dict[str, bytes]:
     return {str(file): file.read_bytes() for file in files if file.is_file()}
 
 
-def test_a_list_is_done_and_not_done_again() -> None:
+def test_a_list_is_done_and_not_done_again():
     """Every output is what the command alone makes; --resume makes what is missing or older."""
     ended = batch("--jobs", "2")
     assert ended.exit_code == 0, ended.output
@@ -91,7 +90,7 @@ def test_a_list_is_done_and_not_done_again() -> None:
     assert statuses() == ["skipped"] * 3
 
 
-def test_every_wrong_line_is_reported_and_nothing_is_done() -> None:
+def test_every_wrong_line_is_reported_and_nothing_is_done():
     """One line for each, with its number; also where lines are in each other's way."""
     Path("mine").mkdir()
     Path("mine/notes.txt").write_text("mine")
@@ -135,7 +134,7 @@ def test_every_wrong_line_is_reported_and_nothing_is_done() -> None:
 @pytest.mark.parametrize(
     ("text", "message"), [(None, "no such list"), ("# nothing\n\n", "there is no command")]
 )
-def test_a_list_of_nothing(text: str | None, message: str) -> None:
+def test_a_list_of_nothing(text, message):
     """One line, exit code 2."""
     Path("clips.txt").unlink()
     if text is not None:
@@ -143,14 +142,14 @@ def test_a_list_of_nothing(text: str | None, message: str) -> None:
     assert message in refusal(batch())
 
 
-def test_jobs_and_scheduler_exclude_each_other() -> None:
+def test_jobs_and_scheduler_exclude_each_other():
     """A cluster has the workers that it has."""
     message = refusal(batch("--jobs", "2", "--scheduler", "tcp://a:1"))
     assert "--jobs is for this computer" in message
 
 
 @pytest.mark.slow
-def test_what_fails_fails_alone() -> None:
+def test_what_fails_fails_alone():
     """Exit code 1, the reason in one line and in the summary; it is tried again with --resume."""
     Path("silent.wav").write_text("no sound")
     Path("sadness.toml").write_text('sound = "silent.wav"\n' + SCRIPT.format(0.5, "sadness"))
@@ -166,13 +165,13 @@ def test_what_fails_fails_alone() -> None:
 
 
 @pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1:9", "foo://a:3", "tcp://a:99999"])
-def test_a_scheduler_that_is_not_there(address: str) -> None:
+def test_a_scheduler_that_is_not_there(address):
     """One line, at once."""
     assert "no Dask scheduler answers there" in refusal(batch("--scheduler", address))
 
 
 @pytest.mark.slow
-def test_a_cluster_does_what_is_done_here(cluster: Any) -> None:
+def test_a_cluster_does_what_is_done_here(cluster):
     """The same files; a line that fails there fails alone, with the same report."""
     Path("sadness.toml").write_text("duration = [")
     ended = batch("--scheduler", cluster.scheduler_address)
@@ -213,7 +212,7 @@ linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks i
 
 @pytest.mark.slow
 @linux
-def test_killed_at_random_moments() -> None:
+def test_killed_at_random_moments():
     """A worker or the whole batch; --resume then makes the very bytes of an undisturbed run."""
     names = films(3)
     assert batch("--jobs", "2").exit_code == 0

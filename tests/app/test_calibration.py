@@ -28,7 +28,7 @@ angles = st.dictionaries(st.sampled_from(ANGLES), st.floats(-90.0, 90.0))
 frames = st.builds(lambda of_shapes, of_angles: {**of_shapes, **of_angles}, shapes, angles)
 
 
-def test_a_mirror_swaps_sides_and_turns_the_head() -> None:
+def test_a_mirror_swaps_sides_and_turns_the_head():
     frame = {
         "mouthSmileLeft": 0.5, "head_yaw": 10.0, "head_pitch": 5.0, "eye_yaw_left": 3.0, "AU61": 0.2
     }  # fmt: skip
@@ -40,33 +40,33 @@ def test_a_mirror_swaps_sides_and_turns_the_head() -> None:
 
 
 @given(frames)
-def test_what_is_neutral_now_is_rest(frame: Frame) -> None:
+def test_what_is_neutral_now_is_rest(frame):
     calibrated = Calibration(neutral_now(frame)).apply(frame)
     assert not any(calibrated.values())
 
 
 @given(frames, st.sampled_from(["first:1", "first:0", "first"]))
-def test_a_face_that_never_moves_is_neutral_by_its_first_second(frame: Frame, method: str) -> None:
+def test_a_face_that_never_moves_is_neutral_by_its_first_second(frame, method):
     take = take_of(**frame)
     calibrated = Calibration(neutral_of(take, method)).apply(take.channels)
     assert not any(np.any(values) for values in calibrated.values())
 
 
-def test_the_usual_neutral_face_spares_what_rests_at_nothing() -> None:
+def test_the_usual_neutral_face_spares_what_rests_at_nothing():
     """A blink, a gaze or an open jaw that is held is no neutral face."""
     held = take_of(browDownLeft=0.3, jawOpen=0.3, mouthClose=0.2, eyeBlinkLeft=0.4, eyeLookInLeft=1)
     neutral = neutral_of(held)
     assert neutral == {"browDownLeft": pytest.approx(0.3)}
 
 
-def test_the_head_is_straight_in_the_first_second() -> None:
+def test_the_head_is_straight_in_the_first_second():
     turning = take_of(seconds=3.0, head_yaw=np.r_[np.full(11, 8.0), np.full(20, 30.0)])
     calibrated = Calibration(neutral_of(turning)).apply(turning.channels)
     assert calibrated["head_yaw"][0] == pytest.approx(0.0)
     assert calibrated["head_yaw"][-1] == pytest.approx(22.0)
 
 
-def test_gains_suit_the_kind_of_file() -> None:
+def test_gains_suit_the_kind_of_file():
     blinking = calibration_for(take_of(seconds=0.5, eyeBlinkLeft=0.5, jawOpen=0.5))
     assert blinking.apply({"eyeBlinkLeft": 0.5, "jawOpen": 0.5}) == {
         "eyeBlinkLeft": pytest.approx(0.5 * BLINK_GAIN),
@@ -76,7 +76,7 @@ def test_gains_suit_the_kind_of_file() -> None:
     assert units.apply({"AU12": 0.5})["AU12"] == pytest.approx(0.5 * OPENFACE_GAIN)
 
 
-def test_later_gains_count_and_patterns_reach_many() -> None:
+def test_later_gains_count_and_patterns_reach_many():
     channels = ("mouthSmileLeft", "mouthSmileRight", "jawOpen", "head_yaw")
     gains, default = gains_of(["all=2", "mouth*=1.5", "mouthSmileLeft=0"], channels)
     assert (gains, default) == ({"mouthSmileLeft": 0.0, "mouthSmileRight": 1.5}, 2.0)
@@ -84,7 +84,7 @@ def test_later_gains_count_and_patterns_reach_many() -> None:
     assert turned == {"head_yaw": 10.0}, "all is all shapes: a head turns as far as it did"
 
 
-def test_a_gain_names_a_channel_as_the_file_spells_it() -> None:
+def test_a_gain_names_a_channel_as_the_file_spells_it():
     settings = ["JawOpen=0.5", "MouthSmile_L=2", "HeadYaw=3"]
     gains, _ = gains_of(settings, ["jawOpen", "mouthSmileLeft", "head_yaw"])
     assert gains == {"jawOpen": 0.5, "mouthSmileLeft": 2.0, "head_yaw": 3.0}
@@ -94,24 +94,24 @@ def test_a_gain_names_a_channel_as_the_file_spells_it() -> None:
     "setting",
     ["mouthSmile=1", "jawOpen", "jawOpen=", "jawOpen=wide", "jawOpen=nan", "=1", "all=-1"],
 )
-def test_a_wrong_gain_is_reported(setting: str) -> None:
+def test_a_wrong_gain_is_reported(setting):
     with pytest.raises(UserError, match=rf"--gain {setting}: "):
         gains_of([setting], ["jawOpen", "mouthSmileLeft"])
 
 
 @pytest.mark.parametrize("method", ["", "last", "first:x", "first:-1", "first:nan", "percentile:5"])
-def test_a_wrong_neutral_is_reported(method: str) -> None:
+def test_a_wrong_neutral_is_reported(method):
     with pytest.raises(UserError, match=rf"--neutral {method}: "):
         neutral_of(take_of(jawOpen=0.1), method)
 
 
-def test_visemes_are_as_they_were_written() -> None:
+def test_visemes_are_as_they_were_written():
     take = take_of(viseme_sil=0.4)
     for method in (None, "first:1", "percentile"):
         assert set(neutral_of(take, method)) & set(VISEMES) == set()
 
 
-def test_short_and_calibrated_takes_keep_their_faces() -> None:
+def test_short_and_calibrated_takes_keep_their_faces():
     assert neutral_of(take_of(seconds=1.0, browDownLeft=0.3)) == {}
     calibrated = take_of(browDownLeft=0.3)
     object.__setattr__(calibrated, "is_calibrated", True)

@@ -1,18 +1,15 @@
 """Where a camera stands, from a name or from numbers."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from risorius.app.capture.drawing import DEFAULT_VIEW, camera_for, whole_scene
 from risorius.app.errors import UserError
-from risorius.app.scenes import FaceScene
 
 from .command_line import refusal, risorius
 
 
-def test_numbers_stand_around_the_middle_of_the_face(scene: FaceScene) -> None:
+def test_numbers_stand_around_the_middle_of_the_face(scene):
     """Yaw and pitch in degrees about the landmarks, not about the skull; zoom 2 is half as far."""
     camera = camera_for(scene, "-15,2,2.3")
     assert (camera.yaw, camera.pitch) == pytest.approx((-15.0, 2.0))
@@ -23,7 +20,7 @@ def test_numbers_stand_around_the_middle_of_the_face(scene: FaceScene) -> None:
     assert camera_for(scene, "0,0").distance == far
 
 
-def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene: FaceScene) -> None:
+def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene):
     """A camera that stood too near steps back; one that stood further away stays there."""
     near = whole_scene(scene, "0,0,4")
     far = whole_scene(scene, "0,0,0.2")
@@ -39,7 +36,7 @@ def test_a_whole_scene_is_seen_and_no_nearer_than_wished(scene: FaceScene) -> No
 @pytest.mark.parametrize(
     "text", ["behind", "1", "1,2,3,4", "nan,0", "0,inf", "0,0,0", "0,0,-1", ""]
 )
-def test_what_no_camera_is(scene: FaceScene, text: str) -> None:
+def test_what_no_camera_is(scene, text):
     """Other names and numbers are refused with the allowed ones; nothing is the usual view."""
     if not text:
         assert camera_for(scene, text).yaw == camera_for(scene, DEFAULT_VIEW).yaw
@@ -48,7 +45,7 @@ def test_what_no_camera_is(scene: FaceScene, text: str) -> None:
         camera_for(scene, text)
 
 
-def test_a_wrong_camera_or_sound_of_a_script_is_reported_with_its_name(tmp_path: Path) -> None:
+def test_a_wrong_camera_or_sound_of_a_script_is_reported_with_its_name(tmp_path):
     """Of many scripts one knows which to mend; what the command line says needs no name."""
     script = tmp_path / "mine.toml"
     target = tmp_path / "film.mp4"

@@ -8,7 +8,7 @@ from risorius.app.capture.captions import LEAST_CAPTION, captioned, contact_shee
 GREY = np.full((200, 400, 3), 128, np.uint8)
 
 
-def test_a_caption_for_each_half_and_a_line_between() -> None:
+def test_a_caption_for_each_half_and_a_line_between():
     """Text in both outer corners, the line from top to bottom, the image left as it was."""
     halves = [(0, 0, 200, 200), (200, 0, 200, 200)]
     made = labels(["static", "kahler"], halves, has_bar=False)
@@ -24,13 +24,13 @@ def test_a_caption_for_each_half_and_a_line_between() -> None:
     assert (GREY == 128).all()
 
 
-def test_a_caption_without_room_is_left_out() -> None:
+def test_a_caption_without_room_is_left_out():
     """It would lie over the other side, and over the face."""
     made = labels(["static", "kahler"], [(0, 0, 30, 200), (30, 0, 370, 200)], has_bar=False)
     assert [x > 300 for x, _, _ in made] == [True]
 
 
-def test_the_bar_shows_the_colours_of_splits_from_one_to_six() -> None:
+def test_the_bar_shows_the_colours_of_splits_from_one_to_six():
     """At the upper right, each colour of the palette above the one of fewer splits."""
     ((x, y, image),) = labels([], [(0, 0, 400, 200)], has_bar=True)
     assert x > 300
@@ -41,7 +41,7 @@ def test_the_bar_shows_the_colours_of_splits_from_one_to_six() -> None:
     assert (np.diff(nearest) < 0).all()
 
 
-def test_a_sheet_has_a_cell_for_each_pose() -> None:
+def test_a_sheet_has_a_cell_for_each_pose():
     """Row by row, pictures in their proportions, each with its name below."""
     shades = [np.full((60, 80, 3), shade, np.uint8) for shade in (90, 140, 190)]
     sheet = contact_sheet(list(zip("abc", shades, strict=True)), columns=2, cell_width=160)

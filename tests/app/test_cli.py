@@ -32,7 +32,7 @@ def smile(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> None:
+def test_a_script_becomes_a_film_and_a_sheet(smile, tmp_path):
     """`capture --compare` writes a film of the script's length and a sheet of its named poses."""
     film = tmp_path / "out.mp4"
     sheet = tmp_path / "out.png"
@@ -46,7 +46,7 @@ def test_a_script_becomes_a_film_and_a_sheet(smile: Path, tmp_path: Path) -> Non
     assert Image.open(sheet).size == (640, 400)
 
 
-def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
+def test_frames_and_one_picture(smile, tmp_path):
     """A folder gets one file a frame; a .png is the moment that was asked for."""
     frames = tmp_path / "frames"
     still = tmp_path / "still.png"
@@ -62,7 +62,7 @@ def test_frames_and_one_picture(smile: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
+def test_looks_and_refiners_side_by_side(smile, tmp_path):
     """Each part of a comparison is the picture that its look or refiner would make alone."""
 
     def drawn(width: int, *options: str) -> tuple[npt.NDArray[np.int64], int]:
@@ -94,7 +94,7 @@ def test_looks_and_refiners_side_by_side(smile: Path, tmp_path: Path) -> None:
     assert np.abs(drawn(320, "--compare")[0][:, :160] - pictures[0]).max() <= 2
 
 
-def test_a_script_begins_in_its_first_pose(tmp_path: Path) -> None:
+def test_a_script_begins_in_its_first_pose(tmp_path):
     """A pose at time 0 is there in the first frame: the face is in it, the plane is waving."""
     path = tmp_path / "held.toml"
     for scene, pose in (("face", "joy = 1"), ("plane", "amplitude = 1")):
@@ -107,7 +107,7 @@ def test_a_script_begins_in_its_first_pose(tmp_path: Path) -> None:
         assert count > (2300 if scene == "face" else 1000)
 
 
-def test_controls_lists_what_scripts_may_name() -> None:
+def test_controls_lists_what_scripts_may_name():
     """Muscles and the names of every layer appear, with limits and what they do."""
     result = risorius("controls")
     assert result.exit_code == 0
@@ -116,7 +116,7 @@ def test_controls_lists_what_scripts_may_name() -> None:
     assert "  AU12  0..1  lip corner puller" in result.output
 
 
-def test_a_pose_needs_no_script(tmp_path: Path) -> None:
+def test_a_pose_needs_no_script(tmp_path):
     """`--set` holds controls of any layer; a bare name is at full value."""
     size = ("--size", "160x120", "--samples", "0", "--quiet")
     images = []
@@ -130,7 +130,7 @@ def test_a_pose_needs_no_script(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
+def test_persons_and_lights_are_filmed(tmp_path):
     """`--person` and `--light`: other pictures than without, the same ones every time."""
     seen = []
     for words in ("", "--person 3", "--light side", "--person ada", "--person 3"):
@@ -142,7 +142,7 @@ def test_persons_and_lights_are_filmed(tmp_path: Path) -> None:
     assert len(set(seen)) == 4
 
 
-def test_reproduce_table1(tmp_path: Path) -> None:
+def test_reproduce_table1(tmp_path):
     """The paper's rows stand beside ours, for face and plane."""
     result = risorius("reproduce", "table1", "--rounds", "3", "-o", tmp_path)
     assert result.exit_code in (0, 1), result.output  # 1 on a machine that is busy with others

@@ -61,7 +61,7 @@ def samples(made: Path) -> list[dict[str, Any]]:
     return [json.loads((made / f"{k:06d}.json").read_text("utf-8")) for k in range(COUNT)]
 
 
-def test_a_set_has_these_files_and_nothing_else(made: Path, samples: list[dict[str, Any]]) -> None:
+def test_a_set_has_these_files_and_nothing_else(made, samples):
     """No picture twice, and no face."""
     message = {"README.md", "dataset.json", "index.csv"}
     assert set(content(made)) == message | {f"{k:06d}{end}" for k in range(COUNT) for end in ENDS}
@@ -69,7 +69,7 @@ def test_a_set_has_these_files_and_nothing_else(made: Path, samples: list[dict[s
     assert len({str(sample["controls"]) for sample in samples}) == COUNT
 
 
-def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path) -> None:
+def test_a_sample_is_the_same_alone_and_after_others(made, tmp_path):
     """Byte for byte in another process, in another order."""
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     studio = Studio(request)
@@ -84,7 +84,7 @@ def test_a_sample_is_the_same_alone_and_after_others(made: Path, tmp_path: Path)
         assert labels == alone | {"files": labels["files"]}
 
 
-def test_a_damaged_sample_is_made_anew(made: Path, tmp_path: Path) -> None:
+def test_a_damaged_sample_is_made_anew(made, tmp_path):
     """Labels that are empty, or a picture that is missing: the set is then as it was."""
     folder = tmp_path / "damaged"
     shutil.copytree(made, folder)
@@ -96,7 +96,7 @@ def test_a_damaged_sample_is_made_anew(made: Path, tmp_path: Path) -> None:
     assert "0 of them new" in run(folder, "--resume").output
 
 
-def test_a_sample_counts_when_all_of_its_files_are_whole(made: Path, tmp_path: Path) -> None:
+def test_a_sample_counts_when_all_of_its_files_are_whole(made, tmp_path):
     """Whatever stands in the place of one of them, the sample is not there."""
     labels = (made / "000001.json").read_bytes()
     picture = (made / "000001.png").read_bytes()
@@ -132,7 +132,7 @@ def test_a_sample_counts_when_all_of_its_files_are_whole(made: Path, tmp_path: P
 
 
 @pytest.mark.slow
-def test_a_set_can_be_made_longer(made: Path, tmp_path: Path) -> None:
+def test_a_set_can_be_made_longer(made, tmp_path):
     """To the set that would have been made at once; not shorter."""
     folder = tmp_path / "short"
     run(folder, count=2)
@@ -142,7 +142,7 @@ def test_a_set_can_be_made_longer(made: Path, tmp_path: Path) -> None:
     assert "has sample 3 already; give --count 4 or more" in message
 
 
-def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
+def test_what_is_no_such_set_is_left_alone(made, tmp_path):
     """One line, and every file as it was."""
     before = content(made)
     other = tmp_path / "other"
@@ -161,14 +161,14 @@ def test_what_is_no_such_set_is_left_alone(made: Path, tmp_path: Path) -> None:
     assert [path.name for path in other.iterdir()] == ["mine.txt"]
 
 
-def test_two_cannot_make_one_set(made: Path) -> None:
+def test_two_cannot_make_one_set(made):
     request = request_of(made, seed=SEED, size=SIZE, passes=PASSES)
     with SetFolder(made).held(request.options(), resume=True):
         message = refusal(run(made, "--resume"))
     assert "another process is making this set" in message
 
 
-def test_labels_agree_with_each_other(made: Path, samples: list[dict[str, Any]]) -> None:
+def test_labels_agree_with_each_other(made, samples):
     """Points in space, the camera, points in the picture, and the file of landmarks."""
     for sample in samples:
         camera = sample["camera"]
@@ -190,7 +190,7 @@ def test_labels_agree_with_each_other(made: Path, samples: list[dict[str, Any]])
         assert 0 <= y < y + height <= SIZE[1]
 
 
-def test_the_index_has_a_row_for_each_sample(made: Path, samples: list[dict[str, Any]]) -> None:
+def test_the_index_has_a_row_for_each_sample(made, samples):
     with (made / "index.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["id"] for row in rows] == [sample["id"] for sample in samples]
@@ -200,7 +200,7 @@ def test_the_index_has_a_row_for_each_sample(made: Path, samples: list[dict[str,
         assert float(row["head_yaw"]) == sample["head"]["yaw"]
 
 
-def test_the_card_lists_what_is_in_the_set(made: Path, samples: list[dict[str, Any]]) -> None:
+def test_the_card_lists_what_is_in_the_set(made, samples):
     card = (made / "README.md").read_text("utf-8")
     (command,) = re.findall(r"^    risorius (.* -o FOLDER)$", card, re.MULTILINE)
     assert command.startswith(f"dataset --count {COUNT} --seed {SEED}")
@@ -213,7 +213,7 @@ def test_the_card_lists_what_is_in_the_set(made: Path, samples: list[dict[str, A
 
 
 @pytest.mark.slow
-def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
+def test_pictures_stand_behind_faces(tmp_path):
     """Of one colour they are that colour wherever no class is."""
     pictures = tmp_path / "pictures"
     pictures.mkdir()
@@ -239,7 +239,7 @@ def test_pictures_stand_behind_faces(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("unit", load_table(None).units)
-def test_landmarks_move_further_the_more_of_a_unit(face: FaceScene, unit: str) -> None:
+def test_landmarks_move_further_the_more_of_a_unit(face, unit):
     """What a label says is seen: the farthest landmark goes on with every step, by a tenth."""
     rest = face.rest_positions[face.landmarks]
     moved = []
@@ -266,14 +266,14 @@ def apertures_of(face: FaceScene, pose: dict[str, float]) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("shut", ["AU17 AU15 AU4", "AU24", "AU28", "AU12", "AU43 AU6", "AU43 AU51"])
-def test_what_is_shut_has_no_aperture(face: FaceScene, shut: str) -> None:
+def test_what_is_shut_has_no_aperture(face, shut):
     """Lips that roll inward and lids that are squeezed, whose landmarks lie 1 to 4 mm apart."""
     found = apertures_of(face, dict.fromkeys(shut.split(), 1.0))
     assert found.pop("mouth") < 0.1
     assert all((value < 0.1) == ("AU43" in shut) for value in found.values())
 
 
-def test_apertures_grow_with_what_opens(face: FaceScene) -> None:
+def test_apertures_grow_with_what_opens(face):
     """In proportion from where lips and lids part, each eye for itself, however the head turns."""
     parted = [apertures_of(face, {"AU25": value})["mouth"] for value in (0.25, 0.5, 0.75, 1.0)]
     assert parted[0] < 0.3
@@ -284,7 +284,7 @@ def test_apertures_grow_with_what_opens(face: FaceScene) -> None:
     assert apertures_of(face, {"AU27": 1.0})["mouth"] > 20.0
 
 
-def test_speech_is_reported_in_units(face: FaceScene) -> None:
+def test_speech_is_reported_in_units(face):
     """A viseme of units alone gives them back; a unit that was set counts as it was set."""
     face.reset()
     face.pose({"viseme_SS": 0.5, "AU1_left": 0.3})

@@ -32,9 +32,7 @@ def units_of(sample: Sample) -> set[str]:
 
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
-def test_any_sample_is_a_face_that_can_be_made(
-    limits: dict[str, tuple[float, float]], seed: int, index: int
-) -> None:
+def test_any_sample_is_a_face_that_can_be_made(limits, seed, index):
     """Controls within their limits, nothing that excludes another, the camera in its ranges."""
     sample = draw(TABLE, seed, index)
     for name, value in sample.controls.items():
@@ -53,7 +51,7 @@ def test_any_sample_is_a_face_that_can_be_made(
 
 
 @given(seed=st.integers(0, 2**32 - 1), index=st.integers(0, 999_999))
-def test_a_sample_follows_from_seed_and_number_alone(seed: int, index: int) -> None:
+def test_a_sample_follows_from_seed_and_number_alone(seed, index):
     first = draw(TABLE, seed, index)
     draw(TABLE, seed, index + 1)
     assert draw(TABLE, seed, index) == first
@@ -65,7 +63,7 @@ def many() -> list[Sample]:
     return [draw(TABLE, 1, index) for index in range(2000)]
 
 
-def test_kinds_and_units_come_as_often_as_the_table_says(many: list[Sample]) -> None:
+def test_kinds_and_units_come_as_often_as_the_table_says(many):
     total = sum(TABLE.kinds.values())
     for kind, share in TABLE.kinds.items():
         assert sum(s.kind == kind for s in many) / len(many) == pytest.approx(
@@ -82,7 +80,7 @@ def read(tmp_path: Path, text: str) -> SampleTable:
     return load_table(file)
 
 
-def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
+def test_a_table_of_ones_own_replaces_sections(tmp_path):
     """The one that is printed changes nothing; of some sections rows that are left out stay."""
     printed = risorius("dataset", "--sample-table").output
     assert read(tmp_path, printed) == TABLE
@@ -104,7 +102,7 @@ def test_a_table_of_ones_own_replaces_sections(tmp_path: Path) -> None:
         ("[kinds", "not valid TOML"),
     ],
 )
-def test_a_wrong_table_is_reported_in_one_line(tmp_path: Path, text: str, message: str) -> None:
+def test_a_wrong_table_is_reported_in_one_line(tmp_path, text, message):
     """File, section and row, and what is allowed."""
     with pytest.raises(UserError) as raised:
         read(tmp_path, text)

@@ -44,7 +44,7 @@ PARTS = ("offscreen", "window", "films")
 @pytest.mark.parametrize(
     "missing", [each for count in range(4) for each in itertools.combinations(PARTS, count)]
 )
-def test_the_verdict_is_what_works(ill: object, missing: tuple[str, ...]) -> None:
+def test_the_verdict_is_what_works(ill, missing):
     """Each part, the summary and the exit code agree."""
     ill(*missing)  # type: ignore[operator]
     result = ask()
@@ -71,9 +71,7 @@ def test_the_verdict_is_what_works(ill: object, missing: tuple[str, ...]) -> Non
         ),
     ],
 )
-def test_refinement_on_the_card(
-    able: tuple[str, ...], is_software: bool, message: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_refinement_on_the_card(able, is_software, message, monkeypatch):
     """A line says whether kahler-gl would run, and where; without it nothing is missing."""
     findings = [
         render.Finding(name, True, is_software=is_software, lends_gpu_streams=name in able)
@@ -84,7 +82,7 @@ def test_refinement_on_the_card(
 
 
 @pytest.mark.parametrize("missing", [(), ("offscreen",), ("window", "films")])
-def test_offscreen_alone(ill: object, missing: tuple[str, ...]) -> None:
+def test_offscreen_alone(ill, missing):
     """What is not asked for is neither missing nor there."""
     ill(*missing)  # type: ignore[operator]
     result = ask("--offscreen")
@@ -95,9 +93,7 @@ def test_offscreen_alone(ill: object, missing: tuple[str, ...]) -> None:
 
 
 @pytest.mark.parametrize("program", ["exec sleep 100", "exec >&-; exit 3", None])
-def test_an_ffmpeg_that_does_not_answer(
-    ill: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str | None
-) -> None:
+def test_an_ffmpeg_that_does_not_answer(ill, tmp_path, monkeypatch, program):
     """One that hangs, fails or is not there is missing, and nobody waits for long."""
     ill()  # type: ignore[operator]
     monkeypatch.setattr(doctor, "PATIENCE", 0.3)

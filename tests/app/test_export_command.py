@@ -53,7 +53,7 @@ def export(*arguments: str) -> Result:
 
 
 @pytest.mark.parametrize("name", OUTPUTS)
-def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path) -> None:
+def test_every_format_is_written_and_leaves_nothing_else(name, folder):
     """What the table of formats says lies beside the script, and may be written again."""
     for _ in range(2):
         arguments = ("plane.toml", "--as", name, "-o", OUTPUTS[name], "--overwrite")
@@ -69,7 +69,7 @@ def test_every_format_is_written_and_leaves_nothing_else(name: str, folder: Path
         assert len(list((folder / "out").glob(f"frame_*.{name}"))) == 7
 
 
-def test_curves_need_muscles() -> None:
+def test_curves_need_muscles():
     """A face has them; a plane is refused in one line, and leaves no file."""
     assert "take the scene face" in refusal(export("plane.toml", "-o", "x.csv"))
     assert not Path("x.csv").exists()
@@ -78,7 +78,7 @@ def test_curves_need_muscles() -> None:
     assert Path("x.csv").stat().st_size > 1000
 
 
-def test_files_of_somebody_else_stay(folder: Path) -> None:
+def test_files_of_somebody_else_stay(folder):
     """What would lie beside the output, a head of the user's, and what is in a folder."""
     Path("x.obj").write_text("mine")
     line = refusal(export("plane.toml", "-o", "x.pc2"))
@@ -102,7 +102,7 @@ def test_files_of_somebody_else_stay(folder: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", OUTPUTS)
-def test_a_full_disk_is_one_line(name: str, folder: Path) -> None:
+def test_a_full_disk_is_one_line(name, folder):
     """The system writes no more than so many bytes: one line, and the old file stays."""
     output = Path(OUTPUTS[name])
     if output.suffix:

@@ -76,7 +76,7 @@ def farthest(player: Player, clip: Clip, name: str) -> float:
     )
 
 
-def test_every_vertex_is_where_the_clip_has_it(clip: Clip, glb: Path) -> None:
+def test_every_vertex_is_where_the_clip_has_it(clip, glb):
     """Skin, eyes, teeth and tongue, with the head turned, at every frame, in order."""
     player = Player(glb)
     assert {surface.name for surface in clip.surfaces} <= set(player.numbers)
@@ -90,7 +90,7 @@ def test_every_vertex_is_where_the_clip_has_it(clip: Clip, glb: Path) -> None:
         )
 
 
-def test_normals_follow_the_motion(clip: Clip, glb: Path) -> None:
+def test_normals_follow_the_motion(clip, glb):
     """Engines add up normals: nearly everywhere they are those of the moved mesh."""
     player = Player(glb)
     for frame in range(0, clip.frame_count, 4):
@@ -102,7 +102,7 @@ def test_normals_follow_the_motion(clip: Clip, glb: Path) -> None:
         assert np.percentile(angles, 99) < 3.0
 
 
-def test_the_mesh_at_rest_is_read_by_trimesh(clip: Clip, glb: Path) -> None:
+def test_the_mesh_at_rest_is_read_by_trimesh(clip, glb):
     """A reader without morph targets shows the neutral face, in metres, and whose parts fit."""
     scene = trimesh.load_scene(glb, process=False)
     assert len(scene.geometry) == len(clip.surfaces)
@@ -115,7 +115,7 @@ def test_the_mesh_at_rest_is_read_by_trimesh(clip: Clip, glb: Path) -> None:
     assert np.abs(placed - eye.rest / 1000.0).max() < 1e-6
 
 
-def test_the_file_is_as_validators_want_it(glb: Path) -> None:
+def test_the_file_is_as_validators_want_it(glb):
     """Chunks, alignment, bounds, counts, weights; unit normals, shares that add up to 1."""
     data = glb.read_bytes()
     magic, version, length = struct.unpack_from("<4sII", data)
@@ -170,7 +170,7 @@ def test_the_file_is_as_validators_want_it(glb: Path) -> None:
         assert weights.max() <= 1.0
 
 
-def test_the_texture_is_the_right_way_up(clip: Clip, glb: Path) -> None:
+def test_the_texture_is_the_right_way_up(clip, glb):
     """Each vertex finds the colour that it has in the scene: v runs down in glTF."""
     player = Player(glb)
     skin = clip.skin
@@ -196,7 +196,7 @@ def test_the_texture_is_the_right_way_up(clip: Clip, glb: Path) -> None:
     assert expected.std(axis=0).min() > 8.0  # or any coordinate would do
 
 
-def test_fine_shape_is_a_normal_map(clip: Clip, glb: Path) -> None:
+def test_fine_shape_is_a_normal_map(clip, glb):
     """Its normals are those of the slopes in the scene's map, in the frame of a triangle's texture.
 
     trimesh finds both maps, too.
@@ -234,7 +234,7 @@ def test_fine_shape_is_a_normal_map(clip: Clip, glb: Path) -> None:
     assert image[..., :2].std() > 2.0
 
 
-def test_vertex_colours_are_linear_light(clip: Clip, glb: Path) -> None:
+def test_vertex_colours_are_linear_light(clip, glb):
     """glTF has linear colours: shown again as sRGB, they are as the eyes were painted."""
     painted = next(s.colours for s in clip.surfaces if s.name == "eyeball_left")
     assert painted is not None
@@ -244,7 +244,7 @@ def test_vertex_colours_are_linear_light(clip: Clip, glb: Path) -> None:
     assert np.ptp(painted) > 0.3
 
 
-def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
+def test_scenes_without_a_face_are_written_too(tmp_path):
     """A sheet by its targets."""
     text = 'scene = "plane"\n[[pose]]\ntime = 0\n[[pose]]\ntime = 0.6\namplitude = 1\nphase = 0.4\n'
     clip = record(parse_script(text, source="test"), None, 20.0, progress=False)
@@ -255,7 +255,7 @@ def test_scenes_without_a_face_are_written_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.blender
-def test_blender_sees_the_same(clip: Clip, glb: Path, tmp_path: Path) -> None:
+def test_blender_sees_the_same(clip, glb, tmp_path):
     """Imported and stepped through in Blender, each vertex is where the clip has it."""
     found = positions_in_blender(glb, tmp_path, 24.0, clip.frame_count)
     with np.load(found) as positions:
@@ -266,9 +266,7 @@ def test_blender_sees_the_same(clip: Clip, glb: Path, tmp_path: Path) -> None:
             assert off.max() < NEAR, surface.name
 
 
-def test_what_targets_cannot_follow_is_reported(
-    clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_targets_cannot_follow_is_reported(clip, tmp_path, monkeypatch):
     """A clip that needs more targets than may be is written, and the error that remains is said."""
     monkeypatch.setattr(gltf, "decompose", functools.partial(decompose, most=4))
     remark = written(clip, tmp_path / "rough.glb")
@@ -280,7 +278,7 @@ def test_what_targets_cannot_follow_is_reported(
 
 
 @pytest.mark.slow
-def test_our_own_file_is_a_head_to_fit(glb: Path, tmp_path: Path) -> None:
+def test_our_own_file_is_a_head_to_fit(glb, tmp_path):
     """Its hair is cards that are no surface; the skin is fitted, and stands as it was."""
     head = assets.load("head")
     marks = tmp_path / "own.json"

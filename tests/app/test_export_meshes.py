@@ -88,7 +88,7 @@ def usd_points(stage: Any, name: str, frame: int) -> Points:
     return points @ matrix[:3, :3] + matrix[3, :3]
 
 
-def test_usd_has_every_surface_in_every_frame(clip: Clip, tmp_path: Path) -> None:
+def test_usd_has_every_surface_in_every_frame(clip, tmp_path):
     """Rate, unit, axis and frames of the stage; points to a thousandth of a millimetre."""
     stage = Usd.Stage.Open(str(written(clip, tmp_path / "face.usdz")))
     assert stage.GetTimeCodesPerSecond() == stage.GetFramesPerSecond() == RATE
@@ -107,7 +107,7 @@ def test_usd_has_every_surface_in_every_frame(clip: Clip, tmp_path: Path) -> Non
             assert np.array_equal([low, high], [points.min(axis=0), points.max(axis=0)])
 
 
-def test_usd_has_the_texture_and_colours(clip: Clip, tmp_path: Path) -> None:
+def test_usd_has_the_texture_and_colours(clip, tmp_path):
     """Coordinates of each corner, a picture in the package, and colours of light on parts."""
     path = written(clip, tmp_path / "face.usdz")
     stage = Usd.Stage.Open(str(path))
@@ -131,7 +131,7 @@ def test_usd_has_the_texture_and_colours(clip: Clip, tmp_path: Path) -> None:
     assert np.abs(screen - eye.colours).max() < 1e-4
 
 
-def test_usd_is_sound(clip: Clip, tmp_path: Path) -> None:
+def test_usd_is_sound(clip, tmp_path):
     """Pixar's own validators, all of them, have nothing to say of the package."""
     validation = pytest.importorskip("pxr.UsdValidation")
     try:
@@ -144,7 +144,7 @@ def test_usd_is_sound(clip: Clip, tmp_path: Path) -> None:
     assert not [error.GetMessage() for error in errors]
 
 
-def test_usd_has_the_refined_skin(clip: Clip, tmp_path: Path) -> None:
+def test_usd_has_the_refined_skin(clip, tmp_path):
     """Triangles of each frame's own, with normals and coordinates for every point."""
     path = written(clip, tmp_path / "fine.usdz", refinement=REFINED)
     stage = Usd.Stage.Open(str(path))
@@ -185,7 +185,7 @@ def vtk_steps(path: Path) -> list[tuple[float, Any]]:
     return steps
 
 
-def test_vtkhdf_has_every_frame(clip: Clip, tmp_path: Path) -> None:
+def test_vtkhdf_has_every_frame(clip, tmp_path):
     """VTK finds times, points, triangles and what rides along; the triangles are stored once."""
     path = written(clip, tmp_path / "face.vtkhdf")
     steps = vtk_steps(path)
@@ -221,7 +221,7 @@ def obj_rows(path: Path, name: str) -> Points:
     return np.array([line.split()[1:] for line in lines if line.startswith(f"{name} ")], float)
 
 
-def test_pc2_moves_the_mesh_beside_it(clip: Clip, tmp_path: Path) -> None:
+def test_pc2_moves_the_mesh_beside_it(clip, tmp_path):
     """By its published layout: a head of 32 bytes, then little-endian floats, metres."""
     data = written(clip, tmp_path / "face.pc2").read_bytes()
     head = struct.unpack("<12siiffi", data[:32])
@@ -248,9 +248,7 @@ def triangles_in(path: Path) -> tuple[Points, Points]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("refinement", [None, REFINED], ids=["mesh", "refined"])
-def test_sequences_have_every_frame(
-    clip: Clip, tmp_path: Path, refinement: Refinement | None
-) -> None:
+def test_sequences_have_every_frame(clip, tmp_path, refinement):
     """Frames are numbered in order; triangles are those of the clip, and lit from outside."""
     folder = written(clip, tmp_path / "frames", "obj", refinement)
     meshes = sorted(folder.glob("*.obj"))
@@ -270,7 +268,7 @@ def test_sequences_have_every_frame(
     )
 
 
-def test_an_obj_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> None:
+def test_an_obj_keeps_the_vertices_of_the_mesh(clip, tmp_path):
     """V vertices in their order, coordinates apart, colours behind them, a group for each part."""
     folder = written(clip, tmp_path / "frames", "obj")
     path = folder / f"frame_{FRAMES - 1:05d}.obj"
@@ -293,7 +291,7 @@ def test_an_obj_keeps_the_vertices_of_the_mesh(clip: Clip, tmp_path: Path) -> No
 # ---------- Arrays, other scenes, Blender -------------------------------------------------------
 
 
-def test_npz_has_all_of_a_clip(clip: Clip, tmp_path: Path) -> None:
+def test_npz_has_all_of_a_clip(clip, tmp_path):
     """Every surface can be put together from the arrays alone."""
     with np.load(written(clip, tmp_path / "face.npz")) as arrays:
         assert np.array_equal(arrays["positions"], clip.skin.shapes)
@@ -313,7 +311,7 @@ def test_npz_has_all_of_a_clip(clip: Clip, tmp_path: Path) -> None:
 
 @pytest.mark.blender
 @pytest.mark.parametrize("name", ["face.usdz", "fine.usdz", "face.pc2"])
-def test_blender_sees_the_same(clip: Clip, tmp_path: Path, name: str) -> None:
+def test_blender_sees_the_same(clip, tmp_path, name):
     """Imported and stepped through in Blender, each vertex is where the clip has it."""
     is_fine = name.startswith("fine")
     path = written(clip, tmp_path / name, refinement=REFINED if is_fine else None)

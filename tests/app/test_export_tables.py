@@ -79,7 +79,7 @@ def apart(first: Clip, second: Clip) -> tuple[float, float]:
     return float(off.max()), float(np.sqrt((off**2).mean()))
 
 
-def test_arkit_plays_the_same_again(scene: FaceScene, tmp_path: Path) -> None:
+def test_arkit_plays_the_same_again(scene, tmp_path):
     """A script of ARKit's shapes, eyes and head: the replay is nowhere half a millimetre off."""
     clip = record(script_of(SHAPES), scene, RATE, progress=False)
     path = tmp_path / "take.csv"
@@ -99,7 +99,7 @@ def test_arkit_plays_the_same_again(scene: FaceScene, tmp_path: Path) -> None:
     assert apart(clip, still)[0] > 5.0
 
 
-def test_arkit_shows_set_values(scene: FaceScene, tmp_path: Path) -> None:
+def test_arkit_shows_set_values(scene, tmp_path):
     """Values of the script itself, as much later as the muscles are; header of Live Link Face."""
     clip = record(script_of(SHAPES), scene, RATE, progress=False)
     columns = table(clip, tmp_path / "take.csv")
@@ -117,7 +117,7 @@ def test_arkit_shows_set_values(scene: FaceScene, tmp_path: Path) -> None:
     assert columns["LeftEyeYaw"].min() == pytest.approx(np.radians(-15.0 - 4.0), abs=0.02)
 
 
-def test_expressions_become_shapes(scene: FaceScene, tmp_path: Path) -> None:
+def test_expressions_become_shapes(scene, tmp_path):
     """What the script does not say in shapes is solved for, and looks alike."""
     text = "duration = 0.6\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n"
     clip = record(script_of(text), scene, RATE, progress=False)

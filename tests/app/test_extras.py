@@ -63,7 +63,7 @@ def each_of(*commands: str, folder: Path) -> list[tuple[int, list[str]]]:
     ]
 
 
-def test_a_picture_needs_no_extra(tmp_path: Path) -> None:
+def test_a_picture_needs_no_extra(tmp_path):
     """Nor does a glTF file."""
     picture = "capture --set joy -o joy.png --size 64x48 --quiet"
     ended = each_of(picture, "export --set joy -o joy.glb --quiet", folder=tmp_path)
@@ -72,7 +72,7 @@ def test_a_picture_needs_no_extra(tmp_path: Path) -> None:
     assert (tmp_path / "joy.glb").exists()
 
 
-def test_help_needs_no_extra(tmp_path: Path) -> None:
+def test_help_needs_no_extra(tmp_path):
     """Of the command and of each below it."""
     ended = plain(folder=tmp_path, code=EVERY_HELP)
     assert ended.returncode == 0, ended.stderr
@@ -81,7 +81,7 @@ def test_help_needs_no_extra(tmp_path: Path) -> None:
     assert [line for line in lines if not line.endswith(" 0")] == ["0"]
 
 
-def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
+def test_the_doctor_says_what_is_missing(tmp_path):
     """And what installs it; without extras there are pictures, neither films nor a window."""
     ended = plain("doctor", folder=tmp_path)
     assert ended.returncode == 1, ended.stderr
@@ -94,7 +94,7 @@ def test_the_doctor_says_what_is_missing(tmp_path: Path) -> None:
     assert lines["Missing"].startswith("window, films;")
 
 
-def test_what_is_missing_is_named(tmp_path: Path) -> None:
+def test_what_is_missing_is_named(tmp_path):
     """In one line, with the command that installs it; nothing is left behind."""
     missing = {
         "view": "window",
@@ -115,7 +115,7 @@ def test_what_is_missing_is_named(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} - {"list_logs"} == {"take.csv", "list.txt"}
 
 
-def test_extras_bring_what_they_are_named_for() -> None:
+def test_extras_bring_what_they_are_named_for():
     """And `all` brings every extra that a user of the program may want."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]

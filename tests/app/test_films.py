@@ -68,7 +68,7 @@ def seconds_of(path: Path) -> float:
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-def test_frames_are_in_order_and_complete(tmp_path: Path, suffix: str) -> None:
+def test_frames_are_in_order_and_complete(tmp_path, suffix):
     """Each kind of film, of an odd size, gives back every picture, at its time."""
     path = tmp_path / f"film{suffix}"
     frames = numbered_frames()
@@ -86,7 +86,7 @@ def test_frames_are_in_order_and_complete(tmp_path: Path, suffix: str) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path: Path) -> None:
+def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path):
     """Two hundredths of a second a frame, or one line."""
     with (
         pytest.raises(UserError, match=r"film.gif: has at most 50 frames a second, and"),
@@ -98,9 +98,7 @@ def test_a_gif_is_not_asked_for_frames_that_players_slow_down(tmp_path: Path) ->
 @pytest.mark.slow
 @pytest.mark.parametrize("samples", [0, 4])
 @pytest.mark.parametrize("colour", [(255, 255, 255), (0, 0, 0), (0, 177, 64)])
-def test_a_transparent_picture_lies_over_any_colour(
-    samples: int, colour: tuple[int, int, int]
-) -> None:
+def test_a_transparent_picture_lies_over_any_colour(samples, colour):
     """Over white, black and green it is the picture that is drawn before that: no fringe."""
     flat = tuple(part / 255.0 for part in colour)
     background = render.Background(flat, flat)
@@ -124,7 +122,7 @@ def test_a_transparent_picture_lies_over_any_colour(
     ("word", "corner"),
     [("white", (255, 255, 255)), ("black", (0, 0, 0)), ("#00B140", (0, 177, 64))],
 )
-def test_backgrounds_by_name(tmp_path: Path, word: str, corner: tuple[int, int, int]) -> None:
+def test_backgrounds_by_name(tmp_path, word, corner):
     """The corner of a picture has exactly the colour that was asked for."""
     path = tmp_path / "picture.png"
     arguments = ["capture", "--scene", "plane", "--size", "64x48", "--time", "0", "-o", str(path)]
@@ -144,9 +142,7 @@ def several(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
-def test_a_range_is_a_part_of_the_film_whoever_draws(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_range_is_a_part_of_the_film_whoever_draws(tmp_path, monkeypatch):
     """The frames of a part are those of the whole film, from one process and from several."""
     text = "duration = 0.5\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.5\njoy = 1.0\n"
     script = parse_script(text, source="smile.toml")

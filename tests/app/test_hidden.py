@@ -28,9 +28,7 @@ def studio() -> Iterator[Capture]:
 
 @pytest.mark.parametrize("camera", CAMERAS)
 @pytest.mark.parametrize("pose", POSES)
-def test_no_pixel_changes(
-    studio: Capture, camera: str, pose: dict[str, float], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_pixel_changes(studio, camera, pose, monkeypatch):
     """From everywhere, close by, behind, with eyes and mouth open or shut; and much is left out."""
     from risorius.app.capture.drawing import camera_for
 

@@ -37,7 +37,7 @@ def pupils(scene: FaceScene) -> dict[str, tuple[np.ndarray, np.ndarray]]:
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_eyes_blink_as_often_as_people_do_at_rest(seed: int) -> None:
+def test_eyes_blink_as_often_as_people_do_at_rest(seed):
     """17 a minute (Bentivoglio et al. 1997), none while another lasts."""
     waits = np.diff(life_blinks(Life(seed), 300.0))
     assert 15.0 < len(waits) / 5.0 < 19.0
@@ -47,7 +47,7 @@ def test_eyes_blink_as_often_as_people_do_at_rest(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
+def test_eyes_are_with_the_viewer_most_of_the_time(seed):
     """Glances over his face, and at times beside it; they come back within some seconds."""
     life = Life(seed)
     off = []
@@ -59,7 +59,7 @@ def test_eyes_are_with_the_viewer_most_of_the_time(seed: int) -> None:
     assert max(off) < 12.5
 
 
-def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene: FaceScene) -> None:
+def test_a_blink_shuts_the_eye_and_takes_as_long_as_one(scene):
     """The simulation follows late, and yet lids meet; down they are faster than up."""
     life = Life(0)
     gaps = []
@@ -92,7 +92,7 @@ def life_blinks(life: Life, seconds: float = 30.0) -> list[float]:
 
 
 @pytest.mark.parametrize("view", ["front", "three-quarter", "-20,15", "40,-10"])
-def test_both_eyes_meet_the_camera(scene: FaceScene, view: str) -> None:
+def test_both_eyes_meet_the_camera(scene, view):
     """Each looks at it, closer than one sees (2 degrees), while the head takes its share."""
     eye = camera_for(scene, view).eye
     _look(scene, eye)
@@ -111,7 +111,7 @@ def _off(scene: FaceScene, viewer: np.ndarray) -> float:
     return float(max(off))
 
 
-def test_who_stands_aside_is_not_followed(scene: FaceScene) -> None:
+def test_who_stands_aside_is_not_followed(scene):
     """In profile, and from behind, the face looks straight ahead; nothing jumps on the way."""
     for view in ("profile", "180,0", "0,80"):
         parts = looking_at(scene, camera_for(scene, view).eye)
@@ -133,7 +133,7 @@ def _look(scene: FaceScene, viewer: np.ndarray) -> None:
         scene.step(1.0 / 60.0)
 
 
-def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
+def test_what_others_move_is_left_to_them(scene):
     """With all that belongs to it: one lid stands for both, one way of the gaze for both eyes."""
     viewer = np.array([100.0, 0.0, 900.0])
     idle = Idle(scene)
@@ -153,7 +153,7 @@ def test_what_others_move_is_left_to_them(scene: FaceScene) -> None:
 
 
 @pytest.mark.slow
-def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone() -> None:
+def test_a_film_with_life_is_the_same_twice_and_leaves_the_script_alone():
     """What a script names anywhere is the script's for the whole film; the rest lives beneath."""
     keys = (Key(0.0, 0.0), Key(2.9, 0.0), Key(3.0, 0.4))
     script = Script(

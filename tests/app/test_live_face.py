@@ -79,7 +79,7 @@ def wire(request: pytest.FixtureRequest) -> Iterator[Wire]:
     opened.close()
 
 
-def test_a_frame_leads_the_controls(wire: Wire) -> None:
+def test_a_frame_leads_the_controls(wire):
     """What is sent comes out as controls, blinks a little stronger; the line names the sender."""
     assert wire.face.state is State.WAITING
     assert wire.face.presence == 0.0
@@ -97,7 +97,7 @@ def test_a_frame_leads_the_controls(wire: Wire) -> None:
     assert not wire.face.has_news
 
 
-def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire: Wire) -> None:
+def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire):
     """The presence falls to 0 in small steps, and grows again when packets resume."""
     frame = live_link({"JawOpen": 0.5})
     wire.take(frame)
@@ -125,7 +125,7 @@ def test_a_lost_face_eases_out_within_a_second_and_comes_back_smoothly(wire: Wir
     assert wire.face.presence == 1.0
 
 
-def test_a_sender_that_sees_no_face_lets_go_of_ours(wire: Wire) -> None:
+def test_a_sender_that_sees_no_face_lets_go_of_ours(wire):
     """Packets without values are no lost signal, but the face eases to rest."""
     wire.take(live_link({"JawOpen": 0.5}))
     wire.take(live_link(None), seconds=0.1)
@@ -137,7 +137,7 @@ def test_a_sender_that_sees_no_face_lets_go_of_ours(wire: Wire) -> None:
     assert wire.face.state is State.NO_FACE
 
 
-def test_calibrating_takes_the_neutral_face_away(wire: Wire) -> None:
+def test_calibrating_takes_the_neutral_face_away(wire):
     """The median of half a second, which a blink within it does not move."""
     neutral = {"BrowDownLeft": 0.3, "HeadPitch": 0.2}
     wire.take(live_link(neutral))
@@ -157,7 +157,7 @@ def test_calibrating_takes_the_neutral_face_away(wire: Wire) -> None:
     assert controls["eyeBlinkLeft"] >= 1.0
 
 
-def test_gains_and_mirror_may_be_given_from_the_start() -> None:
+def test_gains_and_mirror_may_be_given_from_the_start():
     """As for recordings; mistakes are reported before the program listens."""
     listening = Listening("livelink", port=0, gains=("jawOpen=2", "mouth*=0.5"), mirror=True)
     face = LiveFace(listening)
@@ -173,7 +173,7 @@ def test_gains_and_mirror_may_be_given_from_the_start() -> None:
 
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
-def test_what_is_not_named_keeps_its_value(wire: Wire) -> None:
+def test_what_is_not_named_keeps_its_value(wire):
     """A sender may send only the values that have changed."""
     wire.take(vmc({"jawOpen": 0.5, "cheekPuff": 0.3}))
     wire.take(vmc({"jawOpen": 0.2}))
@@ -183,7 +183,7 @@ def test_what_is_not_named_keeps_its_value(wire: Wire) -> None:
 
 
 @pytest.mark.parametrize("wire", ["vmc"], indirect=True)
-def test_parts_of_a_frame_count_together(wire: Wire) -> None:
+def test_parts_of_a_frame_count_together(wire):
     """Nothing moves before Apply, and nobody is woken."""
     wire.take(osc((VALUE, "jawOpen", 0.5), (VALUE, "eyeBlinkLeft", 0.6)))
     assert wire.face.state is State.WAITING
@@ -201,13 +201,13 @@ def test_parts_of_a_frame_count_together(wire: Wire) -> None:
     "address",
     ["192.0.2.1", "nobody.invalid", "x" * 300, "é" * 70 + ".de", "::1", "<broadcast>", ""],
 )
-def test_an_address_of_another_computer_is_refused(address: str) -> None:
+def test_an_address_of_another_computer_is_refused(address):
     """One can only listen on an address of one's own; an empty one must not mean all of them."""
     with pytest.raises(UserError, match=r"cannot listen|write a computer's name"):
         Receiver(Listening("livelink", address, 0)).close()
 
 
-def test_only_the_address_given_is_listened_on() -> None:
+def test_only_the_address_given_is_listened_on():
     """By default no other computer can send anything."""
     for kind in PROTOCOLS:
         assert Listening(kind).address == LOOPBACK

@@ -3,7 +3,6 @@
 import math
 import struct
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -37,7 +36,7 @@ def channels_of(frame: LiveFrame | None) -> dict[str, float]:
 # Live Link Face
 
 
-def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place() -> None:
+def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place():
     """Each of the 52 in turn is alone at its value; left and right of jaw and mouth among them."""
     for name, shape in zip(LIVE_LINK, SHAPES, strict=False):
         frame = parse_live_link(live_link({name: 0.75}, subject="Ada"))
@@ -49,7 +48,7 @@ def test_a_live_link_packet_has_a_name_and_every_shape_in_its_place() -> None:
         assert channels[shape] == 0.75
 
 
-def test_live_link_angles_are_radians_to_the_right_and_down() -> None:
+def test_live_link_angles_are_radians_to_the_right_and_down():
     """They become degrees to the subject's left and up; eyes that look ahead stand outwards."""
     angles = {"HeadYaw": 0.5, "HeadPitch": -0.25, "LeftEyePitch": 0.61, "RightEyeYaw": -0.62}
     channels = channels_of(parse_live_link(live_link(angles)))
@@ -64,7 +63,7 @@ def test_live_link_angles_are_radians_to_the_right_and_down() -> None:
     assert abs(channels["eye_yaw_right"]) < 0.5
 
 
-def test_without_a_face_live_link_sends_no_values() -> None:
+def test_without_a_face_live_link_sends_no_values():
     """With a count of 0, with a count that nothing follows, and without any."""
     packet = live_link(None)
     for cut in (packet, packet[:-1] + b"\x3d", packet[:-1]):
@@ -74,7 +73,7 @@ def test_without_a_face_live_link_sends_no_values() -> None:
         assert not frame.channels
 
 
-def test_nonsense_among_values_is_left_out() -> None:
+def test_nonsense_among_values_is_left_out():
     """What is no number, a shape far from 0 and 1, an angle beyond half a turn; 1.2 is noise."""
     odd = {"JawOpen": -9.8e5, "MouthPucker": 1.2, "CheekPuff": math.nan, "TongueOut": math.inf}
     odd |= {"HeadYaw": 9.8e5, "HeadPitch": math.nan}
@@ -83,7 +82,7 @@ def test_nonsense_among_values_is_left_out() -> None:
     assert not {"jawOpen", "cheekPuff", "tongueOut", "head_yaw", "head_pitch"} & channels.keys()
 
 
-def test_other_versions_and_every_torn_packet_are_none() -> None:
+def test_other_versions_and_every_torn_packet_are_none():
     """Cut anywhere but where the values may be missing, nothing is left of it."""
     assert parse_live_link(live_link({}, version=5)) is None
     packet = GOOD["livelink"]
@@ -93,7 +92,7 @@ def test_other_versions_and_every_torn_packet_are_none() -> None:
     assert parse_live_link(packet + b"\0") is None
 
 
-def test_a_name_is_shown_only_as_far_as_it_can_be() -> None:
+def test_a_name_is_shown_only_as_far_as_it_can_be():
     """Neither control characters nor a novel come into the window."""
     frame = parse_live_link(live_link({}, subject="A\x1b[2J\n" + 300 * "x"))
     assert frame is not None
@@ -107,7 +106,7 @@ def test_a_name_is_shown_only_as_far_as_it_can_be() -> None:
 @pytest.mark.parametrize(
     "spelled", [str, str.upper, str.lower, lambda name: name[0].upper() + name[1:]]
 )
-def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled: object) -> None:
+def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled):
     """All 52, in capital and small letters."""
     assert callable(spelled)
     sent = {spelled(name): 0.01 * index for index, name in enumerate(SHAPES)}
@@ -121,7 +120,7 @@ def test_vmc_shapes_come_by_name_however_they_are_spelled(spelled: object) -> No
     ("axis", "angle", "sign"),
     [((0, 1, 0), "head_yaw", -1.0), ((1, 0, 0), "head_pitch", -1.0), ((0, 0, 1), "head_roll", 1.0)],
 )
-def test_vmc_bones_turn_in_unitys_axes(axis: tuple[int, ...], angle: str, sign: float) -> None:
+def test_vmc_bones_turn_in_unitys_axes(axis, angle, sign):
     """Left-handed: about y to the right, about x down, about z to the left shoulder."""
     half = math.radians(10.0)
     turn = [math.sin(half) * each for each in axis]
@@ -132,7 +131,7 @@ def test_vmc_bones_turn_in_unitys_axes(axis: tuple[int, ...], angle: str, sign: 
     assert sum(abs(value) for value in channels.values()) == pytest.approx(20.0, abs=1e-3)
 
 
-def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart() -> None:
+def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart():
     """Two bones of 10 degrees make 20; each eye has its own; a bone that turns nothing is none."""
     tenth = (0.0, math.sin(math.radians(5.0)), 0.0, math.cos(math.radians(5.0)))
     none = (0.0, 0.0, 0.0, 0.0)
@@ -151,13 +150,13 @@ def test_vmc_head_turns_on_its_neck_and_eyes_turn_apart() -> None:
 
 
 @pytest.mark.parametrize("size", [-4, -8, -(2**31), 2**31 - 1, 5])
-def test_a_bundle_with_a_wrong_length_is_none(size: int) -> None:
+def test_a_bundle_with_a_wrong_length_is_none(size):
     """A negative one would keep a reader that believes it busy for ever."""
     inner = osc((APPLY,))[16:]
     assert parse_vmc(b"#bundle\0" + struct.pack(">Qi", 1, size) + inner) is None
 
 
-def test_bundles_in_bundles_end_somewhere() -> None:
+def test_bundles_in_bundles_end_somewhere():
     """Three levels are read, a thousand are not."""
     packet = vmc({"JawOpen": 0.5})
     for _ in range(3):
@@ -168,7 +167,7 @@ def test_bundles_in_bundles_end_somewhere() -> None:
     assert parse_vmc(packet) is None
 
 
-def test_messages_that_we_do_not_read_are_passed_over(caplog: pytest.LogCaptureFixture) -> None:
+def test_messages_that_we_do_not_read_are_passed_over(caplog):
     """Other addresses, other values, and unknown types of values, without a word in the log."""
     packet = osc(("/VMC/Ext/OK", 1), (VALUE, 3, "JawOpen"), (VALUE, "JawOpen", 0.5), (APPLY,))
     assert channels_of(parse_vmc(packet)) == {"jawOpen": 0.5}
@@ -180,7 +179,7 @@ def test_messages_that_we_do_not_read_are_passed_over(caplog: pytest.LogCaptureF
 # All of them
 
 
-def test_what_is_sent_is_what_is_read(generator: np.random.Generator) -> None:
+def test_what_is_sent_is_what_is_read(generator):
     """A packet as our sender writes it holds every shape and angle."""
     shapes = {name: float(generator.random()) for name in ARKIT}
     angles = {name: float(generator.uniform(-40.0, 40.0)) for name in (*HEAD_ANGLES, *EYE_ANGLES)}
@@ -204,7 +203,7 @@ def is_sound(frame: LiveFrame | None) -> bool:
 
 @pytest.mark.parametrize("kind", KINDS)
 @given(data=st.data())
-def test_hypothesis_finds_no_packet_that_does_harm(kind: str, data: st.DataObject) -> None:
+def test_hypothesis_finds_no_packet_that_does_harm(kind, data):
     """Good packets with a piece replaced by anything, or text of anything."""
     good = GOOD[kind]
     begin = data.draw(st.integers(0, len(good)))

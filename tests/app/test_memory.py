@@ -1,7 +1,5 @@
 """Memory: thousands of pictures in one process need no more of it than the first ones."""
 
-from pathlib import Path
-
 import pytest
 
 from risorius.app.capture import Capture, CaptureOptions
@@ -13,7 +11,7 @@ from tests.memory import held_memory
 pytestmark = pytest.mark.slow
 
 
-def test_a_studio_forgets_the_persons_before(tmp_path: Path) -> None:
+def test_a_studio_forgets_the_persons_before(tmp_path):
     """Thirty samples of about as many persons take less than 15 MB, a tenth of their buffers."""
     request = request_of(tmp_path, seed=3, size=(96, 96), passes=("segmentation",))
     studio = Studio(request)
@@ -25,7 +23,7 @@ def test_a_studio_forgets_the_persons_before(tmp_path: Path) -> None:
     assert held_memory() - before < 15.0
 
 
-def test_captures_that_are_opened_and_closed_take_no_memory() -> None:
+def test_captures_that_are_opened_and_closed_take_no_memory():
     """A hundred of one scene: the least that is held while the last are made is as at first.
 
     What is held goes up and down by tens of megabytes, as drivers give back pictures late.

@@ -1,10 +1,9 @@
 """What is in the mouth: the farther back, the darker."""
 
-from risorius.app.scenes import FaceScene
 from risorius.app.scenes.mouth import shaded_mouth
 
 
-def test_a_mouth_gets_darker_toward_the_back(face: FaceScene) -> None:
+def test_a_mouth_gets_darker_toward_the_back(face):
     """Molars lose more than incisors, eyes nothing."""
     head = face.head.parts
     shown = face.parts

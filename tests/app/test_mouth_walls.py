@@ -67,7 +67,7 @@ class Sitter:
 
 
 @pytest.mark.slow
-def test_nothing_of_the_mouth_pierces_the_throat(renderer: render.Renderer) -> None:
+def test_nothing_of_the_mouth_pierces_the_throat(renderer):
     """Thirty persons with heads turned as far as they go, jaws shut, open and aside, from below."""
     found = {}
     for number in (*range(28), 63, 189):
@@ -110,7 +110,7 @@ def seen_from_in_front(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("lowest", [-118.0, -113.0])
-def test_nothing_hangs_below_a_mask(renderer: render.Renderer, lowest: float) -> None:
+def test_nothing_hangs_below_a_mask(renderer, lowest):
     """A skin without a neck hides what is in its mouth, at rest and with an open jaw.
 
     Only who looks up into a mask whose jaw is open sees what lies in it.
@@ -122,7 +122,7 @@ def test_nothing_hangs_below_a_mask(renderer: render.Renderer, lowest: float) ->
     assert seen_from_in_front(sitter, (0.0, 20.0)) == {}
 
 
-def test_a_mask_has_no_neck_that_fades() -> None:
+def test_a_mask_has_no_neck_that_fades():
     """Its border goes around the face, so none of its chin is see-through."""
     assert mask(-118.0).fade() is None
 
@@ -132,7 +132,7 @@ def lower_edge(walls: MouthWalls) -> npt.NDArray[np.float32]:
     return walls.vertices[walls.shares > 0.9]
 
 
-def test_walls_stretch_with_the_jaw(face: FaceScene) -> None:
+def test_walls_stretch_with_the_jaw(face):
     """Their edge follows the mandible, their root the skull; at rest they are the same array."""
     face.reset()
     walls = next(part for part in face.parts if isinstance(part, MouthWalls))
@@ -159,7 +159,7 @@ def test_walls_stretch_with_the_jaw(face: FaceScene) -> None:
     assert walls.vertices is rest
 
 
-def test_walls_end_above_the_chin(face: FaceScene) -> None:
+def test_walls_end_above_the_chin(face):
     """Skin below the chin does not follow the head wholly; what lies deeper would pierce it."""
     for head in (face.head, make_person(sample_identity(63)), make_person(sample_identity(6))):
         chin = head.vertices[head.landmarks[8], 1]

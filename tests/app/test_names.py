@@ -42,7 +42,7 @@ def pose(path: Path, *more: str) -> Path:
     return path
 
 
-def test_names_as_text() -> None:
+def test_names_as_text():
     """Bytes that are no UTF-8 are escaped, and all else stays."""
     assert as_text(Path(f"/a/{RAW}.csv")) == f"/a/{SHOWN}.csv" == in_one_line(f"/a/{RAW}.csv")
     assert as_text("schöner & größer \\ 笑") == "schöner & größer \\ 笑"
@@ -50,7 +50,7 @@ def test_names_as_text() -> None:
 
 
 @needs_bytes
-def test_a_recording_with_such_a_name_becomes_a_script(tmp_path: Path) -> None:
+def test_a_recording_with_such_a_name_becomes_a_script(tmp_path):
     """Its title and preface are text; it is written under such a name as well, and read again."""
     recording = take(tmp_path / f"{RAW}.csv")
     script = tmp_path / f"{RAW}.toml"
@@ -67,7 +67,7 @@ def test_a_recording_with_such_a_name_becomes_a_script(tmp_path: Path) -> None:
 
 
 @needs_bytes
-def test_a_script_names_no_such_sound(tmp_path: Path) -> None:
+def test_a_script_names_no_such_sound(tmp_path):
     """TOML is UTF-8, so one line says which file is to be renamed."""
     script = Script("a", 1.0, source="a", poses=(Pose(0.0),), sound=tmp_path / f"{RAW}.wav")
     with pytest.raises(UserError, match=r"l\\xe4cheln.wav: a script cannot name .* rename it"):
@@ -80,7 +80,7 @@ def test_a_script_names_no_such_sound(tmp_path: Path) -> None:
 @needs_bytes
 @pytest.mark.parametrize("end", [".pc2", ".usdz", ".glb", ".vtkhdf", ".npz", ".csv"])
 @pytest.mark.parametrize("where", ["name", pytest.param("folder", marks=pytest.mark.slow)])
-def test_motion_with_such_a_name_is_exported(where: str, end: str, tmp_path: Path) -> None:
+def test_motion_with_such_a_name_is_exported(where, end, tmp_path):
     """The file, its folder, or what it was made of may be called so."""
     script = pose(tmp_path / f"{RAW}.toml")
     folder = tmp_path / (RAW if where == "folder" else "folder")
@@ -104,7 +104,7 @@ def test_motion_with_such_a_name_is_exported(where: str, end: str, tmp_path: Pat
 
 
 @needs_bytes
-def test_pictures_with_such_a_name_have_their_passes(tmp_path: Path) -> None:
+def test_pictures_with_such_a_name_have_their_passes(tmp_path):
     """EXR files, too, whose library takes no such name."""
     OpenEXR = pytest.importorskip("OpenEXR")  # noqa: N806 - a module
     script = pose(tmp_path / "pose.toml")
@@ -122,7 +122,7 @@ def test_pictures_with_such_a_name_have_their_passes(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @needs_bytes
-def test_sets_and_lists_with_such_names(tmp_path: Path) -> None:
+def test_sets_and_lists_with_such_names(tmp_path):
     """What they write of themselves is UTF-8: card, labels, the table of what became of lines."""
     backgrounds = tmp_path / f"{RAW}_pictures"
     backgrounds.mkdir()
@@ -162,9 +162,7 @@ def test_sets_and_lists_with_such_names(tmp_path: Path) -> None:
         ("NAME",),
     ],
 )
-def test_such_a_name_is_reported_in_one_line(
-    words: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_such_a_name_is_reported_in_one_line(words, tmp_path, monkeypatch):
     """Where nothing is, or where it means nothing."""
     monkeypatch.chdir(tmp_path)
     line = refusal(risorius(*(word.replace("NAME", RAW) for word in words)))
@@ -189,7 +187,7 @@ def secret(tmp_path: Path) -> Path:
     return kept
 
 
-def test_an_output_takes_the_place_of_a_link(secret: Path, tmp_path: Path) -> None:
+def test_an_output_takes_the_place_of_a_link(secret, tmp_path):
     """And what the link leads to stays as it is, whether it is there or not."""
     shared = tmp_path / "shared"
     grey = np.full((8, 8, 3), 128, np.uint8)
@@ -209,9 +207,7 @@ def test_an_output_takes_the_place_of_a_link(secret: Path, tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(
-    secret: Path, tmp_path: Path
-) -> None:
+def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(secret, tmp_path):
     """In a folder that others may write: pictures and their labels, scripts, motion, films."""
     shared = tmp_path / "shared"
     script = pose(tmp_path / "pose.toml")
@@ -233,7 +229,7 @@ def test_commands_follow_no_link_that_lies_in_the_place_of_an_output(
 
 
 @pytest.mark.slow
-def test_frames_and_samples_follow_no_link(secret: Path, tmp_path: Path) -> None:
+def test_frames_and_samples_follow_no_link(secret, tmp_path):
     """Nor do pictures in folders that are there already, or what a set has not finished."""
     shared = tmp_path / "shared"
     script = pose(tmp_path / "pose.toml")
@@ -256,7 +252,7 @@ def test_frames_and_samples_follow_no_link(secret: Path, tmp_path: Path) -> None
     assert [*secret.parent.iterdir()] == [secret]
 
 
-def test_a_link_is_no_way_around_what_is_read(tmp_path: Path) -> None:
+def test_a_link_is_no_way_around_what_is_read(tmp_path):
     """An output that would take the place of an input is refused, by whatever name."""
     real, link, other = (tmp_path / name for name in ("real.toml", "link.toml", "other.toml"))
     real.write_text("mine")

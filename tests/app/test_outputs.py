@@ -1,7 +1,5 @@
 """Outputs are whole or not there."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,7 @@ from risorius.app.errors import UserError
 GREY = np.full((64, 96, 3), 128, np.uint8)
 
 
-def test_a_broken_film_leaves_the_old_one(tmp_path: Path) -> None:
+def test_a_broken_film_leaves_the_old_one(tmp_path):
     """If the program fails in the middle, the user's earlier file is untouched."""
     path = tmp_path / "film.mp4"
     path.write_bytes(b"mine")
@@ -25,7 +23,7 @@ def test_a_broken_film_leaves_the_old_one(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_frames_in_a_folder(tmp_path: Path) -> None:
+def test_frames_in_a_folder(tmp_path):
     """Numbered pictures; among other things only when asked, and then only frames give way."""
     target = tmp_path / "frames"
     with outputs.folder(target, overwrite=False) as add:
@@ -44,7 +42,7 @@ def test_frames_in_a_folder(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [target]
 
 
-def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
+def test_broken_frames_leave_the_folder_as_it_was(tmp_path):
     """If the program fails in the middle, old frames stay, and a new folder goes."""
     for name in ("old", "new"):
         if name == "old":
@@ -72,9 +70,7 @@ def test_broken_frames_leave_the_folder_as_it_was(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_film_that_ffmpeg_does_not_finish(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, program: str | None, message: str
-) -> None:
+def test_a_film_that_ffmpeg_does_not_finish(tmp_path, monkeypatch, program, message):
     """No ffmpeg, one that gives up, or fails at the end: it is reported, and the old film stays."""
     fake = tmp_path / "ffmpeg"
     film = tmp_path / "films" / "film.mp4"

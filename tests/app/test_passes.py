@@ -90,7 +90,7 @@ def first_hits(points: Array, faces: npt.NDArray[np.int32], eye: Array, ways: Ar
 
 
 @pytest.mark.parametrize("yaw", [0.0, 70.0])
-def test_triangles_and_depth_are_those_that_rays_hit(plain: Capture, yaw: float) -> None:
+def test_triangles_and_depth_are_those_that_rays_hit(plain, yaw):
     """At 400 places of the mesh as it is: more than 99 in 100 hit the same triangle."""
     scene = posed(plain, EXPRESSIONS["smile"])
     camera = seen_from(plain, yaw, 5.0)
@@ -106,7 +106,7 @@ def test_triangles_and_depth_are_those_that_rays_hit(plain: Capture, yaw: float)
     assert np.abs(hits[is_same, 1] - found["depth"][*places.T][is_same]).max() < 0.01
 
 
-def test_nothing_parts_and_skin_differ(studio: Capture) -> None:
+def test_nothing_parts_and_skin_differ(studio):
     """One background in all passes; no triangle of the mesh on teeth and eyes."""
     posed(studio, EXPRESSIONS["open mouth"])
     seen_from(studio)
@@ -128,7 +128,7 @@ def test_nothing_parts_and_skin_differ(studio: Capture) -> None:
     assert found["triangle"].max() < len(studio.scene.faces)
 
 
-def test_splits_are_those_of_the_triangle_that_is_seen(studio: Capture) -> None:
+def test_splits_are_those_of_the_triangle_that_is_seen(studio):
     """As the refiner reports them."""
     posed(studio, EXPRESSIONS["smile"])
     seen_from(studio)
@@ -140,7 +140,7 @@ def test_splits_are_those_of_the_triangle_that_is_seen(studio: Capture) -> None:
     assert found["splits"].max() > 0
 
 
-def test_classes_are_the_subjects_own_sides_and_mirror(studio: Capture) -> None:
+def test_classes_are_the_subjects_own_sides_and_mirror(studio):
     """From the front, right of the subject is left in the picture; a picture of rest is even."""
     posed(studio, {})
     seen_from(studio)
@@ -158,7 +158,7 @@ def test_classes_are_the_subjects_own_sides_and_mirror(studio: Capture) -> None:
     assert list(rows.values()) == sorted(rows.values())  # brow, eye, nose, lips, neck
 
 
-def test_an_open_mouth_has_an_inside(studio: Capture) -> None:
+def test_an_open_mouth_has_an_inside(studio):
     """Between the lips, and none of it where they are closed; closed lids hide the eyes."""
     found = {}
     for name, controls in (("open", {"jaw_open": 0.9}), ("shut", {"AU43": 1.0})):
@@ -173,9 +173,7 @@ def test_an_open_mouth_has_an_inside(studio: Capture) -> None:
 
 @pytest.mark.parametrize("expression", list(EXPRESSIONS))
 @pytest.mark.parametrize("view", [(0.0, 0.0), (-40.0, 10.0), (65.0, -15.0)])
-def test_landmarks_lie_on_the_depth_map(
-    studio: Capture, expression: str, view: tuple[float, float]
-) -> None:
+def test_landmarks_lie_on_the_depth_map(studio, expression, view):
     """All that are visible: each within 2 mm, and half of them within half a millimetre."""
     scene = posed(studio, EXPRESSIONS[expression])
     camera = seen_from(studio, *view)
@@ -188,7 +186,7 @@ def test_landmarks_lie_on_the_depth_map(
     assert off.max() <= 2.0
 
 
-def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio: Capture) -> None:
+def test_pupils_are_hidden_by_lids_and_everything_by_the_frame(studio):
     """A closed eye has no pupil to be seen; what is beside the picture is not visible."""
     for controls, is_seen in (({}, True), ({"AU43": 1.0}, False)):
         scene = posed(studio, controls)

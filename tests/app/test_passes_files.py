@@ -37,7 +37,7 @@ def names_in(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
+def test_every_frame_has_its_passes_beside_it(tmp_path):
     """Five files a frame, of one picture; passes agree with one another and with the numbers."""
     script = tmp_path / "smile.toml"
     frames = tmp_path / "frames"
@@ -79,7 +79,7 @@ def test_every_frame_has_its_passes_beside_it(tmp_path: Path) -> None:
     assert "gaze" in labels
 
 
-def test_only_what_is_asked_for_is_written(tmp_path: Path) -> None:
+def test_only_what_is_asked_for_is_written(tmp_path):
     """One picture with classes alone has no OpenEXR file, and no landmarks in its numbers."""
     target = tmp_path / "deep" / "joy.png"
     result = risorius(*CAPTURE, "--set", "joy", "--passes", "segmentation", "-o", target)
@@ -89,7 +89,7 @@ def test_only_what_is_asked_for_is_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_colours_are_those_without_passes(tmp_path: Path) -> None:
+def test_the_colours_are_those_without_passes(tmp_path):
     """To the last byte, and so are the passes of two runs."""
     for name, passes in (("a", ("--passes", ALL)), ("b", ("--passes", ALL)), ("c", ())):
         assert (
@@ -101,7 +101,7 @@ def test_the_colours_are_those_without_passes(tmp_path: Path) -> None:
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "c.png").read_bytes()
 
 
-def test_no_input_is_written_over(tmp_path: Path) -> None:
+def test_no_input_is_written_over(tmp_path):
     """A recording take.json and a picture take.png: the numbers would take its place."""
     recording = tmp_path / "take.json"
     recording.write_text("[]")

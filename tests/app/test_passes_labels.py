@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from risorius import render
 from risorius.app.passes.labels import CameraLabels, gaze, labels_of
-from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.scenes import PlaneScene
 
 SIZES = st.tuples(st.integers(16, 4000), st.integers(16, 4000))
 ANGLES = {"yaw": st.floats(-180.0, 180.0), "pitch": st.floats(-89.0, 89.0)}
@@ -26,9 +26,7 @@ def camera_at(yaw: float, pitch: float) -> render.OrbitCamera:
 
 @settings(max_examples=60, deadline=None)
 @given(size=SIZES, **ANGLES)
-def test_points_are_projected_where_opengl_draws_them(
-    size: tuple[int, int], yaw: float, pitch: float
-) -> None:
+def test_points_are_projected_where_opengl_draws_them(size, yaw, pitch):
     """K, R and t against the matrices that the shaders get, from the upper left corner."""
     camera, (width, height) = camera_at(yaw, pitch), size
     points = np.random.default_rng(1).uniform(-80.0, 80.0, (20, 3))
@@ -45,9 +43,7 @@ def test_points_are_projected_where_opengl_draws_them(
 
 @settings(max_examples=25, deadline=None)
 @given(yaw=st.floats(-80.0, 80.0), pitch=st.floats(-60.0, 60.0))
-def test_a_head_at_rest_is_turned_as_the_camera_is_not(
-    scene: FaceScene, yaw: float, pitch: float
-) -> None:
+def test_a_head_at_rest_is_turned_as_the_camera_is_not(scene, yaw, pitch):
     """A camera on the subject's left sees it turned to its right, one above sees it bowed."""
     scene.reset()
     camera = camera_at(yaw, pitch)
@@ -66,7 +62,7 @@ def test_a_head_at_rest_is_turned_as_the_camera_is_not(
     assert facing == pytest.approx(towards_camera[2])
 
 
-def test_angles_are_those_that_the_head_was_turned_by(face: FaceScene) -> None:
+def test_angles_are_those_that_the_head_was_turned_by(face):
     """Before a camera in front: left, up, to the left shoulder, alone and all at once.
 
     The axes about which it turns are found by landmarks, 2 degrees off those of the scene.
@@ -89,7 +85,7 @@ def test_angles_are_those_that_the_head_was_turned_by(face: FaceScene) -> None:
         assert np.abs(turned(*values) - most * values).max() < 4.0
 
 
-def test_eyes_look_where_they_were_set(face: FaceScene) -> None:
+def test_eyes_look_where_they_were_set(face):
     """Each in the scene: straight ahead at rest, to the subject's left is x, up is y."""
     face.reset()
     assert np.allclose(gaze(face, "right"), [0.0, 0.0, 1.0])
@@ -101,7 +97,7 @@ def test_eyes_look_where_they_were_set(face: FaceScene) -> None:
     assert abs(gaze(face, "right")[0]) < 0.01
 
 
-def test_labels_hold_what_was_set_and_what_it_moves(face: FaceScene) -> None:
+def test_labels_hold_what_was_set_and_what_it_moves(face):
     """Controls and activations that are not 0, and plain numbers that JSON keeps."""
     face.reset()
     face.pose({"AU12_left": 0.5})

@@ -13,7 +13,6 @@ from risorius.app.errors import UserError
 from risorius.app.performances import limits_of, read_performance
 from risorius.app.recordings import Take
 from risorius.app.recordings.conversion import LEAD, Playback, lead_of, script_of
-from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import load_script
 from risorius.app.script.thinning import TOLERANCE
 
@@ -41,7 +40,7 @@ def written(folder: Path, seconds: float = 1.0) -> Path:
 
 
 @given(st.floats(0.0, 0.3), st.floats(0.0, 2.5))
-def test_the_lead_shifts_what_is_played(lead: float, moment: float) -> None:
+def test_the_lead_shifts_what_is_played(lead, moment):
     take = take_of(jawOpen=wave(), head_yaw=20.0 * wave())
     script, _ = script_of(take, Playback(neutral="none", lead=lead), limits_of("face"))
     for name, size in (("jawOpen", 1.0), ("head_yaw", 20.0 / 45.0)):
@@ -50,7 +49,7 @@ def test_the_lead_shifts_what_is_played(lead: float, moment: float) -> None:
     assert script.duration == pytest.approx(3.0), "as long as its sound"
 
 
-def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
+def test_the_usual_lead_is_what_the_skin_is_late(face):
     """A jaw that opens in a wave is open when it was recorded open, within a frame."""
     scene = face
     take = take_of(jawOpen=0.6 * wave())
@@ -74,7 +73,7 @@ def test_the_usual_lead_is_what_the_skin_is_late(face: FaceScene) -> None:
     assert abs(late[LEAD]) <= 1
 
 
-def test_one_frame_is_a_pose() -> None:
+def test_one_frame_is_a_pose():
     one = Take("MediaPipe", "one.json", np.zeros(1), {"mouthSmileLeft": np.array([0.4])})
     script, report = script_of(one, Playback(), limits_of("face"))
     assert script.poses[0].values == {"mouthSmileLeft": 0.4}
@@ -82,7 +81,7 @@ def test_one_frame_is_a_pose() -> None:
     assert report.recognised == "MediaPipe, one frame"
 
 
-def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
+def test_the_report_says_what_moves_the_face_and_what_does_not():
     take = take_of(
         jawOpen=wave(), browDownLeft=0.3 + 0.1 * wave(), cheekPuff=0.2, AU26=wave(),
         head_yaw=90.0 * wave(), head_roll=0.0
@@ -99,7 +98,7 @@ def test_the_report_says_what_moves_the_face_and_what_does_not() -> None:
     assert max(map(len, report.lines)) <= 100
 
 
-def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path: Path) -> None:
+def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path):
     path = written(tmp_path)
     output = tmp_path / "script.toml"
     result = risorius("convert", path, "-o", output, "--gain", "mouth*=0.5")
@@ -123,9 +122,7 @@ def test_a_recording_becomes_a_script_that_plays_the_same(tmp_path: Path) -> Non
         ("take.toml", b"hello, this is\na text\n", "not valid TOML"),
     ],
 )
-def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(
-    tmp_path: Path, name: str, content: bytes, words: str
-) -> None:
+def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(UserError, match=words):
         read_performance(tmp_path / name)
@@ -141,9 +138,7 @@ def test_what_a_file_seems_to_be_is_what_the_error_speaks_of(
         ("eye_pitch_right", 15.0, 2, 1),
     ],
 )
-def test_angles_turn_head_and_eyes_as_they_were_recorded(
-    face: FaceScene, channel: str, degrees: float, axis: int, towards: int
-) -> None:
+def test_angles_turn_head_and_eyes_as_they_were_recorded(face, channel, degrees, axis, towards):
     """So many degrees, to the subject's left, up, and to the left shoulder; no other bone's."""
     bones = {"eye_yaw_left": "eye_left", "eye_pitch_right": "eye_right"}
     script, _ = script_of(take_of(**{channel: degrees}), Playback(neutral="none"), face.limits)

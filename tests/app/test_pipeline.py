@@ -34,7 +34,7 @@ def image(pipeline: Pipeline, drawn: DrawnMesh) -> Any:
     return surface.read()
 
 
-def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
+def test_the_mesh_and_the_simulation_never_notice(surface):
     """With and without refinement the simulation runs through the same bytes."""
     scenes = [FaceScene(), FaceScene()]
     renderer = render.Renderer(surface)
@@ -51,7 +51,7 @@ def test_the_mesh_and_the_simulation_never_notice(surface: Any) -> None:
     assert drawn.triangle_count > 1.1 * len(scenes[0].faces)
 
 
-def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
+def test_refined_and_static_agree_where_nothing_moved(surface):
     """By the paper's criterion the refined picture at rest is the static one, pixel for pixel."""
     pipeline = Pipeline(FaceScene(), render.Renderer(surface))
     asked = Refinement(refiner="none"), Refinement("paper")
@@ -60,7 +60,7 @@ def test_refined_and_static_agree_where_nothing_moved(surface: Any) -> None:
 
 @pytest.mark.parametrize(("first", "settling"), [(0.0, 0.0), (0.5, SETTLING)])
 @pytest.mark.parametrize("rate", [24.0, 30.0])
-def test_a_film_takes_as_long_as_its_script(first: float, settling: float, rate: float) -> None:
+def test_a_film_takes_as_long_as_its_script(first, settling, rate):
     """As much time passes in the scene as between the frames, each of which has its pose."""
     text = f"[[pose]]\ntime = 0\namplitude = {first}\n[[pose]]\ntime = 0.5\namplitude = 1\n"
     script = parse_script(text, source="wave")

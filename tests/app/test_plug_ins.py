@@ -187,7 +187,7 @@ def capture(folder: Path, *options: str) -> Result:
         (["--refiner", "half", "--option", "share=0.1"], 203),
     ],
 )
-def test_all_kinds_are_drawn(tmp_path: Path, options: list[str], count: int) -> None:
+def test_all_kinds_are_drawn(tmp_path, options, count):
     """A criterion, a scheme and a refiner are found by name on the command line."""
     result = capture(tmp_path, *options)
     assert result.exit_code == 0, result.output
@@ -204,14 +204,12 @@ def test_all_kinds_are_drawn(tmp_path: Path, options: list[str], count: int) -> 
         (["--refiner", "three"], "must be a class or a function, got 3"),
     ],
 )
-def test_what_is_of_no_use_is_reported_in_one_line(
-    tmp_path: Path, options: list[str], text: str
-) -> None:
+def test_what_is_of_no_use_is_reported_in_one_line(tmp_path, options, text):
     """A wrong name brings the right ones, and a package that is broken its reason."""
     assert text in refusal(capture(tmp_path, *options))
 
 
-def test_they_are_offered() -> None:
+def test_they_are_offered():
     """The window lists them beside the built-in ones, and so does the doctor."""
     assert "straight" in mechanism._choices("scheme")
     assert "everywhere" in mechanism._choices("criterion")
@@ -245,7 +243,7 @@ def chosen(name: str) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_an_error_in_one_is_reported_with_its_name(tmp_path: Path, name: str) -> None:
+def test_an_error_in_one_is_reported_with_its_name(tmp_path, name):
     """Whatever it raises, and whenever: one line, in pictures and in motion."""
     draw = ("capture", "-o", tmp_path / "face.png", "--size", "64x48")
     move = ("export", "-o", tmp_path / "face.vtkhdf", "--refined", "--fps", "5")
@@ -256,9 +254,7 @@ def test_an_error_in_one_is_reported_with_its_name(tmp_path: Path, name: str) ->
     assert not [item for item in tmp_path.iterdir() if item.name.startswith("face")]
 
 
-def test_the_traceback_is_there_for_whoever_asks(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_traceback_is_there_for_whoever_asks(tmp_path, monkeypatch):
     """RISORIUS_DEBUG=1 prints it before the line, and the exit code stays."""
     monkeypatch.setenv("RISORIUS_DEBUG", "1")
     for name in ("criterion=unborn", "lost", "gone"):
@@ -271,7 +267,7 @@ def test_the_traceback_is_there_for_whoever_asks(
 
 
 @pytest.mark.slow
-def test_one_in_other_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_in_other_processes(tmp_path, monkeypatch):
     """Samples of a set, frames of a film and lines of a list are made there: the same line."""
     sample = ("dataset", "--count", "1", "-o", tmp_path / "set", "--size", "64x64", "--quiet")
     assert BROKEN["lost"] in refusal(risorius(*sample, "--refiner", "lost"))
@@ -293,7 +289,7 @@ def test_one_in_other_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.window
 @pytest.mark.skipif("DISPLAY" not in os.environ, reason="needs a display; `make test` brings one")
-def test_a_window_that_is_opened_with_a_broken_one_says_so(tmp_path: Path) -> None:
+def test_a_window_that_is_opened_with_a_broken_one_says_so(tmp_path):
     """And does not stay; what fails as soon as the face moves ends no window that is open."""
     view = ("view", "--size", "300x200")
     assert BROKEN["criterion=unborn"] in refusal(risorius(*view, *chosen("criterion=unborn")))

@@ -41,9 +41,7 @@ def scenes() -> dict[str, Scene]:
 @pytest.mark.parametrize("refiner", [None, *refine.refiners.available()])
 @pytest.mark.parametrize("look", PRESETS)
 @pytest.mark.parametrize("name", SCENES)
-def test_every_look_is_drawn_by_every_refiner(
-    surface: Any, scenes: dict[str, Scene], name: str, look: str, refiner: str | None
-) -> None:
+def test_every_look_is_drawn_by_every_refiner(surface, scenes, name, look, refiner):
     """On every scene, without a crack, and as something that can be seen."""
     scene = scenes[name]
     refinement = Refinement(look, refiner)
@@ -62,7 +60,7 @@ def test_every_look_is_drawn_by_every_refiner(
     assert is_refined == (refiner != "none")
 
 
-def test_the_papers_look_is_the_papers_rule(scenes: dict[str, Scene]) -> None:
+def test_the_papers_look_is_the_papers_rule(scenes):
     """On the face the very triangles of `kahler` as it is made without options; smooth has more."""
     face = scenes["face"]
     plain = refine.create("kahler", face.faces, face.rest_positions, face.uv, face.face_uv)
@@ -74,7 +72,7 @@ def test_the_papers_look_is_the_papers_rule(scenes: dict[str, Scene]) -> None:
     assert len(smooth.triangles) > 1.2 * len(seen.triangles)
 
 
-def test_a_comparison_is_of_looks_and_refiners(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_comparison_is_of_looks_and_refiners(monkeypatch):
     """In their order; a refiner gets the options of the look, also one of a plug-in."""
     strangers = {**refiners._factories, "far": refine.PassThrough}
     monkeypatch.setattr(refiners, "_factories", strangers)

@@ -15,7 +15,7 @@ moments = st.one_of(st.integers(-3, 40).map(lambda number: number / 8.0), st.jus
 
 
 @given(st.lists(st.tuples(moments, odd, odd), min_size=1, max_size=30))
-def test_any_rows(rows: list[tuple[float, float, float]]) -> None:
+def test_any_rows(rows):
     """Times rise from 0, no value is missing, none lies beyond those that were there."""
     times, jaw, smile = np.array(rows).T
     channels = {"jawOpen": jaw, "mouthSmileLeft": smile}
@@ -35,7 +35,7 @@ def test_any_rows(rows: list[tuple[float, float, float]]) -> None:
         assert values.max() <= there.max()
 
 
-def test_rows_are_put_in_the_order_of_their_times() -> None:
+def test_rows_are_put_in_the_order_of_their_times():
     """Of two with one time the first counts; what is years away is no time of this take."""
     times = np.array([0.2, 0.0, 0.1, 0.1, np.nan, 0.3, 1e9])
     take = whole_take("any", "x", times, {"jawOpen": np.arange(7) / 10.0})
@@ -44,7 +44,7 @@ def test_rows_are_put_in_the_order_of_their_times() -> None:
     assert "3 rows without a time of their own" in take.notes[0]
 
 
-def test_a_pose_is_held_and_left_at_the_end_of_the_gap() -> None:
+def test_a_pose_is_held_and_left_at_the_end_of_the_gap():
     """Half a second without a face at 10 frames a second, to the digit."""
     values = np.array([0.2, 0.4, np.nan, np.nan, np.nan, np.nan, 1.0, 1.0])
     take = whole_take("any", "x", np.arange(8) / 10.0, {"jawOpen": values})
@@ -52,7 +52,7 @@ def test_a_pose_is_held_and_left_at_the_end_of_the_gap() -> None:
     assert take.channels["jawOpen"] == pytest.approx(expected)
 
 
-def test_a_slow_recording_has_no_holes() -> None:
+def test_a_slow_recording_has_no_holes():
     """Two frames a second are far apart, and nobody is missing."""
     take = whole_take("any", "x", np.arange(8) / 2.0, {"jawOpen": np.arange(8) / 8.0})
     assert len(take.times) == 8

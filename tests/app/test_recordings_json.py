@@ -34,7 +34,7 @@ def categories(jaw: float, key: str = "category_name", as_text: bool = False) ->
 
 @pytest.mark.parametrize("key", ["category_name", "categoryName"])
 @pytest.mark.parametrize("as_text", [False, True])
-def test_one_picture(key: str, as_text: bool, tmp_path: Path) -> None:
+def test_one_picture(key, as_text, tmp_path):
     """Both spellings of keys, scores as numbers and as texts; `_neutral` is no shape."""
     take = read_take(written(tmp_path / "take", categories(0.75, key, as_text)))
     assert take.kind == "MediaPipe JSON"
@@ -84,14 +84,14 @@ DOCUMENTS: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("kind", DOCUMENTS)
-def test_a_film(kind: str, tmp_path: Path) -> None:
+def test_a_film(kind, tmp_path):
     """However the frames are packed, the take is the same."""
     take = read_take(written(tmp_path / "take", DOCUMENTS[kind]))
     assert take.channels["jawOpen"] == pytest.approx(JAW)
     assert take.times == pytest.approx(np.arange(4) / 30.0)
 
 
-def test_what_stands_in_columns_beside_shapes(tmp_path: Path) -> None:
+def test_what_stands_in_columns_beside_shapes(tmp_path):
     """The head turns, rows without a face are known, and what nobody knows is listed."""
     columns = ["jawOpen", "faceDetected", "headYaw", "mood"]
     rows = [[jaw, row != 1, 10.0 * row, 0.5] for row, jaw in enumerate(JAW)]
@@ -104,7 +104,7 @@ def test_what_stands_in_columns_beside_shapes(tmp_path: Path) -> None:
         assert take.unknown == ("mood",)
 
 
-def test_frames_without_a_face(tmp_path: Path) -> None:
+def test_frames_without_a_face(tmp_path):
     """An empty list is a frame in which nobody was."""
     frames = [{"faceBlendshapes": [categories(jaw)] if jaw else []} for jaw in (0.2, 0, 0.4)]
     take = read_take(written(tmp_path / "take", {"frames": frames}))
@@ -112,7 +112,7 @@ def test_frames_without_a_face(tmp_path: Path) -> None:
     assert has_note(take.notes, "No face in 1 of 3")
 
 
-def test_several_faces(tmp_path: Path) -> None:
+def test_several_faces(tmp_path):
     """The first face is taken, and no other can be asked for."""
     frames = [{"faceBlendshapes": [categories(0.2), categories(0.6)]} for _ in range(3)]
     path = written(tmp_path / "take", frames)
@@ -123,7 +123,7 @@ def test_several_faces(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("layout", ["rows", "columns", "data"])
-def test_the_matrix_of_the_head(layout: str, tmp_path: Path) -> None:
+def test_the_matrix_of_the_head(layout, tmp_path):
     """A head turned 20 degrees to its left, in all layouts of MediaPipe's matrix."""
     cos = np.cos(np.radians(20.0))
     sin = np.sin(np.radians(20.0))
@@ -140,7 +140,7 @@ def test_the_matrix_of_the_head(layout: str, tmp_path: Path) -> None:
     assert take.channels["head_roll"] == pytest.approx([0.0] * 2, abs=1e-9)
 
 
-def test_the_nod_and_tilt_of_a_matrix(tmp_path: Path) -> None:
+def test_the_nod_and_tilt_of_a_matrix(tmp_path):
     """Up is up, and a tilt to the left shoulder is positive; x is to the subject's left, y up."""
     up = np.radians(10.0)
     tilt = np.radians(15.0)
@@ -161,7 +161,7 @@ def test_the_nod_and_tilt_of_a_matrix(tmp_path: Path) -> None:
      '{"jawOpen": "wide"}', '{"channels": []}', '{"frames": [{"blendshapes": null}]}',
      '{"jawOpen": ' + "9" * 5000 + "}"],
 )  # fmt: skip
-def test_json_of_something_else(text: str, tmp_path: Path) -> None:
+def test_json_of_something_else(text, tmp_path):
     """One line says what is wrong."""
     path = tmp_path / "take"
     path.write_text(text)
@@ -187,7 +187,7 @@ def tracks(height: float = 0.42) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def test_tracks_of_visemes(tmp_path: Path) -> None:
+def test_tracks_of_visemes(tmp_path):
     """Its I, O, U are our ih, oh, ou; where lips are to meet they do, and silence is silent."""
     take = read_take(written(tmp_path / "take", tracks()))
     assert take.kind == "Viseme tracks"
@@ -205,7 +205,7 @@ def test_tracks_of_visemes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "keys", [3, [1], [[0.0]], [["a", 1]], [[0.0, None]], [[0, True]], [{"time": 0}], [[1e300, 0]]]
 )
-def test_wrong_keys(keys: Any, tmp_path: Path) -> None:
+def test_wrong_keys(keys, tmp_path):
     """The channel is named."""
     document = {"channels": [{"name": "aa", "keys": [[0, 1]]}, {"name": "PP", "keys": keys}]}
     path = tmp_path / "take"
@@ -217,7 +217,7 @@ def test_wrong_keys(keys: Any, tmp_path: Path) -> None:
 CUES = [(0.0, "X"), (0.4, "A"), (0.5, "D"), (1.0, "F"), (1.4, "X")]
 
 
-def test_mouth_shapes_of_rhubarb(tmp_path: Path) -> None:
+def test_mouth_shapes_of_rhubarb(tmp_path):
     """Each shape holds, and goes over into the next around the moment of change."""
     ends = [start for start, _ in CUES[1:]] + [1.6]
     cues = [
@@ -247,7 +247,7 @@ def test_mouth_shapes_of_rhubarb(tmp_path: Path) -> None:
      ([{"start": 0, "value": "Q"}], "'Q', must be one of A, B, C"),
      ([{"start": "x"}], "'start': was 'x', must be a number")],
 )  # fmt: skip
-def test_wrong_mouth_shapes(cues: Any, words: str, tmp_path: Path) -> None:
+def test_wrong_mouth_shapes(cues, words, tmp_path):
     """The cue is counted, and what is allowed is named."""
     with pytest.raises(UserError, match=words):
         read_take(written(tmp_path / "take", {"mouthCues": cues}))

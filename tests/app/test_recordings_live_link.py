@@ -12,7 +12,7 @@ from risorius.app.recordings.names import ARKIT
 from .recording_files import ANGLES, has_note, live_link, timecodes, written
 
 
-def test_a_raw_take(tmp_path: Path) -> None:
+def test_a_raw_take(tmp_path):
     """All 52 shapes and seven angles are there, as they were, in degrees with our signs."""
     columns = live_link()
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -35,7 +35,7 @@ def test_a_raw_take(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["take.csv", "take.toml", "take", "take.json"])
-def test_the_name_of_the_file_does_not_count(name: str, tmp_path: Path) -> None:
+def test_the_name_of_the_file_does_not_count(name, tmp_path):
     """What a file holds says what it is."""
     path = written(tmp_path / name, live_link())
     assert is_recording(path)
@@ -43,7 +43,7 @@ def test_the_name_of_the_file_does_not_count(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("left_out", [("TongueOut",), (), ("TongueOut", *ANGLES), ANGLES])
-def test_fewer_columns(left_out: tuple[str, ...], tmp_path: Path) -> None:
+def test_fewer_columns(left_out, tmp_path):
     """60, 61, 51 and 52 columns; what is not there is no channel."""
     columns = {name: values for name, values in live_link().items() if name not in left_out}
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -51,7 +51,7 @@ def test_fewer_columns(left_out: tuple[str, ...], tmp_path: Path) -> None:
     assert ("head_yaw" in take.channels) == ("HeadYaw" not in left_out)
 
 
-def test_values_that_are_none(tmp_path: Path) -> None:
+def test_values_that_are_none(tmp_path):
     """A value like -9.8e5 is no measurement, the frames beside it count; 1.2 is one."""
     columns = live_link()
     jaw = np.full(120, 0.5)
@@ -64,7 +64,7 @@ def test_values_that_are_none(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "unit"), [("radians", 1.0), ("degrees", math.pi / 180.0)])
-def test_units_of_angles(name: str, unit: float, tmp_path: Path) -> None:
+def test_units_of_angles(name, unit, tmp_path):
     """Their size shows the unit, for no head turns by more than a quarter of a circle."""
     take = read_take(written(tmp_path / "take.csv", live_link(unit=unit)))
     assert has_note(take.notes, f"taken for {name}")
@@ -74,7 +74,7 @@ def test_units_of_angles(name: str, unit: float, tmp_path: Path) -> None:
         assert take.channels[ours] == pytest.approx(there, abs=0.02)
 
 
-def test_axes_of_the_eyeballs(tmp_path: Path) -> None:
+def test_axes_of_the_eyeballs(tmp_path):
     """The app's axes stand 4 degrees outwards of where an eye looks; a face must not squint out."""
     take = read_take(written(tmp_path / "take.csv", live_link()))
     left = take.channels["eye_yaw_left"]
@@ -85,7 +85,7 @@ def test_axes_of_the_eyeballs(tmp_path: Path) -> None:
     assert left == pytest.approx(wanted, abs=1e-3)
 
 
-def test_angles_that_are_switched_off(tmp_path: Path) -> None:
+def test_angles_that_are_switched_off(tmp_path):
     """The app writes 0 where the head's rotation is off: then the head is not held at 0."""
     off = {name: np.zeros(120) for name in ("HeadYaw", "HeadPitch", "HeadRoll")}
     take = read_take(written(tmp_path / "take.csv", live_link() | off))
@@ -94,7 +94,7 @@ def test_angles_that_are_switched_off(tmp_path: Path) -> None:
     assert has_note(take.notes, "switched off")
 
 
-def test_a_calibrated_take(tmp_path: Path) -> None:
+def test_a_calibrated_take(tmp_path):
     """A calibrated take has brows and a nose that rest; those of a raw one never do."""
     columns = live_link()
     shapes = {name[0].upper() + name[1:] for name in ARKIT}
@@ -120,7 +120,7 @@ def take_of(path: Path, codes: list[str], rate: float | None = None) -> tuple[ob
     return take.times, take.notes
 
 
-def test_the_fraction_of_a_frame(tmp_path: Path) -> None:
+def test_the_fraction_of_a_frame(tmp_path):
     """Where frames come a little slower than 60 a second, the fraction gives each one's time."""
     frames = 37.867 + 1.003 * np.arange(400)
     times, notes = take_of(tmp_path, timecodes(frames))
@@ -129,7 +129,7 @@ def test_the_fraction_of_a_frame(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("rate", [24, 25, 30, 50, 60])
-def test_rates(rate: int, tmp_path: Path) -> None:
+def test_rates(rate, tmp_path):
     """The highest number of a frame in a second gives the rate, also without a fraction."""
     codes = [code[:-4] for code in timecodes(np.arange(3 * rate), rate)]
     times, notes = take_of(tmp_path, codes)
@@ -137,13 +137,13 @@ def test_rates(rate: int, tmp_path: Path) -> None:
     assert has_note(notes, f"{rate} frames a second")
 
 
-def test_a_rate_that_the_user_knows(tmp_path: Path) -> None:
+def test_a_rate_that_the_user_knows(tmp_path):
     """It counts more than what was inferred."""
     times, _ = take_of(tmp_path, timecodes(np.arange(10)), rate=30.0)
     assert times[-1] == pytest.approx(9 / 30.0)
 
 
-def test_midnight(tmp_path: Path) -> None:
+def test_midnight(tmp_path):
     """Time goes on after 23:59:59."""
     codes = [code[:-4] for code in timecodes(np.arange(60), 60, start=86_399)]
     codes += [code[:-4] for code in timecodes(np.arange(60), 60, start=0)]
@@ -151,7 +151,7 @@ def test_midnight(tmp_path: Path) -> None:
     assert times == pytest.approx(np.arange(120) / 60.0, abs=1e-9)
 
 
-def test_thousandths(tmp_path: Path) -> None:
+def test_thousandths(tmp_path):
     """Some programs write thousandths of a second in the place of frames."""
     codes = [f"10:00:{n // 25:02}:{n % 25 * 40:03}" for n in range(100)]
     times, _ = take_of(tmp_path, codes)

@@ -33,7 +33,7 @@ def lines_of(path: Path) -> str:
     return "\n".join(report_of(take, calibration_for(take)).lines)
 
 
-def test_cues_are_keys(tmp_path: Path) -> None:
+def test_cues_are_keys(tmp_path):
     """A mouth shape that holds is no hole in the recording, and keys have no rate."""
     report = lines_of(rhubarb(tmp_path / "take.json"))
     assert "keys in 3.00 s" in report
@@ -41,7 +41,7 @@ def test_cues_are_keys(tmp_path: Path) -> None:
     assert "missing in" not in report
 
 
-def test_keys_of_visemes_far_apart(tmp_path: Path) -> None:
+def test_keys_of_visemes_far_apart(tmp_path):
     """Between two keys a track goes straight, however far apart they are."""
     keys = [[0.0, 0.0], [0.1, 0.0], [0.2, 0.0], [0.3, 0.0], [4.3, 0.9]]
     path = tmp_path / "take.json"
@@ -58,7 +58,7 @@ def script_of(path: Path) -> Script:
 
 
 @pytest.mark.parametrize("name", ["voice.wav", "sounds/voice.wav", "C:\\takes\\voice.wav", "full"])
-def test_the_sound_of_rhubarb(name: str, tmp_path: Path) -> None:
+def test_the_sound_of_rhubarb(name, tmp_path):
     """The file that was heard is played: where it was, or beside the recording."""
     sound = tmp_path / ("sounds/voice.wav" if name == "sounds/voice.wav" else "voice.wav")
     sound.parent.mkdir(exist_ok=True)
@@ -68,14 +68,14 @@ def test_the_sound_of_rhubarb(name: str, tmp_path: Path) -> None:
     assert has_note(read_take(path).notes, "The sound is 'voice.wav'")
 
 
-def test_a_sound_that_is_gone(tmp_path: Path) -> None:
+def test_a_sound_that_is_gone(tmp_path):
     """It is named, and the mouth moves without it."""
     path = rhubarb(tmp_path / "take.json", "gone.wav")
     assert script_of(path).sound is None
     assert "The sound file 'gone.wav' is not there; --sound names another." in lines_of(path)
 
 
-def test_time_stamps_of_no_use(tmp_path: Path) -> None:
+def test_time_stamps_of_no_use(tmp_path):
     """They are there, so that no line says that no times are given."""
     report = lines_of(written(tmp_path / "take.csv", openface() | {"timestamp": [0.0] * 60}))
     assert "The time stamps do not rise, and were not used." in report
@@ -83,7 +83,7 @@ def test_time_stamps_of_no_use(tmp_path: Path) -> None:
     assert "No times are given" not in report
 
 
-def test_one_of_a_kind(tmp_path: Path) -> None:
+def test_one_of_a_kind(tmp_path):
     """One place, one row, one cell and one value are not several."""
     times: list[object] = [*np.arange(30) / 30.0, *(3.0 + np.arange(30) / 30.0)]
     jaw: list[object] = [0.5] * 60
@@ -97,7 +97,7 @@ def test_one_of_a_kind(tmp_path: Path) -> None:
     assert "1 value of shapes is far from 0 to 1 and was left out" in report
 
 
-def test_all_notes_are_shown(tmp_path: Path) -> None:
+def test_all_notes_are_shown(tmp_path):
     """However many there are."""
     columns = openface() | {"timestamp": [0.0] * 60, "frame": list(range(0, 120, 2))}
     columns["AU12_r"] = ["wide", *([2.0] * 59)]

@@ -3,7 +3,6 @@
 import csv
 import io
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -93,7 +92,7 @@ TEXTS: dict[str, tuple[Callable[[], str], str]] = {
 
 
 @pytest.mark.parametrize("kind", TEXTS)
-def test_layouts(kind: str, tmp_path: Path) -> None:
+def test_layouts(kind, tmp_path):
     """However cells are parted and quoted, times and values are the same; the guess is reported."""
     make, note = TEXTS[kind]
     path = tmp_path / "take.csv"
@@ -107,7 +106,7 @@ def test_layouts(kind: str, tmp_path: Path) -> None:
     assert has_note(take.notes, note) or not note
 
 
-def test_a_separator_in_a_name(tmp_path: Path) -> None:
+def test_a_separator_in_a_name(tmp_path):
     """The delimiter is the one that parts the rows, too; quotes keep others in a name."""
     path = tmp_path / "take.csv"
     path.write_text("head|jawOpen,head|mouthClose\n0.1,0.2\n0.2,0.3\n")
@@ -121,14 +120,14 @@ def test_a_separator_in_a_name(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "text", ["jawOpen = 0.5\nmouthClose = 0.2\n", "jawOpen is a shape\nand so is mouthClose\n"]
 )
-def test_words_are_no_table(text: str, tmp_path: Path) -> None:
+def test_words_are_no_table(text, tmp_path):
     """Blanks part cells above numbers only."""
     path = tmp_path / "notes"
     path.write_text(text)
     assert not is_recording(path)
 
 
-def test_a_plain_table_needs_no_word(tmp_path: Path) -> None:
+def test_a_plain_table_needs_no_word(tmp_path):
     """Commas, points and UTF-8 are no guess."""
     path = tmp_path / "take.csv"
     path.write_text(table(COLUMNS), encoding="utf-8-sig")
@@ -140,7 +139,7 @@ def test_a_plain_table_needs_no_word(tmp_path: Path) -> None:
     [("utf-16", "UTF-16"), ("utf-16-le", "UTF-16"), ("utf-16-be", "UTF-16"), ("utf-32", "UTF-32"),
      ("latin-1", "Windows-1252")],
 )  # fmt: skip
-def test_encodings(codec: str, name: str, tmp_path: Path) -> None:
+def test_encodings(codec, name, tmp_path):
     """Names that are no ASCII are read right, and the encoding is reported."""
     path = tmp_path / "take.csv"
     path.write_bytes(table({"für später": np.ones(180)} | COLUMNS).encode(codec))
@@ -151,7 +150,7 @@ def test_encodings(codec: str, name: str, tmp_path: Path) -> None:
     assert has_note(take.notes, f"read as {name}")
 
 
-def test_json_in_utf_16(tmp_path: Path) -> None:
+def test_json_in_utf_16(tmp_path):
     """Encodings are the same for all kinds of files."""
     path = tmp_path / "take.json"
     path.write_text('[{"jawOpen": 0.1}, {"jawOpen": 0.5}]', encoding="utf-16")
@@ -161,7 +160,7 @@ def test_json_in_utf_16(tmp_path: Path) -> None:
     assert has_note(take.notes, "read as UTF-16")
 
 
-def test_a_quoted_text_beside_numbers(tmp_path: Path) -> None:
+def test_a_quoted_text_beside_numbers(tmp_path):
     """A separator, a line end and a doubled quote in a cell belong to its text."""
     path = tmp_path / "take.csv"
     path.write_text('time,note,jawOpen\n0,"a, b",0.1\n0.1,"one\ntwo",0.2\n0.2,"""c""",0.3\n')
@@ -171,7 +170,7 @@ def test_a_quoted_text_beside_numbers(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("is_first", [True, False])
-def test_a_quote_that_is_not_closed(tmp_path: Path, is_first: bool) -> None:
+def test_a_quote_that_is_not_closed(tmp_path, is_first):
     """It costs its own row and no other, and the line is reported, also where two are open."""
     path = tmp_path / "take.csv"
     broken = '0.1,"0.2\n' if is_first else '"0.1,0.2\n'
@@ -192,7 +191,7 @@ def test_a_quote_that_is_not_closed(tmp_path: Path, is_first: bool) -> None:
         ("time,AU12_r,AU12_r", "have one name, and the first of each counts: 'AU12_r'"),
     ],
 )
-def test_a_column_that_stands_twice(header: str, note: str, tmp_path: Path) -> None:
+def test_a_column_that_stands_twice(header, note, tmp_path):
     """The first counts, and this is reported."""
     path = tmp_path / "take.csv"
     path.write_text(f"{header}\n0,0.1,0.9\n0.1,0.2,0.8\n")

@@ -26,7 +26,7 @@ def check(path: Path) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
-def test_encodings(encoding: str, tmp_path: Path) -> None:
+def test_encodings(encoding, tmp_path):
     """With or without a mark, a name that is no ASCII stays what it is."""
     path = tmp_path / "take.csv"
     text = table({"Stimmung für später": [1] * 6} | COLUMNS)
@@ -36,7 +36,7 @@ def test_encodings(encoding: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
-def test_line_ends(ending: str, tmp_path: Path) -> None:
+def test_line_ends(ending, tmp_path):
     """Those of all systems."""
     path = tmp_path / "take.csv"
     path.write_bytes(table(COLUMNS).replace("\n", ending).encode())
@@ -53,7 +53,7 @@ def test_line_ends(ending: str, tmp_path: Path) -> None:
     ],
     ids=["empty lines", "comment", "blanks", "comma at the end"],
 )
-def test_odd_tables(change: object, tmp_path: Path) -> None:
+def test_odd_tables(change, tmp_path):
     """What spreadsheets and scripts add is passed over."""
     path = tmp_path / "take.csv"
     assert callable(change)
@@ -61,7 +61,7 @@ def test_odd_tables(change: object, tmp_path: Path) -> None:
     check(path)
 
 
-def test_a_torn_last_row(tmp_path: Path) -> None:
+def test_a_torn_last_row(tmp_path):
     """It is left out and reported."""
     path = tmp_path / "take.csv"
     path.write_text(table(COLUMNS) + "0.2,0.6")
@@ -77,7 +77,7 @@ def test_a_torn_last_row(tmp_path: Path) -> None:
         (b"Dear diary,\ntoday I smiled.\n", "known are"),
     ],
 )
-def test_what_is_no_recording(content: bytes, words: str, tmp_path: Path) -> None:
+def test_what_is_no_recording(content, words, tmp_path):
     """One line says what the file is, and what is known."""
     path = tmp_path / "take.csv"
     path.write_bytes(content)
@@ -85,7 +85,7 @@ def test_what_is_no_recording(content: bytes, words: str, tmp_path: Path) -> Non
         read_take(path)
 
 
-def test_no_file(tmp_path: Path) -> None:
+def test_no_file(tmp_path):
     """A missing file, a folder and a pipe are refused at once."""
     os.mkfifo(tmp_path / "pipe")
     for name, words in (("nowhere", "no such recording"), ("", "folder"), ("pipe", "pipe")):
@@ -94,7 +94,7 @@ def test_no_file(tmp_path: Path) -> None:
             read_take(tmp_path / name)
 
 
-def test_a_huge_file(tmp_path: Path) -> None:
+def test_a_huge_file(tmp_path):
     """It is refused by its size, not read."""
     path = tmp_path / "take.csv"
     with path.open("wb") as file:
@@ -104,7 +104,7 @@ def test_a_huge_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, 1e9, math.nan])
-def test_a_rate_that_is_none(rate: float, tmp_path: Path) -> None:
+def test_a_rate_that_is_none(rate, tmp_path):
     """The limits are named."""
     with pytest.raises(UserError, match="1 and 1000"):
         read_take(written(tmp_path / "take.csv", live_link()), rate=rate)
@@ -120,7 +120,7 @@ def test_a_rate_that_is_none(rate: float, tmp_path: Path) -> None:
         "v 0 0 0\nv 1 0 0\nf 1 2 3\n",
     ],
 )
-def test_files_of_ours_are_no_recordings(text: str, tmp_path: Path) -> None:
+def test_files_of_ours_are_no_recordings(text, tmp_path):
     """Scripts, landmarks and heads are not taken for recordings: their content differs."""
     path = tmp_path / "take.csv"
     path.write_text(text)

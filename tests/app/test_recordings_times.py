@@ -40,7 +40,7 @@ def drop_frame(frame: int, base: int, separator: str = ";") -> str:
 
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 50, 60, 72, 75, 90, 100, 120, 144, 240])
 @pytest.mark.parametrize("step", [1, 2])
-def test_any_timecode(base: int, step: int, tmp_path: Path) -> None:
+def test_any_timecode(base, step, tmp_path):
     """Three seconds are three seconds, also where only every other frame has a row."""
     frames = range(0, 3 * base, step)
     cells = [timecode(frame, base) for frame in frames]
@@ -50,14 +50,14 @@ def test_any_timecode(base: int, step: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("rate", "base"), [(23.976, 24), (29.97, 30), (47.952, 48), (59.94, 60)])
-def test_the_true_rate_of_timecode(rate: float, base: int, tmp_path: Path) -> None:
+def test_the_true_rate_of_timecode(rate, base, tmp_path):
     """A rate that is a thousandth less than the count is what the camera really does."""
     cells = [timecode(frame, base) for frame in range(3 * base)]
     take = take_of(tmp_path, cells, name="Timecode", rate=rate)
     assert take.duration == pytest.approx((3 * base - 1) / rate)
 
 
-def test_a_rate_that_timecode_contradicts(tmp_path: Path) -> None:
+def test_a_rate_that_timecode_contradicts(tmp_path):
     """It is not used, and this is reported."""
     cells = [timecode(frame, 60) for frame in range(0, 240, 2)]
     take = take_of(tmp_path, cells, name="Timecode", rate=30.0)
@@ -67,7 +67,7 @@ def test_a_rate_that_timecode_contradicts(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("separator", [";", ":"])
 @pytest.mark.parametrize("base", [30, 60, 120])
-def test_drop_frame(base: int, separator: str, tmp_path: Path) -> None:
+def test_drop_frame(base, separator, tmp_path):
     """Eleven minutes and more: no jump where numbers are left out, and the true rate counts."""
     frames = np.arange(700 * base // 5) * 5
     cells = [drop_frame(int(frame), base, separator) for frame in frames]
@@ -77,14 +77,14 @@ def test_drop_frame(base: int, separator: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("start", "step"), [(0, 1), (3, 5), (7, 10)])
-def test_colons_that_drop_nothing(start: int, step: int, tmp_path: Path) -> None:
+def test_colons_that_drop_nothing(start, step, tmp_path):
     """Rows that happen to miss the first numbers of minutes are no drop-frame timecode."""
     frames = range(start, 7200, step)
     take = take_of(tmp_path, [timecode(frame, 30) for frame in frames], name="Timecode")
     assert take.times == pytest.approx((np.array(frames) - start) / 30.0)
 
 
-def test_a_semicolon_that_drops_nothing(tmp_path: Path) -> None:
+def test_a_semicolon_that_drops_nothing(tmp_path):
     """Numbers that drop-frame timecode leaves out show that it is none."""
     frames = range(0, 2100)
     cells = [timecode(frame, 30, separator=";", start=0) for frame in frames]
@@ -93,7 +93,7 @@ def test_a_semicolon_that_drops_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("base", [24, 25, 30, 48, 60])
-def test_frames_behind_a_point(base: int, tmp_path: Path) -> None:
+def test_frames_behind_a_point(base, tmp_path):
     """Two digits that never reach 60 count frames; hundredths of a second do reach it."""
     frames = range(3 * base)
     cells = [timecode(frame, base, separator=".") for frame in frames]
@@ -103,7 +103,7 @@ def test_frames_behind_a_point(base: int, tmp_path: Path) -> None:
     assert take_of(tmp_path, cells).times == pytest.approx(np.array(frames) / base, abs=6e-3)
 
 
-def test_rows_that_share_a_frame_of_timecode(tmp_path: Path) -> None:
+def test_rows_that_share_a_frame_of_timecode(tmp_path):
     """60 rows a second with timecode of 30 are 60 a second."""
     cells = [timecode(row // 2, 30) for row in range(180)]
     take = take_of(tmp_path, cells, name="Timecode")
@@ -165,7 +165,7 @@ CLOCKS: dict[str, Callable[[float], object]] = {
 
 
 @pytest.mark.parametrize("kind", CLOCKS)
-def test_clocks_and_stamps(kind: str, tmp_path: Path) -> None:
+def test_clocks_and_stamps(kind, tmp_path):
     """90 frames last 89 / 30 s, however their times are written, in tables and in JSON."""
     times = np.arange(90) / 30.0
     cells = [CLOCKS[kind](float(time)) for time in times]
@@ -180,7 +180,7 @@ def test_clocks_and_stamps(kind: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("form", ["%H:%M:%S.{ms}", "%Y-%m-%d %H:%M:%S.{ms}"])
-def test_a_clock_over_midnight(form: str, tmp_path: Path) -> None:
+def test_a_clock_over_midnight(form, tmp_path):
     """Time goes on, with and without a date."""
     times = np.arange(90) / 30.0
     take = take_of(tmp_path, [clock(form)(43_199.0 + float(time)) for time in times])
@@ -199,21 +199,21 @@ def test_a_clock_over_midnight(form: str, tmp_path: Path) -> None:
         ("pts", 0.04, 0.04),
     ],
 )
-def test_names_of_times(name: str, step: float, seconds: float, tmp_path: Path) -> None:
+def test_names_of_times(name, step, seconds, tmp_path):
     """A name may say the unit."""
     take = take_of(tmp_path, [f"{step * row:.6f}" for row in range(90)], name=name)
     assert take.times == pytest.approx(seconds * np.arange(90), abs=1e-5)
     assert not take.unknown
 
 
-def test_a_clock_of_whole_seconds(tmp_path: Path) -> None:
+def test_a_clock_of_whole_seconds(tmp_path):
     """Rows of one second are spread over it."""
     take = take_of(tmp_path, [f"12:00:{row // 30:02}" for row in range(90)])
     assert take.times == pytest.approx(np.arange(90) / 30.0)
     assert has_note(take.notes, "spread evenly")
 
 
-def test_times_that_cannot_be_read(tmp_path: Path) -> None:
+def test_times_that_cannot_be_read(tmp_path):
     """The column is named, and frames are played one by one."""
     take = take_of(tmp_path, ["half past: ten"] * 90)
     assert take.duration == pytest.approx(89 / 30.0)

@@ -1,7 +1,5 @@
 """Takes of OpenFace and py-feat, and of tables that name shapes and units in ways of their own."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, writte
 # OpenFace
 
 
-def test_openface(tmp_path: Path) -> None:
+def test_openface(tmp_path):
     """Units from 0 to 5, presence where there is no more, and angles with our signs."""
     columns = openface()
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -37,7 +35,7 @@ def test_openface(tmp_path: Path) -> None:
         assert take.channels[ours] == pytest.approx(there, abs=1e-3)
 
 
-def test_openface_sees_the_gaze_from_the_camera(tmp_path: Path) -> None:
+def test_openface_sees_the_gaze_from_the_camera(tmp_path):
     """Eyes that stay on the camera turn against the head, and look ahead in the middle."""
     columns = openface()
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -50,7 +48,7 @@ def test_openface_sees_the_gaze_from_the_camera(tmp_path: Path) -> None:
     assert has_note(take.notes, "camera")
 
 
-def test_openface_1(tmp_path: Path) -> None:
+def test_openface_1(tmp_path):
     """No face_id, no gaze_angle, blanks before names; gaze from the vectors of both eyes."""
     columns = openface()
     for name in ("face_id", "gaze_angle_x", "gaze_angle_y"):
@@ -70,7 +68,7 @@ def test_openface_1(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("unit", "name"), [(1e3, "milli"), (1e6, "micro"), (1e9, "nano")])
-def test_stamps_in_other_units(unit: float, name: str, tmp_path: Path) -> None:
+def test_stamps_in_other_units(unit, name, tmp_path):
     """Time stamps are in seconds, milliseconds, microseconds or nanoseconds, by their steps."""
     columns = openface()
     columns["timestamp"] = [round(stamp * unit) for stamp in np.arange(60) / 30.0]
@@ -79,14 +77,14 @@ def test_stamps_in_other_units(unit: float, name: str, tmp_path: Path) -> None:
     assert has_note(take.notes, name)
 
 
-def test_no_face_at_all(tmp_path: Path) -> None:
+def test_no_face_at_all(tmp_path):
     """There is nothing to play."""
     path = written(tmp_path / "take.csv", openface() | {"success": [0] * 60})
     with pytest.raises(UserError, match="no frame shows a face"):
         read_take(path)
 
 
-def test_rows_of_nan(tmp_path: Path) -> None:
+def test_rows_of_nan(tmp_path):
     """Cells without a number are gaps, whatever stands there."""
     columns = openface()
     cells: list[object] = list(np.full(60, 2.0))
@@ -102,7 +100,7 @@ def test_rows_of_nan(tmp_path: Path) -> None:
     )
 
 
-def test_several_faces(tmp_path: Path) -> None:
+def test_several_faces(tmp_path):
     """The face that most rows show is taken, or the one that is asked for."""
     one = openface()
     other = openface(20)
@@ -120,7 +118,7 @@ def test_several_faces(tmp_path: Path) -> None:
         read_take(path, face="0")
 
 
-def test_pyfeat_1(tmp_path: Path) -> None:
+def test_pyfeat_1(tmp_path):
     """Frames are the times; the head's angles are degrees, + up, right, left shoulder."""
     take = read_take(written(tmp_path / "take.csv", pyfeat()))
     assert take.kind == "py-feat 1"
@@ -133,7 +131,7 @@ def test_pyfeat_1(tmp_path: Path) -> None:
     assert has_note(take.notes, "degrees")
 
 
-def test_pyfeat_2(tmp_path: Path) -> None:
+def test_pyfeat_2(tmp_path):
     """Every other frame; radians; the shapes count, and only units that they do not know."""
     take = read_take(written(tmp_path / "take.csv", pyfeat_2()))
     assert take.kind == "py-feat 2"
@@ -150,7 +148,7 @@ def test_pyfeat_2(tmp_path: Path) -> None:
     assert has_note(take.notes, "one in 2 frames")
 
 
-def test_pyfeat_names_persons(tmp_path: Path) -> None:
+def test_pyfeat_names_persons(tmp_path):
     """Its faces are called Person_0 and so on, and come in turn."""
     columns = pyfeat_2(20)
     columns["Identity"] = ["Person_0", "Person_1"] * 10
@@ -169,7 +167,7 @@ def test_pyfeat_names_persons(tmp_path: Path) -> None:
      "blendShapes.mouthSmileLeft", "head:mouthSmile_L", "head|mouthSmile_L",
      " mouthSmileLeft ", "Mouth Smile Left"],
 )  # fmt: skip
-def test_spellings_of_a_shape(spelled: str, tmp_path: Path) -> None:
+def test_spellings_of_a_shape(spelled, tmp_path):
     """Capitals, underscores, blanks, and what stands before the last dot do not count."""
     columns = {"time": np.arange(5) / 30.0, spelled: np.arange(5) / 10.0}
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -187,9 +185,7 @@ def test_spellings_of_a_shape(spelled: str, tmp_path: Path) -> None:
         (["viseme_PP", "viseme_O", "viseme_I"], ["viseme_PP", "viseme_oh", "viseme_ih"]),
     ],
 )
-def test_spellings_of_units_and_visemes(
-    spelled: list[str], meant: list[str], tmp_path: Path
-) -> None:
+def test_spellings_of_units_and_visemes(spelled, meant, tmp_path):
     """`_R` is the right side where there is a left one."""
     columns = {name: np.full(3, 0.1 + place / 10.0) for place, name in enumerate(spelled)}
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -199,7 +195,7 @@ def test_spellings_of_units_and_visemes(
 
 
 @pytest.mark.parametrize("largest", [1.0, 5.0])
-def test_units_of_action_units(largest: float, tmp_path: Path) -> None:
+def test_units_of_action_units(largest, tmp_path):
     """0 to 1, and 0 to 5 (A to E)."""
     columns = {"t": np.arange(11) / 30.0, "AU12": np.linspace(0.0, largest, 11)}
     take = read_take(written(tmp_path / "take.csv", columns))
@@ -207,7 +203,7 @@ def test_units_of_action_units(largest: float, tmp_path: Path) -> None:
     assert has_note(take.notes, "divided") == (largest > 1.0)
 
 
-def test_a_table_of_something_else(tmp_path: Path) -> None:
+def test_a_table_of_something_else(tmp_path):
     """A table of unknown columns is another fault than no table at all."""
     path = written(tmp_path / "take.csv", {"date": ["x"] * 3, "price": [1.0] * 3})
     with pytest.raises(UserError, match=r"no column is known \('date', 'price'.*Live Link Face"):

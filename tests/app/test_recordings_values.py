@@ -63,7 +63,7 @@ UNITS: dict[str, tuple[dict[str, Any], str, float, str]] = {
 
 
 @pytest.mark.parametrize("kind", UNITS)
-def test_units(kind: str, tmp_path: Path) -> None:
+def test_units(kind, tmp_path):
     """A channel peaks at its share of the greatest value; what was guessed is reported."""
     columns, channel, peak, note = UNITS[kind]
     take = of_table(tmp_path, columns)
@@ -73,7 +73,7 @@ def test_units(kind: str, tmp_path: Path) -> None:
     assert not has_note(take.notes, "No face")
 
 
-def test_stray_values_are_no_percent(tmp_path: Path) -> None:
+def test_stray_values_are_no_percent(tmp_path):
     """A few values that are far off leave the others what they are."""
     jaw = RISE.copy()
     jaw[[20, 70]] = 80.0
@@ -104,9 +104,7 @@ def lost_columns(value: float) -> tuple[dict[str, Any], np.ndarray]:
     ],
 )
 @pytest.mark.parametrize("is_json", [False, True])
-def test_rows_without_a_face(
-    flag: str, seen: object, unseen: object, is_json: bool, tmp_path: Path
-) -> None:
+def test_rows_without_a_face(flag, seen, unseen, is_json, tmp_path):
     """Zeros are no rest: the pose is held, the neutral face is known, nothing is calibrated."""
     columns, lost = lost_columns(0.0)
     if flag:
@@ -128,14 +126,14 @@ def test_rows_without_a_face(
 
 
 @pytest.mark.parametrize("flag", ["faceDetected", "BlendShapeCount"])
-def test_a_frozen_face(flag: str, tmp_path: Path) -> None:
+def test_a_frozen_face(flag, tmp_path):
     """Values that a tracker repeats while it sees nobody do not count."""
     columns, lost = lost_columns(0.9)
     take = of_table(tmp_path, columns | {flag: np.where(lost, 0, 52).tolist()})
     assert take.channels["browDownLeft"].max() < 0.5
 
 
-def test_zeros_of_a_calibrated_face_are_rest(tmp_path: Path) -> None:
+def test_zeros_of_a_calibrated_face_are_rest(tmp_path):
     """A face that often is at 0 is seen there."""
     shapes = {name: np.maximum(RISE - 0.5, 0.0) for name in RESTING}
     take = of_table(tmp_path, shapes)
@@ -162,7 +160,7 @@ def heads() -> dict[str, tuple[list[Any], str, float]]:
 
 
 @pytest.mark.parametrize("layout", heads())
-def test_heads_beside_shapes(layout: str, tmp_path: Path) -> None:
+def test_heads_beside_shapes(layout, tmp_path):
     """The head turns by 20 degrees, however its turn is written."""
     values, key, sign = heads()[layout]
     take = of_json(
@@ -173,7 +171,7 @@ def test_heads_beside_shapes(layout: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("value", [[1.0, 20.0, 3.0], {"x": 1.0, "y": 20.0, "z": 3.0}, "left"])
-def test_heads_that_are_not_clear(value: Any, tmp_path: Path) -> None:
+def test_heads_that_are_not_clear(value, tmp_path):
     """Numbers without names are left out, and this is reported."""
     take = of_json(tmp_path, [{**frame, "headRotation": value} for frame in FRAMES])
     assert "head_yaw" not in take.channels
@@ -206,7 +204,7 @@ LAYOUTS: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_layouts_of_json(layout: str, tmp_path: Path) -> None:
+def test_layouts_of_json(layout, tmp_path):
     """Shapes are found in tables in one another, and under names that stand once."""
     take = of_json(tmp_path, LAYOUTS[layout])
     assert take.channels["jawOpen"] == pytest.approx(RISE)
@@ -214,7 +212,7 @@ def test_layouts_of_json(layout: str, tmp_path: Path) -> None:
     assert not take.unknown
 
 
-def test_what_json_says_besides(tmp_path: Path) -> None:
+def test_what_json_says_besides(tmp_path):
     """Keys that nobody knows, and a shape under two names, are reported."""
     frames = [{**frame, "emotion": "joy"} for frame in FRAMES]
     frames[3]["blendshapes"] = {"jawOpen": 0.25, "JawOpen": 0.75}
@@ -225,7 +223,7 @@ def test_what_json_says_besides(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("form", ["{:.1f}%", "{:.1f} %"])
-def test_percent_signs_in_cells(form: str, tmp_path: Path) -> None:
+def test_percent_signs_in_cells(form, tmp_path):
     """A half is a half, whichever column has the sign, also of a face that does little."""
     values = np.linspace(0.0, 0.02, 30).round(3)
     rows = [[form.format(100.0 * value), form.format(20.0 + 75.0 * (value > 0.01)), "0.5"]

@@ -13,7 +13,7 @@ from risorius.app.scenes import PlaneScene
 from risorius.refine.border import registry
 
 
-def test_only_switches_numbers_and_words_are_options(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_switches_numbers_and_words_are_options(monkeypatch):
     """An array that may also be a bool, as numpy 2.2 declares them, is no switch."""
 
     def declared(
@@ -34,7 +34,7 @@ def test_only_switches_numbers_and_words_are_options(monkeypatch: pytest.MonkeyP
     assert options_of("loop") == {"levels": 1}
 
 
-def test_what_may_be_left_open_is_a_choice() -> None:
+def test_what_may_be_left_open_is_a_choice():
     """Words stand for values; another value, or a number in place of a switch, is refused."""
     assert open_choices("kahler") == {
         "blend": {"automatic": None, "on": True, "off": False},

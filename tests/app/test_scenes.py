@@ -15,7 +15,7 @@ from risorius.app.recordings.conversion import Playback, script_of
 from risorius.app.recordings.mapping import controls_of
 from risorius.app.refining.presets import PRESETS, Refinement
 from risorius.app.refining.refiners import refiner_for
-from risorius.app.scenes import FaceScene, PlaneScene
+from risorius.app.scenes import PlaneScene
 from risorius.app.script import Channel, Pose, Script
 from risorius.app.viewer.session.document import LiveOverride
 from risorius.app.viewer.session.session import Session
@@ -25,9 +25,7 @@ from .recording_files import take_of
 
 @given(value=st.floats(-2.9, 2.9), gain=st.floats(0.0, 9.0))
 @settings(max_examples=20, deadline=None)
-def test_a_value_beyond_its_limits_is_cut_off_from_each_door(
-    scene: FaceScene, value: float, gain: float
-) -> None:
+def test_a_value_beyond_its_limits_is_cut_off_from_each_door(scene, value, gain):
     """A script, a hand, a recording and a live face; and not before all has been added to it."""
     limits = scene.limits
     rest = scene.limits.pose({})
@@ -52,7 +50,7 @@ def test_a_value_beyond_its_limits_is_cut_off_from_each_door(
         assert scene.values[name] == pytest.approx(min(max(asked, 0.0), 1.0), abs=2e-3)
 
 
-def test_the_plane_waves() -> None:
+def test_the_plane_waves():
     """154 triangles; the wave lifts vertices along the normal only, and rest is rest again."""
     plane = PlaneScene()
     assert len(plane.faces) == 154
@@ -65,7 +63,7 @@ def test_the_plane_waves() -> None:
     assert np.array_equal(plane.positions, plane.rest_positions)
 
 
-def test_the_face_takes_controls_of_every_layer(face: FaceScene) -> None:
+def test_the_face_takes_controls_of_every_layer(face):
     """A pose may mix layers; the next pose forgets it; an unknown name is refused."""
     with pytest.raises(UserError, match="there is no control called 'c'"):
         face.pose({"c": 1.0})
@@ -77,7 +75,7 @@ def test_the_face_takes_controls_of_every_layer(face: FaceScene) -> None:
     assert {name for name, value in face.values.items() if value} == {"AU12"}
 
 
-def test_a_long_step_is_divided(face: FaceScene) -> None:
+def test_a_long_step_is_divided(face):
     """A film at one frame a second moves the face as steps of a sixtieth do."""
     face.pose({"joy": 1.0})
     face.step(1.0)
@@ -89,7 +87,7 @@ def test_a_long_step_is_divided(face: FaceScene) -> None:
     assert np.abs(coarse - face.positions).max() < 1e-9
 
 
-def test_the_face_is_round_at_rest(face: FaceScene) -> None:
+def test_the_face_is_round_at_rest(face):
     """The outline of the crown, seen from aside, has no high corners, and there are no cracks."""
     highest = {}
     for name in PRESETS:

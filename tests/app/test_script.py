@@ -1,7 +1,5 @@
 """Scripts: what they mean, and what is said when they are wrong."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -30,7 +28,7 @@ joy = [ { time = 0.0, value = 0.25 } ]
 """
 
 
-def test_poses_and_tracks_add_up() -> None:
+def test_poses_and_tracks_add_up():
     """Poses interpolate, what a pose does not name is zero, tracks are added."""
     script = parse_script(HELLO, source="hello.toml")
     assert script.at(1.5) == pytest.approx({"joy": 0.75, "jaw_open": 0.25, "blink": 0.0})
@@ -40,7 +38,7 @@ def test_poses_and_tracks_add_up() -> None:
     assert [(pose.time, pose.name) for pose in script.key_poses] == [(2.0, "top")]
 
 
-def test_lines_are_keys_as_tables_are() -> None:
+def test_lines_are_keys_as_tables_are():
     """A track of lines and one of tables mean the same; only the default easing differs."""
     lines = parse_script("[tracks]\njoy = '''\n0 0.5\n 1.5  1 hold\n\n2 -0\n'''", source="s")
     tables = parse_script(
@@ -69,7 +67,7 @@ def channels(draw: st.DrawFn) -> Channel:
 
 
 @given(tracks=st.dictionaries(st.text(max_size=5), channels(), max_size=3))
-def test_what_is_written_reads_back(tracks: dict[str, Channel]) -> None:
+def test_what_is_written_reads_back(tracks):
     """To the last digit, whether a track is written as tables or as lines, and in its order."""
     script = Script("t", 1.0, "t", poses=(Pose(0.0),), tracks=tracks)
     read = parse_script(script_text(script), source="t")
@@ -79,7 +77,7 @@ def test_what_is_written_reads_back(tracks: dict[str, Channel]) -> None:
 
 
 @given(channel=channels(), data=st.data())
-def test_a_channel_has_the_values_of_its_keys(channel: Channel, data: st.DataObject) -> None:
+def test_a_channel_has_the_values_of_its_keys(channel, data):
     """At a key its own value; between two keys what their easing makes of them."""
     keys = channel.keys
     assert channel == Channel.of(keys)
@@ -96,7 +94,7 @@ def test_a_channel_has_the_values_of_its_keys(channel: Channel, data: st.DataObj
 
 
 @given(channel=channels(), start=st.floats(0.0, LARGEST), span=st.floats(1e-3, 1e4))
-def test_a_drawn_curve_is_what_is_played(channel: Channel, start: float, span: float) -> None:
+def test_a_drawn_curve_is_what_is_played(channel, start, span):
     """Few keys: each point of the outline has the value that is played, and no key is left out."""
     times, values = channel.outline(start, start + span, 40)
     keys = [time for time in channel.times.tolist() if start <= time <= start + span]
@@ -110,7 +108,7 @@ def test_a_drawn_curve_is_what_is_played(channel: Channel, start: float, span: f
 
 
 @given(fraction=st.floats(0.0, 1.0), name=st.sampled_from(sorted(ALL_EASINGS)))
-def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
+def test_easings_stay_between_the_keys(fraction, name):
     """Every easing goes from 0 to 1 and never leaves that range."""
     ease = ALL_EASINGS[name]
     assert ease(0.0) == 0.0
@@ -137,13 +135,13 @@ def test_easings_stay_between_the_keys(fraction: float, name: str) -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_named(text: str, message: str) -> None:
+def test_what_is_wrong_is_named(text, message):
     """Each mistake is reported with the file, the key and the allowed values."""
     with pytest.raises(UserError, match=message):
         parse_script(text, source="bad.toml")
 
 
-def test_unknown_names_get_a_suggestion() -> None:
+def test_unknown_names_get_a_suggestion():
     """An unknown name is reported with the nearest known ones."""
     script = parse_script(HELLO, source="hello.toml")
     with pytest.raises(UserError, match=r"hello.toml: unknown name 'joy'; did you mean joyful"):
@@ -158,14 +156,14 @@ def test_unknown_names_get_a_suggestion() -> None:
         ("[[pose]]\ntime=1\njaw=-1.1", r"jaw is -1.1; it must be from -1 to 1"),
     ],
 )
-def test_values_out_of_limits_are_named(text: str, message: str) -> None:
+def test_values_out_of_limits_are_named(text, message):
     """Too much, or too little, is reported with the control, the time and its limits."""
     script = parse_script(text, source="bad.toml")
     with pytest.raises(UserError, match=message):
         script.check({"joy": (0.0, 1.0), "jaw": (-1.0, 1.0)})
 
 
-def test_missing_and_unreadable_files(tmp_path: Path) -> None:
+def test_missing_and_unreadable_files(tmp_path):
     """A script that is not there, or is no text, is one clear line."""
     with pytest.raises(UserError, match="no such script"):
         load_script(tmp_path / "nothing.toml")
@@ -180,7 +178,7 @@ def test_missing_and_unreadable_files(tmp_path: Path) -> None:
         load_script(long)
 
 
-def test_names_are_reported_on_one_line() -> None:
+def test_names_are_reported_on_one_line():
     """What a terminal would obey, or break the line at, is escaped; long names are cut."""
     for name, shown in (
         ("a\\nrisorius: b", r"a\nrisorius: b"),

@@ -30,9 +30,7 @@ def scripts(draw: st.DrawFn) -> Script:
 
 
 @given(places=PLACES, ends=st.tuples(TIMES, TIMES).map(sorted), reach=st.floats(0.0, 2.0))
-def test_places_in_a_stretch_and_near(
-    places: frozenset[KeyPlace], ends: list[float], reach: float
-) -> None:
+def test_places_in_a_stretch_and_near(places, ends, reach):
     """What is between two times, and what is nearest to one."""
     first, last = ends
     chosen = Places.of(*places)
@@ -47,9 +45,7 @@ def test_places_in_a_stretch_and_near(
 
 
 @given(script=scripts(), places=PLACES, steps=st.integers(-9, 9), are_copies=st.booleans())
-def test_keys_arrive_as_one_by_one(
-    script: Script, places: frozenset[KeyPlace], steps: int, are_copies: bool
-) -> None:
+def test_keys_arrive_as_one_by_one(script, places, steps, are_copies):
     """Moved or copied keys keep all but their time, and take the place of what was there."""
     places &= places_of(script)
     shift = max(steps / 8.0, -min((place.time for place in places), default=0.0))
@@ -66,9 +62,7 @@ def test_keys_arrive_as_one_by_one(
 
 
 @given(script=scripts(), places=PLACES, easing=EASING)
-def test_keys_go_and_are_eased_as_one_by_one(
-    script: Script, places: frozenset[KeyPlace], easing: str
-) -> None:
+def test_keys_go_and_are_eased_as_one_by_one(script, places, easing):
     """Only the chosen keys; tracks without a chosen key are shared by both scripts."""
     chosen = Places.of(*places)
     before = dict(keyed_by_place(script))
@@ -86,7 +80,7 @@ def test_keys_go_and_are_eased_as_one_by_one(
 
 
 @given(script=scripts(), time=TIMES)
-def test_the_next_key(script: Script, time: float) -> None:
+def test_the_next_key(script, time):
     """Forward and back, among the keys of all tracks; where there is none, one stays."""
     times = {place.time for place in places_of(script)}
     assert keyframes.time_beyond(script, time, 1) == min(

@@ -34,7 +34,7 @@ def heard() -> Iterator[socket.socket]:
         yield opened
 
 
-def test_a_take_comes_in_as_it_went_out(heard: socket.socket) -> None:
+def test_a_take_comes_in_as_it_went_out(heard):
     """Every frame, in order."""
     smile = [0.0, 0.25, 0.5, 0.75]
     turn = [0.0, 5.0, 10.0, -15.0]
@@ -51,9 +51,7 @@ def test_a_take_comes_in_as_it_went_out(heard: socket.socket) -> None:
     assert [each[1] for each in found] == pytest.approx(turn, abs=1e-3)
 
 
-def test_a_recording_comes_along(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, heard: socket.socket
-) -> None:
+def test_a_recording_comes_along(monkeypatch, tmp_path, heard):
     """Without a recording one is sent that is installed, which speaks, and blinks."""
     monkeypatch.chdir(tmp_path)
     sent: list[Take] = []
@@ -85,7 +83,7 @@ def clock_until(end: float) -> tuple[Callable[[], float], Callable[[float], None
     return lambda: now[0], sleep, slept
 
 
-def test_a_take_keeps_its_time_and_may_go_round(heard: socket.socket) -> None:
+def test_a_take_keeps_its_time_and_may_go_round(heard):
     """A frame goes out when it is due; the first follows the last as any other."""
     clock, sleep, slept = clock_until(0.5)
     take = take_of(jawOpen=[0.0, 0.5, 1.0])
@@ -99,7 +97,7 @@ def test_a_take_keeps_its_time_and_may_go_round(heard: socket.socket) -> None:
     assert len(slept) > 25
 
 
-def test_a_take_without_anything_to_send_is_refused() -> None:
+def test_a_take_without_anything_to_send_is_refused():
     """One line, with the file."""
     with (
         Sender(LOOPBACK, None, "test") as sender,
@@ -108,7 +106,7 @@ def test_a_take_without_anything_to_send_is_refused() -> None:
         sender.play(take_of(viseme_PP=[1.0]))
 
 
-def test_the_command_sends_a_file(tmp_path: Path, heard: socket.socket) -> None:
+def test_the_command_sends_a_file(tmp_path, heard):
     """It says what goes where."""
     file = tmp_path / "take.csv"
     file.write_text("time,jawOpen,AU38\n0.0,0.5,0.1\n0.05,0.25,0.2\n")

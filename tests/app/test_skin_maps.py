@@ -1,7 +1,6 @@
 """The fine shape of the skin as it is worn: by both sides of a comparison, passes and persons."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -34,7 +33,7 @@ def images(scene: FaceScene) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.floa
     return np.stack(found), np.stack(normals)
 
 
-def test_both_sides_wear_it(scene: FaceScene) -> None:
+def test_both_sides_wear_it(scene):
     """Static and refined skin change alike; so do normals of passes; the background stays."""
     (shown, plain), normals = images(scene)
     changed = np.abs(shown - plain).max(axis=2) > 3
@@ -45,7 +44,7 @@ def test_both_sides_wear_it(scene: FaceScene) -> None:
     assert 0.05 < (np.abs(normals[0] - normals[1]).max(axis=2) > 0.02).mean() < 0.9
 
 
-def test_the_command_turns_it_off(tmp_path: Path) -> None:
+def test_the_command_turns_it_off(tmp_path):
     """`--no-skin-maps` draws another picture."""
     files = [tmp_path / f"{k}.png" for k in (0, 1)]
     for file, more in zip(files, ((), ("--no-skin-maps",)), strict=True):

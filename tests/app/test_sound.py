@@ -44,7 +44,7 @@ def lag(heard: Sound, source: Sound) -> float:
 # Files
 
 
-def test_a_wav_is_read_to_the_sample(tmp_path: Path) -> None:
+def test_a_wav_is_read_to_the_sample(tmp_path):
     """At the rate that everything has, nothing changes, with one side or two; more become two."""
     for sides in (1, 2):
         samples = np.stack([noise(0.5, 48_000, seed=seed) for seed in range(sides)], axis=1)
@@ -57,7 +57,7 @@ def test_a_wav_is_read_to_the_sample(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("rate", [8_000, 22_050, 44_100])
-def test_other_rates_are_in_step(tmp_path: Path, rate: int) -> None:
+def test_other_rates_are_in_step(tmp_path, rate):
     """A sound of another rate lasts as long, and nothing in it is elsewhere."""
     source = noise(1.0, 48_000)
     write_wav(tmp_path / "high.wav", source, 48_000)
@@ -67,7 +67,7 @@ def test_other_rates_are_in_step(tmp_path: Path, rate: int) -> None:
     assert lag(again, load_sound(tmp_path / "high.wav")) == pytest.approx(0.0, abs=5e-4)
 
 
-def test_what_is_no_sound_is_reported_in_one_line(tmp_path: Path) -> None:
+def test_what_is_no_sound_is_reported_in_one_line(tmp_path):
     """Missing, empty, damaged, mute, a folder, a pipe: what it is, and what would do."""
     (tmp_path / "text.wav").write_text("no sound")
     (tmp_path / "empty.wav").touch()
@@ -92,7 +92,7 @@ def test_what_is_no_sound_is_reported_in_one_line(tmp_path: Path) -> None:
 # Scripts
 
 
-def test_a_script_names_its_sound_as_seen_from_itself(tmp_path: Path) -> None:
+def test_a_script_names_its_sound_as_seen_from_itself(tmp_path):
     """Wherever the program was started: beside the script, or by its whole path."""
     for name in ("speech.wav", "sounds/speech.wav", "../speech.wav", str(tmp_path / "speech.wav")):
         script = parse_script(f"sound = '{name}'\n{POSE}", source=str(tmp_path / "deep" / "s.toml"))
@@ -103,7 +103,7 @@ def test_a_script_names_its_sound_as_seen_from_itself(tmp_path: Path) -> None:
             parse_script(f"sound = {wrong}\n{POSE}", source="s")
 
 
-def test_a_project_stays_together(tmp_path: Path) -> None:
+def test_a_project_stays_together(tmp_path):
     """Saved elsewhere the sound is found; moved as a whole, too."""
     home = tmp_path / "home"
     (home / "sounds").mkdir(parents=True)
@@ -128,7 +128,7 @@ def test_a_project_stays_together(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("suffix", HEARD)
 @pytest.mark.parametrize(("seconds", "rate"), [(2.0, 48_000), (0.6, 22_050)])
-def test_a_film_is_heard_in_step(tmp_path: Path, suffix: str, seconds: float, rate: int) -> None:
+def test_a_film_is_heard_in_step(tmp_path, suffix, seconds, rate):
     """Its first frame is the first sample; a longer sound is cut, a shorter one cuts nothing."""
     source = write_wav(tmp_path / "noise.wav", noise(seconds, rate), rate)
     film = tmp_path / f"film{suffix}"
@@ -143,9 +143,7 @@ def test_a_film_is_heard_in_step(tmp_path: Path, suffix: str, seconds: float, ra
     assert imageio_ffmpeg.count_frames_and_secs(str(film))[0] == 31
 
 
-def test_capture_takes_the_sound_of_script_and_option(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_capture_takes_the_sound_of_script_and_option(tmp_path, monkeypatch):
     """--sound goes before the script's own; pictures are silent, and only films take the option."""
     monkeypatch.chdir(tmp_path)
     write_wav(tmp_path / "own.wav", noise(0.4))
@@ -215,7 +213,7 @@ def ramp(seconds: float) -> Sound:
 
 
 @pytest.mark.parametrize("speed", [0.25, 1.0, 2.0])
-def test_a_player_gives_the_sound_from_the_place_on(device: HandDevice, speed: float) -> None:
+def test_a_player_gives_the_sound_from_the_place_on(device, speed):
     """At each speed the samples are those of the time; behind the end there is silence."""
     played = Player(ramp(2.0), clock=lambda: device.now)
     played.play(1.0, speed)
@@ -246,9 +244,7 @@ def test_a_player_gives_the_sound_from_the_place_on(device: HandDevice, speed: f
 
 @pytest.mark.parametrize("pace", [0.99, 1.0, 1.01])
 @pytest.mark.parametrize("frames_per_second", [12.0, 60.0, 144.0])
-def test_the_picture_keeps_to_the_sound(
-    device: HandDevice, pace: float, frames_per_second: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_picture_keeps_to_the_sound(device, pace, frames_per_second, monkeypatch):
     """Over a minute both are less than a frame apart, whatever the device's clock counts.
 
     pace: seconds of the device for one of ours. The steps of physics are the window's own.

@@ -32,9 +32,7 @@ def is_there(folder: Path, pattern: str) -> bool:
         ("frames", "**/*.png", signal.SIGINT),
     ],
 )
-def test_nothing_half_written_is_left(
-    tmp_path: Path, output: str, pattern: str, number: signal.Signals
-) -> None:
+def test_nothing_half_written_is_left(tmp_path, output, pattern, number):
     """Ctrl-C, or a closed terminal, while a film or frames are begun and while they are written."""
     words = ("-m", "risorius", *SLOW, "-o", tmp_path / output, "--quiet")
     process = started(*words, start_new_session=True)
@@ -50,7 +48,7 @@ def test_nothing_half_written_is_left(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX systems")
-def test_a_film_can_be_stopped_while_it_is_finished(tmp_path: Path) -> None:
+def test_a_film_can_be_stopped_while_it_is_finished(tmp_path):
     """Ctrl-C while all frames are handed over and ffmpeg is still at work: the end, and no film."""
     slow = tmp_path / "slow_ffmpeg"
     slow.write_text("#!/bin/sh\ncat > /dev/null\ntouch $0.has_all\nexec sleep 100\n")

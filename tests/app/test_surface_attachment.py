@@ -31,9 +31,7 @@ def attached(scene: FaceScene) -> list[SurfaceAttachment]:
     st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3),
     st.lists(st.floats(-50.0, 50.0), min_size=3, max_size=3),
 )
-def test_a_skin_that_only_moves_takes_them_along(
-    scene: FaceScene, turn: list[float], shift: list[float]
-) -> None:
+def test_a_skin_that_only_moves_takes_them_along(scene, turn, shift):
     """Whatever turns and shifts the whole skin does the same to them; with their bone, nothing."""
     turned = Rotation.from_rotvec(turn)
     skin = turned.apply(np.array(scene.rest_positions)) + shift
@@ -50,7 +48,7 @@ def test_a_skin_that_only_moves_takes_them_along(
 
 
 @pytest.mark.parametrize("pose", POSES, ids=lambda pose: next(iter(pose)))
-def test_they_stay_on_lids_that_move(scene: FaceScene, pose: dict[str, float]) -> None:
+def test_they_stay_on_lids_that_move(scene, pose):
     """Roots stay within a millimetre of the skin, lashes keep their length and the eye free."""
     scene.reset()
     scene.pose({name: value for name, value in pose.items() if name in scene.limits})

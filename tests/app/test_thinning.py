@@ -12,9 +12,7 @@ SAMPLE = st.tuples(st.integers(1, 10**7), st.floats(-1.0, 1.0))  # [us] after th
 @given(
     samples=st.lists(SAMPLE, min_size=1, max_size=200), tolerance=st.sampled_from([1e-6, 2e-3, 0.3])
 )
-def test_no_sample_is_further_off_than_the_tolerance(
-    samples: list[tuple[int, float]], tolerance: float
-) -> None:
+def test_no_sample_is_further_off_than_the_tolerance(samples, tolerance):
     """Whatever was recorded; and keys are at the times of samples, the first and the last too."""
     times = np.round(np.cumsum([step for step, _ in samples]) * 1e-6, 6)
     values = np.array([value for _, value in samples])
@@ -27,7 +25,7 @@ def test_no_sample_is_further_off_than_the_tolerance(
     assert {key.easing for key in channel.keys} == {"linear"}
 
 
-def test_keys_are_few() -> None:
+def test_keys_are_few():
     """A ramp has two, and a smooth curve of 120 samples is not recorded sample by sample."""
     times = np.round(np.arange(120) / 60.0, 6)
     assert len(thinned(times, 3.0 * times - 1.0)) == 2

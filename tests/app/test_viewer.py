@@ -36,7 +36,7 @@ from .driving import (
 pytestmark = [*NEEDS_A_SCREEN, pytest.mark.usefixtures("calm")]
 
 
-def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer: Viewer) -> None:
+def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
     """Search the jaw, drag its slider: the vertices move; Ctrl+Z closes the mouth again."""
     show_controls(viewer, "jaw open")
     drag_and_release(viewer, middle(viewer, "jaw_open"), (60, 0))
@@ -50,7 +50,7 @@ def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer: Viewer) -> None:
     assert viewer.session.values["jaw_open"] > 0.4
 
 
-def test_a_number_can_be_typed(viewer: Viewer) -> None:
+def test_a_number_can_be_typed(viewer):
     """A double click turns a slider into a line to type in; a right click sets it back to 0."""
     show_controls(viewer, "jaw open")
     click(viewer, "jaw_open", times=2)
@@ -64,7 +64,7 @@ def test_a_number_can_be_typed(viewer: Viewer) -> None:
     clear_search(viewer)
 
 
-def test_linked_sides_move_together(viewer: Viewer) -> None:
+def test_linked_sides_move_together(viewer):
     """One slider for both sides; unlinked, each has its own."""
     show_controls(viewer, "zygom maj")
     left = "zygomaticus_major_left"
@@ -78,7 +78,7 @@ def test_linked_sides_move_together(viewer: Viewer) -> None:
     assert viewer.session.values[right] == 0.0 < viewer.session.values[left]
 
 
-def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
+def test_keys_show_expressions_and_refinement(viewer):
     """1 shows the first expression, 1 again is neutral; R makes refined triangles come and go."""
     xdotool(viewer, "key", "1")
     assert viewer.session.is_alone(next(iter(viewer.session.scene.expressions)))
@@ -92,7 +92,7 @@ def test_keys_show_expressions_and_refinement(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) < 0.5)
 
 
-def test_keys_change_the_picture(viewer: Viewer) -> None:
+def test_keys_change_the_picture(viewer):
     """W, C, T, D and F2, the theme, each change the picture, and back."""
     viewer.session.toggle_alone("disgust")
     settle(viewer)
@@ -111,7 +111,7 @@ def test_keys_change_the_picture(viewer: Viewer) -> None:
     assert np.abs(back).mean() < 0.5
 
 
-def test_the_mouse_orbits_and_the_wheel_zooms(viewer: Viewer) -> None:
+def test_the_mouse_orbits_and_the_wheel_zooms(viewer):
     """The right button turns the camera anywhere, the left beside the face; F frames again."""
     view = viewer.view.camera.view_matrix().copy()
     for button, place in ((3, nose(viewer)), (1, on_screen(viewer, SIZE[0] - 20, 100))):
@@ -123,7 +123,7 @@ def test_the_mouse_orbits_and_the_wheel_zooms(viewer: Viewer) -> None:
 
 
 @pytest.mark.parametrize("number", [30, 54, 19, -1])
-def test_the_wheel_zooms_to_the_mouse(viewer: Viewer, number: int) -> None:
+def test_the_wheel_zooms_to_the_mouse(viewer, number):
     """The point under it, on skin or beside it, stays there, zoomed in and out again."""
     camera = viewer.view.camera
     scene = viewer.session.scene
@@ -140,7 +140,7 @@ def test_the_wheel_zooms_to_the_mouse(viewer: Viewer, number: int) -> None:
     assert np.allclose(camera.view_matrix(), view, atol=1e-3)
 
 
-def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
+def test_the_skin_is_dragged_and_swings_back(viewer):
     """With Ctrl, drag the tip of the nose: it comes along; let go, and it is back soon."""
     xdotool(viewer, "keydown", "ctrl")
     drag(viewer, nose(viewer), (40, 30))
@@ -150,7 +150,7 @@ def test_the_skin_is_dragged_and_swings_back(viewer: Viewer) -> None:
     assert not viewer.session.work.unsaved
 
 
-def test_a_hovered_expression_lights_its_muscles(viewer: Viewer) -> None:
+def test_a_hovered_expression_lights_its_muscles(viewer):
     """Joy lights both sides alike; a kiss lights the lips and no forehead."""
     xdotool(viewer, "mousemove", *middle(viewer, "show joy"))
     pulled = [f"{MAJOR}_{side}" for side in ("left", "right")]
@@ -170,7 +170,7 @@ def test_a_hovered_expression_lights_its_muscles(viewer: Viewer) -> None:
     assert until(viewer, lambda: not viewer.view.pointed)
 
 
-def test_a_look_is_chosen(viewer: Viewer) -> None:
+def test_a_look_is_chosen(viewer):
     """In the panel, by the menu and by its key; it undoes changes of the one before."""
     viewer.session.toggle_alone("disgust")
     click(viewer, "tab Mechanism")
@@ -203,7 +203,7 @@ def test_a_look_is_chosen(viewer: Viewer) -> None:
     assert not viewer.messages.is_error
 
 
-def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
+def test_unsaved_work_is_asked_for(viewer):
     """Closing with a pose made by hand asks; going back keeps it, going on closes."""
     viewer.session.set("jaw_open", 0.5)
     xdotool(viewer, "key", "ctrl+q")
@@ -218,7 +218,7 @@ def test_unsaved_work_is_asked_for(viewer: Viewer) -> None:
     viewer.surface.should_close = viewer.is_leaving = False
 
 
-def test_an_idle_window_rests(viewer: Viewer) -> None:
+def test_an_idle_window_rests(viewer):
     """With nothing to do neither physics nor the scene is computed again."""
     assert until(viewer, lambda: viewer.is_idle)
     times = {name: list(column) for name, column in viewer.times.milliseconds.items()}
@@ -227,7 +227,7 @@ def test_an_idle_window_rests(viewer: Viewer) -> None:
 
 
 @pytest.mark.slow
-def test_the_window_remembers(tmp_path: Path) -> None:
+def test_the_window_remembers(tmp_path):
     """`risorius replay --once` plays and ends; size and looks come back, a broken file does not."""
     script = tmp_path / "short.toml"
     script.write_text("[[pose]]\ntime = 0.0\n[[pose]]\ntime = 0.6\njoy = 1.0\n")
@@ -268,7 +268,7 @@ def landmark(viewer: Viewer, number: int) -> tuple[int, int]:
     return seen_at(viewer, scene.positions[scene.head.landmarks[number]])
 
 
-def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:
+def test_pulled_skin_stays_where_muscles_hold_it(viewer):
     """Pull the left corner of the mouth up and out: it stays where it is seen; Ctrl+Z undoes."""
     viewer.settings.is_linked = False
     seen = [viewer.session.scene.positions.copy()]
@@ -296,7 +296,7 @@ def test_pulled_skin_stays_where_muscles_hold_it(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) < 0.3)
 
 
-def test_a_click_shows_the_muscle_in_the_panel(viewer: Viewer) -> None:
+def test_a_click_shows_the_muscle_in_the_panel(viewer):
     """Its group opens, and its slider is scrolled to."""
     viewer.wanted_tab = "Live"
     x, y = landmark(viewer, 54)

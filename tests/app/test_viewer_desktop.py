@@ -80,9 +80,7 @@ def start(tmp_path: Path) -> Iterator[Callable[[], subprocess.Popen[bytes]]]:
         process.wait()
 
 
-def test_a_line_is_seen_before_anything_is_compiled(
-    start: Callable[[], subprocess.Popen[bytes]], tmp_path: Path
-) -> None:
+def test_a_line_is_seen_before_anything_is_compiled(start, tmp_path):
     """The first start reports its progress, and closes when asked."""
     process = start()
     wanted = [

@@ -68,7 +68,7 @@ def pictures(folder: Path) -> np.ndarray:
     return np.stack([np.asarray(Image.open(file)) for file in files]).astype(int)
 
 
-def test_a_film_is_that_of_capture(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_film_is_that_of_capture(viewer, tmp_path):
     """`capture` writes the same frames with the same options; the face stays."""
     scene = viewer.session.scene
     viewer.view.camera = camera_for(scene, "three-quarter")
@@ -92,7 +92,7 @@ def test_a_film_is_that_of_capture(viewer: Viewer, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -> None:
+def test_motion_is_exported_by_the_same_dialog(viewer, tmp_path):
     """The file of `risorius export`, under the name that was typed."""
     xdotool(viewer, "key", "ctrl+e")
     click(viewer, "Write")
@@ -107,9 +107,7 @@ def test_motion_is_exported_by_the_same_dialog(viewer: Viewer, tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_the_window_lives_and_cancel_leaves_nothing(
-    viewer: Viewer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_window_lives_and_cancel_leaves_nothing(viewer, tmp_path, monkeypatch):
     """While a film is made the face answers; cancelled, no file is left, nor a part of one."""
     monkeypatch.setattr(workers, "GRACE", LONG)
     viewer.settings.export.kind = "mp4"
@@ -138,7 +136,7 @@ def test_the_window_lives_and_cancel_leaves_nothing(
 
 
 @pytest.mark.parametrize("kind", ["mp4", "npz"])
-def test_a_bad_folder_is_one_line(viewer: Viewer, kind: str) -> None:
+def test_a_bad_folder_is_one_line(viewer, kind):
     """The error is shown at once, and all choices are there when it is tried again."""
     viewer.settings.export.kind = kind
     xdotool(viewer, "key", "F10")

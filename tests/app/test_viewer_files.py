@@ -39,7 +39,7 @@ SCRIPT = "duration = 2.0\n[[pose]]\ntime = 0.0\n[[pose]]\ntime = 2.0\njoy = 1.0\
 POSE = "duration = 1.0\n[[pose]]\ntime = 0.0\njaw_open = 0.5\n"
 
 
-def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) -> None:
+def test_files_can_be_dropped_onto_the_window(viewer, tmp_path):
     """A script, then a pose with an awkward name, from another program, by the X protocol."""
     script = tmp_path / "smile.toml"
     pose = tmp_path / "schöner & 50% größer.toml"
@@ -54,7 +54,7 @@ def test_files_can_be_dropped_onto_the_window(viewer: Viewer, tmp_path: Path) ->
     assert viewer.session.script.duration == 2.0
 
 
-def test_a_bad_file_dropped_is_reported_and_survived(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_bad_file_dropped_is_reported_and_survived(viewer, tmp_path):
     """Nonsense shows one line in the window, which goes on; the script that was there stays."""
     before = viewer.session.script
     bad = tmp_path / "bad.toml"
@@ -76,7 +76,7 @@ def test_a_bad_file_dropped_is_reported_and_survived(viewer: Viewer, tmp_path: P
     assert viewer.session.values["jaw_open"] == 0.5
 
 
-def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> None:
+def test_the_chooser_walks_through_folders(viewer, tmp_path):
     """Into a folder, up again, and a script opened by a double click."""
     (tmp_path / "takes").mkdir()
     (tmp_path / "takes" / "smile.toml").write_text(SCRIPT)
@@ -97,7 +97,7 @@ def test_the_chooser_walks_through_folders(viewer: Viewer, tmp_path: Path) -> No
     assert not viewer.files.is_waiting
 
 
-def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) -> None:
+def test_the_chooser_replaces_nothing_unasked(viewer, tmp_path):
     """A name that is taken needs a second word; a folder that is missing is reported."""
     taken = tmp_path / "pose.toml"
     taken.write_text("precious")
@@ -119,7 +119,7 @@ def test_the_chooser_replaces_nothing_unasked(viewer: Viewer, tmp_path: Path) ->
     assert "the pose" in viewer.session.work.unsaved
 
 
-def test_closing_while_recording_saves_it_first(viewer: Viewer, tmp_path: Path) -> None:
+def test_closing_while_recording_saves_it_first(viewer, tmp_path):
     """Save, in answer to the question, keeps the recording in a file and then closes."""
     xdotool(viewer, "key", "ctrl+r")
     viewer.session.set("jaw_open", 0.6)
@@ -144,7 +144,7 @@ def title_of(viewer: Viewer) -> str:
     return subprocess.run(name, check=True, capture_output=True, text=True).stdout.strip()
 
 
-def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
+def test_saving_goes_to_the_known_file(viewer, tmp_path):
     """A script that was opened is saved without a question; the title shows its name and state."""
     script = tmp_path / "smile.toml"
     script.write_text(f"# mine\n{SCRIPT}")
@@ -169,7 +169,7 @@ def test_saving_goes_to_the_known_file(viewer: Viewer, tmp_path: Path) -> None:
     assert len(load_script(script).poses) == 3
 
 
-def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> None:
+def test_saving_asks_where_it_did_not_open(viewer, tmp_path):
     """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
     taken = tmp_path / "script.toml"
     taken.write_text("precious")
@@ -195,7 +195,7 @@ def test_saving_asks_where_it_did_not_open(viewer: Viewer, tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_head_and_a_script_are_dropped_together(viewer, tmp_path):
     """The face is another one, the script plays on it; unsaved work is still there."""
     before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
@@ -228,7 +228,7 @@ def test_a_head_and_a_script_are_dropped_together(viewer: Viewer, tmp_path: Path
     assert until(viewer, lambda: viewer.is_idle)
 
 
-def test_a_head_is_opened_by_the_menu(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_head_is_opened_by_the_menu(viewer, tmp_path):
     """The mesh is asked for, and its own landmarks lie beside it; each kind is listed alone."""
     before = viewer.session.scene
     mesh, landmarks = stranger().write(tmp_path)
@@ -251,9 +251,7 @@ def written(path: Path) -> Path:
     return path
 
 
-def test_a_recording_is_dropped_played_and_saved_as_a_script(
-    viewer: Viewer, tmp_path: Path
-) -> None:
+def test_a_recording_is_dropped_played_and_saved_as_a_script(viewer, tmp_path):
     """The window names its kind; unsaved work is asked about before; saving asks for a name.
 
     The recording itself is never written.
@@ -300,7 +298,7 @@ def sound(viewer: Viewer, tmp_path: Path) -> Iterator[Path]:
     viewer.soundtrack.close()
 
 
-def test_a_sound_is_dropped_and_played(viewer: Viewer, sound: Path, has_device: bool) -> None:
+def test_a_sound_is_dropped_and_played(viewer, sound, has_device):
     """It gets a row of its own, plays and pauses with the script; without a device in peace."""
     before = viewer.timeline.height()
     put(viewer, sound)
@@ -323,7 +321,7 @@ def test_a_sound_is_dropped_and_played(viewer: Viewer, sound: Path, has_device: 
     assert until(viewer, lambda: viewer.is_idle)
 
 
-def test_the_waveform_is_seen_and_scrubs(viewer: Viewer, sound: Path, has_device: bool) -> None:
+def test_the_waveform_is_seen_and_scrubs(viewer, sound, has_device):
     """Silence is a line, noise is not; a press in it goes to that time, as in the ruler."""
     put(viewer, sound)
     viewer.time_axis.show_whole()
@@ -349,7 +347,7 @@ def test_the_waveform_is_seen_and_scrubs(viewer: Viewer, sound: Path, has_device
 
 
 @pytest.mark.parametrize("has_device", ["null device"], indirect=True)
-def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_device: bool) -> None:
+def test_the_sound_is_kept_with_the_script(viewer, sound, has_device):
     """Ctrl+S writes it, undo and the menu take it away, a lost file is reported once."""
     put(viewer, sound)
     xdotool(viewer, "key", "ctrl+s")
@@ -380,7 +378,7 @@ def test_the_sound_is_kept_with_the_script(viewer: Viewer, sound: Path, has_devi
     assert not viewer.messages.text
 
 
-def test_a_name_that_is_no_utf8(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_name_that_is_no_utf8(viewer, tmp_path):
     """Dropped, saved, chosen and opened again: shown with its bytes escaped, never changed."""
     script = Path(os.fsdecode(os.fsencode(tmp_path) + b"/l\xe4cheln.toml"))
     script.write_text(SCRIPT)

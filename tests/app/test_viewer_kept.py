@@ -35,7 +35,7 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "viewer.json"
 
 
-def test_settings_come_back(tmp_path: Path) -> None:
+def test_settings_come_back(tmp_path):
     """Settings that are written are read again."""
     path = tmp_path / "deep" / "viewer.json"
     settings = Settings(size=(900, 700), theme="dark", folds={"Jaw": True}, recent=["a"])
@@ -61,7 +61,7 @@ def test_settings_come_back(tmp_path: Path) -> None:
         ("display.options.kahler.threshold_once", float("nan")),
     ],
 )
-def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
+def test_one_value_gives_way_alone(path, where, value):
     """It is reported by its name, and is as at first; all others stay."""
     stored = json.loads(json.dumps(GOOD))
     *tables, name = where.split(".")
@@ -89,7 +89,7 @@ def test_one_value_gives_way_alone(path: Path, where: str, value: Any) -> None:
     "content",
     [b"", b"not json", b"[]", b"\xff\xfe\x00", 100_000 * b'{"display":', b" " * (2**20 + 1)],
 )
-def test_a_file_of_no_use_is_reported(path: Path, content: bytes) -> None:
+def test_a_file_of_no_use_is_reported(path, content):
     """All is as at first; a line says so; written anew, it is of use."""
     path.write_bytes(content)
     settings, complaint = load_settings(path)
@@ -104,7 +104,7 @@ def test_a_file_of_no_use_is_reported(path: Path, content: bytes) -> None:
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
 @pytest.mark.parametrize("name", ["theme", "display"])
-def test_no_settings_keep_the_window_shut(path: Path, name: str) -> None:
+def test_no_settings_keep_the_window_shut(path, name):
     """Everything wrong at once, or an option that a refiner refuses: it opens, and says so."""
     wrong: dict[str, Any] = {name: "zzz" for name in vars(Settings())}
     if name == "display":
@@ -122,9 +122,7 @@ def test_no_settings_keep_the_window_shut(path: Path, name: str) -> None:
 
 @pytest.mark.window
 @NEEDS_A_SCREEN[1]
-def test_a_full_disk_is_reported_and_closes_the_window(
-    path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_full_disk_is_reported_and_closes_the_window(path, monkeypatch, caplog):
     """One line on the terminal; unsaved work is left to the next window, the settings stay."""
     path.write_text('{"theme": "dark"}')
     viewer = Viewer(script_for(None, "face"), SIZE, settings_path=path)
@@ -200,9 +198,7 @@ def leave(folder: Path, session: Session) -> None:
     recovery.close()
 
 
-def test_work_is_written_soon_and_goes_when_it_is_undone(
-    session: Session, recovery: Recovery, clock: Clock, tmp_path: Path
-) -> None:
+def test_work_is_written_soon_and_goes_when_it_is_undone(session, recovery, clock, tmp_path):
     """Nothing at first; a pose a moment later, though it is dragged on; nothing when undone."""
     recovery.watch()
     assert recovery.due_in() == float("inf")
@@ -220,7 +216,7 @@ def test_work_is_written_soon_and_goes_when_it_is_undone(
     assert not stored(tmp_path)
 
 
-def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Path) -> None:
+def test_all_of_it_comes_back(session, recovery, tmp_path):
     """A script with the present recording, to each digit, its comments at the head and all."""
     session.set("jaw_open", 0.25)
     session.set_key()
@@ -236,7 +232,7 @@ def test_all_of_it_comes_back(session: Session, recovery: Recovery, tmp_path: Pa
     assert found == session.script and found.preface.startswith("# A smile")
 
 
-def test_a_found_file_stays_and_is_found_once(session: Session, tmp_path: Path) -> None:
+def test_a_found_file_stays_and_is_found_once(session, tmp_path):
     """Changes, saving and giving up leave it alone, and so does a window with the plane."""
     session.set("jaw_open", 0.4)
     leave(tmp_path, session)
@@ -253,7 +249,7 @@ def test_a_found_file_stays_and_is_found_once(session: Session, tmp_path: Path) 
     assert found_by_next(tmp_path, session) is None
 
 
-def test_a_folder_that_takes_nothing_is_reported_once(session: Session, clock: Clock) -> None:
+def test_a_folder_that_takes_nothing_is_reported_once(session, clock):
     """A message says that work is not safe, and the user works on."""
     recovery = Recovery(Path("/proc/none"), session, clock)
     session.set("jaw_open", 0.4)
@@ -305,9 +301,7 @@ def at_work(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
 @pytest.mark.parametrize(
     "how", [pytest.param(signal.SIGHUP, marks=pytest.mark.slow), signal.SIGKILL]
 )
-def test_a_window_that_ended_is_recovered(
-    at_work: subprocess.Popen[str], tmp_path: Path, how: signal.Signals
-) -> None:
+def test_a_window_that_ended_is_recovered(at_work, tmp_path, how):
     """Stopped, or killed some seconds after the last change: a line says where it is."""
     folder = tmp_path / "risorius"
     if how == signal.SIGKILL:

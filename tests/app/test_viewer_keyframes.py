@@ -1,7 +1,5 @@
 """Editing keys without a window: the effect of each change on a script, and on a session."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,7 +7,6 @@ from hypothesis import strategies as st
 
 from risorius.app.control_names.limits import Limits
 from risorius.app.performances import script_for
-from risorius.app.scenes import FaceScene
 from risorius.app.script import Script, keyframes
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace, Places
@@ -27,7 +24,7 @@ def hello() -> Script:
     return load_script(HELLO)
 
 
-def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene) -> None:
+def test_a_key_shows_just_the_face_that_was_set(hello, scene):
     """At its time the script has the values of the controls; the other poses stay."""
     limits = scene.limits
     wanted = limits.pose({"jaw_open": 0.4, "AU4_left": 0.2, "blink": 0.25})
@@ -45,7 +42,7 @@ def test_a_key_shows_just_the_face_that_was_set(hello: Script, scene: FaceScene)
     assert again.poses[1].values == {"jaw_open": 0.7}
 
 
-def test_a_key_in_a_recording(scene: FaceScene) -> None:
+def test_a_key_in_a_recording(scene):
     """Where there are tracks only, those get a key that were changed; all if none was."""
     text = "[tracks]\njoy=[{time=0,value=0},{time=2,value=1,easing='linear'}]\n"
     script = parse_script(text + "jaw_open=[{time=0,value=0.5}]", source="take.toml")
@@ -64,7 +61,7 @@ def test_a_key_in_a_recording(scene: FaceScene) -> None:
         assert held.at(time) == pytest.approx(script.at(time))
 
 
-def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) -> None:
+def test_the_face_follows_an_edit_if_it_followed_the_script(session):
     """A key that moves away from under the playhead is seen to; a pose by hand stays."""
     session.seek(1.0)
     assert session.values["joy"] == 1.0
@@ -75,7 +72,7 @@ def test_the_face_follows_an_edit_if_it_followed_the_script(session: Session) ->
     assert session.values["joy"] == 0.3
 
 
-def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None:
+def test_the_file_goes_with_its_script(session, tmp_path):
     """Undo past opening another script gives back the first one's file, too."""
     own = session.file.path
     other = tmp_path / "other.toml"
@@ -93,7 +90,7 @@ def test_the_file_goes_with_its_script(session: Session, tmp_path: Path) -> None
     assert Session(session.scene, script_for(None, "face")).file.path is None
 
 
-def test_losses_of_a_file_are_noticed(session: Session) -> None:
+def test_losses_of_a_file_are_noticed(session):
     """Changes by another program, and comments that are not kept; not a # in a title."""
     path = session.file.path
     assert path is not None
@@ -113,7 +110,7 @@ def test_losses_of_a_file_are_noticed(session: Session) -> None:
 
 
 @given(amount=st.floats(-3.0, 3.0), choice=st.lists(st.booleans(), min_size=8, max_size=8))
-def test_raised_keys_stay_within_limits(amount: float, choice: list[bool]) -> None:
+def test_raised_keys_stay_within_limits(amount, choice):
     """Chosen keys go by the amount as far as they may, others and all times stay, and back."""
     hello = load_script(HELLO)
     limits = Limits(dict.fromkeys(("joy", "jaw_open", "blink"), (0.0, 1.0)))

@@ -33,7 +33,7 @@ def typed(words: object) -> tuple[object, ...]:
     return "type", "--delay", 2, "--args", 1, words, "key", "Return"
 
 
-def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
+def test_escape_closes_one_thing_after_another(viewer):
     """Menus, lists, the menu of the timeline, dialogs."""
     click(viewer, "tab Mechanism")
     x, y = middle(viewer, "keys")
@@ -53,14 +53,14 @@ def test_escape_closes_one_thing_after_another(viewer: Viewer) -> None:
     click(viewer, "tab Face")
 
 
-def test_each_command_has_its_own_name_and_keys(viewer: Viewer) -> None:
+def test_each_command_has_its_own_name_and_keys(viewer):
     """No two commands share a label or a key."""
     doing = [each for each in viewer.commands if each.submenu is None]
     for each in ([command.label for command in doing], [key for c in doing for key in c.keys]):
         assert len(each) == len({*each})
 
 
-def test_recent_files_are_opened_again(viewer: Viewer, tmp_path: Path) -> None:
+def test_recent_files_are_opened_again(viewer, tmp_path):
     """The latest comes first; one that is gone is reported in one line."""
     paths = [tmp_path / f"{name}.toml" for name in ("first", "second")]
     for path in paths:

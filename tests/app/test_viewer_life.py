@@ -22,7 +22,7 @@ def alive(viewer: Viewer, calm: None) -> Iterator[None]:
     viewer.settings.is_alive = False
 
 
-def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer: Viewer) -> None:
+def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer):
     """The eyes turn to the camera; sliders, undo and unsaved work stay as they were."""
     assert until(viewer, lambda: viewer.session.scene.values["gaze_horizontal_left"] != 0.0)
     assert until(viewer, lambda: moved(viewer) > 0.5)
@@ -35,7 +35,7 @@ def test_it_looks_at_the_viewer_and_nothing_is_changed(viewer: Viewer) -> None:
     assert (motion @ [0.0, 0.0, 1.0]) @ (eye / np.linalg.norm(eye)) > 0.97
 
 
-def test_a_key_switches_it_off_and_on(viewer: Viewer) -> None:
+def test_a_key_switches_it_off_and_on(viewer):
     """A lets the face come to rest, so that the window sleeps; A again wakes it."""
     assert until(viewer, lambda: moved(viewer) > 0.1)
     xdotool(viewer, "key", "a")
@@ -48,7 +48,7 @@ def test_a_key_switches_it_off_and_on(viewer: Viewer) -> None:
     assert until(viewer, lambda: moved(viewer) > 0.1)
 
 
-def test_a_script_moves_the_face_alone(viewer: Viewer) -> None:
+def test_a_script_moves_the_face_alone(viewer):
     """While it plays, and where it is stopped; at its end the face is left to its life."""
     session = viewer.session
     session.toggle_playing()
@@ -61,7 +61,7 @@ def test_a_script_moves_the_face_alone(viewer: Viewer) -> None:
     assert viewer.life.is_on
 
 
-def test_it_sleeps_when_nobody_is_there(viewer: Viewer) -> None:
+def test_it_sleeps_when_nobody_is_there(viewer):
     """After some minutes without input the window rests; a key wakes the face."""
     viewer.life.after(SLEEP_DELAY, is_held=False)
     assert not viewer.life.is_on

@@ -111,7 +111,7 @@ def write_take(file: Path, **channels: float) -> Path:
     return file
 
 
-def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_recording_that_is_sent_moves_the_face(viewer, tmp_path):
     """The mouth opens; when nothing comes any more it closes and all is idle."""
     face = listen(viewer)
     assert until(viewer, lambda: "live state" in viewer.gui.places)
@@ -128,7 +128,7 @@ def test_a_recording_that_is_sent_moves_the_face(viewer: Viewer, tmp_path: Path)
     assert not viewer.session.work.unsaved
 
 
-def test_live_leads_controls_it_names_and_sliders_keep_the_rest(viewer: Viewer) -> None:
+def test_live_leads_controls_it_names_and_sliders_keep_the_rest(viewer):
     """A slider of a control that is led has its value again when the lead is over."""
     face = listen(viewer)
     viewer.session.set("jawOpen", 0.2)
@@ -143,7 +143,7 @@ def test_live_leads_controls_it_names_and_sliders_keep_the_rest(viewer: Viewer) 
     assert viewer.session.values["jawOpen"] == 0.0
 
 
-def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
+def test_buttons_listen_calibrate_mirror_and_stop(viewer):
     """All by hand, in the panel; the neutral face does not move ours any more."""
     click(viewer, "tab Live")
     click(viewer, "listen")
@@ -167,7 +167,7 @@ def test_buttons_listen_calibrate_mirror_and_stop(viewer: Viewer) -> None:
     assert viewer.session.current == viewer.session.values
 
 
-def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
+def test_a_packet_wakes_an_idle_window(viewer):
     """It sleeps while nothing comes, and does not wait for its time when something does."""
     face = listen(viewer)
     viewer.messages.text = ""
@@ -180,7 +180,7 @@ def test_a_packet_wakes_an_idle_window(viewer: Viewer) -> None:
         assert not viewer.is_idle
 
 
-def test_a_port_that_is_taken_is_a_message(viewer: Viewer) -> None:
+def test_a_port_that_is_taken_is_a_message(viewer):
     """The window goes on, and a line names the cure."""
     other = LiveCommands(viewer.session, lambda: None, lambda: None)
     other.start(Listening("livelink", port=0))

@@ -62,7 +62,7 @@ def off(marking: Marking) -> Array:
 
 
 @pytest.mark.slow
-def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path) -> None:
+def test_half_done_marks_are_kept_and_continued(marking, tmp_path):
     """null where nothing is marked: no head for `--landmarks`, but marking goes on from it."""
     target = tmp_path / "half.json"
     for number in FIRST[:3]:
@@ -94,7 +94,7 @@ def test_half_done_marks_are_kept_and_continued(marking: Marking, tmp_path: Path
     assert third.is_upright
 
 
-def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> None:
+def test_vertex_numbers_can_be_corrected(marking, tmp_path):
     """A landmark file of another program is taken up, and saved as points."""
     _, numbers = stranger().write(tmp_path)
     marking.open(numbers)
@@ -112,7 +112,7 @@ def test_vertex_numbers_can_be_corrected(marking: Marking, tmp_path: Path) -> No
     assert marking.marks.is_complete
 
 
-def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path: Path) -> None:
+def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path):
     """Before anybody has marked 68 points on it."""
     mesh = tmp_path / "fan.obj"
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 2 1 5\n")
@@ -120,7 +120,7 @@ def test_a_mesh_that_can_be_no_head_is_refused_at_once(tmp_path: Path) -> None:
         Marking(mesh, FileDialogs())
 
 
-def test_pieces_beside_the_skin_may_be_anything(tmp_path: Path) -> None:
+def test_pieces_beside_the_skin_may_be_anything(tmp_path):
     """A card of hair that is no surface keeps nobody from marking the skin."""
     other = stranger()
     mesh = with_card(other.mesh)
@@ -175,9 +175,7 @@ class TestInTheWindow:
             xdotool(viewer, "click", 1)
         assert until(viewer, lambda: self.mode(viewer).marking.marks.is_complete)
 
-    def test_a_head_is_put_upright_before_anything_is_marked(
-        self, viewer: Viewer, mesh: Path
-    ) -> None:
+    def test_a_head_is_put_upright_before_anything_is_marked(self, viewer, mesh):
         """Its file has z up; the mouse and one button turn it, and each turn can be undone."""
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
@@ -202,7 +200,7 @@ class TestInTheWindow:
             xdotool(viewer, "key", "t")
         assert axes() == pytest.approx(np.eye(3), abs=0.1)
 
-    def test_a_mark_is_put_only_where_it_is_seen(self, viewer: Viewer, mesh: Path) -> None:
+    def test_a_mark_is_put_only_where_it_is_seen(self, viewer, mesh):
         """A click into the open neck meets skin from behind: it is no mark, as a line says."""
         viewer.read(mesh)()
         mode = self.mode(viewer)
@@ -214,9 +212,7 @@ class TestInTheWindow:
         assert not mode.marking.marks.places
         assert "No skin looks at you" in viewer.messages.text
 
-    def test_a_head_is_marked_from_the_first_click_to_the_picture(
-        self, viewer: Viewer, mesh: Path, tmp_path: Path
-    ) -> None:
+    def test_a_head_is_marked_from_the_first_click_to_the_picture(self, viewer, mesh, tmp_path):
         """Dropped, five clicks, one drag, undone, saved; then capture takes the file."""
         drop(viewer, mesh)
         marking = self.mode(viewer).marking
@@ -262,7 +258,7 @@ class TestInTheWindow:
         assert np.asarray(Image.open(image)).std() > 10.0
 
     @pytest.mark.slow
-    def test_marks_are_not_lost_without_a_question(self, viewer: Viewer, mesh: Path) -> None:
+    def test_marks_are_not_lost_without_a_question(self, viewer, mesh):
         """Leaving and closing ask; a second mesh, too; saving in answer goes on."""
         viewer.session.set("jaw_open", 0.5)
         viewer.read(mesh)()

@@ -43,7 +43,7 @@ def rows_shown(viewer: Viewer) -> set[str]:
     return {name.removeprefix("show ") for name in viewer.gui.places if name.startswith("show ")}
 
 
-def test_plain_words_find_controls(viewer: Viewer) -> None:
+def test_plain_words_find_controls(viewer):
     """Everyday words find expressions, units, shapes and muscles."""
     viewer.settings.zoom = 0.6  # room for all of them at once
     settle(viewer)  # until all is in its place
@@ -61,7 +61,7 @@ def test_plain_words_find_controls(viewer: Viewer) -> None:
         viewer.settings.zoom = 1.0
 
 
-def test_one_side_is_copied_to_the_other(viewer: Viewer) -> None:
+def test_one_side_is_copied_to_the_other(viewer):
     """By the menu, in all spellings of sides; eyes and jaw stay where they are."""
     session = viewer.session
     shown = {"AU12_left": 0.5, "mouthSmileRight": 0.3, "wink": 0.2, "gaze_horizontal_left": 0.4}
@@ -82,7 +82,7 @@ def test_one_side_is_copied_to_the_other(viewer: Viewer) -> None:
     assert session.values["AU12_left"] == session.values["wink"] == 0.0
 
 
-def test_words_are_of_controls_that_there_are(viewer: Viewer) -> None:
+def test_words_are_of_controls_that_there_are(viewer):
     """Names, synonyms and filters of the table all mean something."""
     controls = viewer.session.controls
     limits = controls.limits
@@ -122,7 +122,7 @@ def seen_labels(viewer: Viewer, page: np.ndarray, origin: tuple[int, int]) -> li
     return seen
 
 
-def test_both_sides_have_captions_and_colours_a_bar(viewer: Viewer, tmp_path: Path) -> None:
+def test_both_sides_have_captions_and_colours_a_bar(viewer, tmp_path):
     """In the window and in a screenshot alike; none where nothing is compared or coloured."""
     assert not viewer.surface.labels
     only_open(viewer, "Style")
@@ -149,7 +149,7 @@ def test_both_sides_have_captions_and_colours_a_bar(viewer: Viewer, tmp_path: Pa
     assert not viewer.surface.labels
 
 
-def test_the_refiner_on_the_card_is_one_of_the_list(viewer: Viewer) -> None:
+def test_the_refiner_on_the_card_is_one_of_the_list(viewer):
     """Chosen by the mouse it draws from the card, and the picture is as it was; set back, too."""
     only_open(viewer, "Refinement")
     pictures = [viewer.stage.draw_image(viewer.view)]
@@ -165,7 +165,7 @@ def test_the_refiner_on_the_card_is_one_of_the_list(viewer: Viewer) -> None:
     assert isinstance(viewer.stage.refined.stream, render.Stream)
 
 
-def test_the_number_pad_looks_from_all_sides(viewer: Viewer) -> None:
+def test_the_number_pad_looks_from_all_sides(viewer):
     """Exactly, and about the same point from as far; Alt does where there is no number pad."""
     camera = viewer.view.camera
     place = camera.distance, camera.target.tolist()
@@ -184,7 +184,7 @@ def test_the_number_pad_looks_from_all_sides(viewer: Viewer) -> None:
     assert not any(viewer.session.values.values())  # alt+3 is no expression
 
 
-def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
+def test_a_key_shows_the_muscles_as_capture_draws_them(viewer):
     """U switches them on and off; nothing stays behind."""
     settle(viewer)
     usual = viewer.stage.draw_image(viewer.view).astype(int)
@@ -206,7 +206,7 @@ def test_a_key_shows_the_muscles_as_capture_draws_them(viewer: Viewer) -> None:
     assert np.array_equal(viewer.stage.draw_image(viewer.view), usual)
 
 
-def test_headings_stay_folded(viewer: Viewer) -> None:
+def test_headings_stay_folded(viewer):
     """A heading that was folded is folded the next time; one that is searched only meanwhile."""
     click(viewer, "Expressions")
     assert "joy" not in viewer.gui.places
@@ -220,7 +220,7 @@ def test_headings_stay_folded(viewer: Viewer) -> None:
     assert "jaw_open" in viewer.gui.places
 
 
-def test_the_panel_can_be_made_wider(viewer: Viewer) -> None:
+def test_the_panel_can_be_made_wider(viewer):
     """Its edge follows the mouse, as far as the picture keeps more than half of the window."""
     left, top, _, height = viewer.view.area
     drag_and_release(viewer, on_screen(viewer, left - 1, top + 0.5 * height), (-90, 0))
@@ -230,7 +230,7 @@ def test_the_panel_can_be_made_wider(viewer: Viewer) -> None:
 
 
 @pytest.mark.parametrize("zoom", [1.0, 3.0])
-def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
+def test_everything_stays_inside_its_panel(viewer, zoom):
     """However large the words are, no button is cut off and nothing hides the picture."""
     try:
         viewer.settings.zoom = zoom
@@ -248,7 +248,7 @@ def test_everything_stays_inside_its_panel(viewer: Viewer, zoom: float) -> None:
         settle(viewer)
 
 
-def test_any_size_can_be_drawn(viewer: Viewer) -> None:
+def test_any_size_can_be_drawn(viewer):
     """Made tiny, flat, and large again while the face moves: it goes on, and nothing explodes."""
     import glfw
 
@@ -268,7 +268,7 @@ def test_any_size_can_be_drawn(viewer: Viewer) -> None:
 
 
 @pytest.mark.slow
-def test_a_dense_screen_has_everything_twice_as_large(viewer: Viewer) -> None:
+def test_a_dense_screen_has_everything_twice_as_large(viewer):
     """At a content scale of 2 words, sliders and lines are doubled, and the mouse still hits."""
     left, top, right, bottom = viewer.gui.places["Neutral"]
     result = subprocess.run(

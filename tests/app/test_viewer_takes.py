@@ -2,7 +2,6 @@
 
 import itertools
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,7 +21,7 @@ from .driving import run
 MAJOR = "zygomaticus_major_left"
 
 
-def test_recording_begins_at_the_playhead_and_keeps_the_rest(session: Session) -> None:
+def test_recording_begins_at_the_playhead_and_keeps_the_rest(session):
     """The script plays on; only moved controls are replaced, where they move; one undo suffices."""
     before = session.script
     session.seek(1.5)
@@ -84,9 +83,7 @@ def cut_by(script: Script, name: str, times: tuple[float, ...], moment: float) -
     st.lists(st.dictionaries(st.sampled_from("ab"), SHARES), min_size=1, max_size=30),
 )
 @settings(max_examples=100, deadline=None)
-def test_punching_in_changes_nothing_else(
-    played: Script, start: float, moves: list[dict[str, float]]
-) -> None:
+def test_punching_in_changes_nothing_else(played, start, moves):
     """Outside of the recording every key is as it was, and so is each control not touched.
 
     To the bit, but for an eased way that is cut: that is followed as closely as can be seen.
@@ -145,7 +142,7 @@ def paused(session: Session) -> None:
     run(session, 30)
 
 
-def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
+def test_moves_in_a_pause_stay_by_hand_when_it_ends(session):
     """They are no part of the recording, as a line says, and still there to be keyed."""
     paused(session)
     session.set("AU4", 0.8)
@@ -167,7 +164,7 @@ def test_moves_in_a_pause_stay_by_hand_when_it_ends(session: Session) -> None:
     assert session.values["jaw_open"] == 0.1
 
 
-def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path: Path) -> None:
+def test_a_recording_plays_back_to_the_same_positions(session, tmp_path):
     """Record, save, load, replay: every vertex ends where it was, to a hundredth of a mm."""
     session.work.begin_script()
     session.edit(replace(session.script, duration=1.0))
@@ -193,9 +190,7 @@ def test_a_recording_plays_back_to_the_same_positions(session: Session, tmp_path
     assert np.abs(session.scene.positions - wanted).max() < 0.01
 
 
-def test_the_face_that_is_led_becomes_keys_poses_and_recordings(
-    session: Session, tmp_path: Path
-) -> None:
+def test_the_face_that_is_led_becomes_keys_poses_and_recordings(session, tmp_path):
     """They take the face as it is seen, not the sliders' values beneath it."""
     session.live_override.take({"jaw_open": 0.5}, 1.0)
     session.work.save_pose(tmp_path / "pose.toml")

@@ -36,7 +36,7 @@ JOY = KeyPlace(POSES, 1.0)
 REST = KeyPlace(POSES, 3.0)
 
 
-def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> None:
+def test_a_key_is_dragged_and_undone_in_one_step(viewer, own):
     """A drag goes to whole frames, the face follows, the file keeps it, one undo takes it back."""
     before = viewer.session.script
     viewer.session.seek(1.0)
@@ -61,7 +61,7 @@ def test_a_key_is_dragged_and_undone_in_one_step(viewer: Viewer, own: Path) -> N
     assert not viewer.session.work.script_is_unsaved
 
 
-def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
+def test_a_click_selects_a_key_and_goes_there(viewer):
     """The pose under the mouse is selected and shown; Shift adds another and stays."""
     press(viewer, key_at(viewer, JOY))
     assert viewer.selection.places == {JOY}
@@ -78,7 +78,7 @@ def test_a_click_selects_a_key_and_goes_there(viewer: Viewer) -> None:
     assert not viewer.session.work.unsaved
 
 
-def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
+def test_a_box_selects_keys_that_then_move_together(viewer):
     """A drag over nothing takes the keys inside, of poses and tracks; they keep their distance."""
     x, y = key_at(viewer, JOY)
     right, low = key_at(viewer, KeyPlace("blink", 2.4))
@@ -97,7 +97,7 @@ def test_a_box_selects_keys_that_then_move_together(viewer: Viewer) -> None:
     assert not viewer.session.work.script_is_unsaved
 
 
-def test_delete_and_paste(viewer: Viewer) -> None:
+def test_delete_and_paste(viewer):
     """Delete takes selected keys, they are pasted at the time shown; both can be undone."""
     press(viewer, key_at(viewer, JOY))
     viewer.session.seek(2.0)
@@ -118,7 +118,7 @@ def test_delete_and_paste(viewer: Viewer) -> None:
     assert not viewer.session.work.script_is_unsaved
 
 
-def test_the_face_becomes_a_key(viewer: Viewer) -> None:
+def test_the_face_becomes_a_key(viewer):
     """Go to a time, move a slider, press K: a pose is there that shows just this face."""
     viewer.session.seek(2.0)
     open_jaw(viewer)
@@ -135,7 +135,7 @@ def test_the_face_becomes_a_key(viewer: Viewer) -> None:
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
 
 
-def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
+def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
     """A drag in the ruler goes through frames; its end can be dragged; wheels zoom and scroll."""
     axis = viewer.time_axis
     session = viewer.session
@@ -163,7 +163,7 @@ def test_the_ruler_scrubs_and_the_wheel_zooms(viewer: Viewer) -> None:
     assert session.script.duration == 4.0
 
 
-def test_tracks_unfold_into_rows(viewer: Viewer) -> None:
+def test_tracks_unfold_into_rows(viewer):
     """A click on the arrow gives each track a row; its keys are then selected alone."""
     left = viewer.gui.places["keys"][0]
     rows = viewer.timeline.height()
@@ -215,7 +215,7 @@ def scrub(viewer: Viewer, time: float) -> None:
     press(viewer, (x, middle(viewer, "time")[1]))
 
 
-def test_auto_key(viewer: Viewer) -> None:
+def test_auto_key(viewer):
     """Switched on by its button, a slider that is let go is a key; switched off, it is none."""
     scrub(viewer, 2.0)
     click(viewer, "auto-key")
@@ -260,7 +260,7 @@ def values(viewer: Viewer, control: str) -> list[float]:
 
 
 @pytest.mark.usefixtures("curves")
-def test_a_key_is_dragged_in_time_and_value(viewer: Viewer) -> None:
+def test_a_key_is_dragged_in_time_and_value(viewer):
     """Both at once, to frames and within limits; Escape puts it back."""
     before = viewer.session.script
     drag(viewer, at(viewer, 1.0, 1.0), (-10, 10))
@@ -276,7 +276,7 @@ def test_a_key_is_dragged_in_time_and_value(viewer: Viewer) -> None:
 
 
 @pytest.mark.usefixtures("curves")
-def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
+def test_easings_are_chosen_and_seen(viewer):
     """A right click on a key chooses its easing, and the script plays as its curve shows."""
     xdotool(viewer, "mousemove", *at(viewer, 3.0, 0.6))
     xdotool(viewer, "click", 3)
@@ -296,7 +296,7 @@ def test_easings_are_chosen_and_seen(viewer: Viewer) -> None:
 
 
 @pytest.mark.usefixtures("curves")
-def test_handles_set_slopes(viewer: Viewer) -> None:
+def test_handles_set_slopes(viewer):
     """Handles of the way to a selected key bend it; face and file get the same; undo, Escape."""
     before = viewer.session.script
     viewer.selection.places = Places.of(KeyPlace(POSES, 1.0))

@@ -18,7 +18,7 @@ SHARES = st.integers(0, 100).map(lambda percent: percent / 100.0)
 
 
 @pytest.mark.parametrize("how", ["seek", "key", "play", "button"])
-def test_a_pose_that_is_let_go_is_reported_and_comes_back(session: Session, how: str) -> None:
+def test_a_pose_that_is_let_go_is_reported_and_comes_back(session, how):
     """Each way to let go says so in a line; one undo brings the pose back to where it was made."""
     session.seek(2.0)
     set_by_hand(session, jaw_open=0.6)
@@ -70,7 +70,7 @@ class Still(FaceScene):
 
 @given(st.lists(st.tuples(st.sampled_from(sorted(COMMANDS)), SHARES), max_size=12))
 @settings(max_examples=60, deadline=None)
-def test_undo_gives_the_state_before(steps: list[tuple[str, float]]) -> None:
+def test_undo_gives_the_state_before(steps):
     """After any commands: back through all states, and forward again to the last one."""
     session = Session(SHARED, load_script(HELLO))
 
@@ -103,7 +103,7 @@ SHARED = Still()
 # Copies
 
 
-def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -> None:
+def test_keys_are_pasted_in_another_script(session, scene):
     """Copied keys stay as they were if their script changes; they are pasted at the playhead."""
     selection = KeySelection(session)
     assert not selection.copied
@@ -121,7 +121,7 @@ def test_keys_are_pasted_in_another_script(session: Session, scene: FaceScene) -
     assert places_of(session.script) == {KeyPlace(POSES, 0.0)}
 
 
-def test_detail_falls_once_and_does_not_flicker() -> None:
+def test_detail_falls_once_and_does_not_flicker():
     """Slow frames lower the level; fast ones raise it by one, and only as a motion begins."""
     chosen = LevelOfDetail(is_software=False)
     assert chosen.detail == FULL_DETAIL

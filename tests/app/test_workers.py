@@ -53,7 +53,7 @@ def is_running(process: int) -> bool:
     return state != "Z"
 
 
-def test_every_share_is_done_in_a_process_of_its_own() -> None:
+def test_every_share_is_done_in_a_process_of_its_own():
     """What each hands over comes in its order, and none of them is this process."""
     shares = [[1, 2, 3], [10, 20], []]
     found = list(run_all(working.double, shares))
@@ -64,7 +64,7 @@ def test_every_share_is_done_in_a_process_of_its_own() -> None:
     assert list(run_all(working.double, [])) == []
 
 
-def test_what_dies_is_done_again(tmp_path: Path) -> None:
+def test_what_dies_is_done_again(tmp_path):
     """A killed process is replaced, and the log says of what it died."""
     log = tmp_path / "log"
     other = tmp_path / ".risorius-0123456789ab"
@@ -75,7 +75,7 @@ def test_what_dies_is_done_again(tmp_path: Path) -> None:
     assert names >= {"log", "mark", "mark.txt", other.name}
 
 
-def test_what_kills_every_process_is_given_up(tmp_path: Path) -> None:
+def test_what_kills_every_process_is_given_up(tmp_path):
     """After three attempts, in one line; a fault says in the log where it was."""
     log = tmp_path / "log"
     with pytest.raises(UserError, match="died 3 times, at last of SIGSEGV"):
@@ -92,9 +92,7 @@ def test_what_kills_every_process_is_given_up(tmp_path: Path) -> None:
         ("unfit", "pickle"),
     ],
 )
-def test_what_is_raised_is_reported_and_not_tried_again(
-    tmp_path: Path, kind: str, message: str
-) -> None:
+def test_what_is_raised_is_reported_and_not_tried_again(tmp_path, kind, message):
     """In one line; a defect leaves a traceback in the log, what the user can mend does not."""
     log = tmp_path / "log"
     with pytest.raises(UserError, match=message):
@@ -103,7 +101,7 @@ def test_what_is_raised_is_reported_and_not_tried_again(
     assert "the process of attempt" not in log.read_text()
 
 
-def test_everything_that_is_printed_goes_to_its_log(tmp_path: Path) -> None:
+def test_everything_that_is_printed_goes_to_its_log(tmp_path):
     """By Python, by a library in C, and by programs that are started; nothing goes astray."""
     log = tmp_path / "log"
     run(working.talk, "nose", log=log)
@@ -111,7 +109,7 @@ def test_everything_that_is_printed_goes_to_its_log(tmp_path: Path) -> None:
     assert sorted(log.read_text().splitlines()) == [f"nose {how}" for how in ways]
 
 
-def test_libraries_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_libraries_share_the_cores(monkeypatch):
     """More processes than cores have one thread each; what the user allows is shared."""
     monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     assert run(working.library_threads, jobs=1024) == ["1"]
@@ -123,7 +121,7 @@ def test_libraries_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
         assert share_of_cores() == share
 
 
-def test_whoever_stops_early_leaves_no_process() -> None:
+def test_whoever_stops_early_leaves_no_process():
     """The caller breaks off after the first message."""
     running = run_all(working.double, [list(range(10_000))])
     process = next(running)[1]
@@ -136,7 +134,7 @@ def test_whoever_stops_early_leaves_no_process() -> None:
     "number",
     [signal.SIGINT, signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)],
 )
-def test_nothing_runs_on_when_it_is_stopped(tmp_path: Path, number: signal.Signals) -> None:
+def test_nothing_runs_on_when_it_is_stopped(tmp_path, number):
     """Ctrl-C, `kill`, and even the end of the process that asked without a word."""
     process = started("-c", STOPPED, tmp_path)
     wait_until(lambda: len(list(tmp_path.glob(".risorius-*/?"))) == 2)

@@ -1,7 +1,6 @@
 """Wrinkles that follow the simulated skin: when, where, which way, and on which heads."""
 
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -39,7 +38,7 @@ def forehead(scene: FaceScene) -> Array:
     return region(scene, (-30, 36, 60), (30, 62, 120))
 
 
-def test_nothing_wrinkles_at_rest(scene: FaceScene, wrinkling: Compression) -> None:
+def test_nothing_wrinkles_at_rest(scene, wrinkling):
     """Exactly nothing, so that the picture without wrinkles is drawn."""
     found = amounts(scene, wrinkling)
     assert not found.any()
@@ -50,9 +49,7 @@ def test_nothing_wrinkles_at_rest(scene: FaceScene, wrinkling: Compression) -> N
     "name",
     ["AU4", *(pytest.param(f"AU{unit}", marks=pytest.mark.slow) for unit in (1, 6, 17, 18))],
 )
-def test_amounts_grow_with_the_muscle_and_never_jump(
-    scene: FaceScene, wrinkling: Compression, name: str
-) -> None:
+def test_amounts_grow_with_the_muscle_and_never_jump(scene, wrinkling, name):
     """In twenty steps no vertex moves by more than a fifth, and the sum only grows."""
     steps = [amounts(scene, wrinkling, **{name: share}) for share in np.linspace(0.0, 1.0, 41)]
     coarse, fine = (np.abs(np.diff(steps[::skip], axis=0)) for skip in (2, 1))
@@ -76,9 +73,7 @@ def test_amounts_grow_with_the_muscle_and_never_jump(
         ("joy", (50, -12, 30), (66, 10, 80), 0),
     ],
 )
-def test_each_wrinkles_where_it_does_in_people(
-    scene: FaceScene, wrinkling: Compression, name: str, low: Any, high: Any, slot: int
-) -> None:
+def test_each_wrinkles_where_it_does_in_people(scene, wrinkling, name, low, high, slot):
     """A clear amount there, and next to none on a forehead that nothing moves."""
     found = amounts(scene, wrinkling, **{name: 1.0})
     assert found[region(scene, low, high), slot].max() > 0.3
@@ -86,7 +81,7 @@ def test_each_wrinkles_where_it_does_in_people(
         assert found[forehead(scene)].max() < 0.05
 
 
-def test_furrows_of_age_are_pulled_flat() -> None:
+def test_furrows_of_age_are_pulled_flat():
     """A kiss draws the cheek over the fold beside the nose tight; its wrinkled lips stay so."""
     person = person_called("maria")
     aged = FaceScene(person)

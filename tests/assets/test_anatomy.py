@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-from risorius.assets.model import Head
-
 # The right-hand partner of every left-hand landmark, read from the iBug figure.
 PAIRS = (
     [(k, 16 - k) for k in range(8)]
@@ -15,14 +13,14 @@ PAIRS = (
 ON_MIDLINE = (8, 27, 28, 29, 30, 33, 51, 57, 62, 66)
 
 
-def test_landmarks_are_68_different_vertices(head: Head) -> None:
+def test_landmarks_are_68_different_vertices(head):
     """No landmark is missing and no two share a vertex."""
     assert len(set(head.landmarks.tolist())) == 68
     assert head.landmarks.min() >= 0
     assert head.landmarks.max() < len(head.vertices)
 
 
-def test_landmarks_are_mirrored(head: Head) -> None:
+def test_landmarks_are_mirrored(head):
     """Pairs are mirror images, the others lie in the mid-plane; the right side has x < 0."""
     for right, left in PAIRS:
         assert head.mirror[head.landmarks[left]] == head.landmarks[right]
@@ -31,7 +29,7 @@ def test_landmarks_are_mirrored(head: Head) -> None:
     assert len(PAIRS) * 2 + len(ON_MIDLINE) == 68
 
 
-def test_landmarks_lie_where_the_scheme_says(head: Head) -> None:
+def test_landmarks_lie_where_the_scheme_says(head):
     """Order along jaw, brow and nose, and rows around eyes and lips."""
     at = head.vertices[head.landmarks]
     assert np.all(np.diff(at[0:17, 0]) > 0)  # from the right ear to the left
@@ -47,7 +45,7 @@ def test_landmarks_lie_where_the_scheme_says(head: Head) -> None:
     assert at[50, 1] > at[51, 1]  # Cupid's bow
 
 
-def test_lip_landmarks_lie_on_the_lip_rows(head: Head) -> None:
+def test_lip_landmarks_lie_on_the_lip_rows(head):
     """Outer lips on the border of the red, inner ones where lips meet, corners between."""
     outer = [*range(49, 54), *range(55, 60)]
     for numbers, row in ((outer, "mouth_6"), ((48, 54), "mouth_3"), (range(60, 68), "mouth_2")):
@@ -55,7 +53,7 @@ def test_lip_landmarks_lie_on_the_lip_rows(head: Head) -> None:
         assert {int(head.landmarks[number]) for number in numbers} <= on_row
 
 
-def test_the_mouth_ends_at_the_corners_of_the_lips(head: Head) -> None:
+def test_the_mouth_ends_at_the_corners_of_the_lips(head):
     """Landmarks 48 and 54 are where anatomists have them, a little outside of 60 and 64."""
     corners = [head.anatomy[f"cheilion_{side}"] for side in ("right", "left")]
     assert head.landmarks[[48, 54]].tolist() == corners
@@ -63,14 +61,14 @@ def test_the_mouth_ends_at_the_corners_of_the_lips(head: Head) -> None:
     assert red < wide < red + 4.0
 
 
-def test_lid_landmarks_lie_on_the_lid_margin(head: Head) -> None:
+def test_lid_landmarks_lie_on_the_lid_margin(head):
     """All twelve, on their own eye."""
     for numbers, side in ((range(36, 42), "right"), (range(42, 48), "left")):
         margin = set(head.rings[f"eye_2_{side}"].tolist())
         assert {int(head.landmarks[number]) for number in numbers} <= margin
 
 
-def test_anatomy_has_both_sides(head: Head) -> None:
+def test_anatomy_has_both_sides(head):
     """Every _left has its mirror image _right; the rest lies in the mid-plane."""
     assert {"glabella", "nasion", "pronasale", "subnasale", "pogonion"} <= set(head.anatomy)
     for name, vertex in head.anatomy.items():
@@ -82,7 +80,7 @@ def test_anatomy_has_both_sides(head: Head) -> None:
             assert head.vertices[vertex, 0] == 0.0, name
 
 
-def test_rows_exist_on_both_sides(head: Head) -> None:
+def test_rows_exist_on_both_sides(head):
     """Columns of all rows around one opening correspond."""
     for name, row in head.rings.items():
         if name.endswith("_left"):
@@ -94,7 +92,7 @@ def test_rows_exist_on_both_sides(head: Head) -> None:
     assert {len(head.rings[f"mouth_{row}_left"]) for row in range(8)} == {15}
 
 
-def test_bone_depth_is_what_was_chosen(head: Head) -> None:
+def test_bone_depth_is_what_was_chosen(head):
     """Thin on nose bridge and forehead, thick in the cheek; the same on both sides."""
     depth = head.bone_depth
     anatomy = head.anatomy
@@ -111,7 +109,7 @@ def test_bone_depth_is_what_was_chosen(head: Head) -> None:
     assert depth[anatomy["cheek_left"]] > 2.0 * depth[anatomy["glabella"]]
 
 
-def test_mandible_carries_lower_lip_and_chin_only(head: Head) -> None:
+def test_mandible_carries_lower_lip_and_chin_only(head):
     """Lower lip and chin 1, upper lip and all above 0, in between at the corners."""
     weight = head.mandible_weight
     rings = head.rings
@@ -129,7 +127,7 @@ def test_mandible_carries_lower_lip_and_chin_only(head: Head) -> None:
     assert weight[head.vertices[:, 1] > -20.0].max() == 0.0
 
 
-def test_mandible_weight_is_smooth(head: Head) -> None:
+def test_mandible_weight_is_smooth(head):
     """No jump between neighbours: at most 0.07 per millimetre."""
     edges = np.concatenate([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
     step = np.abs(head.mandible_weight[edges[:, 0]] - head.mandible_weight[edges[:, 1]])
@@ -138,7 +136,7 @@ def test_mandible_weight_is_smooth(head: Head) -> None:
     assert (step / length)[length > 3.0].max() < 0.07
 
 
-def test_jaw_axis_runs_through_both_condyles(head: Head) -> None:
+def test_jaw_axis_runs_through_both_condyles(head):
     """Right first; in front of the ear, below the skin."""
     right, left = head.jaw_axis
     assert np.array_equal(right * [-1.0, 1.0, 1.0], left)

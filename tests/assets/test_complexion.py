@@ -51,14 +51,14 @@ def skin_of(head: Head, image: npt.NDArray[np.uint8]) -> Light:
     return light_at(head, image, "metopion", "temple_left", "temple_right")
 
 
-def test_own_tone_is_the_shipped_picture(head: Head) -> None:
+def test_own_tone_is_the_shipped_picture(head):
     """Byte by byte."""
     tints = _tints()
     angle = np.interp(-OWN.melanin, -tints.melanins, tints.angles)
     assert (recoloured(float(angle)) == head.albedo).all()
 
 
-def test_tones_are_in_order(head: Head) -> None:
+def test_tones_are_in_order(head):
     """The angle measured on bare skin is near the asked one, and darker tones are darker."""
     pictures = {angle: recoloured(angle) for angle in TONES}
     found = {angle: float(typology_angle(skin_of(head, x))) for angle, x in pictures.items()}
@@ -73,7 +73,7 @@ def test_tones_are_in_order(head: Head) -> None:
 @pytest.mark.slow
 @given(ANGLES)
 @settings(max_examples=12, deadline=None)
-def test_faces_keep_their_features(angle: float) -> None:
+def test_faces_keep_their_features(angle):
     """Lips are redder than skin, brows and nostrils darker, skin never grey, in any tone."""
     head = assets.load("head")
     image = recoloured(angle)
@@ -96,13 +96,13 @@ def _texel(head: Head, image: npt.NDArray[np.uint8], vertex: int) -> tuple[int, 
 
 
 @pytest.mark.parametrize("angle", [DARKEST - 1.0, LIGHTEST + 1.0, float("nan")])
-def test_no_other_tones(angle: float) -> None:
+def test_no_other_tones(angle):
     """One line with what is allowed."""
     with pytest.raises(ValueError, match="it must be -55 "):
         recoloured(angle)
 
 
-def test_eyes_have_their_colours(head: Head) -> None:
+def test_eyes_have_their_colours(head):
     """Blue is bluest, brown reddest and darkest; white, pupil and all else stay as they were."""
     person = make_person(sample_identity(1))
     iris = {}
@@ -126,7 +126,7 @@ def test_eyes_have_their_colours(head: Head) -> None:
 
 
 @pytest.mark.slow
-def test_colours_of_a_number(head: Head) -> None:
+def test_colours_of_a_number(head):
     """The same ones every time; dark skin goes with brown eyes."""
     person = make_person(sample_identity(0))
     first, second = (in_own_colours(person, 5) for _ in range(2))
@@ -143,7 +143,7 @@ def test_colours_of_a_number(head: Head) -> None:
 
 
 @pytest.mark.parametrize("angle", [60.0, 0.0, -50.0])
-def test_irises_follow_the_shares_where_skin_is_light(angle: float) -> None:
+def test_irises_follow_the_shares_where_skin_is_light(angle):
     """As often as each share says; brown alone below the tone where others are rare."""
     random = np.random.default_rng(3)
     drawn = [drawn_irises(random, angle, {"brown": 1.0, "blue": 3.0}) for _ in range(400)]
@@ -151,7 +151,7 @@ def test_irises_follow_the_shares_where_skin_is_light(angle: float) -> None:
 
 
 @pytest.mark.slow
-def test_features_do_what_their_names_say(head: Head) -> None:
+def test_features_do_what_their_names_say(head):
     """Brows have their own form, beards darken, lips redden, hair is grey or gone."""
     plain = recoloured(40.0).astype(int)
 
@@ -179,7 +179,7 @@ def test_features_do_what_their_names_say(head: Head) -> None:
         assert 0.4 < (bald == side).sum() / (head.segments == side).sum() < 2.5
 
 
-def test_hair_turns_grey_as_in_the_survey() -> None:
+def test_hair_turns_grey_as_in_the_survey():
     """From 45 to 65 years a quarter of it is, with dark skin less; the young have none."""
 
     def grey(angle: float, years: tuple[float, float]) -> float:

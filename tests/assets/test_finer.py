@@ -21,21 +21,21 @@ def fine(request: pytest.FixtureRequest, head: Head) -> FineMesh:
     return head.finer(request.param)
 
 
-def test_triangle_counts_are_powers_of_four(head: Head) -> None:
+def test_triangle_counts_are_powers_of_four(head):
     """About 8 and 32 thousand; one new vertex for each edge."""
     assert [len(head.finer(level).faces) for level in (1, 2)] == [8120, 32480]
     edges = quarter(head.faces, len(head.vertices)).edges
     assert len(head.finer(1).vertices) == len(head.vertices) + len(edges)
 
 
-def test_coarse_vertices_are_fine_vertices(head: Head, fine: FineMesh) -> None:
+def test_coarse_vertices_are_fine_vertices(head, fine):
     """Bit for bit, under the same number: landmarks, rows and names hold as they are."""
     count = len(head.vertices)
     assert np.array_equal(fine.vertices[:count], head.vertices)
     assert np.array_equal(np.unique(fine.faces), np.arange(len(fine.vertices)))
 
 
-def test_map_reproduces_the_coarse_mesh(head: Head, fine: FineMesh) -> None:
+def test_map_reproduces_the_coarse_mesh(head, fine):
     """Coarse vertices map onto themselves exactly."""
     mapped = fine.interpolate(head.vertices)
     assert np.array_equal(mapped[: len(head.vertices)], head.vertices)
@@ -44,7 +44,7 @@ def test_map_reproduces_the_coarse_mesh(head: Head, fine: FineMesh) -> None:
     assert fine.interpolate(head.bone_depth).shape == (len(fine.vertices),)
 
 
-def test_children_stand_in_the_place_of_their_parent(head: Head, fine: FineMesh) -> None:
+def test_children_stand_in_the_place_of_their_parent(head, fine):
     """Face k of the fine mesh lies in face k / 4^level of the coarse one, and covers its share."""
     share = len(fine.faces) // len(head.faces)
     flat = fine.interpolate(head.vertices)
@@ -52,7 +52,7 @@ def test_children_stand_in_the_place_of_their_parent(head: Head, fine: FineMesh)
     assert np.allclose(cross_products(flat, fine.faces), parent, atol=1e-9)
 
 
-def test_each_level_comes_nearer_to_the_form(head: Head) -> None:
+def test_each_level_comes_nearer_to_the_form(head):
     """The way from the flat triangles to the next level's vertices shrinks about to a quarter."""
     meshes = [(head.vertices, head.faces)]
     meshes += [(mesh.vertices, mesh.faces) for mesh in (head.finer(1), head.finer(2))]
@@ -65,13 +65,13 @@ def test_each_level_comes_nearer_to_the_form(head: Head) -> None:
     assert ways[1] < 0.4 * ways[0]
 
 
-def test_finer_mesh_is_its_own_mirror_image(fine: FineMesh) -> None:
+def test_finer_mesh_is_its_own_mirror_image(fine):
     """To the last bit: the mirrored vertices are the vertices."""
     mirrored = fine.vertices * [-1.0, 1.0, 1.0] + 0.0  # + 0.0: no negative zero
     assert np.array_equal(np.unique(mirrored, axis=0), np.unique(fine.vertices + 0.0, axis=0))
 
 
-def test_finer_mesh_is_one_manifold_piece(head: Head, fine: FineMesh) -> None:
+def test_finer_mesh_is_one_manifold_piece(head, fine):
     """The topology of the coarse mesh: the same holes, no more."""
     assert checks.is_manifold(fine.faces)
     assert checks.component_count(fine.faces) == 1
@@ -80,7 +80,7 @@ def test_finer_mesh_is_one_manifold_piece(head: Head, fine: FineMesh) -> None:
     )
 
 
-def test_no_triangle_is_turned_over(head: Head, fine: FineMesh) -> None:
+def test_no_triangle_is_turned_over(head, fine):
     """Every child looks about the way its parent does."""
     cross = cross_products(fine.vertices, fine.faces)
     parent = np.repeat(
@@ -91,12 +91,12 @@ def test_no_triangle_is_turned_over(head: Head, fine: FineMesh) -> None:
     assert cosine.min() > 0.1
 
 
-def test_finer_mesh_does_not_cut_itself(fine: FineMesh) -> None:
+def test_finer_mesh_does_not_cut_itself(fine):
     """The lips nearly touch; curving them must not push them into each other."""
     assert len(self_intersections(fine.vertices, fine.faces)) == 0
 
 
-def test_boundaries_become_smooth(head: Head) -> None:
+def test_boundaries_become_smooth(head):
     """At half the spacing a smooth curve turns half as much from edge to edge."""
 
     def turns(vertices: Points, faces: npt.NDArray[np.int32]) -> list[float]:
@@ -114,7 +114,7 @@ def test_boundaries_become_smooth(head: Head) -> None:
         assert after < 0.5 * before
 
 
-def test_normals_are_unit_and_agree_with_the_faces(fine: FineMesh) -> None:
+def test_normals_are_unit_and_agree_with_the_faces(fine):
     """A normal is that of the form, or of the mesh where the mesh left the form."""
     assert np.allclose(np.linalg.norm(fine.normals, axis=1), 1.0)
     cross = cross_products(fine.vertices, fine.faces)
@@ -126,7 +126,7 @@ def test_normals_are_unit_and_agree_with_the_faces(fine: FineMesh) -> None:
     assert cosine.min() > 0.0
 
 
-def test_other_levels_are_refused(head: Head) -> None:
+def test_other_levels_are_refused(head):
     """What there is is in the message."""
     for level in (0, 3):
         with pytest.raises(ValueError, match=rf"level was {level}; allowed are 1 .* and 2"):

@@ -2,8 +2,6 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -41,7 +39,7 @@ def simulation(fitted: FittedHead) -> sim.Simulation:
 
 
 @pytest.mark.slow
-def test_files_are_read_and_fitted(other: Stranger, fitted: FittedHead, tmp_path: Path) -> None:
+def test_files_are_read_and_fitted(other, fitted, tmp_path):
     """Vertex numbers and points give the same head; a bare list will do."""
     mesh, numbers = other.write(tmp_path)
     by_number = fit_head(mesh, numbers)
@@ -52,7 +50,7 @@ def test_files_are_read_and_fitted(other: Stranger, fitted: FittedHead, tmp_path
     assert np.array_equal(by_point.landmarks, fitted.landmarks)
 
 
-def test_head_comes_to_millimetres_and_the_face_space(fitted: FittedHead) -> None:
+def test_head_comes_to_millimetres_and_the_face_space(fitted):
     """Whatever unit and axes the file has, landmarks lie near those of the built-in head."""
     known = assets.load("head")
     off = fitted.vertices[fitted.landmarks] - known.vertices[known.landmarks]
@@ -60,7 +58,7 @@ def test_head_comes_to_millimetres_and_the_face_space(fitted: FittedHead) -> Non
     assert fitted.to_millimetres.scale == pytest.approx(1000.0, rel=0.1)
 
 
-def test_eyes_lie_behind_their_lids(fitted: FittedHead) -> None:
+def test_eyes_lie_behind_their_lids(fitted):
     """No skin of the lids is inside of an eyeball, and some of it touches it."""
     for eye, numbers in zip(fitted.eyes, ((37, 38, 40, 41), (43, 44, 46, 47)), strict=True):
         lids = fitted.vertices[fitted.landmarks[list(numbers)]]
@@ -71,7 +69,7 @@ def test_eyes_lie_behind_their_lids(fitted: FittedHead) -> None:
         assert 9.0 < eye.radius < 15.0
 
 
-def test_the_built_in_head_fits_itself(tmp_path: Path) -> None:
+def test_the_built_in_head_fits_itself(tmp_path):
     """Its own landmarks give it back its own eyes: lids close over them as they did."""
     head = assets.load("head")
     mesh = tmp_path / "same.ply"
@@ -84,7 +82,7 @@ def test_the_built_in_head_fits_itself(tmp_path: Path) -> None:
         assert eye.radius == pytest.approx(own.radius, rel=0.01)
 
 
-def test_the_edge_of_the_neck_fades(fitted: FittedHead) -> None:
+def test_the_edge_of_the_neck_fades(fitted):
     """Nothing shows of a head where it ends, all of it at the chin; a closed neck has no end."""
     plane = fitted.fade()
     assert plane is not None
@@ -99,7 +97,7 @@ def test_the_edge_of_the_neck_fades(fitted: FittedHead) -> None:
     assert closed.fade() is None
 
 
-def test_teeth_lie_behind_the_skin(fitted: FittedHead) -> None:
+def test_teeth_lie_behind_the_skin(fitted):
     """Seen from the front, no tooth is in front of the skin beside it."""
     front = fitted.vertices[fitted.vertices[:, 2] > 40.0]
     for part in fitted.parts:
@@ -110,7 +108,7 @@ def test_teeth_lie_behind_the_skin(fitted: FittedHead) -> None:
             assert (part.vertices[:, 2] < front[beside, 2])[is_covered].all(), part.name
 
 
-def test_depth_and_texture_come_from_the_same_place(fitted: FittedHead) -> None:
+def test_depth_and_texture_come_from_the_same_place(fitted):
     """The built-in head's values at its own vertices come back from its likeness."""
     known = assets.load("head")
     count = len(known.vertices)
@@ -119,7 +117,7 @@ def test_depth_and_texture_come_from_the_same_place(fitted: FittedHead) -> None:
     assert np.abs(fitted.uv[face] - known.uv[face]).max() < 0.01
 
 
-def test_texture_runs_evenly_beside_the_mouth(fitted: FittedHead) -> None:
+def test_texture_runs_evenly_beside_the_mouth(fitted):
     """Neighbouring triangles have nearly the same slopes in the picture: furrows do not break."""
     corners = fitted.vertices[fitted.faces]
     uv = fitted.uv.astype(np.float64)[fitted.faces]
@@ -133,7 +131,7 @@ def test_texture_runs_evenly_beside_the_mouth(fitted: FittedHead) -> None:
     assert np.percentile(step / size, 80) < 0.31
 
 
-def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulation) -> None:
+def test_a_fitted_head_makes_faces(fitted, simulation):
     """A smile pulls the corners, a blink closes the eyes, the jaw opens, lips stay closed."""
     smile = settled_displacement(simulation, {"AU12": 1.0})
     assert moved_landmarks(fitted, smile, 54)[1] > 4.0
@@ -147,9 +145,7 @@ def test_a_fitted_head_makes_faces(fitted: FittedHead, simulation: sim.Simulatio
     assert lip_gap(simulation, fitted) > 20.0
 
 
-def test_the_tongue_of_a_fitted_head_comes_out(
-    fitted: FittedHead, simulation: sim.Simulation
-) -> None:
+def test_the_tongue_of_a_fitted_head_comes_out(fitted, simulation):
     """Its own lips are what it lies on."""
     settled_displacement(simulation, {"jaw_open": 0.4, "tongue_out": 1.0})
     bent = simulation.anatomy.tongue()
@@ -160,16 +156,14 @@ def test_the_tongue_of_a_fitted_head_comes_out(
 
 
 @pytest.mark.parametrize("name", ["joy", "sadness", "surprise", "anger", "disgust", "fear"])
-def test_expressions_keep_a_fitted_mesh_sound(
-    fitted: FittedHead, simulation: sim.Simulation, name: str
-) -> None:
+def test_expressions_keep_a_fitted_mesh_sound(fitted, simulation, name):
     """Hardly a triangle of eight thousand is turned over."""
     settled_displacement(simulation, {name: 1.0})
     assert inverted_triangles(fitted.faces, fitted.vertices, simulation.positions) <= 40
 
 
 @pytest.mark.slow
-def test_other_pieces_and_inside_out_meshes_do_no_harm(other: Stranger) -> None:
+def test_other_pieces_and_inside_out_meshes_do_no_harm(other):
     """Eyeballs of the file's own are left away, triangles that face inward are turned."""
     vertices = other.mesh.vertices
     faces = other.mesh.faces
@@ -193,9 +187,7 @@ def _numbers(other: Stranger, **places: int) -> list[int]:
 
 
 @pytest.mark.parametrize(("off", "is_allowed"), [(0.04, True), (0.07, False)])
-def test_points_lie_on_the_mesh(
-    other: Stranger, tmp_path: Path, off: float, is_allowed: bool
-) -> None:
+def test_points_lie_on_the_mesh(other, tmp_path, off, is_allowed):
     """A point may hover by a twentieth of the distance of the eyes; further off it is named."""
     mesh, file = other.write(tmp_path)
     points = other.mesh.vertices[other.landmarks]
@@ -211,7 +203,7 @@ def test_points_lie_on_the_mesh(
         fit_head(mesh, file)
 
 
-def test_swapped_sides_are_noticed(other: Stranger) -> None:
+def test_swapped_sides_are_noticed(other):
     """Landmarks numbered from the viewer's side are the commonest mistake."""
     with pytest.raises(AssetError, match="left and right are swapped in the landmarks"):
         fit(other.mesh, other.landmarks[MIRRORED])
@@ -231,9 +223,7 @@ def test_swapped_sides_are_noticed(other: Stranger) -> None:
         ((43, 44, 46, 47), r"the left eye has no opening: skin lies between landmarks 43 and 47"),
     ],
 )
-def test_closed_openings_are_named(
-    other: Stranger, landmarks: tuple[int, ...], message: str
-) -> None:
+def test_closed_openings_are_named(other, landmarks, message):
     """Lips or lids that skin joins cannot part."""
     mesh = closed(other.mesh, other.landmarks[list(landmarks)])
     with pytest.raises(AssetError, match=message):
@@ -250,14 +240,14 @@ def test_closed_openings_are_named(
         (lambda f: np.tile(f, (32, 1)), "the head has 259840 triangles; .*: reduce it"),
     ],
 )
-def test_meshes_that_are_no_surface_are_named(other: Stranger, change: Any, message: str) -> None:
+def test_meshes_that_are_no_surface_are_named(other, change, message):
     """Doubled, flipped, too few and too many triangles."""
     faces = np.ascontiguousarray(change(other.mesh.faces))
     with pytest.raises(AssetError, match=message):
         fit(Mesh(other.mesh.vertices, faces), other.landmarks)
 
 
-def test_pieces_that_are_left_away_may_be_anything(other: Stranger) -> None:
+def test_pieces_that_are_left_away_may_be_anything(other):
     """A card of hair that is no surface harms nobody; triangles of the skin keep their numbers."""
     mesh = with_card(other.mesh)
     head = fit(mesh, other.landmarks)
@@ -267,7 +257,7 @@ def test_pieces_that_are_left_away_may_be_anything(other: Stranger) -> None:
         fit(doubled, other.landmarks)
 
 
-def test_landmarks_on_two_pieces_are_named(other: Stranger) -> None:
+def test_landmarks_on_two_pieces_are_named(other):
     """A landmark on an eyeball is no landmark of the skin."""
     count = len(other.mesh.vertices)
     mesh = Mesh(
@@ -279,7 +269,7 @@ def test_landmarks_on_two_pieces_are_named(other: Stranger) -> None:
         fit(mesh, numbers)
 
 
-def test_warp_meets_its_points_and_keeps_similarities(generator: np.random.Generator) -> None:
+def test_warp_meets_its_points_and_keeps_similarities(generator):
     """Landmarks go exactly where they should; a similarity is carried on everywhere."""
     source = generator.normal(size=(20, 3))
     target = source + 0.2 * generator.normal(size=(20, 3))
@@ -297,7 +287,7 @@ def test_warp_meets_its_points_and_keeps_similarities(generator: np.random.Gener
 
 
 @pytest.mark.slow
-def test_a_bag_behind_the_lips_makes_room() -> None:
+def test_a_bag_behind_the_lips_makes_room():
     """The built-in mouth comes there; the skin outside, its landmarks and numbers stay."""
     other = stranger()
     bagged = closed(other.mesh, other.landmarks[60:68])

@@ -54,7 +54,7 @@ def _meets(points: Array, triangles: Array) -> npt.NDArray[np.bool_]:
 
 
 @pytest.mark.parametrize("yaw", [-50.0, -40.0, -25.0, 0.0, 25.0, 40.0, 50.0])
-def test_nothing_is_seen_behind_an_eye(fitted: FittedHead, yaw: float) -> None:
+def test_nothing_is_seen_behind_an_eye(fitted, yaw):
     """Every line of sight that goes in between the lids ends on the ball, or on flesh."""
     across = np.cos(np.radians(yaw))
     ahead = np.sin(np.radians(yaw))
@@ -67,7 +67,7 @@ def test_nothing_is_seen_behind_an_eye(fitted: FittedHead, yaw: float) -> None:
         assert _meets(_across(edge @ view.T), near @ view.T).all()
 
 
-def test_the_flesh_of_the_eyes_is_well_formed(fitted: FittedHead) -> None:
+def test_the_flesh_of_the_eyes_is_well_formed(fitted):
     """Unit normals that agree with the faces; each eye's collar reaches behind the ball."""
     flesh = next(part for part in fitted.parts if part.name == "eye_corners")
     assert flesh.faces.max() < len(flesh.vertices) == len(flesh.colours)

@@ -65,9 +65,7 @@ def painted(maker: GltfMaker, uv: int, texture: dict[str, Any] | None = None, **
 
 
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
-def test_texture_coordinates_may_be_shares(
-    maker: GltfMaker, tmp_path: Path, kind: str, greatest: int
-) -> None:
+def test_texture_coordinates_may_be_shares(maker, tmp_path, kind, greatest):
     """Bytes and shorts that are normalized are shares of the greatest."""
     rows = np.rint(UV * greatest) if greatest > 1 else UV
     painted(maker, maker.accessor(rows, kind, normalized=greatest > 1, gap=2))
@@ -75,7 +73,7 @@ def test_texture_coordinates_may_be_shares(
     assert np.abs(uv_of(found) - UP[FACES]).max() < 0.6 / greatest + 1e-6
 
 
-def test_a_picture_may_have_the_second_coordinates(maker: GltfMaker, tmp_path: Path) -> None:
+def test_a_picture_may_have_the_second_coordinates(maker, tmp_path):
     """The material says which set; any number."""
     first = maker.accessor(np.zeros((4, 2)))
     third = maker.accessor(UV)
@@ -94,9 +92,7 @@ def test_a_picture_may_have_the_second_coordinates(maker: GltfMaker, tmp_path: P
         ({"texCoord": 1}, UV[::-1]),
     ],
 )
-def test_texture_coordinates_are_transformed(
-    maker: GltfMaker, tmp_path: Path, placing: dict[str, Any], wanted: np.ndarray
-) -> None:
+def test_texture_coordinates_are_transformed(maker, tmp_path, placing, wanted):
     """KHR_texture_transform scales, turns and shifts them, and may name another set."""
     maker.parts["extensionsRequired"] = ["KHR_texture_transform"]
     info = {"extensions": {"KHR_texture_transform": placing}}
@@ -105,9 +101,7 @@ def test_texture_coordinates_are_transformed(
     assert np.allclose(found, (wanted * [1, -1] + [0, 1])[FACES], atol=1e-6)
 
 
-def test_pictures_go_on_beyond_their_edge_as_the_file_says(
-    maker: GltfMaker, tmp_path: Path
-) -> None:
+def test_pictures_go_on_beyond_their_edge_as_the_file_says(maker, tmp_path):
     """Clamped along u, mirrored along v."""
     sampler = maker.add("samplers", {"wrapS": 33071, "wrapT": 33648})
     texture = maker.picture(png(), sampler=sampler)
@@ -123,9 +117,7 @@ def test_pictures_go_on_beyond_their_edge_as_the_file_says(
     ("kind", "normalized", "scale"),
     [("i1", True, 127), ("i2", True, 32767), ("u2", False, 1), ("i2", False, 1), ("u1", False, 1)],
 )
-def test_positions_may_be_integers(
-    maker: GltfMaker, tmp_path: Path, kind: str, normalized: bool, scale: int
-) -> None:
+def test_positions_may_be_integers(maker, tmp_path, kind, normalized, scale):
     """KHR_mesh_quantization: a node brings them to their size; rows are padded to four bytes."""
     maker.parts["extensionsRequired"] = ["KHR_mesh_quantization"]
     width = int(kind[1])
@@ -137,9 +129,7 @@ def test_positions_may_be_integers(
 
 @pytest.mark.parametrize("width", [3, 4])
 @pytest.mark.parametrize(("kind", "greatest"), [("f4", 1), ("u1", 255), ("u2", 65535)])
-def test_colours_of_vertices_are_linear_light(
-    maker: GltfMaker, tmp_path: Path, kind: str, greatest: int, width: int
-) -> None:
+def test_colours_of_vertices_are_linear_light(maker, tmp_path, kind, greatest, width):
     """0.2 0.5 0.9 of light are 124 188 243 on a screen, in any kind of numbers."""
     rows = np.tile(np.array([0.2, 0.5, 0.9, 0.3])[:width] * greatest, (4, 1))
     rows = rows if greatest == 1 else np.rint(rows)
@@ -151,7 +141,7 @@ def test_colours_of_vertices_are_linear_light(
     assert np.abs(found.astype(int) - (124, 188, 243)).max() <= 1
 
 
-def test_materials_tint(maker: GltfMaker, tmp_path: Path) -> None:
+def test_materials_tint(maker, tmp_path):
     """Factors of light multiply colours and pictures; a picture without one is taken as it is."""
     texture = maker.picture(png((200, 200, 200)))
     half = material(maker, {"index": texture}, baseColorFactor=[0.5, 1.0, 0.0, 1.0])
@@ -173,7 +163,7 @@ def test_materials_tint(maker: GltfMaker, tmp_path: Path) -> None:
     assert found.colours[4].tolist() == [255] * 3
 
 
-def test_older_materials_have_a_picture(maker: GltfMaker, tmp_path: Path) -> None:
+def test_older_materials_have_a_picture(maker, tmp_path):
     """KHR_materials_pbrSpecularGlossiness calls it diffuse."""
     info = {"diffuseTexture": {"index": maker.picture(png(GREEN)), "texCoord": 1}}
     number = maker.add("materials", {"extensions": {"KHR_materials_pbrSpecularGlossiness": info}})
@@ -186,7 +176,7 @@ def test_older_materials_have_a_picture(maker: GltfMaker, tmp_path: Path) -> Non
     assert found.texture.pictures[0]()[0, 0].tolist() == list(GREEN)
 
 
-def test_webp_and_transparent_pictures_are_read(maker: GltfMaker, tmp_path: Path) -> None:
+def test_webp_and_transparent_pictures_are_read(maker, tmp_path):
     """A texture may have its picture by EXT_texture_webp alone; how transparent it is is left."""
     image = maker.add("images", {"bufferView": maker.view(png((*RED, 9), "WEBP"))})
     texture = maker.add("textures", {"extensions": {"EXT_texture_webp": {"source": image}}})
@@ -199,7 +189,7 @@ def test_webp_and_transparent_pictures_are_read(maker: GltfMaker, tmp_path: Path
     assert found.texture.pictures[0]().shape == (4, 4, 3)
 
 
-def test_nodes_place_meshes(maker: GltfMaker, tmp_path: Path) -> None:
+def test_nodes_place_meshes(maker, tmp_path):
     """Turned, scaled, shifted, by a matrix, one on the other; a mirrored one keeps its outside."""
     half = np.sqrt(0.5)
     square = maker.mesh(maker.primitive(SQUARE, FACES))
@@ -223,9 +213,7 @@ def test_nodes_place_meshes(maker: GltfMaker, tmp_path: Path) -> None:
         (6, [0, 1, 2, 3], FACES),
     ],
 )
-def test_triangles_may_be_strips_and_fans(
-    maker: GltfMaker, tmp_path: Path, mode: int | None, corners: list[int], wanted: Any
-) -> None:
+def test_triangles_may_be_strips_and_fans(maker, tmp_path, mode, corners, wanted):
     """In any kind of indices; lines and points are left away."""
     square = maker.primitive(SQUARE, None, **({} if mode is None else {"mode": mode}))
     square["indices"] = maker.accessor(corners, "u2")
@@ -234,14 +222,14 @@ def test_triangles_may_be_strips_and_fans(
     assert read(maker, tmp_path).faces.tolist() == np.asarray(wanted).tolist()
 
 
-def test_triangles_need_no_indices(maker: GltfMaker, tmp_path: Path) -> None:
+def test_triangles_need_no_indices(maker, tmp_path):
     """Three vertices each; those in one place are one."""
     maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE[FACES].reshape(-1, 3), None))})
     assert read(maker, tmp_path).faces.tolist() == [[0, 1, 2], [0, 2, 5]]
 
 
 @pytest.mark.parametrize("has_rows", [True, False])
-def test_sparse_rows_are_filled_in(maker: GltfMaker, tmp_path: Path, has_rows: bool) -> None:
+def test_sparse_rows_are_filled_in(maker, tmp_path, has_rows):
     """In place of some rows there are others; where there are none at all, of zeros."""
     filled = (
         SQUARE + np.array([0, 0, 3]) if has_rows else np.where([[0], [1], [0], [1]], SQUARE, 0.0)
@@ -265,7 +253,7 @@ def halves(shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("is_one_mesh", [True, False])
-def test_parts_of_a_mesh_hang_together(maker: GltfMaker, tmp_path: Path, is_one_mesh: bool) -> None:
+def test_parts_of_a_mesh_hang_together(maker, tmp_path, is_one_mesh):
     """Materials and seams double vertices of a mesh; lashes are a mesh of their own."""
     parts = [maker.primitive(half, [0, 1, 2]) for half in halves()]
     meshes = [maker.mesh(*parts)] if is_one_mesh else [maker.mesh(part) for part in parts]
@@ -276,7 +264,7 @@ def test_parts_of_a_mesh_hang_together(maker: GltfMaker, tmp_path: Path, is_one_
 
 
 @pytest.mark.parametrize("moved", ["shape", "bone", "nothing"])
-def test_vertices_that_move_apart_are_two(maker: GltfMaker, tmp_path: Path, moved: str) -> None:
+def test_vertices_that_move_apart_are_two(maker, tmp_path, moved):
     """Lips that touch lie in one place; a shape or a bone of the file parts them."""
     first, second = halves()
     joints = np.zeros((3, 4))
@@ -306,9 +294,7 @@ def test_vertices_that_move_apart_are_two(maker: GltfMaker, tmp_path: Path, move
 
 
 @pytest.mark.parametrize("where", ["mesh", "node"])
-def test_shapes_are_added_as_the_file_weighs_them(
-    maker: GltfMaker, tmp_path: Path, where: str
-) -> None:
+def test_shapes_are_added_as_the_file_weighs_them(maker, tmp_path, where):
     """A file may show a shape at rest."""
     target = {"POSITION": maker.accessor(np.tile([0.0, 0.0, 2.0], (4, 1)))}
     square = maker.primitive(SQUARE, FACES, targets=[target])
@@ -318,7 +304,7 @@ def test_shapes_are_added_as_the_file_weighs_them(
     assert np.allclose(shape_of(read(maker, tmp_path)), (SQUARE + np.array([0, 0, 1]))[FACES])
 
 
-def test_bones_bend_meshes(maker: GltfMaker, tmp_path: Path) -> None:
+def test_bones_bend_meshes(maker, tmp_path):
     """They, and not the node, bring its vertices to where the file shows them; with many bones."""
     bind = np.stack([np.eye(4), np.eye(4)])
     bind[1, :3, 3] = [-1, 0, 0]
@@ -361,9 +347,7 @@ def _draco_beside(maker: GltfMaker) -> None:
 
 
 @pytest.mark.parametrize("change", [_extras, _unknown, _draco_beside])
-def test_what_is_not_needed_is_left_alone(
-    maker: GltfMaker, tmp_path: Path, change: Callable[[GltfMaker], None]
-) -> None:
+def test_what_is_not_needed_is_left_alone(maker, tmp_path, change):
     """Extras of any kind, extensions that are not required, cameras."""
     maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE, FACES))})
     change(maker)
@@ -441,9 +425,7 @@ def _circle(maker: GltfMaker) -> None:
         (_circle, "broken, or not what its name says"),
     ],
 )
-def test_what_cannot_be_read_is_named(
-    maker: GltfMaker, tmp_path: Path, change: Callable[[GltfMaker], None], message: str
-) -> None:
+def test_what_cannot_be_read_is_named(maker, tmp_path, change, message):
     """One clear line each."""
     maker.shown({"mesh": maker.mesh(maker.primitive(SQUARE, FACES))})
     change(maker)
@@ -453,9 +435,7 @@ def test_what_cannot_be_read_is_named(
 
 
 @pytest.mark.parametrize("is_beside", [True, False])
-def test_a_document_may_have_its_data_beside_it(
-    maker: GltfMaker, tmp_path: Path, is_beside: bool
-) -> None:
+def test_a_document_may_have_its_data_beside_it(maker, tmp_path, is_beside):
     """A file .gltf with data and picture in files, or in text within it."""
     painted(maker, maker.accessor(UV))
     image = maker.parts["images"][0]
@@ -475,7 +455,7 @@ def test_a_document_may_have_its_data_beside_it(
     assert found.texture.pictures[0]()[0, 0].tolist() == list(RED)
 
 
-def test_pictures_of_a_kind_that_is_not_read_are_named(maker: GltfMaker, tmp_path: Path) -> None:
+def test_pictures_of_a_kind_that_is_not_read_are_named(maker, tmp_path):
     """And only when they are drawn: hair may have what the skin has not."""
     texture = maker.add("textures", {"extensions": {"KHR_texture_basisu": {"source": 0}}})
     number = material(maker, {"index": texture})
@@ -498,9 +478,7 @@ def test_pictures_of_a_kind_that_is_not_read_are_named(maker: GltfMaker, tmp_pat
         ({"bufferView": None, "uri": "../a.png"}, r"names the file '\.\./a\.png'; it must lie in"),
     ],
 )
-def test_pictures_that_cannot_be_read_are_named(
-    maker: GltfMaker, tmp_path: Path, change: dict[str, Any], message: str
-) -> None:
+def test_pictures_that_cannot_be_read_are_named(maker, tmp_path, change, message):
     """When they are drawn, in one line."""
     painted(maker, maker.accessor(UV))
     maker.parts["images"][0].update({"name": "face", **change})

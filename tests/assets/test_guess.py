@@ -1,7 +1,6 @@
 """The first guess of 68 landmarks: near the true ones, on the skin, and refused where senseless."""
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from risorius import assets
@@ -24,7 +23,7 @@ def errors(mesh: Mesh, true: Array) -> Array:
     return off
 
 
-def test_the_built_in_head_is_found_again() -> None:
+def test_the_built_in_head_is_found_again():
     """Of finer triangles, all of it lies where it was."""
     head = assets.load("head")
     fine = head.finer(1)
@@ -32,7 +31,7 @@ def test_the_built_in_head_is_found_again() -> None:
 
 
 @pytest.mark.parametrize("seed", range(1, 6))
-def test_other_persons_are_found(seed: int) -> None:
+def test_other_persons_are_found(seed):
     """Without the jaw line half of the points are within 3 mm, and none is 12 mm off."""
     person = make_person(sample_identity(seed))
     off = errors(Mesh(person.vertices, person.faces), person.vertices[person.landmarks])
@@ -42,7 +41,7 @@ def test_other_persons_are_found(seed: int) -> None:
 
 
 @pytest.mark.slow
-def test_unit_axes_and_other_pieces_do_not_matter() -> None:
+def test_unit_axes_and_other_pieces_do_not_matter():
     """In metres, z up, facing inward, with balls in its eyes: guessed on the skin, not on these."""
     other: Stranger = stranger()
     true = other.mesh.vertices[other.landmarks]
@@ -65,7 +64,7 @@ def test_unit_axes_and_other_pieces_do_not_matter() -> None:
 
 
 @pytest.mark.slow
-def test_more_points_make_it_better_and_stay() -> None:
+def test_more_points_make_it_better_and_stay():
     """What is placed by hand is left alone, and draws its neighbours along."""
     person = make_person(sample_identity(1))
     mesh = Mesh(person.vertices, person.faces)
@@ -86,7 +85,7 @@ def test_more_points_make_it_better_and_stay() -> None:
         (np.zeros(68, int), "one point"),
     ],
 )
-def test_points_of_no_face_are_refused(order: npt.NDArray[np.int64], words: str) -> None:
+def test_points_of_no_face_are_refused(order, words):
     """Landmarks in an unknown order are refused in one line."""
     head = assets.load("head")
     points = head.vertices[head.landmarks][order]
@@ -95,7 +94,7 @@ def test_points_of_no_face_are_refused(order: npt.NDArray[np.int64], words: str)
     assert "\n" not in str(raised.value)
 
 
-def test_a_mesh_is_brought_into_the_middle() -> None:
+def test_a_mesh_is_brought_into_the_middle():
     """In any unit, as large as is asked."""
     vertices = assets.load("head").vertices
     seen = centred(0.001 * vertices + 7.0, 140.0).points(0.001 * vertices + 7.0)

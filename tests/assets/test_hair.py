@@ -41,7 +41,7 @@ def hair_of(person: Person, name: str = HAIR) -> Part:
 
 
 @pytest.mark.parametrize("cut", CUTS)
-def test_hair_is_a_sound_part(cut: str) -> None:
+def test_hair_is_a_sound_part(cut):
     """Arrays fit each other, and triangles are seen from the side to which normals point."""
     for part in [each for each in haired(cut).parts if each.name in (HAIR, HAIR + "_tied")]:
         assert part.striation is not None
@@ -59,7 +59,7 @@ def test_hair_is_a_sound_part(cut: str) -> None:
 
 
 @pytest.mark.parametrize("cut", CUTS)
-def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut: str) -> None:
+def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut):
     """Where it is dense it is over the skin; none hangs before brows, eyes, nose and mouth."""
     person = haired(cut)
     part = hair_of(person)
@@ -82,7 +82,7 @@ def test_hair_stands_off_the_scalp_and_leaves_the_face_free(cut: str) -> None:
     assert not (is_before & (part.striation[:, 5] > 0.0)).any()
 
 
-def test_hair_is_as_long_and_begins_where_it_is_set() -> None:
+def test_hair_is_as_long_and_begins_where_it_is_set():
     """Longer hair reaches farther, receded hair begins farther back."""
     usual, longer, receded = (
         hair_of(haired("brushed", length=length, receded=by))
@@ -93,7 +93,7 @@ def test_hair_is_as_long_and_begins_where_it_is_set() -> None:
     assert receded.vertices[dense[1], 2].max() < usual.vertices[dense[0], 2].max() - 5.0
 
 
-def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below() -> None:
+def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below():
     """It hangs, clear of neck and shoulders."""
     person = haired("tailed")
     tail = hair_of(person, HAIR + "_tied").vertices
@@ -104,7 +104,7 @@ def test_a_tail_is_tied_behind_the_ears_and_touches_no_skin_below() -> None:
     assert cKDTree(person.vertices).query(low)[0].min() > 8.0
 
 
-def test_hair_keeps_its_colour_in_other_tones_of_skin() -> None:
+def test_hair_keeps_its_colour_in_other_tones_of_skin():
     """The scalp under it stays as it is where skin gets another tone; anew, hair follows it."""
     ada = person_called("ada")
     assert ada.in_tone is not None
@@ -128,7 +128,7 @@ def label_of(person: Person, size: int = 200) -> tuple[Any, Any]:
         return image, passes.draw(capture.camera, ("segmentation",))["segmentation"]
 
 
-def test_sparse_hair_is_called_what_is_behind_it() -> None:
+def test_sparse_hair_is_called_what_is_behind_it():
     """Where fewer than half of its strands are, as at its tips."""
     long = haired("parted")
     few = np.float32([1.0, 1.0, 1.0, 1.0, 1.0, 0.2])
@@ -140,7 +140,7 @@ def test_sparse_hair_is_called_what_is_behind_it() -> None:
     assert 0 < found[1].sum() < 0.6 * found[0].sum()
 
 
-def test_hair_is_seen_framed_and_labelled() -> None:
+def test_hair_is_seen_framed_and_labelled():
     """It is in the picture as a whole, has its class, and is away over muscles and on clay."""
     scene = FaceScene(person_called("ada"))
     assert scene.fade is None  # the shirt covers the end of the neck

@@ -19,7 +19,6 @@ from risorius.assets.identities import (
 )
 from risorius.assets.identities.space import person_space, scores_of
 from risorius.assets.intersections import self_intersections
-from risorius.assets.model import Head
 from risorius.assets.norms import NORMS, measures_of
 from risorius.bench.gaps import eyeballs_of, lid_gaps, widest_slit
 from tests.assets.checks import mirror_error
@@ -37,7 +36,7 @@ def person(request: pytest.FixtureRequest) -> Person:
 
 @given(SEEDS)
 @settings(max_examples=4, deadline=None)
-def test_a_number_is_one_person(seed: int) -> None:
+def test_a_number_is_one_person(seed):
     """The same number gives the same bytes; nobody is beyond the deviations that are allowed."""
     first = sample_identity(seed)
     second = sample_identity(seed)
@@ -53,7 +52,7 @@ def test_a_number_is_one_person(seed: int) -> None:
 
 @given(SEEDS)
 @settings(max_examples=4, deadline=None)
-def test_an_even_face_is_its_own_mirror_image(seed: int) -> None:
+def test_an_even_face_is_its_own_mirror_image(seed):
     """Within rounding; an uneven one is so within some millimetres, but not exactly."""
     even = make_person(sample_identity(seed, is_even=True))
     assert mirror_error(even.vertices, even.mirror) < 1e-6
@@ -62,7 +61,7 @@ def test_an_even_face_is_its_own_mirror_image(seed: int) -> None:
     assert 0.1 < mirror_error(uneven.vertices, uneven.mirror) < 8.0
 
 
-def test_persons_are_spread_as_published() -> None:
+def test_persons_are_spread_as_published():
     """Of 400: both sexes lie apart as published, nearly, and long faces have long noses."""
     space = person_space()
     everyone = [sample_identity(seed) for seed in range(400)]
@@ -85,7 +84,7 @@ def test_persons_are_spread_as_published() -> None:
         assert means[Sex.MAN][code] - means[Sex.WOMAN][code] > 0.4 * published, code
 
 
-def test_nine_of_ten_parts_of_what_differs_need_eight_ways() -> None:
+def test_nine_of_ten_parts_of_what_differs_need_eight_ways():
     """People are not three or four types: principal components of a hundred faces."""
     space = person_space()
     x = np.array([space.moved(np.array(sample_identity(k).weights)) for k in range(100)])
@@ -95,7 +94,7 @@ def test_nine_of_ten_parts_of_what_differs_need_eight_ways() -> None:
     assert (np.cumsum(shares) / shares.sum() < 0.9).sum() + 1 >= 8
 
 
-def test_age_is_seen() -> None:
+def test_age_is_seen():
     """Lips get thinner, and their skin longer; furrows show at rest."""
     young, old = (make_person(sample_identity(4, age=age)) for age in (25.0, 70.0))
     assert old.measures["ls-sto"] < young.measures["ls-sto"] - 0.5
@@ -103,7 +102,7 @@ def test_age_is_seen() -> None:
     assert young.wrinkles.resting.max() == 0.0 < old.wrinkles.resting.max() < 1.0
 
 
-def test_upper_lids_cover_a_part_of_the_iris() -> None:
+def test_upper_lids_cover_a_part_of_the_iris():
     """By half a millimetre to three, while the lower ones touch it: nobody stares."""
     for seed in range(8):
         person = make_person(sample_identity(seed))
@@ -115,7 +114,7 @@ def test_upper_lids_cover_a_part_of_the_iris() -> None:
 
 
 @pytest.mark.slow
-def test_named_persons_are_different_people(head: Head) -> None:
+def test_named_persons_are_different_people(head):
     """Of both sexes, in tones and ages far apart, and none has the built-in head's face."""
     people = [person_called(name) for name in NAMED]
     assert tuple(NAMED) == PERSON_NAMES
@@ -128,7 +127,7 @@ def test_named_persons_are_different_people(head: Head) -> None:
             assert (each.albedo.astype(int) - other.albedo).std() > 5.0
 
 
-def test_person_is_a_sound_head(person: Person, head: Head) -> None:
+def test_person_is_a_sound_head(person, head):
     """Nothing is turned or pierces itself; eyes and mouth are open to what fitting asks."""
     check_manifold(person.faces)
     check_openings(
@@ -153,9 +152,7 @@ def test_person_is_a_sound_head(person: Person, head: Head) -> None:
             np.testing.assert_allclose(now, before, rtol=1e-9)
 
 
-def test_expressions_work_on_persons(
-    person: Person, head: Head, request: pytest.FixtureRequest
-) -> None:
+def test_expressions_work_on_persons(person, head, request):
     """At rest it stays at rest, with lips that meet; it laughs, and shuts its eyes."""
     simulation = sim.create(person)
     usual = sim.create(head)
@@ -182,7 +179,7 @@ def test_expressions_work_on_persons(
         assert max(lid_gaps(*shown).values()) < 0.3
 
 
-def test_person_is_a_scene(person: Person, head: Head) -> None:
+def test_person_is_a_scene(person, head):
     """A scene takes it as any head, with light of its own at once: that of the built-in head."""
     scene = FaceScene(person)
     assert scene.ambient_occlusion is person.ambient_occlusion

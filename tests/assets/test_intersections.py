@@ -5,7 +5,7 @@ import numpy as np
 from risorius.assets.intersections import self_intersections
 
 
-def test_large_and_small_triangles_are_compared() -> None:
+def test_large_and_small_triangles_are_compared():
     """Candidates are sought by classes of size; every crossing of a seeded heap is found."""
     random = np.random.default_rng(5)
     sizes = np.exp(random.uniform(-2.0, 2.5, 50))

@@ -1,7 +1,5 @@
 """Landmarks that are not in their order are refused by name; right ones, however rough, are not."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,7 +10,6 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import fit, fit_head
 from risorius.assets.fitting.landmark_file import (
     GROUPS,
-    Group,
     groups_in_disorder,
     landmarks_text,
     read_landmarks,
@@ -33,7 +30,7 @@ def other() -> Stranger:
 
 @settings(deadline=None, max_examples=60)
 @given(seed=st.integers(0, 2**32 - 1), stretch=st.tuples(*[st.floats(0.85, 1.15)] * 3))
-def test_right_landmarks_are_taken(seed: int, stretch: tuple[float, float, float]) -> None:
+def test_right_landmarks_are_taken(seed, stretch):
     """Of another head, stretched, and each up to 2 mm beside its place."""
     random = np.random.default_rng(seed)
     away = random.normal(size=(68, 3))
@@ -44,7 +41,7 @@ def test_right_landmarks_are_taken(seed: int, stretch: tuple[float, float, float
 @pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
 @settings(deadline=None, max_examples=10)
 @given(data=st.data())
-def test_a_group_in_another_order_is_named(group: Group, data: st.DataObject) -> None:
+def test_a_group_in_another_order_is_named(group, data):
     """Reversed, shifted, or both; wherever the group lies."""
     own = np.arange(group.first, group.first + group.count)
     orders = [np.roll(own[::way], by) for way in (1, -1) for by in range(group.count)]
@@ -61,7 +58,7 @@ def _moves(own: np.ndarray, order: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("group", GROUPS, ids=lambda group: group.name)
-def test_a_group_in_disorder_is_refused_in_one_line(group: Group, other: Stranger) -> None:
+def test_a_group_in_disorder_is_refused_in_one_line(group, other):
     """Reversed, or right and left swapped: the line has its numbers and the order that is right."""
     numbers = other.landmarks.copy()
     own = slice(group.first, group.first + group.count)
@@ -71,14 +68,14 @@ def test_a_group_in_disorder_is_refused_in_one_line(group: Group, other: Strange
         fit(other.mesh, numbers)
 
 
-def test_numbers_counted_from_1_are_refused(other: Stranger, tmp_path: Path) -> None:
+def test_numbers_counted_from_1_are_refused(other, tmp_path):
     """Each is the vertex behind the one that is meant."""
     mesh, numbers = other.write(tmp_path, landmarks=other.landmarks + 1)
     with pytest.raises(AssetError, match=r"\.obj: landmarks count vertices from 1"):
         fit_head(mesh, numbers)
 
 
-def test_a_point_on_a_lash_means_the_skin_beneath(other: Stranger, tmp_path: Path) -> None:
+def test_a_point_on_a_lash_means_the_skin_beneath(other, tmp_path):
     """The mesh may have lashes and eyeballs of its own, on which one clicks beside the eye."""
     points = other.mesh.vertices[other.landmarks]
     count = len(other.mesh.vertices)
@@ -92,7 +89,7 @@ def test_a_point_on_a_lash_means_the_skin_beneath(other: Stranger, tmp_path: Pat
 
 
 @pytest.mark.parametrize("by", [1, -1, 5])
-def test_a_list_that_begins_elsewhere_is_refused(by: int, other: Stranger) -> None:
+def test_a_list_that_begins_elsewhere_is_refused(by, other):
     """Nothing is in its place then."""
     with pytest.raises(AssetError, match="landmark"):
         fit(other.mesh, np.roll(other.landmarks, by))

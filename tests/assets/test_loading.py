@@ -5,7 +5,6 @@ import subprocess
 import sys
 import zlib
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,13 +19,13 @@ from tests.tracked import tracked
 MOST_DATA = 3_600_000  # bytes of all data files together; a quarter of it is the painted skin
 
 
-def test_unknown_name_is_refused_with_the_known_ones() -> None:
+def test_unknown_name_is_refused_with_the_known_ones():
     """A typing error is answered with what there is."""
     with pytest.raises(AssetError, match=r"'haed'; available: head, plane"):
         assets.load("haed")
 
 
-def test_plane_is_that_of_the_paper() -> None:
+def test_plane_is_that_of_the_paper():
     """Figure 9: 7 x 11 cells, 154 triangles, flat, all facing the viewer."""
     plane = assets.load("plane")
     corner = plane.vertices[plane.faces]
@@ -37,7 +36,7 @@ def test_plane_is_that_of_the_paper() -> None:
     assert np.allclose(cross, [0.0, 0.0, 100.0])
 
 
-def test_types_and_shapes_are_those_of_the_docstrings() -> None:
+def test_types_and_shapes_are_those_of_the_docstrings():
     """Other packages rely on dtypes without looking."""
     head = assets.load("head")
     count = len(head.vertices)
@@ -57,7 +56,7 @@ def test_types_and_shapes_are_those_of_the_docstrings() -> None:
     assert len(head.layers) == 4
 
 
-def test_arrays_cannot_be_written() -> None:
+def test_arrays_cannot_be_written():
     """Two users of the head must not disturb each other."""
     head = assets.load("head")
     with pytest.raises(ValueError, match="read-only"):
@@ -81,9 +80,7 @@ ASKED: dict[str, Callable[[Head], object]] = {
 
 
 @pytest.mark.parametrize("name", ASKED)
-def test_missing_and_broken_files_are_reported_when_they_are_needed(
-    name: str, tmp_path: Path
-) -> None:
+def test_missing_and_broken_files_are_reported_when_they_are_needed(name, tmp_path):
     """The cure is in the message; neither garbage nor half a file is a traceback of a library."""
     folder = shutil.copytree(HEAD_FILE.parent, tmp_path / "data", symlinks=True)
     whole = (folder / name).read_bytes()
@@ -98,7 +95,7 @@ def test_missing_and_broken_files_are_reported_when_they_are_needed(
         ASKED[name](load_head(folder / "head.npz"))
 
 
-def test_files_are_made_from_this_head() -> None:
+def test_files_are_made_from_this_head():
     """What is laid over a head was made from its mesh."""
     head = assets.load("head")
     own = zlib.crc32(head.faces.tobytes(), zlib.crc32(head.vertices.tobytes()))
@@ -107,7 +104,7 @@ def test_files_are_made_from_this_head() -> None:
     assert len(found) > 4
 
 
-def test_broken_text_files_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_broken_text_files_are_reported(tmp_path, monkeypatch):
     """A broken rig is an error that names the file."""
     broken = tmp_path / "rig.toml"
     broken.write_text("[muscle\n", encoding="utf-8")
@@ -116,7 +113,7 @@ def test_broken_text_files_are_reported(tmp_path: Path, monkeypatch: pytest.Monk
         load_head()
 
 
-def test_layers_arrive_as_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_layers_arrive_as_written(tmp_path, monkeypatch):
     """A table of expressions keeps its rows, and knows its file for error texts."""
     file = tmp_path / "expressions.toml"
     file.write_text("[smile]\nzygomaticus_major_left = 0.8\n", encoding="utf-8")
@@ -128,12 +125,12 @@ def test_layers_arrive_as_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     ]
 
 
-def test_data_stay_small() -> None:
+def test_data_stay_small():
     """The package must stay light."""
     assert sum(file.stat().st_size for file in tracked("assets/data")) < MOST_DATA
 
 
-def test_loading_is_light() -> None:
+def test_loading_is_light():
     """It needs neither SciPy, as fits and persons do, nor a picture: `load` must stay fast."""
     code = (
         "import sys; from risorius import assets; assets.load('head');"

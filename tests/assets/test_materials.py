@@ -66,9 +66,7 @@ def colour_of(mesh: Mesh) -> tuple[int, ...]:
         ("newmtl skin\nmap_Kd -o 0 0 -imfchan m 2.png", "2.png"),
     ],
 )
-def test_libraries_are_read_as_programs_write_them(
-    tmp_path: Path, library: str, picture: str
-) -> None:
+def test_libraries_are_read_as_programs_write_them(tmp_path, library, picture):
     """Tabs, blanks, ends of lines, names with blanks, quotes, folders, options."""
     mesh = read(tmp_path, "skin", library, picture=picture)
     assert colour_of(mesh) == RED
@@ -86,7 +84,7 @@ def test_libraries_are_read_as_programs_write_them(
         ("-clamp on -s 2 2 2", (UV * 2).clip(0, 1)),
     ],
 )
-def test_options_say_how_a_picture_lies(tmp_path: Path, options: str, wanted: np.ndarray) -> None:
+def test_options_say_how_a_picture_lies(tmp_path, options, wanted):
     """They are scaled first, and then shifted."""
     mesh = read(tmp_path, "skin", f"newmtl skin\nmap_Kd {options} skin.png\n")
     assert colour_of(mesh) == RED
@@ -104,7 +102,7 @@ def test_options_say_how_a_picture_lies(tmp_path: Path, options: str, wanted: np
         ("maps\\..\\a.mtl", "a.mtl"),
     ],
 )
-def test_lines_name_libraries(tmp_path: Path, line: str, file: str) -> None:
+def test_lines_name_libraries(tmp_path, line, file):
     """One whose name has blanks, or several; a remark may follow."""
     (tmp_path / "maps").mkdir()
     mesh = read(tmp_path, "skin", "newmtl skin\nmap_Kd skin.png\n", library=line, file=file)
@@ -112,14 +110,14 @@ def test_lines_name_libraries(tmp_path: Path, line: str, file: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["Material__25", "Material #25", "01 -  Default#1", "my\tskin"])
-def test_materials_may_have_any_names(tmp_path: Path, name: str) -> None:
+def test_materials_may_have_any_names(tmp_path, name):
     """With blanks and number signs; a remark may follow in the OBJ file."""
     library = f"newmtl Material\nmap_Kd other.png\nnewmtl {name}\nmap_Kd skin.png\n"
     assert colour_of(read(tmp_path, name, library)) == RED
     assert colour_of(read(tmp_path, name, library, material=f"{name} # of the face")) == RED
 
 
-def test_pictures_may_lie_otherwise_each(tmp_path: Path) -> None:
+def test_pictures_may_lie_otherwise_each(tmp_path):
     """Two materials of one picture, one of them shifted, and a triangle of none."""
     path = tmp_path / "a.obj"
     obj = OBJ.format(library="a.mtl", material="b") + "usemtl a\nf 1/1 2/2 3/3\nf 1 2 3\n"
@@ -165,7 +163,7 @@ def _palette() -> PIL.Image.Image:
         (_saved(PIL.Image.new("RGB", (16, 16), (77, 77, 77)), "WEBP"), (77, 77, 77)),
     ],
 )
-def test_pictures_of_every_kind_keep_their_colours(content: bytes, wanted: tuple[int, ...]) -> None:
+def test_pictures_of_every_kind_keep_their_colours(content, wanted):
     """Grey of 16 bits, palettes, ink, and how transparent they are."""
     found = decoded(content, "skin")
     assert found.dtype == np.uint8
@@ -173,7 +171,7 @@ def test_pictures_of_every_kind_keep_their_colours(content: bytes, wanted: tuple
     assert np.abs(found[1, 1].astype(int) - wanted).max() <= 3
 
 
-def test_colours_of_16_bits_keep_their_higher_bits() -> None:
+def test_colours_of_16_bits_keep_their_higher_bits():
     """A PNG file of red, green and blue of 16 bits each."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
@@ -187,7 +185,7 @@ def test_colours_of_16_bits_keep_their_higher_bits() -> None:
     assert decoded(content, "skin")[1, 1].tolist() == list(RED)
 
 
-def test_other_formats_are_named() -> None:
+def test_other_formats_are_named():
     """One line says which are read."""
     content = _saved(PIL.Image.new("RGB", (4, 4)), "BMP")
     with pytest.raises(AssetError, match=r"its picture skin\.bmp: .* neither PNG, JPEG nor WebP"):

@@ -16,20 +16,20 @@ from tests.assets import checks
 TUCKED_ROWS = ("eye_0", "eye_1", "mouth_0", "mouth_1", "mouth_2", "nostril")
 
 
-def test_triangle_count_is_that_of_the_paper(head: Head) -> None:
+def test_triangle_count_is_that_of_the_paper(head):
     """Table 1: 2030 triangles; every vertex is used."""
     assert len(head.faces) == 2030
     assert np.array_equal(np.unique(head.faces), np.arange(len(head.vertices)))
 
 
-def test_skin_is_one_manifold_piece(head: Head) -> None:
+def test_skin_is_one_manifold_piece(head):
     """One piece, consistently oriented, Euler characteristic of a sphere with four holes."""
     assert checks.is_manifold(head.faces)
     assert checks.component_count(head.faces) == 1
     assert checks.euler_characteristic(head.vertices, head.faces) == 2 - 4
 
 
-def test_boundary_loops_are_rim_mouth_and_eyes(head: Head) -> None:
+def test_boundary_loops_are_rim_mouth_and_eyes(head):
     """Four loops, and they are the rows that carry these names."""
     loops = [set(loop) for loop in boundary_loops(head.faces)]
     assert len(loops) == 4
@@ -40,19 +40,19 @@ def test_boundary_loops_are_rim_mouth_and_eyes(head: Head) -> None:
         assert set(head.rings[f"eye_0_{side}"].tolist()) in loops
 
 
-def test_mesh_is_its_own_mirror_image(head: Head) -> None:
+def test_mesh_is_its_own_mirror_image(head):
     """To the last bit, vertices and faces; the mirror map is its own inverse."""
     assert checks.mirror_error(head.vertices, head.mirror) == 0.0
     assert checks.is_mirrored(head.faces, head.mirror)
     assert np.array_equal(head.mirror[head.mirror], np.arange(len(head.vertices)))
 
 
-def test_mesh_does_not_cut_itself(head: Head) -> None:
+def test_mesh_does_not_cut_itself(head):
     """Lips are closed and lids are folded, yet no two faces intersect."""
     assert len(self_intersections(head.vertices, head.faces)) == 0
 
 
-def test_triangles_are_well_shaped(head: Head) -> None:
+def test_triangles_are_well_shaped(head):
     """No slivers: the simulation's step length and the shading depend on it."""
     corners = head.vertices[head.faces]
     angle = np.degrees(trimesh.triangles.angles(corners)).min(axis=1)
@@ -62,7 +62,7 @@ def test_triangles_are_well_shaped(head: Head) -> None:
     assert angle.mean() > 37.0
 
 
-def test_lips_are_closed_but_not_welded(head: Head) -> None:
+def test_lips_are_closed_but_not_welded(head):
     """Upper and lower lip nearly touch, and remain different vertices at least 0.3 mm apart."""
     row = head.rings["mouth_2_left"]
     columns = len(row) // 2
@@ -74,7 +74,7 @@ def test_lips_are_closed_but_not_welded(head: Head) -> None:
     assert np.array_equal(upper[:, 0], lower[:, 0])
 
 
-def test_edges_follow_the_nasolabial_fold(head: Head) -> None:
+def test_edges_follow_the_nasolabial_fold(head):
     """A chain of mesh edges runs from the wing of the nose past the corner of the mouth.
 
     There a smile creases the skin.
@@ -93,7 +93,7 @@ def test_edges_follow_the_nasolabial_fold(head: Head) -> None:
         assert points[-1, 1] < corner[1] - 8.0
 
 
-def test_outline_of_the_crown_is_smooth(head: Head) -> None:
+def test_outline_of_the_crown_is_smooth(head):
     """From no side does one see long edges on the upper half of the skull."""
     edges = np.vstack([head.faces[:, [0, 1]], head.faces[:, [1, 2]], head.faces[:, [2, 0]]])
     ends = head.vertices[edges]
@@ -103,7 +103,7 @@ def test_outline_of_the_crown_is_smooth(head: Head) -> None:
     assert length[on_crown].max() < 34.5
 
 
-def test_head_is_closed_behind(head: Head) -> None:
+def test_head_is_closed_behind(head):
     """The one free border is the collar."""
     rim = head.vertices[head.rings["rim_left"]]
     assert rim[:, 1].max() < -130.0
@@ -111,7 +111,7 @@ def test_head_is_closed_behind(head: Head) -> None:
     assert rim[0, 2] < 0.0 < rim[-1, 2]
 
 
-def test_no_face_is_inside_out(head: Head) -> None:
+def test_no_face_is_inside_out(head):
     """Outside of the tucked-in rows every face looks about the way its corners do."""
     tucked = {
         vertex
@@ -136,7 +136,7 @@ def ear_faces(head: Head) -> npt.NDArray[np.bool_]:
     return np.asarray(np.isin(head.faces, np.concatenate(on_ears)).any(axis=1))
 
 
-def test_ears_have_their_size_and_place(head: Head) -> None:
+def test_ears_have_their_size_and_place(head):
     """59 by 32 mm, from below the brow to the base of the nose, leaning back, off the head."""
     edge = head.vertices[head.rings["ear_1_left"]]
     high = edge[edge[:, 1].argmax()]
@@ -157,7 +157,7 @@ def test_ears_have_their_size_and_place(head: Head) -> None:
     assert head.mandible_weight[head.rings["ear_1_left"]].max() == 0.0
 
 
-def test_ear_looks_outward_in_front_and_toward_the_head_behind(head: Head) -> None:
+def test_ear_looks_outward_in_front_and_toward_the_head_behind(head):
     """Neither side is turned over: from the side one sees helix, scapha and concha."""
     rows = [set(head.rings[f"ear_{row}_left"].tolist()) for row in range(5)]
     root = rows[0]
@@ -185,7 +185,7 @@ def _nostril_faces(head: Head) -> npt.NDArray[np.bool_]:
     return np.asarray(near[head.faces].all(axis=1))
 
 
-def test_holes_that_meet_in_a_vertex_have_loops() -> None:
+def test_holes_that_meet_in_a_vertex_have_loops():
     """Two triangles at a vertex; five by five vertices without two squares at the middle one."""
     touching = np.array([[0, 1, 2], [0, 3, 4]], dtype=np.int32)
     assert boundary_loops(touching) == [[0, 1, 2], [0, 3, 4]]
@@ -196,7 +196,7 @@ def test_holes_that_meet_in_a_vertex_have_loops() -> None:
     assert inner == [6, 11, 12, 17, 18, 13, 12, 7]
 
 
-def test_checks_find_faults() -> None:
+def test_checks_find_faults():
     """A check that cannot fail protects nobody."""
     points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1.5, 0.5]])
     crossing = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32)

@@ -2,7 +2,6 @@
 
 import struct
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ f 4 6 3
 """
 
 
-def test_order_and_doubles_are_kept(tmp_path: Path) -> None:
+def test_order_and_doubles_are_kept(tmp_path):
     """Vertex numbers mean the same in the file and in the array."""
     path = tmp_path / "mesh.obj"
     path.write_text(OBJ)
@@ -33,7 +32,7 @@ def test_order_and_doubles_are_kept(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["ply", "off", "glb"])
-def test_other_formats(tmp_path: Path, suffix: str) -> None:
+def test_other_formats(tmp_path, suffix):
     """What trimesh writes comes back with as many vertices and triangles."""
     path = tmp_path / f"ball.{suffix}"
     ball = trimesh.creation.icosphere(subdivisions=1)
@@ -44,7 +43,7 @@ def test_other_formats(tmp_path: Path, suffix: str) -> None:
 
 
 @pytest.mark.parametrize("names", ["s t", "u v", "texture_u texture_v", "texcoord"])
-def test_a_ply_file_may_have_texture_coordinates(tmp_path: Path, names: str) -> None:
+def test_a_ply_file_may_have_texture_coordinates(tmp_path, names):
     """Under any of their names, or at the corners of each face: the mesh is read as it stands."""
     first, *second = names.split()
     at_vertices = f"property float {first}\nproperty float {second[0]}\n" if second else ""
@@ -64,14 +63,14 @@ def test_a_ply_file_may_have_texture_coordinates(tmp_path: Path, names: str) -> 
     assert len(mesh.vertices) == 4
 
 
-def test_polygons_become_triangles(tmp_path: Path) -> None:
+def test_polygons_become_triangles(tmp_path):
     """A quadrilateral is two triangles."""
     path = tmp_path / "quad.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
     assert assets.read_mesh(path).faces.shape == (2, 3)
 
 
-def test_seams_and_materials_keep_vertices_together(tmp_path: Path) -> None:
+def test_seams_and_materials_keep_vertices_together(tmp_path):
     """Two materials and a seam of the texture cut nothing: a vertex keeps its number."""
     path = tmp_path / "seam.obj"
     path.write_text(
@@ -83,7 +82,7 @@ def test_seams_and_materials_keep_vertices_together(tmp_path: Path) -> None:
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
 
 
-def test_corners_of_stl_become_vertices(tmp_path: Path) -> None:
+def test_corners_of_stl_become_vertices(tmp_path):
     """STL repeats each corner; what lies in one place is one vertex, in the order of the file."""
     path = tmp_path / "ball.stl"
     ball = trimesh.creation.icosphere(subdivisions=1)
@@ -136,9 +135,7 @@ FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("lists", [HOUSE, [[0, 1, 2, 3], [2, 4, 3]], [[0, 1, 2, 4, 3]]])
-def test_polygons_of_ply_may_be_of_any_sizes(
-    tmp_path: Path, form: str, lists: list[list[int]]
-) -> None:
+def test_polygons_of_ply_may_be_of_any_sizes(tmp_path, form, lists):
     """Each becomes a fan, in the order of the file."""
     path = tmp_path / "house.ply"
     path.write_bytes(ply(form, lists))
@@ -150,7 +147,7 @@ def test_polygons_of_ply_may_be_of_any_sizes(
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_ply_files_may_hold_strips(tmp_path: Path, form: str) -> None:
+def test_ply_files_may_hold_strips(tmp_path, form):
     """Strips of triangles end at -1; each other triangle of one runs the other way."""
     path = tmp_path / "strips.ply"
     path.write_bytes(ply(form, [[1, 2, 0, 3, -1, 2, 4, 3], [3, 3, 0, 1]], "tristrips"))
@@ -171,9 +168,7 @@ def test_ply_files_may_hold_strips(tmp_path: Path, form: str) -> None:
         ("int", (250, 125, 1), "red green blue"),
     ],
 )
-def test_colours_of_ply_may_be_of_any_kind(
-    tmp_path: Path, form: str, colour_kind: str, row: tuple[float, ...], names: str
-) -> None:
+def test_colours_of_ply_may_be_of_any_kind(tmp_path, form, colour_kind, row, names):
     """Integers of 8 or 16 bits, or shares; by the names that programs write."""
     path = tmp_path / "house.ply"
     colours = {"colours": [row] * 5, "colour_kind": colour_kind, "names": names}
@@ -186,7 +181,7 @@ def test_colours_of_ply_may_be_of_any_kind(
 
 
 @pytest.mark.parametrize("end", ["\r\n", " \r\n", "\n"])
-def test_lines_may_end_anyhow(tmp_path: Path, end: str) -> None:
+def test_lines_may_end_anyhow(tmp_path, end):
     """Of PLY as text, of the header of PLY in bytes, and of OBJ, joined by a backslash or not."""
     text = ply("ascii", HOUSE)
     head, body = ply("binary_little_endian", HOUSE).split(b"end_header\n")

@@ -38,7 +38,7 @@ def page() -> str:
     return (Path(__file__).parents[2] / "docs" / "head.md").read_text(encoding="utf-8")
 
 
-def test_head_is_usual_in_every_measure_with_a_norm(measures: dict[str, float]) -> None:
+def test_head_is_usual_in_every_measure_with_a_norm(measures):
     """Within two deviations of the mean of women and of men: so it was when the norms came in."""
     for code, norm in NORMS.items():
         for sample in (norm.women, norm.men):
@@ -46,7 +46,7 @@ def test_head_is_usual_in_every_measure_with_a_norm(measures: dict[str, float]) 
     assert 9.0 < measures["ps-pi"] < 12.0  # the eyes are open
 
 
-def test_head_is_near_the_middle_on_the_whole(measures: dict[str, float]) -> None:
+def test_head_is_near_the_middle_on_the_whole(measures):
     """Usual in each measure is not enough: between the sexes the scores must not pile up."""
     scores = [
         0.5 * (norm.women.score(measures[code]) + norm.men.score(measures[code]))
@@ -56,7 +56,7 @@ def test_head_is_near_the_middle_on_the_whole(measures: dict[str, float]) -> Non
     assert float(np.sqrt(np.mean(np.square(scores)))) < 1.0
 
 
-def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head: Head, page: str) -> None:
+def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head, page):
     """The aesthetic line of Ricketts; lips of three scanned persons lie -4 to 9 mm behind it."""
     middle = head.vertices[head.vertices[:, 0] == 0.0]
     tip, chin, seam = (
@@ -72,7 +72,7 @@ def test_lips_lie_a_little_behind_the_line_from_nose_to_chin(head: Head, page: s
     assert f"{upper:.1f} and {lower:.1f} mm behind the line" in page
 
 
-def test_norms_are_plausible_figures() -> None:
+def test_norms_are_plausible_figures():
     """Against slips of the pen: deviations of 4 to 25 %, men larger."""
     for code, norm in NORMS.items():
         assert norm.men.mean > norm.women.mean, code
@@ -80,7 +80,7 @@ def test_norms_are_plausible_figures() -> None:
             assert 0.03 < sample.deviation / sample.mean < 0.25, code
 
 
-def test_the_page_shows_the_measures_and_the_norms(measures: dict[str, float], page: str) -> None:
+def test_the_page_shows_the_measures_and_the_norms(measures, page):
     """All of them, with scores where there is a norm."""
     for code, value in measures.items():
         row = f", {code} | {value:.1f} |"
@@ -90,7 +90,7 @@ def test_the_page_shows_the_measures_and_the_norms(measures: dict[str, float], p
         assert row in page
 
 
-def test_bone_lies_as_deep_as_was_published(head: Head, page: str) -> None:
+def test_bone_lies_as_deep_as_was_published(head, page):
     """Within two deviations wherever a figure could be read; every figure is on the page."""
     for name, (sample, source) in DEPTHS.items():
         depth = float(head.bone_depth[head.anatomy[name]])

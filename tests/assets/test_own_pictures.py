@@ -2,7 +2,6 @@
 
 import io
 import json
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -85,9 +84,7 @@ def _colours(head: FittedHead) -> np.ndarray:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("write", [_write_obj, _write_glb])
-def test_own_picture_lies_where_the_file_has_it(
-    write: Callable[[Path, Stranger], tuple[Path, Path]], other: Stranger, tmp_path: Path
-) -> None:
+def test_own_picture_lies_where_the_file_has_it(write, other, tmp_path):
     """Each triangle has the colour of its place; the form is one piece across the seam."""
     files = write(tmp_path, other)
     _striped().save(tmp_path / "skin.png")
@@ -105,7 +102,7 @@ def test_own_picture_lies_where_the_file_has_it(
 
 
 @pytest.mark.slow
-def test_maps_go_along_to_the_own_layout(other: Stranger, tmp_path: Path) -> None:
+def test_maps_go_along_to_the_own_layout(other, tmp_path):
     """Lips are lips and furrows furrows wherever the mesh's texture coordinates lie."""
     files = _write_obj(tmp_path, other)
     _striped().save(tmp_path / "skin.png")
@@ -124,7 +121,7 @@ def test_maps_go_along_to_the_own_layout(other: Stranger, tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-def test_maps_turn_with_the_layout() -> None:
+def test_maps_turn_with_the_layout():
     """In a layout turned by a quarter and half as large, slopes are turned and doubled."""
     head = assets.load("head")
     smooth = ndimage.gaussian_filter(head.wrinkles.map.astype(np.float64), (12.0, 12.0, 0.0))
@@ -151,7 +148,7 @@ def test_maps_turn_with_the_layout() -> None:
 
 
 @pytest.mark.slow
-def test_vertex_colours_are_drawn(other: Stranger, tmp_path: Path) -> None:
+def test_vertex_colours_are_drawn(other, tmp_path):
     """A PLY file with red on the right half and blue on the left."""
     is_left = other.mesh.vertices[:, 0] > np.median(other.mesh.vertices[:, 0])
     colours = np.where(is_left[:, None], (20, 20, 220), (220, 20, 20)).astype(np.uint8)
@@ -179,9 +176,7 @@ def test_vertex_colours_are_drawn(other: Stranger, tmp_path: Path) -> None:
         (r"C:\skin.png", None, "it must lie in the mesh's folder"),
     ],
 )
-def test_pictures_that_cannot_be_used_are_refused(
-    name: str, content: bytes | None, message: str, other: Stranger, tmp_path: Path
-) -> None:
+def test_pictures_that_cannot_be_used_are_refused(name, content, message, other, tmp_path):
     """Broken, missing, or out of the folder: one line each."""
     files = _write_obj(tmp_path, other, name)
     if content is not None:
@@ -191,7 +186,7 @@ def test_pictures_that_cannot_be_used_are_refused(
     assert "\n" not in str(raised.value)
 
 
-def test_a_link_out_of_the_folder_is_refused(other: Stranger, tmp_path: Path) -> None:
+def test_a_link_out_of_the_folder_is_refused(other, tmp_path):
     """What a name leads to counts, not how it looks."""
     folder = tmp_path / "inside"
     folder.mkdir()
@@ -201,7 +196,7 @@ def test_a_link_out_of_the_folder_is_refused(other: Stranger, tmp_path: Path) ->
         fit_head(*_write_obj(folder, other))
 
 
-def test_huge_pictures_are_refused_before_they_unfold(other: Stranger, tmp_path: Path) -> None:
+def test_huge_pictures_are_refused_before_they_unfold(other, tmp_path):
     """A header claims more pixels than there is memory."""
     files = _write_obj(tmp_path, other)
     whole = io.BytesIO()
@@ -214,7 +209,7 @@ def test_huge_pictures_are_refused_before_they_unfold(other: Stranger, tmp_path:
 
 
 @pytest.mark.slow
-def test_a_missing_library_paints_nothing(other: Stranger, tmp_path: Path) -> None:
+def test_a_missing_library_paints_nothing(other, tmp_path):
     """Many files name one that was never sent along; it is reported in one line."""
     files = _write_obj(tmp_path, other)
     (tmp_path / "head.mtl").unlink()
@@ -223,7 +218,7 @@ def test_a_missing_library_paints_nothing(other: Stranger, tmp_path: Path) -> No
     assert "head.mtl is missing" in note
 
 
-def test_layouts_that_cover_a_picture_many_times_are_refused() -> None:
+def test_layouts_that_cover_a_picture_many_times_are_refused():
     """A small file must not ask for hours."""
     uv = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], np.float32)
     layout = Layout(uv, np.tile(np.arange(3, dtype=np.int32), (100_000, 1)))
@@ -231,7 +226,7 @@ def test_layouts_that_cover_a_picture_many_times_are_refused() -> None:
         texels_within(layout, (1024, 1024))
 
 
-def test_pictures_are_drawn_from_one_layout_to_another() -> None:
+def test_pictures_are_drawn_from_one_layout_to_another():
     """Mirrored once and again, a picture is what it was."""
     picture = np.asarray(_striped())
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
@@ -244,7 +239,7 @@ def test_pictures_are_drawn_from_one_layout_to_another() -> None:
 
 
 @pytest.mark.slow
-def test_dense_heads_are_simplified_with_their_colours() -> None:
+def test_dense_heads_are_simplified_with_their_colours():
     """Above what can be moved in time, a head keeps its form, openings and colours, and says so."""
     dense = stranger(2)
     vertices, faces = trimesh.remesh.subdivide(dense.mesh.vertices, dense.mesh.faces)

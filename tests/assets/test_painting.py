@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from risorius.assets.model import Head
-
 LARGEST_IMAGE_FILE = 1_250_000  # bytes
 
 
-def test_albedo_is_a_picture(head: Head) -> None:
+def test_albedo_is_a_picture(head):
     """Square, 8 bits, three channels, read-only, light on disk, and read only once."""
     assert head.albedo.dtype == np.uint8
     assert head.albedo.ndim == 3
@@ -20,7 +18,7 @@ def test_albedo_is_a_picture(head: Head) -> None:
         head.albedo[0] = 0
 
 
-def test_picture_is_mirrored_but_for_patches_and_grain(head: Head) -> None:
+def test_picture_is_mirrored_but_for_patches_and_grain(head):
     """Patches, pores and freckles differ from side to side; red and dark places do not."""
     image = head.albedo.astype(np.int64)
     difference = np.abs(image - image[:, ::-1])
@@ -32,7 +30,7 @@ def test_picture_is_mirrored_but_for_patches_and_grain(head: Head) -> None:
     assert off.max() < 25.0
 
 
-def test_picture_goes_on_outside_the_skin(head: Head) -> None:
+def test_picture_goes_on_outside_the_skin(head):
     """A filter that reaches over the rim finds skin, not a border."""
     rim = head.rings["rim_left"][3:-3]
     size = len(head.albedo)

@@ -31,7 +31,7 @@ def winding_numbers(head: Head, points: npt.NDArray[np.float32]) -> npt.NDArray[
     return np.asarray(np.arctan2(volume, share).sum(axis=1) / (2.0 * np.pi))
 
 
-def test_parts_are_well_formed(head: Head) -> None:
+def test_parts_are_well_formed(head):
     """Indices, normals, colours, bones and shine are within their ranges; names are unique."""
     assert len({found.name for found in head.parts}) == len(head.parts)
     for found in head.parts:
@@ -46,7 +46,7 @@ def test_parts_are_well_formed(head: Head) -> None:
         assert found.colours.max() <= 1.0
 
 
-def test_part_normals_agree_with_their_faces(head: Head) -> None:
+def test_part_normals_agree_with_their_faces(head):
     """Lighting and culling see the same side of each triangle."""
     for found in head.parts:
         cross = cross_products(found.vertices.astype(np.float64), found.faces)
@@ -54,13 +54,13 @@ def test_part_normals_agree_with_their_faces(head: Head) -> None:
         assert ((cross * normal).sum(axis=1) > 0).mean() > 0.98, found.name
 
 
-def test_what_belongs_to_the_jaw_moves_with_it(head: Head) -> None:
+def test_what_belongs_to_the_jaw_moves_with_it(head):
     """Lower teeth, lower gums, tongue and the floor of the mouth are the mandible's."""
     on_mandible = {found.name for found in head.parts if found.bone == "mandible"}
     assert on_mandible == {"teeth_lower", "gums_lower", "tongue", "oral_cavity_lower"}
 
 
-def test_parts_look_outward_or_into_the_mouth(head: Head) -> None:
+def test_parts_look_outward_or_into_the_mouth(head):
     """Teeth and eyes face away from their middle; the cavity is seen from inside."""
     for name in ("eyeball_left", "tongue"):
         found = part(head, name)
@@ -74,14 +74,14 @@ def test_parts_look_outward_or_into_the_mouth(head: Head) -> None:
     assert part(head, "oral_cavity_lower").normals[:, 1].mean() > 0.5
 
 
-def test_everything_in_the_mouth_is_inside_the_head(head: Head) -> None:
+def test_everything_in_the_mouth_is_inside_the_head(head):
     """Nothing pokes through lips or cheeks at rest."""
     for found in head.parts:
         if found.name.startswith(IN_MOUTH):
             assert winding_numbers(head, found.vertices).min() > 0.65, found.name
 
 
-def test_teeth_darken_toward_the_corners_of_the_mouth(head: Head) -> None:
+def test_teeth_darken_toward_the_corners_of_the_mouth(head):
     """Molars and premolars stand in the shade of the cheeks, though their neighbours are white."""
     teeth = part(head, "teeth_upper")
     lightness = teeth.colours.mean(axis=1)
@@ -91,7 +91,7 @@ def test_teeth_darken_toward_the_corners_of_the_mouth(head: Head) -> None:
     assert 0.45 < premolars.mean() / incisors < 0.6
 
 
-def test_teeth_stand_behind_the_lips(head: Head) -> None:
+def test_teeth_stand_behind_the_lips(head):
     """The vestibule ends in front of the teeth."""
     vestibule = head.vertices[head.rings["mouth_0_left"]]
     for name in ("teeth_upper", "teeth_lower"):
@@ -101,7 +101,7 @@ def test_teeth_stand_behind_the_lips(head: Head) -> None:
             assert teeth[beside, 2].max() < z, name
 
 
-def test_teeth_are_pairs_of_fourteen_and_ivory(head: Head) -> None:
+def test_teeth_are_pairs_of_fourteen_and_ivory(head):
     """Two mirrored quarters; warm, not white."""
     for name in ("teeth_upper", "teeth_lower"):
         teeth = part(head, name)
@@ -112,7 +112,7 @@ def test_teeth_are_pairs_of_fourteen_and_ivory(head: Head) -> None:
         assert blue < red - 0.05
 
 
-def test_upper_incisors_overlap_the_lower(head: Head) -> None:
+def test_upper_incisors_overlap_the_lower(head):
     """Overbite and overjet of one to four millimetres."""
     upper = part(head, "teeth_upper").vertices
     lower = part(head, "teeth_lower").vertices
@@ -121,7 +121,7 @@ def test_upper_incisors_overlap_the_lower(head: Head) -> None:
     assert 1.0 < front[0][:, 2].max() - front[1][:, 2].max() < 4.0
 
 
-def test_mouth_is_darker_toward_the_throat(head: Head) -> None:
+def test_mouth_is_darker_toward_the_throat(head):
     """Teeth and cheeks lose light with depth, yet the throat is no black hole."""
     for name in ("teeth_lower", "teeth_upper", "oral_cavity_upper"):
         found = part(head, name)
@@ -132,7 +132,7 @@ def test_mouth_is_darker_toward_the_throat(head: Head) -> None:
         assert 0.01 < back < 0.75 * front, name
 
 
-def test_gums_hold_the_teeth(head: Head) -> None:
+def test_gums_hold_the_teeth(head):
     """Every crown is rooted in gum, and what stands out of it is as high as in a mouth."""
     for row, up in (("upper", 1.0), ("lower", -1.0)):
         teeth = part(head, f"teeth_{row}").vertices
@@ -145,7 +145,7 @@ def test_gums_hold_the_teeth(head: Head) -> None:
             assert least < margin[beside[1]].min() + 1.5 - crown.min() < most, (row, low)
 
 
-def test_the_tongue_lies_against_the_lower_crowns(head: Head) -> None:
+def test_the_tongue_lies_against_the_lower_crowns(head):
     """No more than 2.5 mm between, from the canines to the molars: their inner sides are hidden."""
     tongue, teeth = (part(head, name).vertices for name in ("tongue", "teeth_lower"))
     for z in (80.0, 75.0, 68.0, 59.0):
@@ -156,12 +156,12 @@ def test_the_tongue_lies_against_the_lower_crowns(head: Head) -> None:
         assert crowns[:, 0].min() - 2.5 < beside < crowns[:, 0].min() + 1.0, z
 
 
-def test_parts_cost_no_more_than_they_must(head: Head) -> None:
+def test_parts_cost_no_more_than_they_must(head):
     """On a software renderer they cost as much as the skin: 8000 to 16 600 triangles."""
     assert 8000 <= sum(len(found.faces) for found in head.parts) <= 16600
 
 
-def test_lids_rest_on_the_iris_as_in_a_calm_face(head: Head) -> None:
+def test_lids_rest_on_the_iris_as_in_a_calm_face(head):
     """The upper lid covers one or two millimetres of it, the lower one touches its edge."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):
         margin = head.vertices[head.rings[f"eye_1_{side}"]] - eye.centre
@@ -173,7 +173,7 @@ def test_lids_rest_on_the_iris_as_in_a_calm_face(head: Head) -> None:
         assert -0.4 < eye.iris_radius - below < 0.8
 
 
-def test_lashes_are_rooted_in_the_lids_edges(head: Head) -> None:
+def test_lashes_are_rooted_in_the_lids_edges(head):
     """Each stands on a margin, leaves the eye, and keeps clear of the eyeball."""
     lashes = part(head, "lashes")
     assert lashes.roots is not None
@@ -191,7 +191,7 @@ def test_lashes_are_rooted_in_the_lids_edges(head: Head) -> None:
         assert (from_eye > root - 0.3).all()
 
 
-def test_lower_lashes_are_short_and_lean_outward(head: Head) -> None:
+def test_lower_lashes_are_short_and_lean_outward(head):
     """Long ones that stand straight below the eye look like a doll's."""
     lashes = part(head, "lashes")
     eye = head.eyes[1]
@@ -207,7 +207,7 @@ def test_lower_lashes_are_short_and_lean_outward(head: Head) -> None:
     assert length[~is_lower & is_outer].mean() > 1.1 * length[~is_lower & ~is_outer].mean()
 
 
-def test_wet_edges_lie_between_lid_and_eyeball(head: Head) -> None:
+def test_wet_edges_lie_between_lid_and_eyeball(head):
     """On the lower lids, facing up and forward, hardly above the ball."""
     wet = part(head, "wet_edges")
     assert wet.roots is not None
@@ -219,7 +219,7 @@ def test_wet_edges_lie_between_lid_and_eyeball(head: Head) -> None:
     assert (wet.vertices[:, 1] < 2.0).all()
 
 
-def test_eyeballs_fit_their_lids(head: Head) -> None:
+def test_eyeballs_fit_their_lids(head):
     """The lid margin keeps clear of the ball, and the ball fills the fissure."""
     for eye, side in zip(head.eyes, ("right", "left"), strict=True):
         ball = part(head, f"eyeball_{side}").vertices - eye.centre
@@ -231,7 +231,7 @@ def test_eyeballs_fit_their_lids(head: Head) -> None:
         assert radius[np.hypot(ball[:, 0], ball[:, 1]) > 5.2].max() < eye.radius + 0.25
 
 
-def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head: Head) -> None:
+def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head):
     """Dark in the middle, coloured ring, light beyond."""
     eye = head.eyes[1]
     ball = part(head, "eyeball_left")
@@ -247,7 +247,7 @@ def test_pupil_is_at_the_pole_and_the_iris_has_its_radius(head: Head) -> None:
     assert brightness[sclera & (local[:, 1] < 0.0)].min() > 0.69
 
 
-def test_upper_lid_throws_a_shadow_on_the_eye(head: Head) -> None:
+def test_upper_lid_throws_a_shadow_on_the_eye(head):
     """Painted: above, the sclera is darker than below, by a quarter to a half."""
     ball = part(head, "eyeball_left")
     local = ball.vertices - head.eyes[1].centre
@@ -257,7 +257,7 @@ def test_upper_lid_throws_a_shadow_on_the_eye(head: Head) -> None:
     assert 0.5 * below < above < 0.75 * below
 
 
-def test_eye_corners_are_filled(head: Head) -> None:
+def test_eye_corners_are_filled(head):
     """Flesh reaches from the ball to both corners, behind the lid margin."""
     flesh = part(head, "eye_corners").vertices
     for name in ("endocanthion_left", "exocanthion_left"):

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -36,7 +35,7 @@ def assert_same(found: FittedHead, plain: FittedHead) -> None:
     assert np.abs(found.vertices[found.faces] - plain.vertices[plain.faces]).max() < 1e-2
 
 
-def test_a_skin_that_is_cut_along_seams_hangs_together(head: Head, plain: FittedHead) -> None:
+def test_a_skin_that_is_cut_along_seams_hangs_together(head, plain):
     """The left half has its own vertices along the middle, as where a texture is mirrored."""
     is_left = head.vertices[head.faces][:, :, 0].mean(axis=1) > 0.0
     count = len(head.vertices)
@@ -47,9 +46,7 @@ def test_a_skin_that_is_cut_along_seams_hangs_together(head: Head, plain: Fitted
     assert_same(found, plain)
 
 
-def test_triangles_of_their_own_vertices_hang_together(
-    head: Head, plain: FittedHead, tmp_path: Path
-) -> None:
+def test_triangles_of_their_own_vertices_hang_together(head, plain, tmp_path):
     """As some programs write OBJ and PLY; landmarks are points."""
     corners = head.vertices[head.faces].reshape(-1, 3)
     lines = [f"v {x} {y} {z}" for x, y, z in corners.tolist()]
@@ -60,7 +57,7 @@ def test_triangles_of_their_own_vertices_hang_together(
 
 
 @pytest.mark.parametrize("way", ["bare", "pictured", "moved apart"])
-def test_lips_that_touch_exactly_are_two(head: Head, tmp_path: Path, way: str) -> None:
+def test_lips_that_touch_exactly_are_two(head, tmp_path, way):
     """Without a picture, with one, and where a shape of the file parts them."""
     upper, lower = (head.landmarks[lip] for lip in (UPPER, LOWER))
     vertices = head.vertices.copy()
@@ -84,7 +81,7 @@ def test_lips_that_touch_exactly_are_two(head: Head, tmp_path: Path, way: str) -
     assert np.array_equal(found.file_vertices[found.landmarks], head.landmarks)
 
 
-def test_lips_that_are_one_are_shut(head: Head, tmp_path: Path) -> None:
+def test_lips_that_are_one_are_shut(head, tmp_path):
     """Where a file doubles nothing between them, nothing parts them."""
     number = np.arange(len(head.vertices))
     number[head.landmarks[LOWER]] = head.landmarks[UPPER]
@@ -96,7 +93,7 @@ def test_lips_that_are_one_are_shut(head: Head, tmp_path: Path) -> None:
         fit_head(maker.write(tmp_path / "head.glb"), marks)
 
 
-def test_pieces_that_are_left_away_may_be_painted_with_anything(head: Head, tmp_path: Path) -> None:
+def test_pieces_that_are_left_away_may_be_painted_with_anything(head, tmp_path):
     """Hair whose picture nobody can read keeps no skin from its own; eyes need no colours."""
     maker = GltfMaker()
     broken = material(maker, {"index": maker.picture(b"no picture")})
@@ -116,7 +113,7 @@ def test_pieces_that_are_left_away_may_be_painted_with_anything(head: Head, tmp_
     assert found.albedo[0, 0].tolist() == [250, 10, 20]
 
 
-def test_colours_of_the_skin_count_alone(head: Head) -> None:
+def test_colours_of_the_skin_count_alone(head):
     """Eyes or hair may have none; and where only these have some, the skin keeps its picture."""
     count = len(head.vertices)
     vertices = np.vstack([head.vertices, head.vertices[:3] + 500.0])

@@ -29,7 +29,7 @@ def at(head: assets.Head, vertices: object) -> list[int]:
     return found
 
 
-def test_every_texel_has_a_class(head: assets.Head) -> None:
+def test_every_texel_has_a_class(head):
     """Of those that skin has: no background, nothing to ignore, no clothing."""
     assert head.segments.shape == head.albedo.shape[:2]
     assert set(np.unique(head.segments)) == set(Segment) - {
@@ -37,7 +37,7 @@ def test_every_texel_has_a_class(head: assets.Head) -> None:
     }  # fmt: skip
 
 
-def test_the_right_half_is_the_left_one_mirrored(head: assets.Head) -> None:
+def test_the_right_half_is_the_left_one_mirrored(head):
     """With the classes of the subject's other side; left is where u is large."""
     mirrored = head.segments[:, ::-1]
     expected = head.segments.copy()
@@ -49,12 +49,12 @@ def test_the_right_half_is_the_left_one_mirrored(head: assets.Head) -> None:
 
 
 @pytest.mark.parametrize("place", list(PLACES))
-def test_named_places_are_what_they_are(head: assets.Head, place: str) -> None:
+def test_named_places_are_what_they_are(head, place):
     """Anatomical points that lie well within a region."""
     assert at(head, head.anatomy[place]) == [PLACES[place]]
 
 
-def test_lips_ears_and_lids_follow_their_rows(head: assets.Head) -> None:
+def test_lips_ears_and_lids_follow_their_rows(head):
     """The red is lip, above or below, what is behind it is mouth, the helix is ear."""
     upper, lower = slice(1, 5), slice(10, 14)  # without corners, and the middle of both sides
     for row in (3, 4):

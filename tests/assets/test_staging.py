@@ -3,7 +3,6 @@
 import os
 import shutil
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -28,7 +27,7 @@ def killed(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_folder_is_gone_after_the_work(tmp_path: Path) -> None:
+def test_a_folder_is_gone_after_the_work(tmp_path):
     """However the work ends."""
     with StagingFolder(tmp_path) as folder:
         (folder / "x").touch()
@@ -39,7 +38,7 @@ def test_a_folder_is_gone_after_the_work(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_a_killed_process_left_is_swept_away(killed: Path) -> None:
+def test_what_a_killed_process_left_is_swept_away(killed):
     """By the next one that works there, but not a film that still grows."""
     made_old(killed)
     (killed / "film.mp4").write_bytes(b"more")
@@ -59,7 +58,7 @@ def test_what_a_killed_process_left_is_swept_away(killed: Path) -> None:
         lambda path: (shutil.rmtree(path), path.write_text("a file")),
     ],
 )
-def test_nothing_else_is_swept_away(killed: Path, change: Callable[[Path], object]) -> None:
+def test_nothing_else_is_swept_away(killed, change):
     """Another name, a link, a file: all stay."""
     folder = killed.parent
     change(killed)

@@ -39,7 +39,7 @@ def seen_in_front(head: Head) -> npt.NDArray[np.bool_]:
     return in_front & ~np.isin(head.faces, np.concatenate(tucked)).any(axis=1)
 
 
-def test_coordinates_are_one_piece_within_the_picture(head: Head) -> None:
+def test_coordinates_are_one_piece_within_the_picture(head):
     """Every vertex has one pair of coordinates, and some margin is left for filters."""
     assert head.uv.dtype == np.float32
     assert head.uv.shape == (len(head.vertices), 2)
@@ -49,12 +49,12 @@ def test_coordinates_are_one_piece_within_the_picture(head: Head) -> None:
     assert head.uv.max() < 0.995
 
 
-def test_no_triangle_is_turned_over(head: Head) -> None:
+def test_no_triangle_is_turned_over(head):
     """Not even those behind lips and lids."""
     assert signed_areas(head.uv.astype(np.float64), head.face_uv).min() > 0.0
 
 
-def test_no_two_triangles_share_a_texel(head: Head) -> None:
+def test_no_two_triangles_share_a_texel(head):
     """Two places of the skin must not get the same colour: samples lie in one face at most."""
     side = 300
     covered = np.zeros((side, side), dtype=np.int64)
@@ -72,7 +72,7 @@ def test_no_two_triangles_share_a_texel(head: Head) -> None:
     assert covered.mean() > 0.5
 
 
-def test_face_is_hardly_stretched(head: Head) -> None:
+def test_face_is_hardly_stretched(head):
     """A freckle is half again as long as wide at most, and detail is spread over the face."""
     largest, smallest = stretches(head)[seen_in_front(head)].T
     ratio = largest / smallest
@@ -83,19 +83,19 @@ def test_face_is_hardly_stretched(head: Head) -> None:
     assert np.percentile(scale, 95) < 2.35 * np.percentile(scale, 5)
 
 
-def test_face_gets_more_of_the_picture_than_the_rest(head: Head) -> None:
+def test_face_gets_more_of_the_picture_than_the_rest(head):
     """The back of the head must not eat up the brow's hairs."""
     scale = np.sqrt(stretches(head).prod(axis=1))
     behind = head.vertices[head.faces].mean(axis=1)[:, 2] < 10.0
     assert np.median(scale[seen_in_front(head)]) > 1.3 * np.median(scale[behind])
 
 
-def test_coordinates_are_their_own_mirror_image(head: Head) -> None:
+def test_coordinates_are_their_own_mirror_image(head):
     """u -> 1 - u takes each vertex to its mirror image."""
     assert np.abs(head.uv[head.mirror] * [-1.0, 1.0] + [1.0, 0.0] - head.uv).max() < 1e-6
 
 
-def test_coordinates_are_upright(head: Head) -> None:
+def test_coordinates_are_upright(head):
     """v grows upward, u to the subject's left."""
     at = {name: head.uv[vertex] for name, vertex in head.anatomy.items()}
     assert at["glabella"][1] > at["pronasale"][1] > at["pogonion"][1]

@@ -22,7 +22,7 @@ def is_plain(found: npt.NDArray[np.uint8]) -> bool:
     return bool(slopes.max() < 4 and found[:, 2].max() < 4)
 
 
-def test_arrays_fit_the_head(head: assets.Head) -> None:
+def test_arrays_fit_the_head(head):
     """Shapes and types as `Wrinkles` says, directions of a sensible length, all read-only."""
     wrinkles = head.wrinkles
     assert wrinkles.map.ndim == 3
@@ -44,7 +44,7 @@ def test_arrays_fit_the_head(head: assets.Head) -> None:
         ["nostril", "rim", "concha"],
     ],
 )
-def test_no_furrows_where_skin_does_not_wrinkle(head: assets.Head, rings: list[str]) -> None:
+def test_no_furrows_where_skin_does_not_wrinkle(head, rings):
     """Margins of the lids, the red of the lips, ears, nostrils, the foot of the neck."""
     for ring in rings:
         for side in ("left", "right"):
@@ -52,9 +52,7 @@ def test_no_furrows_where_skin_does_not_wrinkle(head: assets.Head, rings: list[s
 
 
 @pytest.mark.parametrize(("place", "slot"), [("glabella", 255), ("metopion", 0), ("nasion", 0)])
-def test_furrows_follow_the_amount_of_their_own_region(
-    head: assets.Head, place: str, slot: int
-) -> None:
+def test_furrows_follow_the_amount_of_their_own_region(head, place, slot):
     """No other region has a say where it has no furrows."""
     size = len(head.wrinkles.map)
     column, row = (head.uv[head.anatomy[place]] * [size, -size] + [0.0, size]).astype(int)
@@ -64,20 +62,20 @@ def test_furrows_follow_the_amount_of_their_own_region(
     assert (furrows[:, 3] == slot).mean() > 0.95
 
 
-def test_none_behind_the_face(head: assets.Head) -> None:
+def test_none_behind_the_face(head):
     """Scalp, nape, throat."""
     _, y, z = head.vertices.T
     assert is_plain(texels(head, np.flatnonzero((z < 10.0) | (y > 78.0) | (y < -125.0))))
 
 
-def test_furrows_are_no_cliffs(head: assets.Head) -> None:
+def test_furrows_are_no_cliffs(head):
     """Hardly a slope is cut off at the ends of a byte, and few are steep."""
     slopes = np.abs(head.wrinkles.map[..., :2].astype(int) - 128)
     assert (slopes > 126).sum() < 10
     assert (slopes > 127 * STEEPEST_FURROW).mean() < 1e-4
 
 
-def test_left_and_right_are_not_alike(head: assets.Head) -> None:
+def test_left_and_right_are_not_alike(head):
     """Directions are mirrored; furrows lie in the same regions, and differ."""
     across = head.wrinkles.across
     mirrored = across[head.mirror] * [-1.0, 1.0, 1.0]

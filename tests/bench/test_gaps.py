@@ -14,7 +14,7 @@ def poses() -> dict[str, Pose]:
 
 
 @pytest.mark.slow
-def test_closed_lips_stay_closed(poses: dict[str, Pose]) -> None:
+def test_closed_lips_stay_closed(poses):
     """No unit parts the lips but those that are there for it, on either side or on both."""
     slits = {name: pose.slit for name, pose in poses.items() if pose.slit is not None}
     assert len(slits) > 70
@@ -23,14 +23,14 @@ def test_closed_lips_stay_closed(poses: dict[str, Pose]) -> None:
 
 
 @pytest.mark.slow
-def test_shut_eyes_are_shut(poses: dict[str, Pose]) -> None:
+def test_shut_eyes_are_shut(poses):
     """No eyeball is seen through closed lids, in any pose of the face."""
     gaps = {name: pose.eye for name, pose in poses.items() if pose.eye is not None}
     assert {"AU43", "AU43_left", "AU45_right", "AU46_left", "blink", "wink", "yawn"} <= set(gaps)
     assert {name: gap for name, gap in gaps.items() if gap >= LARGEST_FAULTS["eye"]} == {}
 
 
-def test_a_folded_triangle_is_counted() -> None:
+def test_a_folded_triangle_is_counted():
     """One that turned over is found amid skin that turned as a whole, which is none."""
     head = assets.load("head")
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])

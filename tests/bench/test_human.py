@@ -1,7 +1,5 @@
 """The measure of human form recovers people of its space, and says where a head is none of them."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -44,7 +42,7 @@ def rest_of(space: IdentitySpace, vertices: Points) -> Rest:
     return unexplained(space, space.regions(), surface)
 
 
-def test_a_person_of_the_space_is_explained(space: IdentitySpace) -> None:
+def test_a_person_of_the_space_is_explained(space):
     """Weights come back, wherever the head stands, and nothing is left."""
     rest = rest_of(space, space.person(WEIGHTS))
     assert rest.weights == pytest.approx(WEIGHTS, abs=0.06)
@@ -53,7 +51,7 @@ def test_a_person_of_the_space_is_explained(space: IdentitySpace) -> None:
     assert all(target.is_met for target in targets({"coarse": rest, "finer": rest}))
 
 
-def test_a_bump_that_nobody_has_is_reported_where_it_is(space: IdentitySpace) -> None:
+def test_a_bump_that_nobody_has_is_reported_where_it_is(space):
     """4 mm on the chin are left there, hardly elsewhere, and printed."""
     vertices = space.person(WEIGHTS)
     chin = vertices[space.landmarks[8]]
@@ -68,7 +66,7 @@ def test_a_bump_that_nobody_has_is_reported_where_it_is(space: IdentitySpace) ->
     assert f"{rest.distances['chin']:.2f}" in text.split("chin")[1].splitlines()[0]
 
 
-def test_what_is_left_is_held_to_targets() -> None:
+def test_what_is_left_is_held_to_targets():
     """More than a target, and no number at all, miss it."""
     names = ("all", "nose", "mouth")
     good = Rest(np.ones(2), dict.fromkeys(names, 0.3), {"all": 3.0})
@@ -80,7 +78,7 @@ def test_what_is_left_is_held_to_targets() -> None:
     assert len(targets({"coarse": good, "finer": good})) == len(MOST_DISTANCES) + 2
 
 
-def test_what_looks_at_skin_is_no_region(space: IdentitySpace) -> None:
+def test_what_looks_at_skin_is_no_region(space):
     """The insides of lips are left out, the skin of cheeks and forehead is not."""
     regions = space.regions()
     marks = space.landmarks
@@ -88,7 +86,7 @@ def test_what_looks_at_skin_is_no_region(space: IdentitySpace) -> None:
     assert (regions[marks[[31, 8, 19, 24]]] != "").all()
 
 
-def test_a_folder_without_modes_is_reported(tmp_path: Path) -> None:
+def test_a_folder_without_modes_is_reported(tmp_path):
     """The file that is missing, or holds other vertices, is named."""
     head = assets.load("head")
     np.savez(

@@ -1,6 +1,5 @@
 """Scores of motion: made-up references of known motion, under every spelling of their names."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -58,7 +57,7 @@ def scored(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Row], li
 
 
 @pytest.mark.slow
-def test_own_motion_is_known_again(scored: tuple[dict[str, Row], list[str]]) -> None:
+def test_own_motion_is_known_again(scored):
     """Carried over by landmarks to another head, each shape is nearly its original."""
     rows, left_out = scored
     assert set(rows) == {*SCORED, "mouthClose", "eyeBlinkLeft"} - {"eyeBlink_L"}
@@ -79,7 +78,7 @@ def held_to(*rows: Row) -> list[str]:
     return [target.text for target in targets([sound, *rows], []) if not target.is_met]
 
 
-def test_a_shape_below_its_blob_is_missed() -> None:
+def test_a_shape_below_its_blob_is_missed():
     """Where a smooth bump comes nearer to the scan: by its directions, or by its size."""
     assert held_to() == []
     assert held_to(Row("mouthLeft", 0.95, 1.0, 0.1, 0.9)) == []
@@ -90,7 +89,7 @@ def test_a_shape_below_its_blob_is_missed() -> None:
     assert len(held_to(Row("mouthLeft", np.nan, 1.0, np.nan, 0.9))) > 1
 
 
-def test_the_blob_stands_beside_each_shape() -> None:
+def test_the_blob_stands_beside_each_shape():
     """As the last column, of the mean as well."""
     text = report([Row("jawOpen", 0.95, 1.0, 0.1, 0.901), Row("eyeWide", 0.96, 1.1, 0.1, 0.8)], [])
     lines = [line.split() for line in text.splitlines()]
@@ -98,7 +97,7 @@ def test_the_blob_stands_beside_each_shape() -> None:
     assert [line[-1] for line in lines if line[:1] in (["jawOpen"], ["mean"])] == ["0.901", "0.851"]
 
 
-def test_a_bump_is_known_as_a_blob() -> None:
+def test_a_bump_is_known_as_a_blob():
     """One of the widths is nearly the field of a bump on one side, and one on both of them."""
     head = assets.load("head")
     for corners in (["cheek_left"], ["cheek_left", "cheek_right"]):
@@ -135,9 +134,7 @@ def arrays() -> dict[str, Any]:
         pytest.param("jawOpen", None, "holds none of ARKit's shapes"),
     ],
 )
-def test_broken_references_are_named(
-    arrays: dict[str, Any], tmp_path: Path, name: str, value: Any, message: str
-) -> None:
+def test_broken_references_are_named(arrays, tmp_path, name, value, message):
     """The message names the file, the array, and the allowed values."""
     changed = {**arrays, name: value}
     np.savez(
@@ -148,7 +145,7 @@ def test_broken_references_are_named(
 
 
 @pytest.mark.parametrize("content", [b"hello", b"PK\x03\x04 cut short", b""])
-def test_files_that_hold_no_arrays_are_named(tmp_path: Path, content: bytes) -> None:
+def test_files_that_hold_no_arrays_are_named(tmp_path, content):
     """Neither text nor half an archive is a traceback."""
     (tmp_path / "face.npz").write_bytes(content)
     with pytest.raises(UserError, match=r"face.npz: is broken, or no file of arrays"):

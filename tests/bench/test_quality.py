@@ -1,7 +1,5 @@
 """The measure of quality: subjects and errors."""
 
-from pathlib import Path
-
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -36,7 +34,7 @@ def rolled_plane() -> Subject:
 
 
 @pytest.mark.slow
-def test_scores_of_a_cylinder() -> None:
+def test_scores_of_a_cylinder():
     """Cubic edges follow a cylinder, Loop shrinks it; budgets are kept."""
     average = quality.means(scores := quality.measure(rolled_plane()))
     static = average[STATIC]
@@ -52,7 +50,7 @@ def test_scores_of_a_cylinder() -> None:
         assert part in quality.report(scores)
 
 
-def test_error_of_the_truth_is_zero() -> None:
+def test_error_of_the_truth_is_zero():
     """A coarse mesh that is the dense one has no error; one turned aside has one of its own."""
     subject = rolled_plane()
     rest = subject.rest.coarse
@@ -70,7 +68,7 @@ def test_error_of_the_truth_is_zero() -> None:
     assert wider.outline > 1000.0
 
 
-def test_scans_are_read(tmp_path: Path) -> None:
+def test_scans_are_read(tmp_path):
     """A folder of scans: halves are joined, centimetres become millimetres, unknown names count."""
     fine = assets.load("head").finer(1)
     lift = 0.1 * np.ones_like(fine.vertices)
@@ -95,7 +93,7 @@ def test_scans_are_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_built_in_head() -> None:
+def test_built_in_head():
     """The finer head moves by its own muscles, and the coarse one is its first vertices."""
     subject = subjects.built_in(1)
     head = assets.load("head")
@@ -108,7 +106,7 @@ def test_built_in_head() -> None:
 
 
 @pytest.mark.slow
-def test_gains_on_the_built_in_head() -> None:
+def test_gains_on_the_built_in_head():
     """Schemes that interpolate come nearer in every expression, by as much as was aimed at."""
     calm = "detail displacement, blended 2x"
     methods = (STATIC, BEST, calm, "cubic twice", "detail twice")

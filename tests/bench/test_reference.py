@@ -61,7 +61,7 @@ def made(checkout: Path) -> dict[str, dict[str, npt.NDArray[Any]]]:
     return {path.stem: dict(np.load(path)) for path in folder.glob("*.npz")}
 
 
-def test_the_face_and_its_motion(checkout: Path) -> None:
+def test_the_face_and_its_motion(checkout):
     """Vertices stay, quads are fans, motion is a difference, and all else of the head is left."""
     vertices, quads = face()
     arrays = made(checkout)["face"]
@@ -74,7 +74,7 @@ def test_the_face_and_its_motion(checkout: Path) -> None:
     assert arrays["landmarks68"].tolist() == list(range(68))
 
 
-def test_identity_modes(checkout: Path) -> None:
+def test_identity_modes(checkout):
     """Each is how its component moves the face."""
     files = made(checkout)
     assert files["identity_modes"]["modes"].shape == (1, COUNT, 3)
@@ -83,7 +83,7 @@ def test_identity_modes(checkout: Path) -> None:
 
 
 @pytest.mark.slow
-def test_bench_quality_runs_on_it(checkout: Path) -> None:
+def test_bench_quality_runs_on_it(checkout):
     """The folder is what `--reference` takes."""
     made(checkout)
     result = risorius("bench", "quality", "--reference", checkout.parent / "made")
@@ -112,7 +112,7 @@ def test_bench_quality_runs_on_it(checkout: Path) -> None:
         ),
     ],
 )
-def test_a_broken_checkout_is_reported_in_one_line(checkout: Path, spoil: Any, words: str) -> None:
+def test_a_broken_checkout_is_reported_in_one_line(checkout, spoil, words):
     """The file is named, and nothing is written."""
     spoil(checkout)
     result = risorius("bench", "reference", checkout, "-o", checkout.parent / "made")

@@ -9,7 +9,7 @@ from tests.refine_gl.agreement import why_no_card
 
 
 @pytest.mark.slow
-def test_rows() -> None:
+def test_rows():
     """The share of edges that was asked for; times that fit."""
     rows = {row.method: row for row in refine.measure(["2k"], 0.05)}
     count = rows["kahler 10 %"].triangles_in
@@ -21,7 +21,7 @@ def test_rows() -> None:
     assert gc.isenabled()
 
 
-def test_rows_of_the_card() -> None:
+def test_rows_of_the_card():
     """Both methods are timed on the processor and on the card, which is named."""
     if reason := why_no_card():
         pytest.skip(reason)
@@ -34,7 +34,7 @@ def test_rows_of_the_card() -> None:
     assert "\nkahler-gl: on " in refine.report(rows)
 
 
-def test_calls_are_timed_in_turn() -> None:
+def test_calls_are_timed_in_turn():
     """Forwards, then backwards; no garbage is collected meanwhile."""
     order: list[str] = []
     calls = [lambda name=name: order.append(f"{name}{gc.isenabled():d}") for name in "ab"]

@@ -1,6 +1,5 @@
 """What benchmarks print, and are held to: a target that is missed ends with exit code 1."""
 
-from collections.abc import Callable
 from typing import Any
 
 import click
@@ -56,9 +55,7 @@ def of_quality(**change: Any) -> tuple[int, str]:
         (of_quality, {"picture": 9.9}),
     ],
 )  # fmt: skip
-def test_a_missed_target_is_reported_and_ends_with_one(
-    bench: Callable[..., tuple[int, str]], broken: dict[str, Any]
-) -> None:
+def test_a_missed_target_is_reported_and_ends_with_one(bench, broken):
     """All that is as it should be ends with 0, and says "met" for each target."""
     code, output = bench()
     assert code == 0
@@ -70,7 +67,7 @@ def test_a_missed_target_is_reported_and_ends_with_one(
 
 
 @pytest.mark.slow
-def test_table_of_gaps() -> None:
+def test_table_of_gaps():
     """Every row and mixtures are looked at, and the worst is named."""
     text = gaps.report(poses := gaps.measure(3))
     assert f"{len(poses)} poses" in text

@@ -30,7 +30,7 @@ def over(**scores: float) -> Scores:
     return {**CALM, **{name: 0.05 + score for name, score in scores.items()}}
 
 
-def test_every_shape_is_asked_for_once() -> None:
+def test_every_shape_is_asked_for_once():
     """Pairs by their name without side, jaw and mouth among them; all 52 shapes are there."""
     found = dict(seen.bases())
     assert sorted(name for names in found.values() for name in names) == sorted(ARKIT)
@@ -39,7 +39,7 @@ def test_every_shape_is_asked_for_once() -> None:
     assert found["jawOpen"] == ("jawOpen",)
 
 
-def test_a_pair_counts_by_its_mean() -> None:
+def test_a_pair_counts_by_its_mean():
     """A smile of both sides is seen beside one side of a squint; the neutral face is taken off."""
     scores = over(mouthSmileLeft=0.5, mouthSmileRight=0.3, eyeSquintLeft=0.7)
     shape = seen.compared(scores, CALM, ("mouthSmileLeft", "mouthSmileRight"))
@@ -48,9 +48,7 @@ def test_a_pair_counts_by_its_mean() -> None:
     assert seen.Shape(0.2, "jawOpen", 0.3).verdict == "as jawOpen"
 
 
-def test_without_mediapipe_one_line_says_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_mediapipe_one_line_says_so(tmp_path, monkeypatch):
     """It is an extra: the line says how to get it."""
     monkeypatch.setitem(sys.modules, "mediapipe", None)
     (tmp_path / "model.task").write_bytes(b"model")
@@ -63,7 +61,7 @@ def test_without_mediapipe_one_line_says_so(
 
 
 @pytest.mark.parametrize("content", [b"", b"no model", b"PK\x03\x04 cut short"])
-def test_a_file_without_model_is_named(tmp_path: Path, content: bytes) -> None:
+def test_a_file_without_model_is_named(tmp_path, content):
     """One line with the file, and the file that is needed."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     (tmp_path / "other.task").write_bytes(content)
@@ -74,7 +72,7 @@ def test_a_file_without_model_is_named(tmp_path: Path, content: bytes) -> None:
 
 
 @needs_model
-def test_the_tracker_sees_an_open_jaw() -> None:
+def test_the_tracker_sees_an_open_jaw():
     """Our face looks to it like one; an empty picture does not."""
     pytest.importorskip("mediapipe", reason="the extra 'mediapipe'")
     with face_tracker(MODEL) as tracker:

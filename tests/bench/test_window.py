@@ -13,7 +13,7 @@ pytestmark = [
 ]
 
 
-def test_the_window_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_window_is_timed(monkeypatch):
     """`risorius bench window` plays each case, and reports the load of the idle window."""
     monkeypatch.setattr(window, "IDLE_SECONDS", 0.1)
     monkeypatch.setattr(window, "WARM_UP", 0.02)

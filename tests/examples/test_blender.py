@@ -46,7 +46,7 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 
 @pytest.mark.blender
-def test_it_follows_the_source(seen: dict[str, Any]) -> None:
+def test_it_follows_the_source(seen):
     """50 frames: triangles come and go, as the refiner says to the last bit."""
     assert len(set(seen["triangles"])) > 5
     assert min(seen["triangles"]) > 338
@@ -57,7 +57,7 @@ def test_it_follows_the_source(seen: dict[str, Any]) -> None:
 
 
 @pytest.mark.blender
-def test_the_copy_looks_like_its_source(seen: dict[str, Any]) -> None:
+def test_the_copy_looks_like_its_source(seen):
     """Same place, materials by face, the UV map that is shown; the source hides, once."""
     assert seen["finished"] == ["FINISHED"]
     assert seen["hidden"]
@@ -69,7 +69,7 @@ def test_the_copy_looks_like_its_source(seen: dict[str, Any]) -> None:
 
 
 @pytest.mark.blender
-def test_settings(seen: dict[str, Any]) -> None:
+def test_settings(seen):
     """They count at once: other looks split otherwise."""
     assert seen["paper"] > 338
     assert seen["unblended"] > 338
@@ -77,7 +77,7 @@ def test_settings(seen: dict[str, Any]) -> None:
 
 
 @pytest.mark.blender
-def test_renders_files_and_undo(seen: dict[str, Any]) -> None:
+def test_renders_files_and_undo(seen):
     """A film has the triangles of each of its frames, and so has the file opened again."""
     assert seen["rendered"] == seen["triangles_there"]
     assert len(set(seen["rendered"])) > 2
@@ -92,7 +92,7 @@ def test_renders_files_and_undo(seen: dict[str, Any]) -> None:
 
 
 @pytest.mark.slow
-def test_the_zip_has_all_that_it_needs(tmp_path: Path) -> None:
+def test_the_zip_has_all_that_it_needs(tmp_path):
     """Built for Linux: the manifest names each wheel that is in it, and Blender accepts it."""
     build = [sys.executable, str(EXAMPLES / "build.py"), "linux-x64", str(tmp_path)]
     subprocess.run(build, check=True, capture_output=True)
@@ -116,7 +116,7 @@ def test_the_zip_has_all_that_it_needs(tmp_path: Path) -> None:
         subprocess.run([BLENDER, judge, "validate", file], check=True, capture_output=True)
 
 
-def test_the_manifest_keeps_the_rules() -> None:
+def test_the_manifest_keeps_the_rules():
     """Those of extensions: version as the package's, a short tagline, no network."""
     import risorius
 
@@ -132,7 +132,7 @@ def test_the_manifest_keeps_the_rules() -> None:
     assert manifest["license"] == ["SPDX:MIT"]
 
 
-def test_every_setting_of_the_looks_is_an_option() -> None:
+def test_every_setting_of_the_looks_is_an_option():
     """What the add-on hands to the refiner is known to it, without Blender."""
     from risorius import refine
 

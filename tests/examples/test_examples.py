@@ -26,13 +26,13 @@ def example(name: str) -> ModuleType:
     return module
 
 
-def test_every_example_is_tested() -> None:
+def test_every_example_is_tested():
     """A new program in the folder needs a test here."""
     found = {path.stem for path in tracked(FOLDER, "*.py") if path.parent == FOLDER}
     assert found == {"plain_script", "own_refiner", "read_dataset"}
 
 
-def test_plain_script(tmp_path: Path) -> None:
+def test_plain_script(tmp_path):
     """As a user starts it: triangles grow with the bend, and the file has them."""
     target = tmp_path / "tube.obj"
     result = subprocess.run(
@@ -49,7 +49,7 @@ def test_plain_script(tmp_path: Path) -> None:
     assert sum(line.startswith("v ") for line in lines) > 204
 
 
-def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_own_refiner(monkeypatch):
     """A refiner from outside is registered, known by name, passes the checker, and cuts in four."""
     from risorius.refine.border import registry
 
@@ -66,7 +66,7 @@ def test_own_refiner(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.slow
-def test_read_dataset(tmp_path: Path) -> None:
+def test_read_dataset(tmp_path):
     """What was made is read, and nobody is both in training and in testing."""
     request = request_of(tmp_path, seed=1, size=(48, 40), passes=("segmentation",))
     make_set(request, 4, jobs=1, progress=False)

@@ -1,7 +1,6 @@
 """The command line: every command and option, given what nobody should give it."""
 
 import shlex
-from pathlib import Path
 
 import pytest
 
@@ -17,7 +16,7 @@ def _short(words: str) -> str:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ACCEPTED, ids=_short)
-def test_good_commands(line: str, sandbox: Path) -> None:
+def test_good_commands(line, sandbox):
     """They end well, and leave nothing but their outputs."""
     before = contents(sandbox)
     ended = run_command(tuple(shlex.split(line)))
@@ -26,7 +25,7 @@ def test_good_commands(line: str, sandbox: Path) -> None:
 
 
 @pytest.mark.parametrize("line", REFUSED, ids=_short)
-def test_mistakes(line: str, sandbox: Path) -> None:
+def test_mistakes(line, sandbox):
     """Each is reported in one line, in the words of the table."""
     before = contents(sandbox)
     ended = run_command(tuple(shlex.split(line)))
@@ -37,7 +36,7 @@ def test_mistakes(line: str, sandbox: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("words", [pytest.param(w, id=name) for name, w in hostile_values()])
-def test_hostile_values(words: tuple[str, ...], sandbox: Path) -> None:
+def test_hostile_values(words, sandbox):
     """Whatever an option is given: success, or one line."""
     before = contents(sandbox)
     check_end(run_command(words), sandbox, before)

@@ -4,7 +4,6 @@ import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from risorius.assets import AssetError
 from risorius.assets.fitting import FittedHead
 from risorius.assets.meshes import Mesh
 
-from .head_inputs import Kind, OddHead, head_inputs, open_brought
+from .head_inputs import Kind, head_inputs, open_brought
 from .sandbox import bounded
 
 pytestmark = pytest.mark.slow
@@ -37,7 +36,7 @@ def quiet_and_bounded() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("odd", head_inputs(), ids=lambda odd: odd.name)
-def test_odd_heads(odd: OddHead, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_odd_heads(odd, tmp_path, capfd):
     """What it must become is in the table; a refusal is one line that names the file."""
     brought = odd.write(tmp_path)
     if isinstance(odd.expected, str):

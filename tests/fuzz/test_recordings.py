@@ -2,7 +2,6 @@
 
 import json
 import random
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -57,7 +56,7 @@ def check(take: Take) -> None:
 
 
 @pytest.mark.parametrize("name", GOOD)
-def test_good_recordings(name: str, tmp_path: Path) -> None:
+def test_good_recordings(name, tmp_path):
     """They are read, so that what follows damages something."""
     path = tmp_path / "take"
     path.write_bytes(GOOD[name])
@@ -73,7 +72,7 @@ def damaged(chance: random.Random) -> bytes:
     return changed(content, chance, TOKENS, reaches=(200, 2000, 2**30))
 
 
-def test_damaged_recordings(tmp_path: Path) -> None:
+def test_damaged_recordings(tmp_path):
     """Read or refused in one line; of all damages a good part is read."""
     path = tmp_path / "take"
     read = 0

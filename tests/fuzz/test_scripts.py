@@ -57,7 +57,7 @@ def opened(path: Path, scenes: dict[str, Scene]) -> Script:
 
 
 @pytest.mark.parametrize("name", ACCEPTED)
-def test_odd_scripts(name: str, tmp_path: Path, scenes: dict[str, Scene]) -> None:
+def test_odd_scripts(name, tmp_path, scenes):
     """They are read."""
     path = tmp_path / "odd.toml"
     path.write_bytes(ACCEPTED[name])
@@ -73,7 +73,7 @@ def damaged(chance: random.Random) -> bytes:
 
 
 @pytest.mark.parametrize("number", range(ROUNDS))
-def test_damaged_scripts(number: int, tmp_path: Path, scenes: dict[str, Scene]) -> None:
+def test_damaged_scripts(number, tmp_path, scenes):
     """Read or refused in one line; what is read has values, and is written back as it was."""
     seed = SEED + number
     path = tmp_path / "damaged.toml"

@@ -37,7 +37,7 @@ ENVIRONMENTS: dict[str, Row] = {
 
 
 @pytest.mark.parametrize("folder", ["", "/", "~", "a\nb", "loop", "notes.txt", "x" * 5000])
-def test_places_of_settings(folder: str, sandbox: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_places_of_settings(folder, sandbox, monkeypatch):
     """Wherever they are said to be: the window opens as it was first."""
     monkeypatch.setenv("XDG_CONFIG_HOME", folder)
     monkeypatch.setenv("HOME", str(sandbox))
@@ -73,7 +73,7 @@ def surroundings(**changed: str | None) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("name", ENVIRONMENTS)
-def test_environments(name: str, sandbox: Path) -> None:
+def test_environments(name, sandbox):
     """It works on, or says in one line what is wrong."""
     changed, words, code = ENVIRONMENTS[name]
     before = contents(sandbox)
@@ -101,7 +101,7 @@ def _limit(kind: int, most: int) -> Callable[[], None]:
     ],
     ids=["png", "mp4", "frames", "figure", "files", "memory"],
 )
-def test_no_room(words: str, kind: int, most: int, code: int, sandbox: Path) -> None:
+def test_no_room(words, kind, most, code, sandbox):
     """A full disk, few open files, too little memory: one line, and nothing half written."""
     before = contents(sandbox)
     ended = start(words, sandbox, surroundings(), _limit(kind, most))
@@ -119,7 +119,7 @@ STREAMS = {
 
 
 @pytest.mark.parametrize("name", STREAMS)
-def test_streams_of_the_shell(name: str, sandbox: Path) -> None:
+def test_streams_of_the_shell(name, sandbox):
     """Closed and full streams, and a folder that is gone: no traceback, nothing left."""
     before = contents(sandbox)
     command = STREAMS[name].format(risorius=f"{shlex.quote(sys.executable)} -m risorius")

@@ -8,7 +8,7 @@ from tests import meshes
 
 
 @pytest.mark.parametrize("name", ["triangle", "octahedron", "open_grid", "with_debris"])
-def test_equals_brute_force(name: str) -> None:
+def test_equals_brute_force(name):
     """No point of a dense sampling of the mesh is closer, and the point found is on the mesh."""
     mesh = meshes.NAMED[name]()
     generator = np.random.default_rng(3)
@@ -25,7 +25,7 @@ def test_equals_brute_force(name: str) -> None:
     assert (sampled - found.distances).max() < 0.2
 
 
-def test_points_on_the_mesh() -> None:
+def test_points_on_the_mesh():
     """Points of the mesh are at distance zero, also in a large mesh of uneven triangles."""
     mesh = meshes.irregular(4, 60, 40)
     generator = np.random.default_rng(5)
@@ -37,7 +37,7 @@ def test_points_on_the_mesh() -> None:
     assert (found.triangles == chosen).mean() > 0.99
 
 
-def test_finds_what_looks_the_same_way() -> None:
+def test_finds_what_looks_the_same_way():
     """Of two grids that almost touch, each point finds the one that looks its way."""
     grid = meshes.open_grid(6, 6)
     count = len(grid.vertices)

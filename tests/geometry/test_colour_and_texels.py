@@ -7,14 +7,14 @@ from risorius.geometry.colour import to_linear, to_screen
 from risorius.geometry.texels import Texels
 
 
-def test_colours_come_back() -> None:
+def test_colours_come_back():
     """Screen colours come back from linear light; middle grey is a fifth of white's light."""
     screen = np.linspace(0.0, 1.0, 256)
     np.testing.assert_allclose(to_screen(to_linear(screen)), screen, atol=1e-7)
     assert to_linear(0.5) == pytest.approx(0.214, abs=1e-3)
 
 
-def test_texels_of_a_square() -> None:
+def test_texels_of_a_square():
     """Two triangles have each texel of their square once, at its own place; margins add a ring."""
     square = np.array([[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]])
     corners = square[[[0, 1, 2], [0, 2, 3]]]

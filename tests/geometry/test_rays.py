@@ -8,7 +8,7 @@ from risorius.geometry.normals import cross_products
 from risorius.geometry.rays import crossings, exits
 
 
-def test_weights_and_distance_name_one_point() -> None:
+def test_weights_and_distance_name_one_point():
     """On the triangle as on the line; the sign of the volume gives the side, 0 from the edge."""
     random = np.random.default_rng(0)
     origins, directions = random.normal(size=(2, 200, 3))
@@ -23,7 +23,7 @@ def test_weights_and_distance_name_one_point() -> None:
     assert_allclose(on_triangle, (origins + along[:, None] * directions)[50:], atol=1e-6)
 
 
-def test_rays_leave_a_cube_where_its_walls_are() -> None:
+def test_rays_leave_a_cube_where_its_walls_are():
     """From anywhere within: one exit each, as far away as the wall, with the wall's cosine."""
     random = np.random.default_rng(1)
     vertices, faces = cube()
@@ -39,7 +39,7 @@ def test_rays_leave_a_cube_where_its_walls_are() -> None:
     assert_allclose(cosine[order], np.abs(directions[np.arange(300), walls]), rtol=1e-9)
 
 
-def test_what_a_ray_enters_is_no_exit() -> None:
+def test_what_a_ray_enters_is_no_exit():
     """A box within the box, whose outside the ray meets, has one exit: its far side."""
     vertices, faces = cube()
     small = 0.2 * vertices + [0.6, 0.1, 0.2]

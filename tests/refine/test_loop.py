@@ -64,7 +64,7 @@ def assert_is_plain(mesh: meshes.Mesh, deformed: np.ndarray, levels: int) -> Non
 
 @pytest.mark.parametrize("levels", [1, 2, 3])
 @pytest.mark.parametrize("name", meshes.NAMED)
-def test_named_meshes(name: str, levels: int) -> None:
+def test_named_meshes(name, levels):
     """Every named mesh, deformed."""
     mesh = meshes.NAMED[name]()
     assert_is_plain(mesh, meshes.wrinkled(mesh, 3), levels)
@@ -72,13 +72,13 @@ def test_named_meshes(name: str, levels: int) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(soup=soups(), levels=st.integers(1, 3))
-def test_soups(soup: tuple[np.ndarray, np.ndarray], levels: int) -> None:
+def test_soups(soup, levels):
     """Any triangles at all."""
     positions, faces = soup
     assert_is_plain(meshes.Mesh(positions, faces), positions, levels)
 
 
-def test_interpolated_normals() -> None:
+def test_interpolated_normals():
     """Normals are interpolated along the edges of each level, as in the plain implementation."""
     mesh = meshes.irregular(7)
     deformed = meshes.wrinkled(mesh, 8)
@@ -90,7 +90,7 @@ def test_interpolated_normals() -> None:
     np.testing.assert_allclose(refined.normals, np.array(normals), rtol=0, atol=4e-6)
 
 
-def test_equals_kahler_at_one_level() -> None:
+def test_equals_kahler_at_one_level():
     """With every edge split once the adaptive refiner is one step of Loop subdivision."""
     mesh = meshes.irregular(9)
     deformed = meshes.wrinkled(mesh, 10)
@@ -105,7 +105,7 @@ def test_equals_kahler_at_one_level() -> None:
 
 
 @pytest.mark.parametrize("levels", [0, 5, 1.5, 2.0, "2"])
-def test_bad_levels(levels: object) -> None:
+def test_bad_levels(levels):
     """Only one to four levels are allowed."""
     mesh = meshes.triangle()
     with pytest.raises(ValueError, match="levels must be 1 to 4, got"):

@@ -43,7 +43,7 @@ print(peaks[1] - peaks[0])
 
 
 @pytest.mark.parametrize("look", LOOKS)
-def test_arrays_go_with_their_refiner(look: str) -> None:
+def test_arrays_go_with_their_refiner(look):
     """Compiled code keeps none of the arrays that it was handed, lent ones neither."""
     mesh = meshes.irregular(5)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, **LOOKS[look])
@@ -65,7 +65,7 @@ def test_arrays_go_with_their_refiner(look: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("look", LOOKS)
-def test_a_hundred_refiners_take_the_memory_of_one(look: str) -> None:
+def test_a_hundred_refiners_take_the_memory_of_one(look):
     """Each is made for 20 000 triangles, refines a frame and is dropped: less than 5 MB is left."""
     pytest.importorskip("resource", reason="measures the memory of a process; not on Windows")
     call = [sys.executable, "-c", MANY, look]

@@ -116,15 +116,7 @@ def assert_no_crack(
     order=st.sampled_from(["c", "fortran", "reversed", "every other"]),
     textured=st.booleans(),
 )
-def test_anything_goes(
-    mesh: tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]],
-    chosen: dict[str, Any],
-    seed: int,
-    precision: str,
-    index: str,
-    order: str,
-    textured: bool,
-) -> None:
+def test_anything_goes(mesh, chosen, seed, precision, index, order, textured):
     """Three frames of any mesh with any options: proper, no crack, and nothing is touched."""
     generator = np.random.default_rng(seed)
     rest = in_other_order(mesh[0].astype(precision), order)

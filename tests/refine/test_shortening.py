@@ -24,7 +24,7 @@ def both_ways(count: int) -> Array:
     return np.tile([ALONG, ACROSS], (count, 1, 1))
 
 
-def test_at_rest_there_is_none() -> None:
+def test_at_rest_there_is_none():
     """To the last bit, on an irregular mesh."""
     mesh = meshes.irregular(3)
     directions = np.random.default_rng(3).normal(size=(len(mesh.vertices), 2, 3))
@@ -32,7 +32,7 @@ def test_at_rest_there_is_none() -> None:
     assert (measured == 0.0).all()
 
 
-def test_a_squeeze_is_found_along_its_direction_alone() -> None:
+def test_a_squeeze_is_found_along_its_direction_alone():
     """A fifth shorter along x, a tenth longer along y: a fifth, and a tenth below nothing."""
     faces, rest = grid()
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
@@ -41,7 +41,7 @@ def test_a_squeeze_is_found_along_its_direction_alone() -> None:
     np.testing.assert_allclose(measured[:, 1], -0.1, atol=1e-5)
 
 
-def test_rigid_motions_and_bends_shorten_nothing() -> None:
+def test_rigid_motions_and_bends_shorten_nothing():
     """A turned grid, and one rolled up by its finest triangles: less than their chords lose."""
     faces, rest = grid(41)
     shortening = refine.Shortening(faces, rest, both_ways(len(rest)))
@@ -53,7 +53,7 @@ def test_rigid_motions_and_bends_shorten_nothing() -> None:
     assert np.abs(shortening.measure(rolled)).max() < 1e-3
 
 
-def test_finds_the_largest_compression() -> None:
+def test_finds_the_largest_compression():
     """Along its direction a flat deformation is as much shorter as its smallest stretch says."""
     faces, rest = grid()
     gradient = np.array([[0.9, 0.15, 0.0], [-0.05, 0.75, 0.0], [0.0, 0.0, 1.0]])
@@ -64,7 +64,7 @@ def test_finds_the_largest_compression() -> None:
     np.testing.assert_allclose(measured, 1.0 - stretches[1], atol=1e-5)
 
 
-def test_what_does_not_fit_is_refused() -> None:
+def test_what_does_not_fit_is_refused():
     """Directions and positions of another shape, and directions that are no numbers."""
     faces, rest = grid(3)
     for directions in (np.zeros((len(rest), 3)), np.full((len(rest), 1, 3), np.nan)):

@@ -1,7 +1,5 @@
 """Doubled vertices are one while refining; what they carry parts again, as if bound by corners."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -32,7 +30,7 @@ def doubled(mesh: meshes.Mesh, seed: int) -> tuple[Points, npt.NDArray[np.int64]
     seed=st.integers(0, 2**16),
     options=st.sampled_from([{}, {"blend": False}, {"scheme": "loop", "criterion": "normal"}]),
 )
-def test_carried_as_if_bound(name: str, seed: int, options: dict[str, Any]) -> None:
+def test_carried_as_if_bound(name, seed, options):
     """`carry` gives what a refiner has that was bound with the values at every corner."""
     mesh = meshes.NAMED[name]()
     points, faces = doubled(mesh, seed)
@@ -80,7 +78,7 @@ def heights_of_borders(mesh: refine.RefinedMesh) -> set[float]:
 
 
 @pytest.mark.parametrize("seams", [False, True])
-def test_no_crack_opens_between_doubled_vertices(seams: bool) -> None:
+def test_no_crack_opens_between_doubled_vertices(seams):
     """Only the two ends of the tube are open; without welding each side is flat."""
     points, faces = box()
     moved = points * [1.0, 1.0, 1.5]
@@ -103,7 +101,7 @@ def test_no_crack_opens_between_doubled_vertices(seams: bool) -> None:
     ],
     ids=["bytes", "integers", "not a number", "flags", "complex", "tables"],
 )
-def test_types_stay(values: npt.NDArray[Any], expected: list[Any]) -> None:
+def test_types_stay(values, expected):
     """New points have the mean of both ends, rounded where the type has no fractions."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     refiner = refine.WeldedRefiner(points, [[0, 1, 2]], criterion=Forced([1, 1, 1]), blend=False)
@@ -115,7 +113,7 @@ def test_types_stay(values: npt.NDArray[Any], expected: list[Any]) -> None:
     np.testing.assert_array_equal(carried[3:], np.array(expected, dtype=values.dtype))
 
 
-def test_words_come_from_an_end() -> None:
+def test_words_come_from_an_end():
     """What is no number cannot be mixed."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     refiner = refine.WeldedRefiner(points, [[0, 1, 2]], criterion=Forced([1, 1, 1]), blend=False)
@@ -123,7 +121,7 @@ def test_words_come_from_an_end() -> None:
     assert set(refiner.carry(["a", "b", "c"])) == {"a", "b", "c"}
 
 
-def test_mistakes_are_reported() -> None:
+def test_mistakes_are_reported():
     """Wrong numbers of points and values, and too early a call."""
     points, faces = box()
     refiner = refine.WeldedRefiner(points, faces)
@@ -155,7 +153,7 @@ def vase() -> tuple[Points, npt.NDArray[np.int64]]:
 
 @pytest.mark.parametrize("kind", [np.float64, np.float32])
 @pytest.mark.parametrize("moved", [0.0, 3000.0])
-def test_seams_equal_but_for_the_last_bits(kind: type[np.floating], moved: float) -> None:
+def test_seams_equal_but_for_the_last_bits(kind, moved):
     """Whatever computed or stored them, both sides of a seam have one normal."""
     turned = np.linalg.qr(np.random.default_rng(3).random((3, 3)))[0]
     points, faces = vase()
@@ -173,7 +171,7 @@ def test_seams_equal_but_for_the_last_bits(kind: type[np.floating], moved: float
     np.testing.assert_array_equal(mesh.normals, mesh.normals[first[number.reshape(-1)]])
 
 
-def test_how_far_apart_welded_vertices_may_lie() -> None:
+def test_how_far_apart_welded_vertices_may_lie():
     """In sizes of the mesh; 1e-9 by default, 0 joins only equal points."""
     points, faces = box()
     size = 2.0
@@ -197,7 +195,7 @@ def test_how_far_apart_welded_vertices_may_lie() -> None:
 
 @settings(max_examples=40)
 @given(seed=st.integers(0, 2**16), distance=st.sampled_from([1e-9, 1e-4, 0.03, 0.2]))
-def test_places_are_those_of_all_pairs(seed: int, distance: float) -> None:
+def test_places_are_those_of_all_pairs(seed, distance):
     """Points are one place where a chain of near ones joins them, as all distances say."""
     generator = np.random.default_rng(seed)
     points = generator.random((40, 3)).round(int(generator.integers(1, 4)))
@@ -234,7 +232,7 @@ WIDE = (2**53, 2**53 + 1, 2**62 + 3)
     ],
     ids=str,
 )
-def test_points_of_the_input_keep_their_values(values: npt.NDArray[Any], blend: bool) -> None:
+def test_points_of_the_input_keep_their_values(values, blend):
     """Exactly, in any type; new points lie between their corners, equal corners stay equal."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     asks = GivenMetric([1.1, 0.9, 0.3]) if blend else Forced([2, 1, 1])
@@ -251,7 +249,7 @@ def test_points_of_the_input_keep_their_values(values: npt.NDArray[Any], blend: 
         assert (carried == values[0]).all()
 
 
-def test_wide_integers_are_rounded_as_all_numbers_are() -> None:
+def test_wide_integers_are_rounded_as_all_numbers_are():
     """The mean of both ends to the nearest, halves to the even one; infinite ends are not lost."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     refiner = refine.WeldedRefiner(points, [[0, 1, 2]], criterion=Forced([1, 1, 1]), blend=False)

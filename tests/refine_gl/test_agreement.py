@@ -59,7 +59,7 @@ def with_seam(head: Head) -> dict[str, npt.NDArray[Any]]:
         for name in (*POSES, "kiss far away")
     ],
 )
-def test_head(pose: str, is_seamed: bool, rules: str, head: Head, poses: dict[str, Points]) -> None:
+def test_head(pose, is_seamed, rules, head, poses):
     """Every pose of the head, with a texture seam and without, split once or up to twice."""
     values = with_seam(head) if is_seamed else {}
     processor, card = bound_twice(head.faces, head.vertices, **RULES[rules], **values)
@@ -71,7 +71,7 @@ def test_head(pose: str, is_seamed: bool, rules: str, head: Head, poses: dict[st
 
 @both_rules
 @pytest.mark.parametrize("name", meshes.NAMED)
-def test_small_meshes(name: str, rules: str) -> None:
+def test_small_meshes(name, rules):
     """One mesh for each oddity: borders, fins, flips, doubles, debris; three frames of each."""
     mesh = meshes.NAMED[name]()
     processor, card = bound_twice(mesh.faces, mesh.vertices, **RULES[rules])
@@ -81,7 +81,7 @@ def test_small_meshes(name: str, rules: str) -> None:
 
 
 @both_rules
-def test_attributes(rules: str) -> None:
+def test_attributes(rules):
     """Texture coordinates and other values of corners are mixed alike, of wide rows, too."""
     mesh = meshes.tube()
     assert mesh.uv is not None
@@ -103,7 +103,7 @@ def test_attributes(rules: str) -> None:
 
 @both_rules
 @pytest.mark.parametrize("side", [30, 100, pytest.param(330, marks=pytest.mark.slow)])
-def test_sums_over_many_groups(side: int, rules: str) -> None:
+def test_sums_over_many_groups(side, rules):
     """Grids of up to 217 800 triangles: numbers run on from group to group of threads."""
     mesh = meshes.open_grid(side, side)
     x, y, _ = mesh.vertices.T
@@ -124,7 +124,7 @@ def test_sums_over_many_groups(side: int, rules: str) -> None:
         {"criterion": "silhouette"},
     ],
 )
-def test_criteria(options: dict[str, Any]) -> None:
+def test_criteria(options):
     """Those that the card decides by, their mixes, and others, which the processor measures."""
     options = {"scheme": "cubic" if "blend" in options else "loop", **options}
     mesh = meshes.irregular(7, 8, 6, 1)
@@ -172,14 +172,14 @@ def assert_random_meshes_same(seeds: range) -> set[int]:
     return met
 
 
-def test_random_meshes() -> None:
+def test_random_meshes():
     """Meshes that are no manifolds, with seams, with memory: all 27 configurations occur."""
     assert assert_random_meshes_same(range(40)) == set(range(27))
 
 
 @both_rules
 @pytest.mark.parametrize("frames", [60, pytest.param(500, marks=pytest.mark.slow)])
-def test_coherent_frames(frames: int, rules: str, head: Head) -> None:
+def test_coherent_frames(frames, rules, head):
     """A face that moves: what triangles remember stays on the card, and is the same."""
     face = sim.create(head)
     processor, card = bound_twice(head.faces, head.vertices, coherent=True, **RULES[rules])
@@ -194,7 +194,7 @@ def test_coherent_frames(frames: int, rules: str, head: Head) -> None:
 
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
-def test_points_that_nothing_uses(rules: str) -> None:
+def test_points_that_nothing_uses(rules):
     """Far away, or no numbers: what the first point is does not matter."""
     mesh = meshes.irregular(4)
     strays = np.array([[np.nan, 0.0, 0.0], [1e14, 0.0, 0.0]])

@@ -4,7 +4,6 @@ import os
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -77,9 +76,7 @@ def drawn_by(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
     monkeypatch.setattr(render.Surface, "is_software", property(lambda _: is_software))
 
 
-def test_a_card_takes_large_meshes_by_itself(
-    pipeline: Pipeline, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_card_takes_large_meshes_by_itself(pipeline, monkeypatch):
     """Where a look is asked for, the driver is hardware and the mesh large; to the same picture."""
     smooth = Refinement("smooth")
     count = len(pipeline.scene.faces)
@@ -101,9 +98,7 @@ def test_a_card_takes_large_meshes_by_itself(
 
 @pytest.mark.parametrize("kind", ["software", "hardware"])
 @pytest.mark.parametrize("style", STYLES)
-def test_pictures_are_the_same(
-    pipeline: Pipeline, style: str, kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pictures_are_the_same(pipeline, style, kind, monkeypatch):
     """No pixel differs, in any style, as software draws and as graphics cards do."""
     drawn_by(monkeypatch, kind)
     processor, card = both(pipeline)
@@ -113,7 +108,7 @@ def test_pictures_are_the_same(
     assert card.caption.endswith(f"\n{processor.triangle_count} triangles")
 
 
-def test_nothing_comes_back(scene: FaceScene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_comes_back(scene, monkeypatch):
     """Where nobody asks for numbers, a graphics card draws a frame that only it knows."""
     drawn_by(monkeypatch, "hardware")
     with render.open_offscreen(SIZE, samples=4) as surface:
@@ -125,7 +120,7 @@ def test_nothing_comes_back(scene: FaceScene, monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.mark.parametrize("options", [["paper", "--compare", "none"], ["smooth"]])
-def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
+def test_films_are_the_same(tmp_path, options):
     """`capture --refiner kahler-gl` draws what `--refiner kahler` draws."""
     pictures = []
     for name in ("kahler-gl", "kahler"):
@@ -138,7 +133,7 @@ def test_films_are_the_same(tmp_path: Path, options: list[str]) -> None:
 
 
 @pytest.mark.slow
-def test_samples_of_data_sets_are_the_same(tmp_path: Path) -> None:
+def test_samples_of_data_sets_are_the_same(tmp_path):
     """`dataset --refiner kahler-gl` makes the pictures, passes and labels that `kahler` makes."""
     passes = ("depth", "normal", "splits", "segmentation")
     requests = (
@@ -158,7 +153,7 @@ def test_samples_of_data_sets_are_the_same(tmp_path: Path) -> None:
     sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), reason="needs a display"
 )
 @pytest.mark.parametrize("look", ["paper", "smooth"])
-def test_a_window_that_is_resized(scene: FaceScene, look: str) -> None:
+def test_a_window_that_is_resized(scene, look):
     """A window draws it in every size that it is given."""
     with render.open_window((200, 150), "kahler-gl", samples=0) as window:
         if window.gl.version_code < LEAST_VERSION:

@@ -25,7 +25,7 @@ def bound(**options: Any) -> tuple[refine.Refiner, KahlerGl]:
     return bound_twice(MESH.faces, MESH.vertices, **options)
 
 
-def test_it_joins_as_anybodys_would() -> None:
+def test_it_joins_as_anybodys_would():
     """By an entry point, with options of its own; others are refused as ever."""
     assert "kahler-gl" in refine.refiners.available()
     assert "kahler-gl" in refine.refiners.installed()
@@ -39,7 +39,7 @@ def test_it_joins_as_anybodys_would() -> None:
         refine.create("kahler-gl", MESH.faces, MESH.vertices, threshold_once=1.0)
 
 
-def test_wrong_frames_are_refused() -> None:
+def test_wrong_frames_are_refused():
     """As `kahler` refuses them; the next good one is as ever."""
     processor, card = bound()
     for wrong, words in ((BENT[1:], "must be floats of shape"), (BENT * np.nan, "must be finite")):
@@ -59,7 +59,7 @@ def lent(card: refine.Refiner) -> Any:
     )
 
 
-def test_lent_arrays_are_filled() -> None:
+def test_lent_arrays_are_filled():
     """Lent arrays get the frame."""
     processor, card = bound()
     stream = lent(card)
@@ -80,7 +80,7 @@ def surface() -> Iterator[render.Surface]:
         yield opened
 
 
-def test_buffers_of_another_context(surface: render.Surface) -> None:
+def test_buffers_of_another_context(surface):
     """A stream's context is used, and nothing is fetched until it is read."""
     processor, card = bound()
     room = card.vertex_columns, card.vertex_capacity, card.triangle_capacity
@@ -100,7 +100,7 @@ def test_buffers_of_another_context(surface: render.Surface) -> None:
 
 
 @pytest.mark.parametrize("rules", ["two levels", "window's look"])
-def test_a_lost_context_is_made_anew(rules: str) -> None:
+def test_a_lost_context_is_made_anew(rules):
     """A window that is closed takes all buffers along; the next one gets the mesh again."""
     processor, card = bound(**RULES[rules])
     wanted = processor.refine(BENT)
@@ -112,7 +112,7 @@ def test_a_lost_context_is_made_anew(rules: str) -> None:
     assert_same(processor, card, BENT)
 
 
-def test_the_callers_context_stays_current(surface: render.Surface) -> None:
+def test_the_callers_context_stays_current(surface):
     """Frames that bring no context do not touch the one that draws."""
     _, card = bound()
     surface.begin()
@@ -135,7 +135,7 @@ def without_opengl(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("without_opengl")
-def test_without_opengl_the_processor_refines(caplog: pytest.LogCaptureFixture) -> None:
+def test_without_opengl_the_processor_refines(caplog):
     """One line says so, once, and what comes is what `kahler` makes."""
     with caplog.at_level(logging.WARNING):
         for _ in range(2):
@@ -149,9 +149,7 @@ def test_without_opengl_the_processor_refines(caplog: pytest.LogCaptureFixture) 
     np.testing.assert_array_equal(other.refine(BENT).triangles, wanted.triangles)
 
 
-def test_a_driver_that_refuses_a_shader(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_driver_that_refuses_a_shader(monkeypatch, caplog):
     """Then the processor refines as well, and the line has the driver's complaint."""
     whole = frames._text
     refiner._warn_once.cache_clear()
@@ -163,7 +161,7 @@ def test_a_driver_that_refuses_a_shader(
     assert "error" in line
 
 
-def test_shaders_take_eight_buffers() -> None:
+def test_shaders_take_eight_buffers():
     """OpenGL 4.3 promises no more storage buffers in all, nor a larger group of threads."""
     bindings = re.findall(r"std430, binding = (\d+)", frames._text("common"))
     assert sorted(map(int, bindings)) == list(range(8))
@@ -180,7 +178,7 @@ def test_shaders_take_eight_buffers() -> None:
         ({"criterion": refine.Criterion()}, "takes criteria that measure, and Criterion has no"),
     ],
 )
-def test_what_the_card_has_not(options: dict[str, Any], words: str) -> None:
+def test_what_the_card_has_not(options, words):
     """Options that only `kahler` has are refused in words."""
     with pytest.raises(ValueError, match=re.escape(words)):
         refine.create("kahler-gl", MESH.faces, MESH.vertices, **options)

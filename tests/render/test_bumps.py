@@ -41,7 +41,7 @@ def furrowed(
     return surface.read().astype(np.int32)
 
 
-def test_slopes_are_lit_like_the_slopes_they_are(surface: render.Surface) -> None:
+def test_slopes_are_lit_like_the_slopes_they_are(surface):
     """The key comes from the viewer's upper left: what rises to the right faces it, and shines."""
     plain = furrowed(surface, LEVEL, (1.0, 1.0))
     rises_right = furrowed(surface, (190, 128, 0, 0), (1.0, 0.0))
@@ -51,7 +51,7 @@ def test_slopes_are_lit_like_the_slopes_they_are(surface: render.Surface) -> Non
     assert (at(rises_right, -25, 0) == at(plain, -25, 0)).all()
 
 
-def test_furrows_are_darker(surface: render.Surface) -> None:
+def test_furrows_are_darker(surface):
     """By their depth, red least."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
     deep = at(furrowed(surface, (128, 128, 200, 0), (1.0, 0.0)), 25, 0)
@@ -59,7 +59,7 @@ def test_furrows_are_darker(surface: render.Surface) -> None:
     assert deep[0] / plain[0] > deep[2] / plain[2]
 
 
-def test_a_texel_follows_its_own_amount(surface: render.Surface) -> None:
+def test_a_texel_follows_its_own_amount(surface):
     """Alpha 0 the first, 255 the second."""
     plain = at(furrowed(surface, LEVEL, (1.0, 1.0)), 25, 0)
     first = (190, 190, 90, 0)
@@ -71,9 +71,7 @@ def test_a_texel_follows_its_own_amount(surface: render.Surface) -> None:
 
 
 @pytest.mark.parametrize("amounts", [None, (0.0, 0.0), (1.0, 1.0)])
-def test_none_without_amounts_or_strength(
-    surface: render.Surface, amounts: tuple[float, float] | None
-) -> None:
+def test_none_without_amounts_or_strength(surface, amounts):
     """A style without bumps, and skin that does not bump, are drawn to the same bytes."""
     smooth = replace(PLAIN, bumps=0.0)
     style = smooth if amounts == (1.0, 1.0) else PLAIN
@@ -82,7 +80,7 @@ def test_none_without_amounts_or_strength(
 
 
 @pytest.mark.parametrize("shading", [render.Shading.FLAT, render.Shading.GOURAUD])
-def test_per_pixel_shading_alone_has_them(surface: render.Surface, shading: render.Shading) -> None:
+def test_per_pixel_shading_alone_has_them(surface, shading):
     """Nothing else has a normal for each pixel."""
     style = replace(PLAIN, shading=shading)
     texel = (190, 90, 200, 128)
@@ -90,7 +88,7 @@ def test_per_pixel_shading_alone_has_them(surface: render.Surface, shading: rend
     assert (furrows == furrowed(surface, texel, None, style)).all()
 
 
-def test_part_of_a_mesh_has_bumps_without_a_crack(surface: render.Surface) -> None:
+def test_part_of_a_mesh_has_bumps_without_a_crack(surface):
     """With a level map, a sphere half of whose vertices bump looks as it does without."""
     shape = sphere()
     renderer = render.Renderer(surface)
@@ -107,7 +105,7 @@ def test_part_of_a_mesh_has_bumps_without_a_crack(surface: render.Surface) -> No
     assert np.abs(frames[0] - frames[1]).max() <= 1
 
 
-def test_what_does_not_fit_is_refused(surface: render.Surface) -> None:
+def test_what_does_not_fit_is_refused(surface):
     """A map that is none, amounts for other vertices, a stream without texture coordinates."""
     renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match="the bump map has shape"):

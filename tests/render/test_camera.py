@@ -20,7 +20,7 @@ def seen(
 
 @pytest.mark.parametrize("view", render.VIEWS)
 @pytest.mark.parametrize("aspect", [0.4, 1.0, 16 / 9])
-def test_framing_fits_everything(view: str, aspect: float) -> None:
+def test_framing_fits_everything(view, aspect):
     """All vertices are in the frame, between the clipping planes, and touch the margin."""
     camera = render.OrbitCamera.framing(HEAD, view=view)
     places = seen(camera, HEAD, aspect)
@@ -28,7 +28,7 @@ def test_framing_fits_everything(view: str, aspect: float) -> None:
     assert np.abs(places[:, :2]).max() == pytest.approx(0.88, abs=0.03)
 
 
-def test_views_look_from_where_they_say() -> None:
+def test_views_look_from_where_they_say():
     """Front is +z, the profile is from the subject's left (+x), below is from below."""
     eyes = {view: render.OrbitCamera.framing(HEAD, view=view).axes()[2] for view in render.VIEWS}
     assert eyes["front"] == pytest.approx((0, 0, 1))
@@ -39,7 +39,7 @@ def test_views_look_from_where_they_say() -> None:
     assert eyes["top"] == pytest.approx((0, 1, 0))
 
 
-def test_orbit_stops_at_the_poles() -> None:
+def test_orbit_stops_at_the_poles():
     """However far one rises, up stays up."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.orbit(0.0, 500.0)
@@ -48,7 +48,7 @@ def test_orbit_stops_at_the_poles() -> None:
     assert np.isfinite(np.asarray(camera.view_matrix())).all()
 
 
-def test_zoom_has_an_end_on_both_sides() -> None:
+def test_zoom_has_an_end_on_both_sides():
     """A wheel that is turned for ever never takes the eye into the target, nor out of view."""
     camera = render.OrbitCamera.framing(HEAD)
     camera.zoom(1e30)
@@ -57,7 +57,7 @@ def test_zoom_has_an_end_on_both_sides() -> None:
     assert camera.distance == pytest.approx(100.0 * camera.scene_radius)
 
 
-def test_clipping_planes_hold_the_scene_from_anywhere() -> None:
+def test_clipping_planes_hold_the_scene_from_anywhere():
     """From every side and distance the visible half of the scene lies between near and far."""
     camera = render.OrbitCamera.framing(HEAD)
     for zoom in (0.2, 1.0, 1.0, 1.5):
@@ -77,14 +77,14 @@ def test_clipping_planes_hold_the_scene_from_anywhere() -> None:
         (np.full((4, 3), np.nan), "front", "vertices holds numbers that are not finite"),
     ],
 )
-def test_framing_errors(vertices: npt.NDArray[np.float64], view: str, message: str) -> None:
+def test_framing_errors(vertices, view, message):
     """What cannot be framed is refused with a reason."""
     with pytest.raises(ValueError, match=message):
         render.OrbitCamera.framing(vertices, view=view)
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_what_is_seen_can_be_found_again(seed: int) -> None:
+def test_what_is_seen_can_be_found_again(seed):
     """A point, projected and taken back, is itself; its ray leaves the eye."""
     random = np.random.default_rng(seed)
     camera = render.OrbitCamera.framing(HEAD, view=random.choice(list(render.VIEWS)))

@@ -12,7 +12,7 @@ from .scenes import PLAIN, at, draw_image, sphere, square
 SPLITS = replace(PLAIN, colour_by=render.ColourBy.SPLITS)
 
 
-def test_wireframe_darkens_edges_only(surface: render.Surface) -> None:
+def test_wireframe_darkens_edges_only(surface):
     """Lines run along borders and diagonal; between them the surface is as before."""
     plain = draw_image(surface, square())
     wired = draw_image(surface, square(), replace(PLAIN, wireframe=True, wire_width=3.0))
@@ -25,9 +25,7 @@ def test_wireframe_darkens_edges_only(surface: render.Surface) -> None:
 
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("wireframe", [False, True])
-def test_split_colours_are_where_the_values_say(
-    surface: render.Surface, shading: render.Shading, wireframe: bool
-) -> None:
+def test_split_colours_are_where_the_values_say(surface, shading, wireframe):
     """A triangle with splits has its palette's hue, its neighbour keeps the skin."""
     style = replace(SPLITS, shading=shading, wireframe=wireframe)
     frame = draw_image(surface, square(), style, values=np.array([0, 4], np.uint8))
@@ -39,7 +37,7 @@ def test_split_colours_are_where_the_values_say(
     assert at(swapped, 20.0, -20.0)[2] > at(swapped, 20.0, -20.0)[0] + 60
 
 
-def test_split_colours_of_many_triangles(surface: render.Surface) -> None:
+def test_split_colours_of_many_triangles(surface):
     """Beyond one row of the look-up texture the numbers still belong to their triangles."""
     shape = sphere(5)
     centres = shape.positions[shape.triangles].mean(axis=1)
@@ -52,14 +50,14 @@ def test_split_colours_of_many_triangles(surface: render.Surface) -> None:
     assert (lower[:, 0] > lower[:, 2]).all()
 
 
-def test_palette_darkens_with_the_number_of_splits() -> None:
+def test_palette_darkens_with_the_number_of_splits():
     """The order of the palette can be seen without colour: luminance falls at each step."""
     luminance = np.array(render.SPLIT_PALETTE) @ (0.2126, 0.7152, 0.0722)
     assert len(luminance) == 6
     assert (np.diff(luminance) < -0.08).all()
 
 
-def test_split_values_must_be_there(surface: render.Surface) -> None:
+def test_split_values_must_be_there(surface):
     """Missing numbers are refused, and another count of them."""
     with pytest.raises(ValueError, match="the style colours by values, so draw_mesh needs values"):
         draw_image(surface, square(), SPLITS)

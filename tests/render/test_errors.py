@@ -43,9 +43,7 @@ def run_python(code: str, **environment: str) -> str:
         ("GLCONTEXT_GLVERSION", "990", "the driver is older.*0x3009"),
     ],
 )
-def test_broken_egl_is_one_line(
-    monkeypatch: pytest.MonkeyPatch, name: str, value: str, message: str
-) -> None:
+def test_broken_egl_is_one_line(monkeypatch, name, value, message):
     """Each way to break EGL by the environment names itself and its cure."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv(name, value)
@@ -55,7 +53,7 @@ def test_broken_egl_is_one_line(
 
 
 @on_linux
-def test_a_frame_that_does_not_fit_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_frame_that_does_not_fit_is_one_line(monkeypatch):
     """Where memory for a frame is refused, the text says what to ask for instead."""
 
     def refused(*_: object) -> None:
@@ -66,7 +64,7 @@ def test_a_frame_that_does_not_fit_is_one_line(monkeypatch: pytest.MonkeyPatch) 
         render.open_offscreen((64, 48))
 
 
-def test_no_screen_is_one_line_without_warnings() -> None:
+def test_no_screen_is_one_line_without_warnings():
     """Without a screen a window fails with a GLError; GLFW's Python warnings stay away."""
     output = run_python(
         "from risorius import render\n"
@@ -93,7 +91,7 @@ def test_no_screen_is_one_line_without_warnings() -> None:
         ("something\nnew", 'failed ("something new"). Cure: `risorius doctor`'),
     ],
 )
-def test_known_texts_have_a_cure(monkeypatch: pytest.MonkeyPatch, raw: str, cure: str) -> None:
+def test_known_texts_have_a_cure(monkeypatch, raw, cure):
     """The text of the library is kept, and followed by one cure."""
     for name in [name for name in os.environ if name.startswith("GLCONTEXT_")]:
         monkeypatch.delenv(name)
@@ -102,9 +100,7 @@ def test_known_texts_have_a_cure(monkeypatch: pytest.MonkeyPatch, raw: str, cure
     assert cure in text
 
 
-def test_shader_error_names_file_and_stage(
-    surface: render.Surface, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_shader_error_names_file_and_stage(surface, monkeypatch, tmp_path):
     """A program that does not compile says where."""
     (tmp_path / "broken.glsl").write_text(
         "#if defined(VERTEX_STAGE)\n"
@@ -119,7 +115,7 @@ def test_shader_error_names_file_and_stage(
         programs.compile_program(surface.gl, "broken.glsl", "WIDE 3")
 
 
-def test_probe_finds_what_is_there() -> None:
+def test_probe_finds_what_is_there():
     """The machine that runs these tests can draw offscreen, and the finding says with what."""
     (finding,) = render.probe(offscreen_only=True)
     assert finding.is_ok
@@ -130,7 +126,7 @@ def test_probe_finds_what_is_there() -> None:
 
 
 @on_linux
-def test_probe_reports_failures(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_probe_reports_failures(monkeypatch):
     """Broken EGL and a missing screen are findings, not exceptions."""
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
@@ -143,7 +139,7 @@ def test_probe_reports_failures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @on_linux
-def test_probe_survives_a_crash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_probe_survives_a_crash(monkeypatch, tmp_path):
     """A driver that kills its process is a finding with the exit code."""
     killer = tmp_path / "python"
     killer.write_text("#!/bin/sh\nkill -SEGV $$\n")

@@ -40,9 +40,7 @@ def drawn(
     pitch=st.floats(-80.0, 80.0),
     size=st.tuples(st.integers(33, 120), st.integers(33, 120)),
 )
-def test_a_sphere_is_as_far_away_as_it_should_be(
-    yaw: float, pitch: float, size: tuple[int, int]
-) -> None:
+def test_a_sphere_is_as_far_away_as_it_should_be(yaw, pitch, size):
     """From everywhere, in any format: depth along the axis, and normals in the camera's axes."""
     camera = facing(60.0)
     camera.orbit(yaw, pitch)
@@ -74,7 +72,7 @@ def test_a_sphere_is_as_far_away_as_it_should_be(
     assert (found.normal[inner][:, 2] < 0.0).all()  # toward the camera
 
 
-def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface: render.Surface) -> None:
+def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface):
     """A square above and to the right of the middle is drawn there."""
     shape = square(20.0)
     moved = Shape(shape.positions + np.float32([25.0, 25.0, 0.0]), shape.normals, shape.triangles)
@@ -85,7 +83,7 @@ def test_the_top_row_comes_first_and_axes_are_those_of_pictures(surface: render.
     assert np.allclose(normals[48, 48], [0.0, -1.0, 0.0])
 
 
-def test_nearer_surfaces_hide_those_behind(surface: render.Surface) -> None:
+def test_nearer_surfaces_hide_those_behind(surface):
     """Of two squares and a ball the nearest counts, in any order of drawing."""
     far = square(50.0, z=-30.0)
     near = square(10.0, z=40.0)
@@ -101,7 +99,7 @@ def test_nearer_surfaces_hide_those_behind(surface: render.Surface) -> None:
         assert found.depth[middle] < found.depth[beside] < found.depth[corner]
 
 
-def test_triangles_are_numbered_through_all_parts(surface: render.Surface) -> None:
+def test_triangles_are_numbered_through_all_parts(surface):
     """Those of the mesh first, then of each part in turn; nothing is -1."""
     shape = square(10.0, z=45.0)
     ball = Ball()
@@ -117,7 +115,7 @@ def test_triangles_are_numbered_through_all_parts(surface: render.Surface) -> No
     assert twice.triangle.max() < 2 + 2 * len(ball.faces)
 
 
-def test_the_back_of_the_mesh_differs_from_its_front(surface: render.Surface) -> None:
+def test_the_back_of_the_mesh_differs_from_its_front(surface):
     """Normals point to the camera on either side."""
     camera = facing()
     assert not drawn(surface, square(), camera).is_inside.any()
@@ -127,7 +125,7 @@ def test_the_back_of_the_mesh_differs_from_its_front(surface: render.Surface) ->
     assert found.normal[48, 48, 2] < -0.99
 
 
-def test_a_picture_is_the_same_before_and_after(surface: render.Surface) -> None:
+def test_a_picture_is_the_same_before_and_after(surface):
     """Drawing numbers leaves the colours of a frame alone, and those of the next."""
     renderer = render.Renderer(surface)
     style = render.Style()

@@ -41,7 +41,7 @@ def scene(surface: render.Surface, light: render.Light) -> SignedImage:
     return draw_image(surface, shape, replace(SHADED, light=light))
 
 
-def test_light_of_the_other_side_makes_the_mirror_image(surface: render.Surface) -> None:
+def test_light_of_the_other_side_makes_the_mirror_image(surface):
     """Shading and the cast shadow follow the key, and nothing else in the picture has a side."""
     for light in (NO_RIM, replace(render.LIGHTS["window"], rim=(0.0, 0.0, 0.0))):
         here = scene(surface, light)
@@ -52,7 +52,7 @@ def test_light_of_the_other_side_makes_the_mirror_image(surface: render.Surface)
         assert np.percentile(off, 99.0) <= 4
 
 
-def test_other_light_leaves_nothing_behind(surface: render.Surface) -> None:
+def test_other_light_leaves_nothing_behind(surface):
     """One renderer: the studio, each other light, the studio again, bit for bit; parts, too."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, joined(square(70.0, z=-45.0), sphere(2, 30.0)))
@@ -74,7 +74,7 @@ def test_other_light_leaves_nothing_behind(surface: render.Surface) -> None:
 
 
 @pytest.mark.parametrize("name", render.LIGHTS)
-def test_no_light_burns_or_blackens(surface: render.Surface, name: str) -> None:
+def test_no_light_burns_or_blackens(surface, name):
     """A ball of light skin and one of dark skin: all of what faces the viewer has a colour."""
     for albedo, low, high in ((LIGHT_SKIN, 60, 254), (DARK_SKIN, 16, 235)):
         style = replace(PLAIN, albedo=albedo, light=render.LIGHTS[name])
@@ -85,6 +85,6 @@ def test_no_light_burns_or_blackens(surface: render.Surface, name: str) -> None:
         assert (shown.min(axis=1) >= high).mean() < 0.01
 
 
-def test_the_command_knows_all_lights() -> None:
+def test_the_command_knows_all_lights():
     """The names of `--light`, written out so that help needs no OpenGL, are those there are."""
     assert tuple(LIGHT_NAMES) == tuple(render.LIGHTS)

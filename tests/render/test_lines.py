@@ -11,7 +11,7 @@ from .scenes import PLAIN, at, drawn, facing, fresh_frame, lent, square
 RED = (1.0, 0.0, 0.0)
 
 
-def test_lines_before_and_behind(surface: render.Surface) -> None:
+def test_lines_before_and_behind(surface):
     """A line in front has its full colour, one behind shines through, and 0 hides it."""
     renderer = render.Renderer(surface)
     wall = lent(renderer, square())
@@ -33,7 +33,7 @@ def test_lines_before_and_behind(surface: render.Surface) -> None:
     assert at(frames[1], 10.0, -20.0) == pytest.approx(skin, abs=3)
 
 
-def test_lines_are_not_joined(surface: render.Surface) -> None:
+def test_lines_are_not_joined(surface):
     """Nothing is drawn from the end of one line to the start of the next; empty lines are fine."""
     renderer = render.Renderer(surface)
     left = np.array([(-40.0, -10, 0), (-40, 10, 0)])

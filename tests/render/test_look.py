@@ -46,7 +46,7 @@ def scene(surface: render.Surface, style: render.Style) -> render.Image:
 
 
 @pytest.mark.parametrize("name", STYLES)
-def test_picture_is_as_stored(name: str, tmp_path: Path) -> None:
+def test_picture_is_as_stored(name, tmp_path):
     """The scene looks as it did when its picture was approved."""
     with render.open_offscreen(SIZE) as surface:
         driver = str(surface.gl.info["GL_RENDERER"])
@@ -67,7 +67,7 @@ def test_picture_is_as_stored(name: str, tmp_path: Path) -> None:
         )
 
 
-def test_stored_pictures_would_notice() -> None:
+def test_stored_pictures_would_notice():
     """The tolerance is tight: a slightly different skin is a failure."""
     with render.open_offscreen(SIZE) as surface:
         frame = scene(surface, STYLES["pixel"]).astype(int)

@@ -20,7 +20,7 @@ def reshaped(ball: Ball, **changes: npt.NDArray[Any]) -> Any:
     return part
 
 
-def test_parts_move_with_their_bones(surface: render.Surface) -> None:
+def test_parts_move_with_their_bones(surface):
     """A part is drawn where the column-vector matrix of its bone puts it."""
     renderer = render.Renderer(surface)
     ball = Ball(bone="eye_left")
@@ -37,7 +37,7 @@ def test_parts_move_with_their_bones(surface: render.Surface) -> None:
     assert places[1] == pytest.approx(47.5 + 21.5, abs=1.5)
 
 
-def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) -> None:
+def test_a_part_that_changes_its_shape_is_drawn_anew(surface):
     """Other arrays of the same part are uploaded, after any other drawing."""
     renderer = render.Renderer(surface)
     pixels = []
@@ -51,7 +51,7 @@ def test_a_part_that_changes_its_shape_is_drawn_anew(surface: render.Surface) ->
     assert 0.2 * pixels[0] < pixels[1] < 0.3 * pixels[0]
 
 
-def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
+def test_wet_parts_have_a_crisp_highlight(surface):
     """Shine makes a few pixels nearly white, and leaves the others as they are."""
     renderer = render.Renderer(surface)
     frames = []
@@ -66,7 +66,7 @@ def test_wet_parts_have_a_crisp_highlight(surface: render.Surface) -> None:
     assert ((wet - dull) > 150).mean() < 0.03
 
 
-def test_parts_and_mesh_hide_each_other(surface: render.Surface) -> None:
+def test_parts_and_mesh_hide_each_other(surface):
     """Depth decides, in any order of drawing."""
     renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=10.0))
@@ -79,7 +79,7 @@ def test_parts_and_mesh_hide_each_other(surface: render.Surface) -> None:
     assert at(frame, 19.0, 0.0)[0] > at(frame, 19.0, 0.0)[2]  # its rim is behind the wall
 
 
-def test_parts_have_one_side(surface: render.Surface) -> None:
+def test_parts_have_one_side(surface):
     """Of a part, only the side from which its triangles run counter-clockwise is drawn."""
     ball = Ball()
     behind = ball.vertices[ball.faces].mean(axis=1)[:, 2] < 0.0
@@ -96,7 +96,7 @@ def test_parts_have_one_side(surface: render.Surface) -> None:
     assert shown[1][2] > 2 * shown[1][0]
 
 
-def test_part_errors(surface: render.Surface) -> None:
+def test_part_errors(surface):
     """Unknown bones are refused by name."""
     renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match="part 'ball' moves with bone 'tail'; transforms has only"):
@@ -104,7 +104,7 @@ def test_part_errors(surface: render.Surface) -> None:
 
 
 @pytest.mark.parametrize("samples", [0, 4])
-def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
+def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples):
     """However coarse the picture is, a hair takes as much light, and is seen all along."""
     taken = []
     for scale in (1, 2, 4):
@@ -132,7 +132,7 @@ def test_hairs_thinner_than_a_pixel_fade_and_stay_whole(samples: int) -> None:
     assert max(taken) < 1.35 * min(taken)
 
 
-def test_hair_is_dense_up_to_its_outline(surface: render.Surface) -> None:
+def test_hair_is_dense_up_to_its_outline(surface):
     """It covers the skin under it, no veil stands off its outline; it is away where none grows."""
     renderer = render.Renderer(surface)
     ball = Ball(colour=(0.1, 0.1, 0.1))
@@ -153,7 +153,7 @@ def test_hair_is_dense_up_to_its_outline(surface: render.Surface) -> None:
     assert ((pixels > 5.0) & (pixels < 200.0)).sum() <= 2
 
 
-def test_hair_hides_what_is_drawn_after_it_behind(surface: render.Surface) -> None:
+def test_hair_hides_what_is_drawn_after_it_behind(surface):
     """An outline of skin under hair is not seen through it."""
     renderer = render.Renderer(surface)
     wall = lent(renderer, square(z=-5.0))

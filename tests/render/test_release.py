@@ -77,7 +77,7 @@ def draw_all(surface: render.Surface) -> np.ndarray:
 
 
 @pytest.mark.parametrize("samples", [0, 4])
-def test_a_lost_renderer_leaves_nothing(samples: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lost_renderer_leaves_nothing(samples, monkeypatch):
     """Ten renderers one after the other: the same image, and not one object is left."""
     with render.open_offscreen((96, 96), samples=samples) as surface:
         count = counting(monkeypatch)
@@ -90,7 +90,7 @@ def test_a_lost_renderer_leaves_nothing(samples: int, monkeypatch: pytest.Monkey
     assert all((image == images[0]).all() for image in images)
 
 
-def test_a_lost_part_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lost_part_leaves_nothing(monkeypatch):
     """A renderer that draws one person after the other holds the parts of the last one alone."""
     camera = facing()
     left = list[Counter[str]]()
@@ -109,7 +109,7 @@ def test_a_lost_part_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert left[1:] == left[:-1]
 
 
-def test_a_part_without_weak_references_is_drawn() -> None:
+def test_a_part_without_weak_references_is_drawn():
     """A named tuple can be a part: it is kept, and drawn like any other."""
     ball = Ball()
     names = ("name", "vertices", "normals", "faces", "colours", "bone", "shine")
@@ -127,7 +127,7 @@ def test_a_part_without_weak_references_is_drawn() -> None:
     assert len(np.unique(images[0])) > 10
 
 
-def test_a_closed_frame_hands_its_context_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_closed_frame_hands_its_context_on(monkeypatch):
     """The next frame takes it over, unless the wanted OpenGL has changed, or an error ended it."""
     with render.open_offscreen((96, 96)) as first, render.open_offscreen((64, 48)) as beside:
         assert first.gl is not beside.gl
@@ -147,7 +147,7 @@ def test_a_closed_frame_hands_its_context_on(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.mark.slow
-def test_frames_that_are_opened_and_closed_take_no_memory() -> None:
+def test_frames_that_are_opened_and_closed_take_no_memory():
     """Two hundred frames, each with a picture: less than 3 MB."""
 
     def draw_frames(number: int) -> None:

@@ -12,7 +12,7 @@ FLAT = replace(PLAIN, shading=render.Shading.FLAT)
 GOURAUD = replace(PLAIN, shading=render.Shading.GOURAUD)
 
 
-def test_flat_facets_have_one_colour(surface: render.Surface) -> None:
+def test_flat_facets_have_one_colour(surface):
     """Flat shading gives a tilted triangle the same colour everywhere; Gouraud does not."""
     shape = square(bulge=1.0)
     tilted = Shape(shape.positions.copy(), shape.normals, shape.triangles[:1])
@@ -25,7 +25,7 @@ def test_flat_facets_have_one_colour(surface: render.Surface) -> None:
     assert spread["flat"] <= 1 < spread["gouraud"]
 
 
-def test_only_pixel_shading_lights_the_middle_of_a_facet(surface: render.Surface) -> None:
+def test_only_pixel_shading_lights_the_middle_of_a_facet(surface):
     """Between four corners that turn away, Gouraud stays as dark as they are."""
     shape = square(bulge=3.0)
     middle = {
@@ -35,7 +35,7 @@ def test_only_pixel_shading_lights_the_middle_of_a_facet(surface: render.Surface
     assert middle["pixel"] > middle["gouraud"] + 20
 
 
-def test_light_comes_from_the_upper_left(surface: render.Surface) -> None:
+def test_light_comes_from_the_upper_left(surface):
     """The sphere is brightest up left of its middle, and its dark side is not black."""
     frame = draw_image(surface, sphere(4), replace(PLAIN, albedo=render.CLAY)).sum(axis=2)
     upper_left = frame[32, 32]
@@ -44,7 +44,7 @@ def test_light_comes_from_the_upper_left(surface: render.Surface) -> None:
     assert lower_right > 3 * 30
 
 
-def test_terminator_of_skin_is_warm(surface: render.Surface) -> None:
+def test_terminator_of_skin_is_warm(surface):
     """Where light fades out, skin is redder than its albedo; clay is not."""
     shares = {}
     for name, albedo in (("skin", render.SKIN), ("clay", render.CLAY)):
@@ -55,7 +55,7 @@ def test_terminator_of_skin_is_warm(surface: render.Surface) -> None:
     assert shares["skin"] > shares["clay"] + 0.01
 
 
-def test_inner_side_is_dark_flesh(surface: render.Surface) -> None:
+def test_inner_side_is_dark_flesh(surface):
     """Seen from behind, a surface is much darker, and red."""
     shape = square()
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
@@ -67,7 +67,7 @@ def test_inner_side_is_dark_flesh(surface: render.Surface) -> None:
         assert behind[0] > 20
 
 
-def test_skin_fades_toward_a_plane(surface: render.Surface) -> None:
+def test_skin_fades_toward_a_plane(surface):
     """All of it at 1, half where the way is half done, nothing at 0."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, square(30.0))

@@ -24,7 +24,7 @@ from .scenes import (
 )
 
 
-def test_shadow_of_the_key_light(surface: render.Surface) -> None:
+def test_shadow_of_the_key_light(surface):
     """A small square before a wall darkens the wall to its lower right, and nowhere else."""
     blocker = square(12.0, z=30.0)
     thick = Shape(blocker.positions - (0, 0, 4), -blocker.normals, blocker.triangles[:, ::-1])
@@ -53,7 +53,7 @@ def wall_in_shadow(style: render.Style) -> tuple[SignedImage, SignedImage]:
     return rows[0], rows[1]
 
 
-def test_shadows_have_soft_edges() -> None:
+def test_shadows_have_soft_edges():
     """From shadow to light the wall brightens steadily; on a head that takes 2 to 6 mm."""
     within, without = wall_in_shadow(replace(PLAIN, albedo=render.CLAY))
     lightness = within.sum(axis=1) / without.sum(axis=1)
@@ -70,9 +70,7 @@ def test_shadows_have_soft_edges() -> None:
 
 
 @pytest.mark.parametrize("shading", render.Shading)
-def test_convex_things_do_not_shadow_themselves(
-    surface: render.Surface, shading: render.Shading
-) -> None:
+def test_convex_things_do_not_shadow_themselves(surface, shading):
     """On a coarse sphere shadows change next to nothing: no stripes along the terminator."""
     style = replace(PLAIN, shading=shading)
     without = draw_image(surface, sphere(2), style)
@@ -82,9 +80,7 @@ def test_convex_things_do_not_shadow_themselves(
 
 
 @pytest.mark.parametrize("shadows", [True, False])
-def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(
-    surface: render.Surface, shadows: bool
-) -> None:
+def test_hair_throws_shadows_on_a_mesh_but_not_on_itself(surface, shadows):
     """A ball of hair before a wall darkens it to its lower right, where shadows are on.
 
     The ball keeps its colours: hair only a little nearer to the light does not shade it.

@@ -8,7 +8,7 @@ from risorius import render
 from .scenes import PLAIN, draw_image, facing, fresh_frame, lent, sphere, square
 
 
-def test_lent_arrays_fit_the_contract(surface: render.Surface) -> None:
+def test_lent_arrays_fit_the_contract(surface):
     """A borrower gets C-contiguous float32, uint32 and int32 arrays of the asked size."""
     stream = render.Renderer(surface).lend_stream(100, 50, 8)
     assert stream.vertices.shape == (100, 8)
@@ -21,7 +21,7 @@ def test_lent_arrays_fit_the_contract(surface: render.Surface) -> None:
     assert stream.vertices.flags.writeable
 
 
-def test_eight_columns_draw_the_same(surface: render.Surface) -> None:
+def test_eight_columns_draw_the_same(surface):
     """Texture coordinates are skipped, not taken for positions."""
     expected = draw_image(surface, sphere())
     renderer = render.Renderer(surface)
@@ -33,7 +33,7 @@ def test_eight_columns_draw_the_same(surface: render.Surface) -> None:
     assert (surface.read() == expected).all()
 
 
-def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
+def test_only_the_used_part_is_drawn(surface):
     """Rows beyond the counts are rubbish, and do not show."""
     expected = draw_image(surface, square())
     renderer = render.Renderer(surface)
@@ -50,7 +50,7 @@ def test_only_the_used_part_is_drawn(surface: render.Surface) -> None:
     assert (surface.read() == expected).all()
 
 
-def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
+def test_hundred_frames_use_the_same_buffers(surface):
     """Neither the arrays, nor OpenGL's buffers, nor the process grow while a mesh changes."""
     resource = pytest.importorskip("resource", reason="this system does not report memory in use")
     renderer = render.Renderer(surface)
@@ -77,7 +77,7 @@ def test_hundred_frames_use_the_same_buffers(surface: render.Surface) -> None:
     assert peaks[-1] < 1.03 * peaks[20]
 
 
-def test_mesh_without_triangles_draws_nothing(surface: render.Surface) -> None:
+def test_mesh_without_triangles_draws_nothing(surface):
     """An empty frame of a stream is no error."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, square())
@@ -87,7 +87,7 @@ def test_mesh_without_triangles_draws_nothing(surface: render.Surface) -> None:
     assert (surface.read() >= 254).all()
 
 
-def test_positions_that_are_not_finite_are_survived(surface: render.Surface) -> None:
+def test_positions_that_are_not_finite_are_survived(surface):
     """A simulation that blew up still gives a frame."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, sphere())
@@ -108,16 +108,14 @@ def test_positions_that_are_not_finite_are_survived(surface: render.Surface) -> 
         ((-1, 2), "vertex_count is -1"),
     ],
 )
-def test_upload_beyond_capacity(
-    surface: render.Surface, counts: tuple[int, int], message: str
-) -> None:
+def test_upload_beyond_capacity(surface, counts, message):
     """More than was lent cannot be handed over."""
     stream = lent(render.Renderer(surface), square())
     with pytest.raises(ValueError, match=message):
         stream.upload(*counts)
 
 
-def test_bad_stream_sizes(surface: render.Surface) -> None:
+def test_bad_stream_sizes(surface):
     """Streams without room, or with an unknown layout, are refused."""
     renderer = render.Renderer(surface)
     with pytest.raises(ValueError, match=r"columns is 7; it must be 6 \(position, normal\) or 8"):

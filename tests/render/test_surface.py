@@ -15,7 +15,7 @@ def upper_square() -> Shape:
 
 
 @pytest.mark.parametrize("samples", [0, 4])
-def test_read_gives_the_top_row_first(samples: int) -> None:
+def test_read_gives_the_top_row_first(samples):
     """The upper part of the world is in the first rows of the array."""
     with render.open_offscreen((64, 48), samples=samples) as surface:
         frame = draw_image(surface, upper_square())
@@ -24,7 +24,7 @@ def test_read_gives_the_top_row_first(samples: int) -> None:
     assert not drawn(frame)[24:].any()
 
 
-def test_read_is_a_new_array_each_time(surface: render.Surface) -> None:
+def test_read_is_a_new_array_each_time(surface):
     """A frame that was read does not change with the next one."""
     draw_image(surface, sphere())
     first = surface.read()
@@ -36,7 +36,7 @@ def test_read_is_a_new_array_each_time(surface: render.Surface) -> None:
     assert (surface.read() == 0).all()
 
 
-def test_samples_smooth_edges() -> None:
+def test_samples_smooth_edges():
     """With samples, border pixels are between skin and background; without, none is."""
     shape = sphere(3)
     levels = {}
@@ -50,7 +50,7 @@ def test_samples_smooth_edges() -> None:
     assert levels[4] > levels[0] + 20
 
 
-def test_bad_arguments() -> None:
+def test_bad_arguments():
     """Sizes and samples that cannot be are refused."""
     with pytest.raises(ValueError, match=r"size is \(0, 10\); it must be \(width, height\)"):
         render.open_offscreen((0, 10))
@@ -60,7 +60,7 @@ def test_bad_arguments() -> None:
         render.open_offscreen((100_000, 10))
 
 
-def test_closed_surface_says_so() -> None:
+def test_closed_surface_says_so():
     """Drawing after close is an error; closing twice is not."""
     surface = render.open_offscreen((8, 8))
     surface.close()
@@ -69,7 +69,7 @@ def test_closed_surface_says_so() -> None:
         surface.begin()
 
 
-def test_two_surfaces_do_not_mix(surface: render.Surface) -> None:
+def test_two_surfaces_do_not_mix(surface):
     """Frames that are drawn in turns on two surfaces stay apart."""
     with render.open_offscreen((40, 30)) as other:
         for _ in range(2):
@@ -81,7 +81,7 @@ def test_two_surfaces_do_not_mix(surface: render.Surface) -> None:
         assert (other.read() == small).all()
 
 
-def test_begin_repairs_what_a_panel_changed(surface: render.Surface) -> None:
+def test_begin_repairs_what_a_panel_changed(surface):
     """Depth test, culling, blending, scissor and masks are as they should be in every frame."""
     expected = draw_image(surface, sphere())
     gl = surface.gl

@@ -55,9 +55,7 @@ def quarters() -> render.Image:
 
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("wireframe", [False, True])
-def test_top_row_lies_at_v_1(
-    surface: render.Surface, shading: render.Shading, wireframe: bool
-) -> None:
+def test_top_row_lies_at_v_1(surface, shading, wireframe):
     """The image is upright and not mirrored, in every shading."""
     frame = textured(surface, quarters(), replace(PLAIN, shading=shading, wireframe=wireframe))
     assert frame[24, 24].argmax() == 0
@@ -70,7 +68,7 @@ def test_top_row_lies_at_v_1(
 
 
 @pytest.mark.parametrize("level", [20, 128, 230])
-def test_grey_texture_is_the_grey_albedo(surface: render.Surface, level: int) -> None:
+def test_grey_texture_is_the_grey_albedo(surface, level):
     """A texture of one colour gives the picture that the same albedo gives: sRGB is decoded."""
     albedo = (level / 255.0,) * 3
     style = replace(PLAIN, gloss=0.0, albedo=albedo)  # highlights follow the picture
@@ -83,7 +81,7 @@ def test_grey_texture_is_the_grey_albedo(surface: render.Surface, level: int) ->
     )
 
 
-def test_texture_is_filtered_in_linear_light(surface: render.Surface) -> None:
+def test_texture_is_filtered_in_linear_light(surface):
     """Seen from afar, a fine black and white checker is as bright as its mean light: sRGB 188."""
     rows, columns = np.indices((512, 512))
     checker = np.repeat(((rows + columns) % 2 * 255).astype(np.uint8)[:, :, None], 3, axis=2)
@@ -92,7 +90,7 @@ def test_texture_is_filtered_in_linear_light(surface: render.Surface) -> None:
     assert np.abs(frame - expected).max() <= 4
 
 
-def test_untextured_style_is_the_plain_picture(surface: render.Surface) -> None:
+def test_untextured_style_is_the_plain_picture(surface):
     """With textured=False a texture changes no pixel; without texture, `textured` does not."""
     style = replace(PLAIN, textured=False)
     expected = draw_image(surface, square(), PLAIN)
@@ -102,7 +100,7 @@ def test_untextured_style_is_the_plain_picture(surface: render.Surface) -> None:
 
 
 @pytest.mark.parametrize("shading", render.Shading)
-def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shading) -> None:
+def test_splits_tint_the_texture(surface, shading):
     """Triangles without splits stay textured; the others have the palette's hue over it."""
     style = replace(PLAIN, shading=shading)
     counted = replace(style, colour_by=render.ColourBy.SPLITS)
@@ -118,7 +116,7 @@ def test_splits_tint_the_texture(surface: render.Surface, shading: render.Shadin
     assert np.abs(other_side - frame[upper]).max() > 15
 
 
-def test_lips_gloss(surface: render.Surface) -> None:
+def test_lips_gloss(surface):
     """Texels much redder than most of the picture shine more than the gloss of the skin."""
     lips = plain_image((212, 176, 160), (256, 256))
     lips[64:192, 64:192] = (200, 120, 108)
@@ -132,7 +130,7 @@ def test_lips_gloss(surface: render.Surface) -> None:
     assert shine["lips"] > 1.5 * shine["all lips"] > 0
 
 
-def test_back_faces_keep_the_inner_albedo(surface: render.Surface) -> None:
+def test_back_faces_keep_the_inner_albedo(surface):
     """The texture lies on the outside only."""
     shape = square()
     turned = Shape(shape.positions, -shape.normals, shape.triangles[:, ::-1].copy())
@@ -140,7 +138,7 @@ def test_back_faces_keep_the_inner_albedo(surface: render.Surface) -> None:
     assert (blue == draw_image(surface, turned))[20:76, 20:76].all()
 
 
-def test_texture_needs_eight_columns(surface: render.Surface) -> None:
+def test_texture_needs_eight_columns(surface):
     """Without texture coordinates there is nothing to look up."""
     renderer = render.Renderer(surface)
     stream = lent(renderer, square())
@@ -159,14 +157,14 @@ def test_texture_needs_eight_columns(surface: render.Surface) -> None:
         (np.zeros((1, 100_000, 3), np.uint8), "100000 x 1 texels; this driver takes at most"),
     ],
 )
-def test_bad_images(surface: render.Surface, image: npt.NDArray[np.uint8], message: str) -> None:
+def test_bad_images(surface, image, message):
     """Images that are no sRGB images, or too large, are refused."""
     with pytest.raises(ValueError, match=message):
         render.Texture(surface, image)
 
 
 @pytest.mark.parametrize("shading", render.Shading)
-def test_less_light_where_it_is_less_open(surface: render.Surface, shading: render.Shading) -> None:
+def test_less_light_where_it_is_less_open(surface, shading):
     """It is darker by how open the texture says it is, where all light comes in not at all."""
     image = plain_image((180, 140, 120))
     occlusion = np.full((8, 8), 255, np.uint8)
@@ -189,9 +187,7 @@ def test_less_light_where_it_is_less_open(surface: render.Surface, shading: rend
 
 @pytest.mark.parametrize("shading", render.Shading)
 @pytest.mark.parametrize("is_textured", [True, False])
-def test_fine_shape_tilts_what_each_pixel_shows(
-    surface: render.Surface, shading: render.Shading, is_textured: bool
-) -> None:
+def test_fine_shape_tilts_what_each_pixel_shows(surface, shading, is_textured):
     """What rises to the right faces the key; level skin, other shadings and without: as it was."""
     slopes = np.full((32, 32, 2), 128, np.uint8)
     slopes[:, 16:] = 190, 128
@@ -210,7 +206,7 @@ def test_fine_shape_tilts_what_each_pixel_shows(
     assert (shown - plain)[48, middle + 20].sum() > 10
 
 
-def test_fine_shape_that_is_none_is_refused(surface: render.Surface) -> None:
+def test_fine_shape_that_is_none_is_refused(surface):
     """A map of wrinkles is none."""
     maps = None, (np.zeros((4, 4, 4), np.uint8), 1.0)
     with pytest.raises(ValueError, match=r"the fine shape has shape \(4, 4, 4\)"):

@@ -8,7 +8,7 @@ from .scenes import PLAIN, STILL, Ball, facing, lent, sphere
 
 
 @pytest.mark.parametrize("samples", [0, 4])
-def test_viewports_are_apart(samples: int) -> None:
+def test_viewports_are_apart(samples):
     """Two halves show the same, and one alone leaves every pixel of the other empty."""
     left = (0, 0, 60, 50)
     right = (60, 0, 60, 50)
@@ -35,7 +35,7 @@ def test_viewports_are_apart(samples: int) -> None:
     assert (both[:, :60] < 250).any(axis=2).mean() > 0.5
 
 
-def test_viewport_must_have_pixels(surface: render.Surface) -> None:
+def test_viewport_must_have_pixels(surface):
     """A viewport without extent is refused."""
     with pytest.raises(ValueError, match=r"viewport is \(0, 0, 0, 10\); it must be"):
         render.Renderer(surface).draw_background(PLAIN, (0, 0, 0, 10))

@@ -19,7 +19,7 @@ def needs_one_driver(window: render.Surface, offscreen: render.Surface) -> None:
         pytest.skip(f"windows are drawn by {drivers[0]}, offscreen frames by {drivers[1]}")
 
 
-def test_same_picture(window: render.WindowSurface) -> None:
+def test_same_picture(window):
     """A window shows what an offscreen frame holds, and reads it back after it was shown."""
     style = render.Style(wireframe=True)
     shown = draw_image(window, sphere(), style)
@@ -29,7 +29,7 @@ def test_same_picture(window: render.WindowSurface) -> None:
     assert np.abs(shown - expected).mean() < 0.5
 
 
-def test_window_that_is_resized(window: render.WindowSurface) -> None:
+def test_window_that_is_resized(window):
     """The frame follows the window; nothing of the old size is left behind."""
     import glfw
 
@@ -46,7 +46,7 @@ def test_window_that_is_resized(window: render.WindowSurface) -> None:
     assert window.gl.error == "GL_NO_ERROR"
 
 
-def test_a_window_fits_the_screen(window: render.WindowSurface) -> None:
+def test_a_window_fits_the_screen(window):
     """A window that is shown is no larger than there is room."""
     import glfw
 
@@ -55,7 +55,7 @@ def test_a_window_fits_the_screen(window: render.WindowSurface) -> None:
         assert wide.size == (room[0], 80)
 
 
-def test_closing(window: render.WindowSurface) -> None:
+def test_closing(window):
     """The wish to close can be read and set; a closed window says so."""
     assert not window.should_close
     window.should_close = True
@@ -65,14 +65,14 @@ def test_closing(window: render.WindowSurface) -> None:
         window.begin()
 
 
-def test_hidden_window_can_be_read(window: render.WindowSurface) -> None:
+def test_hidden_window_can_be_read(window):
     """A window that nobody sees gives the same frame as one that is shown."""
     expected = draw_image(window, sphere())
     with render.open_window((96, 96), "hidden", visible=False) as hidden:
         assert (draw_image(hidden, sphere()) == expected).all()
 
 
-def test_window_and_offscreen_take_turns(window: render.WindowSurface) -> None:
+def test_window_and_offscreen_take_turns(window):
     """A picture can be filmed offscreen while a window is open."""
     first = draw_image(window, sphere())
     with render.open_offscreen((40, 40)) as offscreen:
@@ -83,7 +83,7 @@ def test_window_and_offscreen_take_turns(window: render.WindowSurface) -> None:
     assert window.gl.error == "GL_NO_ERROR"
 
 
-def test_probe_finds_the_window(window: render.WindowSurface) -> None:
+def test_probe_finds_the_window(window):
     """Where a window opens, the probe says so."""
     finding = render.probe()[1]
     assert finding.name == "window"
@@ -91,7 +91,7 @@ def test_probe_finds_the_window(window: render.WindowSurface) -> None:
     assert finding.renderer
 
 
-def test_a_coarser_scene_fills_the_window(window: render.WindowSurface) -> None:
+def test_a_coarser_scene_fills_the_window(window):
     """With fewer pixels and samples the same image is seen, enlarged; panels keep their own."""
     renderer = render.Renderer(window)
     images = []
@@ -107,7 +107,7 @@ def test_a_coarser_scene_fills_the_window(window: render.WindowSurface) -> None:
     assert not images[1][:, 50:].any()
 
 
-def test_the_scene_outlives_its_panels(window: render.WindowSurface) -> None:
+def test_the_scene_outlives_its_panels(window):
     """Resolving again shows the scene as before the panel was drawn."""
     renderer = render.Renderer(window)
     window.begin()
@@ -121,7 +121,7 @@ def test_the_scene_outlives_its_panels(window: render.WindowSurface) -> None:
     assert np.array_equal(window.read(), before)
 
 
-def test_single_samples_have_smooth_edges(window: render.WindowSurface) -> None:
+def test_single_samples_have_smooth_edges(window):
     """Of the steps along an outline, a part is gone that four samples would take away."""
     needs_samples(window)
     fine = draw_image(window, sphere())
@@ -134,7 +134,7 @@ def test_single_samples_have_smooth_edges(window: render.WindowSurface) -> None:
     assert before.sum() > 50 and after.sum() < 0.8 * before.sum()  # 0.7 on software
 
 
-def test_smoothed_edges_leave_small_discs_round(window: render.WindowSurface) -> None:
+def test_smoothed_edges_leave_small_discs_round(window):
     """A disc as wide as pupils in a window has no pixel far from what four samples show."""
     needs_samples(window)
     pupil = sphere(4, radius=7.0)

@@ -1,14 +1,12 @@
 """A simulation can be built from any triangle mesh, with any of its optional attributes."""
 
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
 
 from risorius import sim
-from risorius.assets.model import Head
 from tests.meshes import open_grid
 from tests.sim.poses import FRAME, both_sides, moved_landmarks, settled_displacement, without
 
@@ -46,7 +44,7 @@ def _with_flaws() -> SimpleNamespace:
     ],
     ids=["grid", "flaws", "small trimesh", "big trimesh", "one triangle"],
 )
-def test_any_mesh_is_stable_and_comes_back(mesh: Any, generator: np.random.Generator) -> None:
+def test_any_mesh_is_stable_and_comes_back(mesh, generator):
     """Kicked hard, a mesh of any size swings and returns to rest; it has no controls."""
     simulation = sim.create(mesh)
     assert simulation.controls.lowest == ()
@@ -59,7 +57,7 @@ def test_any_mesh_is_stable_and_comes_back(mesh: Any, generator: np.random.Gener
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 1e-4 * size
 
 
-def test_input_arrays_are_copied(head: Head) -> None:
+def test_input_arrays_are_copied(head):
     """The simulation neither writes into the caller's arrays nor follows changes of them."""
     mesh = _grid()
     before = mesh.vertices.copy()
@@ -71,21 +69,21 @@ def test_input_arrays_are_copied(head: Head) -> None:
     assert np.array_equal(simulation.rest_positions, before)
 
 
-def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head: Head) -> None:
+def test_mesh_with_landmarks_but_no_rig_has_no_muscles(head):
     """Landmarks alone give gaze and head pose, own weights a jaw and lips; a rig gives muscles."""
     simulation = sim.create(without(head, "rig"))
     assert set(simulation.controls.groups) == {"Lips", "Jaw", "Gaze", "Head", "Both sides"}
     assert moved_landmarks(head, settled_displacement(simulation, {"jaw_open": 1.0}), 8)[1] < -15.0
 
 
-def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head: Head) -> None:
+def test_mesh_with_rig_but_no_landmarks_has_no_muscles(head):
     """Without landmarks a rig cannot be placed, but its tissue still holds the skin."""
     simulation = sim.create(without(head, "landmarks", "eyes", "jaw_axis"))
     assert simulation.controls.lowest == ()
     simulation.step(FRAME)
 
 
-def test_everything_can_be_guessed_from_landmarks(head: Head) -> None:
+def test_everything_can_be_guessed_from_landmarks(head):
     """Without eyes, jaw axis and mandible weight of its own a head still smiles and blinks."""
     simulation = sim.create(without(head, "eyes", "jaw_axis", "mandible_weight"))
     moved = settled_displacement(simulation, {"jaw_open": 1.0})

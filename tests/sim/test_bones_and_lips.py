@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from risorius import sim
-from risorius.assets.model import Head
 from tests.sim.poses import lip_gap, moved_landmarks, settled_displacement, without
 
 NOSE_TIP = 30
@@ -18,9 +17,7 @@ INNER_LIPS = (62, 66)
     ("control", "axis", "sign"),
     [("head_pitch", 1, 1.0), ("head_yaw", 0, 1.0), ("head_roll", 0, 1.0)],
 )
-def test_head_turns_as_one(
-    simulation: sim.Simulation, head: Head, control: str, axis: int, sign: float
-) -> None:
+def test_head_turns_as_one(simulation, head, control, axis, sign):
     """Skin above the neck moves with the cranium: up, to the left, top of the head to the left."""
     settled_displacement(simulation, {control: 0.5})
     cranium = simulation.bones.transforms()["cranium"]
@@ -31,7 +28,7 @@ def test_head_turns_as_one(
     assert sign * (simulation.positions - head.vertices)[watched, axis] > 5.0
 
 
-def test_lips_stay_closed_over_an_open_jaw(simulation: sim.Simulation, head: Head) -> None:
+def test_lips_stay_closed_over_an_open_jaw(simulation, head):
     """With lips_closed the jaw drops, the lips do not part; without they do."""
     for opening in (0.3, 1.0):
         moved = settled_displacement(simulation, {"jaw_open": opening, "lips_closed": 1.0})
@@ -42,9 +39,7 @@ def test_lips_stay_closed_over_an_open_jaw(simulation: sim.Simulation, head: Hea
 
 
 @pytest.mark.parametrize("opening", [0.3, pytest.param(1.0, marks=pytest.mark.slow)])
-def test_mouths_that_are_open_at_rest_play(
-    simulation: sim.Simulation, head: Head, opening: float
-) -> None:
+def test_mouths_that_are_open_at_rest_play(simulation, head, opening):
     """A mesh may come with its lips apart: all controls are there, and lips stay so far apart."""
     opened = head.vertices + settled_displacement(simulation, {"jaw_open": opening})
     parts = without(head)
@@ -62,7 +57,7 @@ def test_mouths_that_are_open_at_rest_play(
 
 
 @pytest.mark.parametrize("muscle", ["procerus", "orbicularis_oris_peripheral_upper"])
-def test_both_halves_are_the_whole(simulation: sim.Simulation, muscle: str) -> None:
+def test_both_halves_are_the_whole(simulation, muscle):
     """The control for both halves does what both do together; they add up and are clipped."""
     whole = settled_displacement(simulation, {muscle: 1.0})
     both = settled_displacement(simulation, {f"{muscle}_left": 1.0, f"{muscle}_right": 1.0})
@@ -74,7 +69,7 @@ def test_both_halves_are_the_whole(simulation: sim.Simulation, muscle: str) -> N
     assert np.abs(mixed - whole).max() < 1e-6
 
 
-def test_half_an_activation_is_half_the_motion(simulation: sim.Simulation) -> None:
+def test_half_an_activation_is_half_the_motion(simulation):
     """Motion is about linear in the activation, so that values can be mixed."""
     for muscle in ("zygomaticus_major", "corrugator_supercilii", "risorius", "frontalis_medial"):
         full = settled_displacement(simulation, {f"{muscle}_left": 1.0})
@@ -83,7 +78,7 @@ def test_half_an_activation_is_half_the_motion(simulation: sim.Simulation) -> No
         assert 0.43 < share < 0.57, muscle
 
 
-def test_teeth_hold_the_lips_off(simulation: sim.Simulation, head: Head) -> None:
+def test_teeth_hold_the_lips_off(simulation, head):
     """Rolled lips and sucked cheeks come to rest on the teeth; without teeth they go deeper."""
     values = {"orbicularis_oris_roll_upper": 1.0, "orbicularis_oris_roll_lower": 1.0}
     settled_displacement(simulation, values)

@@ -89,9 +89,7 @@ def refused(call: Callable[[], object], begins: str) -> None:
 
 
 @pytest.mark.parametrize(("method", "argument", "begins", "values"), WRONG)
-def test_wrong_arguments_are_reported(
-    small: sim.Simulation, method: str, argument: str, begins: str, values: tuple[Any, ...]
-) -> None:
+def test_wrong_arguments_are_reported(small, method, argument, begins, values):
     """Each is a ValueError with the argument's name, and nothing has changed by it."""
     small.reset()
     for value in values:
@@ -142,7 +140,7 @@ HEADS: list[tuple[str, str, tuple[Any, ...]]] = [
 
 
 @pytest.mark.parametrize(("attribute", "begins", "values"), HEADS)
-def test_wrong_heads_are_refused(attribute: str, begins: str, values: tuple[Any, ...]) -> None:
+def test_wrong_heads_are_refused(attribute, begins, values):
     """`create` names the wrong attribute of a head."""
     for value in values:
         head = grid()
@@ -151,13 +149,13 @@ def test_wrong_heads_are_refused(attribute: str, begins: str, values: tuple[Any,
 
 
 @pytest.mark.parametrize("given", LISTS)
-def test_what_is_no_layer_is_reported(given: Any) -> None:
+def test_what_is_no_layer_is_reported(given):
     """A head's layers are a list of objects with titles and rows."""
     refused(lambda: read_layers(given, ["a"]), "head.layers")
 
 
 @pytest.mark.parametrize("head", [None, 3, "head", [], {}, object(), SimpleNamespace(vertices=1)])
-def test_what_is_no_head_is_reported(head: object) -> None:
+def test_what_is_no_head_is_reported(head):
     """Without vertices and faces there is nothing to simulate."""
     with pytest.raises(ValueError, match=r"head: .* has no attribute '(vertices|faces)'; give any"):
         sim.create(head)
@@ -173,7 +171,7 @@ def test_what_is_no_head_is_reported(head: object) -> None:
         lambda array: array.tolist(),
     ],
 )
-def test_arrays_of_any_layout_are_taken(layout: Callable[[Any], Any]) -> None:
+def test_arrays_of_any_layout_are_taken(layout):
     """Columns first, every second row, another byte order, small whole numbers, lists: the same."""
     plain = sim.create(grid())
     mesh = grid()

@@ -8,7 +8,7 @@ import pytest
 from risorius.sim.contact import watch_eyeballs
 
 
-def test_skin_may_come_as_near_as_a_lid_is_thick() -> None:
+def test_skin_may_come_as_near_as_a_lid_is_thick():
     """0.3 mm to the ball; skin that starts nearer may stay there, distant skin is not watched."""
     ball = SimpleNamespace(centre=np.array([30.0, 0.0, 0.0]), radius=12.0)
     away = np.array([10.0, 12.1, 13.0, 20.0, 30.0])

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from risorius import sim
 from risorius.sim.controls import Control, Controls
 
 
-def test_every_control_has_limits_a_value_and_one_group(controls: Controls) -> None:
+def test_every_control_has_limits_a_value_and_one_group(controls):
     """Limits, values and groups speak of the same controls, the lowest and those of layers."""
     names = [*controls.lowest, *(n for layer in controls.layers.values() for n in layer)]
     assert len(controls.lowest) > 40
@@ -16,7 +15,7 @@ def test_every_control_has_limits_a_value_and_one_group(controls: Controls) -> N
     assert sorted(n for group in controls.groups.values() for n in group) == sorted(names)
 
 
-def test_both_sides_have_the_limits_of_their_sides(controls: Controls) -> None:
+def test_both_sides_have_the_limits_of_their_sides(controls):
     """Both eyes look down as well as up; rows of tables run from 0 to 1."""
     assert controls.limits["gaze_vertical"] == controls.limits["gaze_vertical_left"] == (-1, 1)
     assert controls.limits["zygomaticus_major"] == controls.limits["AU12"] == (0, 1)
@@ -25,14 +24,14 @@ def test_both_sides_have_the_limits_of_their_sides(controls: Controls) -> None:
     assert controls.sums["gaze_horizontal_right"] == -0.5
 
 
-def test_unknown_control_suggests_near_names(controls: Controls) -> None:
+def test_unknown_control_suggests_near_names(controls):
     """A typing error is answered with the names that were meant, and nothing is set."""
     with pytest.raises(ValueError, match=r"'zygomaticus_mayor_left'.*zygomaticus_major_left"):
         controls.set_all({"jaw_open": 1.0, "zygomaticus_mayor_left": 0.5})
     assert not any(controls.values.values())
 
 
-def test_value_must_be_within_limits(controls: Controls) -> None:
+def test_value_must_be_within_limits(controls):
     """Values out of limits are refused, by name or in one array, and the limits named."""
     with pytest.raises(ValueError, match=r"'jaw_open': was -0.5, allowed is 0 to 1"):
         controls.set("jaw_open", -0.5)
@@ -42,7 +41,7 @@ def test_value_must_be_within_limits(controls: Controls) -> None:
     assert set(controls.values.values()) == {0.5}
 
 
-def test_activation_follows_without_overshoot() -> None:
+def test_activation_follows_without_overshoot():
     """A step input is followed within 0.1 s, monotonously, the same for any step length."""
     coarse, fine = (Controls((Control("one", "Group"),)) for _ in range(2))
     coarse.set_all({"one": 1.0})
@@ -58,7 +57,7 @@ def test_activation_follows_without_overshoot() -> None:
     assert 0.9 < path[-1] <= 1.0
 
 
-def test_positions_are_read_only(simulation: sim.Simulation) -> None:
+def test_positions_are_read_only(simulation):
     """A caller cannot move the face by writing into arrays that it reads."""
     for array in (simulation.positions, simulation.rest_positions):
         with pytest.raises(ValueError, match="read-only"):

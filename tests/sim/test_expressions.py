@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from risorius import refine, sim
-from risorius.assets.model import Head
+from risorius import refine
 from risorius.bench.gaps import eyeballs_of, lid_gaps, meshes_of
 from risorius.sim.contact import PRESSED_OVERLAP
 from tests.sim.poses import (
@@ -39,21 +38,14 @@ OTHERS = ("contempt", "wink", "kiss", "yawn", "mouth_open", "blink")
         ("orbicularis_oris_peripheral_lower", 57, (0.0, -0.5, 0.8), 2.0),
     ],
 )
-def test_muscle_pulls_its_landmark(
-    simulation: sim.Simulation,
-    head: Head,
-    muscle: str,
-    landmark: int,
-    direction: tuple[float, float, float],
-    least: float,
-) -> None:
+def test_muscle_pulls_its_landmark(simulation, head, muscle, landmark, direction, least):
     """Each muscle at full strength moves its insertion by so many millimetres its own way."""
     moved = settled_displacement(simulation, both_sides(simulation, {muscle: 1.0}))
     way = np.array(direction) / np.linalg.norm(direction)
     assert moved_landmarks(head, moved, landmark) @ way > least
 
 
-def test_joy(simulation: sim.Simulation, head: Head) -> None:
+def test_joy(simulation, head):
     """Mouth corners up and out, cheeks up."""
     moved = settled_displacement(simulation, head.expressions["joy"])
     right = moved_landmarks(head, moved, 48)
@@ -68,14 +60,14 @@ def test_joy(simulation: sim.Simulation, head: Head) -> None:
     assert abs(lips[1] - edge) < 0.9
 
 
-def test_sadness(simulation: sim.Simulation, head: Head) -> None:
+def test_sadness(simulation, head):
     """Inner brows above outer brows' rise, mouth corners down."""
     moved = settled_displacement(simulation, head.expressions["sadness"])
     assert moved_landmarks(head, moved, 21, 22)[1] > 2.0 + moved_landmarks(head, moved, 17, 26)[1]
     assert moved_landmarks(head, moved, 48, 54)[1] < -2.0
 
 
-def test_surprise(simulation: sim.Simulation, head: Head) -> None:
+def test_surprise(simulation, head):
     """Whole brows up, upper lids up, jaw down."""
     moved = settled_displacement(simulation, head.expressions["surprise"])
     assert moved_landmarks(head, moved, 18, 19, 20, 23, 24, 25)[1] > 4.0
@@ -83,7 +75,7 @@ def test_surprise(simulation: sim.Simulation, head: Head) -> None:
     assert moved_landmarks(head, moved, 8)[1] < -12.0
 
 
-def test_anger(simulation: sim.Simulation, head: Head) -> None:
+def test_anger(simulation, head):
     """Brows down and together, lips not open."""
     moved = settled_displacement(simulation, head.expressions["anger"])
     assert moved_landmarks(head, moved, 21, 22)[1] < -3.0
@@ -91,14 +83,14 @@ def test_anger(simulation: sim.Simulation, head: Head) -> None:
     assert lip_gap(simulation, head) < 0.5
 
 
-def test_disgust(simulation: sim.Simulation, head: Head) -> None:
+def test_disgust(simulation, head):
     """Nose wings and upper lip up."""
     moved = settled_displacement(simulation, head.expressions["disgust"])
     assert moved_landmarks(head, moved, 31, 35)[1] > 3.0
     assert moved_landmarks(head, moved, 50, 52)[1] > 3.0
 
 
-def test_fear(simulation: sim.Simulation, head: Head) -> None:
+def test_fear(simulation, head):
     """Brows up, lids wide, mouth corners out."""
     moved = settled_displacement(simulation, head.expressions["fear"])
     assert moved_landmarks(head, moved, 21, 22)[1] > 2.0
@@ -107,7 +99,7 @@ def test_fear(simulation: sim.Simulation, head: Head) -> None:
 
 
 @pytest.mark.parametrize("name", SIX + OTHERS)
-def test_expression_keeps_the_mesh_sound(simulation: sim.Simulation, head: Head, name: str) -> None:
+def test_expression_keeps_the_mesh_sound(simulation, head, name):
     """In each expression hardly a triangle is turned over, and none of the skin flies away."""
     moved = settled_displacement(simulation, head.expressions[name])
     turned = inverted_triangles(head.faces, head.vertices, simulation.positions)
@@ -115,7 +107,7 @@ def test_expression_keeps_the_mesh_sound(simulation: sim.Simulation, head: Head,
     assert np.abs(moved).max() < 60.0
 
 
-def test_mirrored_input_gives_mirrored_motion(simulation: sim.Simulation, head: Head) -> None:
+def test_mirrored_input_gives_mirrored_motion(simulation, head):
     """A left smile and a right smile are mirror images."""
     left = settled_displacement(simulation, {"zygomaticus_major_left": 1.0, "gaze_horizontal": 0.5})
     right = settled_displacement(
@@ -124,7 +116,7 @@ def test_mirrored_input_gives_mirrored_motion(simulation: sim.Simulation, head: 
     assert np.abs(left[head.mirror] * (-1.0, 1.0, 1.0) - right).max() < 1e-6
 
 
-def test_left_smile_moves_the_left(simulation: sim.Simulation, head: Head) -> None:
+def test_left_smile_moves_the_left(simulation, head):
     """Left is the subject's left (+x); the other corner is hardly dragged along."""
     moved = settled_displacement(simulation, {"zygomaticus_major_left": 1.0})
     left = np.linalg.norm(moved_landmarks(head, moved, 54))
@@ -143,9 +135,7 @@ def test_left_smile_moves_the_left(simulation: sim.Simulation, head: Head) -> No
     ],
     ids=["press", "frown", "kiss", "smile against frown"],
 )
-def test_lips_do_not_cross(
-    simulation: sim.Simulation, head: Head, values: dict[str, float]
-) -> None:
+def test_lips_do_not_cross(simulation, head, values):
     """Lips pressed by their own muscles touch; the lower one does not rise far into the upper."""
     settled_displacement(simulation, both_sides(simulation, values))
     lips = simulation._model.skin.lips
@@ -167,9 +157,7 @@ def test_lips_do_not_cross(
     ],
     ids=str,
 )
-def test_blink_closes_the_eyes(
-    simulation: sim.Simulation, head: Head, other: dict[str, float]
-) -> None:
+def test_blink_closes_the_eyes(simulation, head, other):
     """No straight look reaches an eye that is closed, wherever it looks, refined or not."""
     settled_displacement(simulation, {"AU45": 1.0, **other})
     refiner = refine.create("kahler", head.faces, head.vertices)
@@ -180,7 +168,7 @@ def test_blink_closes_the_eyes(
 
 
 @pytest.mark.slow
-def test_a_cornea_that_pierces_a_lid_is_seen(simulation: sim.Simulation, head: Head) -> None:
+def test_a_cornea_that_pierces_a_lid_is_seen(simulation, head):
     """The measure used for a blink looks at the surface in front, not at holes alone."""
     settled_displacement(simulation, {"AU45": 1.0})
     landmarks = simulation.positions[head.landmarks]
@@ -191,7 +179,7 @@ def test_a_cornea_that_pierces_a_lid_is_seen(simulation: sim.Simulation, head: H
     assert min(gaps.values()) > 2.0
 
 
-def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
+def test_eyes_are_open_at_rest(simulation, head):
     """The measure used for a blink sees an open eye."""
     landmarks = simulation.positions[head.landmarks]
     eyeballs = eyeballs_of(head, simulation)
@@ -200,7 +188,7 @@ def test_eyes_are_open_at_rest(simulation: sim.Simulation, head: Head) -> None:
 
 
 @pytest.mark.parametrize("gaze", [-1.0, 0.0, 1.0])
-def test_skin_never_enters_the_eyeball(simulation: sim.Simulation, head: Head, gaze: float) -> None:
+def test_skin_never_enters_the_eyeball(simulation, head, gaze):
     """Through a blink with everything around the eye active, no vertex sinks into the eyeball."""
     lowest = simulation.controls.lowest
     around = [n for n in lowest if "oculi" in n or "frontalis" in n or "super" in n]
@@ -214,7 +202,7 @@ def test_skin_never_enters_the_eyeball(simulation: sim.Simulation, head: Head, g
                 assert (distance - np.minimum(before, eye.radius)).min() > -1e-6
 
 
-def test_jaw_opens_the_mouth(simulation: sim.Simulation, head: Head) -> None:
+def test_jaw_opens_the_mouth(simulation, head):
     """An open jaw parts the lips by at least 25 mm and carries the chin down and back."""
     moved = settled_displacement(simulation, {"jaw_open": 1.0})
     assert lip_gap(simulation, head) > 25.0
@@ -223,7 +211,7 @@ def test_jaw_opens_the_mouth(simulation: sim.Simulation, head: Head) -> None:
     assert chin[2] < -10.0
 
 
-def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
+def test_jaw_slides(simulation, head):
     """The chin follows the jaw forward, a little back, and to a side; both condyles do."""
     for sign in (-1.0, 1.0):
         chin = moved_landmarks(head, settled_displacement(simulation, {"jaw_forward": sign}), 8)
@@ -237,7 +225,7 @@ def test_jaw_slides(simulation: sim.Simulation, head: Head) -> None:
         assert np.abs(condyles[:, 1:]).max() < 1.5
 
 
-def test_gaze_turns_the_eyes(simulation: sim.Simulation, head: Head) -> None:
+def test_gaze_turns_the_eyes(simulation, head):
     """+1 looks to the subject's left and up, about the centre; the upper lid follows."""
     moved = settled_displacement(simulation, {"gaze_horizontal": 1.0, "gaze_vertical": 1.0})
     for eye in head.eyes:
@@ -253,7 +241,7 @@ def test_gaze_turns_the_eyes(simulation: sim.Simulation, head: Head) -> None:
     assert moved_landmarks(head, moved, 37, 38, 43, 44)[1] > 1.0
 
 
-def test_each_eye_looks_for_itself(simulation: sim.Simulation, head: Head) -> None:
+def test_each_eye_looks_for_itself(simulation, head):
     """Eyes converge, and a lid follows its own eye: the other one stays where it is."""
     gaze = {"gaze_horizontal_left": -0.5, "gaze_horizontal_right": 0.5, "gaze_vertical_left": -1.0}
     moved = settled_displacement(simulation, gaze)
@@ -266,7 +254,7 @@ def test_each_eye_looks_for_itself(simulation: sim.Simulation, head: Head) -> No
     assert abs(moved_landmarks(head, moved, 37, 38)[1]) < 0.1
 
 
-def test_fibres_shorten(simulation: sim.Simulation) -> None:
+def test_fibres_shorten(simulation):
     """The drawn fibres of a contracting muscle get shorter; there are some for every muscle."""
     relaxed = simulation.anatomy.fibres()
     assert all(relaxed[name] for name in relaxed)

@@ -8,8 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius import sim
-from risorius.assets.model import Head
 from risorius.sim.controls import Control, Controls
 from risorius.sim.layers import BOTH_SIDES, LEAST_WHOLE, read_layers
 from tests.sim.poses import FRAME, inverted_triangles, lip_gap, settled_displacement
@@ -58,7 +56,7 @@ def wanted(subject: Controls, **values: float) -> dict[str, float]:
     return subject.sums
 
 
-def test_rows_share_into_the_layers_below() -> None:
+def test_rows_share_into_the_layers_below():
     """A row scales its entries, through every layer down to the muscles."""
     subject = controls(UNITS, FACES)
     assert wanted(subject, both=1.0) == pytest.approx(
@@ -70,7 +68,7 @@ def test_rows_share_into_the_layers_below() -> None:
     }  # fmt: skip
 
 
-def test_sides_of_a_pair_add_up_to_the_whole() -> None:
+def test_sides_of_a_pair_add_up_to_the_whole():
     """A side takes its own muscles and half of one in the middle."""
     subject = controls(UNITS)
     left = wanted(subject, A_left=1.0)
@@ -81,7 +79,7 @@ def test_sides_of_a_pair_add_up_to_the_whole() -> None:
     assert wanted(subject, A=1.0) == pytest.approx({n: left[n] + right[n] for n in LOWEST})
 
 
-def test_sides_may_be_spelled_as_arkit_does() -> None:
+def test_sides_may_be_spelled_as_arkit_does():
     """Two controls of one row, and none for both."""
     subject = controls(layer("Shapes", smile={"pair": "Left Right", "puller": 0.5, "middle": 0.2}))
     assert subject.groups["Shapes"] == ("smileLeft", "smileRight")
@@ -97,7 +95,7 @@ SHARED = layer(
 
 
 @given(part=st.floats(0.0, 1.0), whole=st.floats(0.0, 1.0))
-def test_a_share_counts_as_part_of_the_whole(part: float, whole: float) -> None:
+def test_a_share_counts_as_part_of_the_whole(part, whole):
     """All of a whole counts as 1, half of it as a half, none of it as nothing; it never jumps."""
     subject = controls(SHARED)
     share = wanted(subject, part=part, whole=whole)["middle"] / 0.8
@@ -109,7 +107,7 @@ def test_a_share_counts_as_part_of_the_whole(part: float, whole: float) -> None:
     assert abs(near - share) < 2e-4 / LEAST_WHOLE
 
 
-def test_a_share_follows_the_whole_that_is_set_later() -> None:
+def test_a_share_follows_the_whole_that_is_set_later():
     """The order in which both are set does not matter, and all that it moves follows."""
     subject = controls(SHARED)
     subject.set_all({"part": 0.3})
@@ -119,7 +117,7 @@ def test_a_share_follows_the_whole_that_is_set_later() -> None:
     assert subject.values["part"] == 0.3
 
 
-def test_what_rows_make_sure_of_does_not_add() -> None:
+def test_what_rows_make_sure_of_does_not_add():
     """The greatest of them holds, through every layer, unless the sum is greater by itself."""
     units = layer(
         "Units",
@@ -139,7 +137,7 @@ def test_what_rows_make_sure_of_does_not_add() -> None:
     assert wanted(subject, B_left=1.0, B_right=1.0) == wanted(subject, B=1.0)
 
 
-def test_sums_are_cut_off_once_and_in_any_order() -> None:
+def test_sums_are_cut_off_once_and_in_any_order():
     """Own value and contributions add up, opposite ones cancel, and limits hold at the end."""
     subject = controls(UNITS, FACES)
     other = controls(UNITS, FACES)
@@ -179,19 +177,19 @@ def test_sums_are_cut_off_once_and_in_any_order() -> None:
         ({"A": {}, "B": {"A": 1.0}}, r"'B': no layer below has a control called 'A'"),
     ],
 )
-def test_a_wrong_row_is_named(rows: dict[str, Any], message: str) -> None:
+def test_a_wrong_row_is_named(rows, message):
     """File, row and key stand in the error, with the allowed values."""
     with pytest.raises(ValueError, match=message):
         controls(layer("X", **rows))
 
 
-def test_a_row_cannot_hold_what_is_a_share() -> None:
+def test_a_row_cannot_hold_what_is_a_share():
     """A share counts by the values that are set, which a row above does not know."""
     with pytest.raises(ValueError, match=r"'above', 'part': is a share of 'whole', which"):
         controls(SHARED, layer("Y", above={"part": 1.0}))
 
 
-def test_the_shipped_tables_are_complete(controls: Controls, head: Head) -> None:
+def test_the_shipped_tables_are_complete(controls, head):
     """Every action unit, expression and viseme is there, with words for its effect."""
     names = controls.limits
     sided = {unit: (f"{unit}_left", f"{unit}_right") for unit in ("AU30", "AU46")}
@@ -208,7 +206,7 @@ def test_the_shipped_tables_are_complete(controls: Controls, head: Head) -> None
         assert all(controls.actions[name] for name in controls.layers[title])
 
 
-def test_each_row_of_the_shipped_tables_does_something(controls: Controls) -> None:
+def test_each_row_of_the_shipped_tables_does_something(controls):
     """At full value a muscle or a bone is asked for something; silence is silent."""
     for title in TITLES:
         for name in controls.layers[title]:
@@ -227,7 +225,7 @@ def mirrored(sums: dict[str, float]) -> dict[str, float]:
     return found
 
 
-def test_sides_of_arkit_shapes_ask_for_the_same(controls: Controls) -> None:
+def test_sides_of_arkit_shapes_ask_for_the_same(controls):
     """A shape of the left moves the left as its twin moves the right."""
 
     def sums(name: str) -> dict[str, float]:
@@ -241,7 +239,7 @@ def test_sides_of_arkit_shapes_ask_for_the_same(controls: Controls) -> None:
         assert sums(f"{base}Right") == pytest.approx(mirrored(sums(f"{base}Left"))), base
 
 
-def test_expressions_have_sides(controls: Controls) -> None:
+def test_expressions_have_sides(controls):
     """Both sides together ask for the whole; a one-sided face has its image on the other side."""
 
     def sums(*names: str) -> dict[str, float]:
@@ -256,7 +254,7 @@ def test_expressions_have_sides(controls: Controls) -> None:
         assert sums(f"{name}_right") == pytest.approx(mirrored(sums(name))), name
 
 
-def test_the_jaw_of_a_funnel_counts_once(controls: Controls) -> None:
+def test_the_jaw_of_a_funnel_counts_once(controls):
     """Lips that funnel open the jaw where it is shut, and leave it where it is open."""
     controls.pose({"AU22": 1.0, "mouthPucker": 0.5})
     assert controls.sums["jaw_open"] == pytest.approx(0.22)
@@ -264,7 +262,7 @@ def test_the_jaw_of_a_funnel_counts_once(controls: Controls) -> None:
     assert controls.sums["jaw_open"] == 0.5
 
 
-def test_mouth_close_shuts_an_open_jaw(simulation: sim.Simulation, head: Head) -> None:
+def test_mouth_close_shuts_an_open_jaw(simulation, head):
     """As much mouthClose as jawOpen brings the lips together at any opening; half of it, half."""
     for opening in (0.2, 0.6):
         gaps = []
@@ -276,7 +274,7 @@ def test_mouth_close_shuts_an_open_jaw(simulation: sim.Simulation, head: Head) -
 
 
 @pytest.mark.parametrize("title", ["Action units", "Visemes", "ARKit shapes"])
-def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title: str) -> None:
+def test_rows_keep_the_mesh_sound(simulation, head, title):
     """No row turns more than a few triangles over, nor throws skin away."""
     for name in simulation.controls.layers[title]:
         if name.endswith(("_left", "_right")) or name in HEAD_UNITS:
@@ -286,7 +284,7 @@ def test_rows_keep_the_mesh_sound(simulation: sim.Simulation, head: Head, title:
         assert inverted_triangles(head.faces, head.vertices, simulation.positions) <= 6, name
 
 
-def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) -> None:
+def test_units_that_look_alike_differ(simulation, head):
     """AU9 pulls the nose up and the brows down over closed lips, AU10 parts the lips alone; AU23
     narrows the mouth, AU24 flattens the lips."""
     face = {
@@ -305,7 +303,7 @@ def test_units_that_look_alike_differ(simulation: sim.Simulation, head: Head) ->
 
 
 @pytest.mark.parametrize("sound", [sound for sound in VISEMES if sound != "sil"])
-def test_speech_is_crisp(simulation: sim.Simulation, head: Head, sound: str) -> None:
+def test_speech_is_crisp(simulation, head, sound):
     """A viseme stands after 120 ms, seen at the lips, and goes no more than 2 % too far."""
     lips = head.landmarks[48:68]
     target = settled_displacement(simulation, {f"viseme_{sound}": 1.0}, frames=90)[lips]

@@ -4,7 +4,6 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from risorius.assets.model import Head
 from risorius.sim.landmarks import Side
 from risorius.sim.lid_lift import lift_off
 from risorius.sim.skull import Eyeball
@@ -36,7 +35,7 @@ def nearest(x: Array) -> float:
     return float(np.linalg.norm(shares @ (x - BALL.centre), axis=1).min())
 
 
-def test_a_flat_triangle_is_lifted_over_the_cornea() -> None:
+def test_a_flat_triangle_is_lifted_over_the_cornea():
     """Its corners are well off the ball, its middle cuts it; then the middle is off it as well."""
     closed = at(AHEAD, 14.0)
     rest = closed + ABOVE
@@ -46,7 +45,7 @@ def test_a_flat_triangle_is_lifted_over_the_cornea() -> None:
     assert 13.0 + CLEARANCE + 0.8 < nearest(lifted(closed, lift)) < 13.0 + CLEARANCE + 1.3
 
 
-def test_what_is_far_enough_stays() -> None:
+def test_what_is_far_enough_stays():
     """Small triangles as near to the ball as a lid is thick, beside the cornea, need no lift."""
     closed = at(AHEAD / 20.0 + [11.0, 0.0], 13.0 + CLEARANCE + 0.05)
     assert not lift_off(closed, closed, FACE, ALL, BALL).any()
@@ -61,14 +60,14 @@ def test_what_is_far_enough_stays() -> None:
     ],
     ids=["lower lid", "inner side", "sunk at rest"],
 )
-def test_what_belongs_there_stays(faces: npt.NDArray[np.int32], moves: Array, sunk: float) -> None:
+def test_what_belongs_there_stays(faces, moves, sunk):
     """Only the outer side of the upper lid must be in front of the ball."""
     closed = at(AHEAD, 14.0)
     rest = at(AHEAD, 13.0 - sunk) if sunk else closed + ABOVE
     assert not lift_off(closed, rest, faces, moves, BALL).any()
 
 
-def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head: Head) -> None:
+def test_the_drawn_eyeball_is_what_lids_are_lifted_over(head):
     """No point of it is farther out than the sphere with the cornea of lid_lift.py, or hardly."""
     for eye in head.eyes:
         ball = Eyeball(Side(eye.name), eye.centre, eye.radius)

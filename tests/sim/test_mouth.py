@@ -47,9 +47,7 @@ def slits(simulation: sim.Simulation, head: Head, refiner: refine.Refiner) -> Sl
 
 
 @pytest.mark.parametrize("name", SHUT_EXPRESSIONS)
-def test_closed_mouth_shows_no_teeth(
-    simulation: sim.Simulation, head: Head, slits: Slits, name: str
-) -> None:
+def test_closed_mouth_shows_no_teeth(simulation, head, slits, name):
     """In expressions with a closed mouth the lip line is shut, refined or not."""
     settled_displacement(simulation, head.expressions[name])
     for mesh, slit in slits().items():
@@ -65,9 +63,7 @@ def test_closed_mouth_shows_no_teeth(
         pytest.param("both", 0.4, marks=pytest.mark.slow),
     ],
 )
-def test_no_other_muscle_opens_the_mouth(
-    simulation: sim.Simulation, head: Head, slits: Slits, sides: str, strength: float
-) -> None:
+def test_no_other_muscle_opens_the_mouth(simulation, head, slits, sides, strength):
     """Every single muscle that is not there to open the mouth leaves it shut."""
     muscles = {
         name.removesuffix("_left").removesuffix("_right")
@@ -86,9 +82,7 @@ def test_no_other_muscle_opens_the_mouth(
             assert slit < SHUT, (muscle, mesh)
 
 
-def test_slit_measure_sees_an_open_mouth(
-    simulation: sim.Simulation, head: Head, slits: Slits
-) -> None:
+def test_slit_measure_sees_an_open_mouth(simulation, head, slits):
     """The measure agrees with the lip landmarks where the mouth is open."""
     settled_displacement(simulation, {"jaw_open": 0.5})
     inner = simulation.positions[head.landmarks[[62, 66]], 1]

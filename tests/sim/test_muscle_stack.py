@@ -34,7 +34,7 @@ def displaced(simulation: sim.Simulation, muscle: str) -> Array:
     return now - np.array(simulation.anatomy.fibres()[muscle])
 
 
-def test_a_muscle_rises_on_the_bulge_beneath(head: Head) -> None:
+def test_a_muscle_rises_on_the_bulge_beneath(head):
     """Over a thicker buccinator the relaxed zygomaticus is lifted higher off the cheek's bone."""
     rises = []
     for bulge in (0.0, 5.0, 10.0):
@@ -48,7 +48,7 @@ def test_a_muscle_rises_on_the_bulge_beneath(head: Head) -> None:
     assert np.abs(rises[0]).max() > 2.0  # and is carried along without any bulge
 
 
-def test_nothing_is_carried_by_what_does_not_lie_beneath(head: Head) -> None:
+def test_nothing_is_carried_by_what_does_not_lie_beneath(head):
     """Without its row the zygomaticus stays where it is, and so does the other side with it."""
     apart = sim.create(stacked(head, {}))
     settled_displacement(apart, {f"{BENEATH}_left": 1.0})
@@ -58,7 +58,7 @@ def test_nothing_is_carried_by_what_does_not_lie_beneath(head: Head) -> None:
     assert not displaced(stack, f"{ABOVE}_right").any()
 
 
-def test_carrying_is_the_formula(simulation: sim.Simulation) -> None:
+def test_carrying_is_the_formula(simulation):
     """Each point moves by shares of the lines beneath, in plain numpy; at most 1 in all."""
     muscles = simulation._model.muscles
     mandible = simulation._model.skull.mandible_motion

@@ -5,7 +5,6 @@ import numpy.typing as npt
 import pytest
 
 from risorius import sim
-from risorius.assets.model import Head
 from tests.sim.poses import FRAME
 
 Array = npt.NDArray[np.float64]
@@ -58,7 +57,7 @@ def settled(face: sim.Simulation, values: dict[str, float]) -> Array:
     return face.positions.copy()
 
 
-def test_a_corner_pulled_up_and_back_smiles(simulation: sim.Simulation, head: Head) -> None:
+def test_a_corner_pulled_up_and_back_smiles(simulation, head):
     """What joy does to the corner of the mouth is done by zygomaticus major, and it stays there."""
     corner = head.landmarks[LEFT_CORNER]
     drawn = settled(simulation, {"joy": 1.0})[corner] - simulation.rest_positions[corner]
@@ -83,13 +82,7 @@ def test_a_corner_pulled_up_and_back_smiles(simulation: sim.Simulation, head: He
         (LEFT_LID, (0.0, -5.0, 0.0), {"orbicularis_oculi_palpebral_upper_left"}),
     ],
 )
-def test_skin_is_held_by_what_moves_it_in_life(
-    simulation: sim.Simulation,
-    head: Head,
-    landmark: int,
-    offset: tuple[float, ...],
-    wanted: set[str],
-) -> None:
+def test_skin_is_held_by_what_moves_it_in_life(simulation, head, landmark, offset, wanted):
     """Brow up, chin down or aside, corner down, lid shut: few muscles, and the right ones."""
     pull, before = pull_at(simulation, head.landmarks[landmark], offset)
     found = values_of(pull)
@@ -98,7 +91,7 @@ def test_skin_is_held_by_what_moves_it_in_life(
     assert pull.short < 0.8 * before
 
 
-def test_what_no_muscle_can_do_is_not_done(simulation: sim.Simulation, head: Head) -> None:
+def test_what_no_muscle_can_do_is_not_done(simulation, head):
     """The nose above its tip, drawn forward, is left where it was, and so is the crown."""
     pull, before = pull_at(
         simulation, head.landmarks[NOSE - 1], (0.0, 0.0, 10.0), sight=(1.0, 0.0, 0.0)
@@ -122,9 +115,7 @@ def test_what_no_muscle_can_do_is_not_done(simulation: sim.Simulation, head: Hea
         (LEFT_WING, (1.0, 0.0, 0.0)),
     ],
 )
-def test_a_generous_pull_goes_as_far_as_a_short_one(
-    simulation: sim.Simulation, head: Head, landmark: int, way: tuple[float, ...]
-) -> None:
+def test_a_generous_pull_goes_as_far_as_a_short_one(simulation, head, landmark, way):
     """Drawn far beyond what muscles can do, skin goes to the end of that, by three at most."""
     went = []
     for length in (6.0, 20.0, 40.0):
@@ -138,7 +129,7 @@ def test_a_generous_pull_goes_as_far_as_a_short_one(
     assert went[2] > 0.95 * went[1]
 
 
-def test_mirrored_pulls_are_mirrored(simulation: sim.Simulation, head: Head) -> None:
+def test_mirrored_pulls_are_mirrored(simulation, head):
     """The other corner, drawn the other way, is held by the muscles of the other side."""
     left, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
     right, _ = pull_at(simulation, head.landmarks[RIGHT_CORNER], (-7.0, 8.0, 0.0))
@@ -147,7 +138,7 @@ def test_mirrored_pulls_are_mirrored(simulation: sim.Simulation, head: Head) -> 
     assert right.short == pytest.approx(left.short, abs=0.02)
 
 
-def test_the_answer_does_not_depend_on_the_way(simulation: sim.Simulation, head: Head) -> None:
+def test_the_answer_does_not_depend_on_the_way(simulation, head):
     """A finger that came by a detour, in many frames, ends with the very same muscles."""
     straight, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (7.0, 8.0, 0.0))
     winding, _ = pull_at(simulation, head.landmarks[LEFT_CORNER], (0.0, 0.0, 0.0))
@@ -158,7 +149,7 @@ def test_the_answer_does_not_depend_on_the_way(simulation: sim.Simulation, head:
     assert winding.changes == straight.changes
 
 
-def test_a_pose_stays_and_is_only_added_to(simulation: sim.Simulation, head: Head) -> None:
+def test_a_pose_stays_and_is_only_added_to(simulation, head):
     """A brow drawn up leaves a smile alone; a corner drawn back down takes it away."""
     settled(simulation, {"zygomaticus_major_left": 0.8})
     brow, _ = pull_at(simulation, head.landmarks[LEFT_BROW], (0.0, 5.0, 0.0))
@@ -171,9 +162,7 @@ def test_a_pose_stays_and_is_only_added_to(simulation: sim.Simulation, head: Hea
 
 
 @pytest.mark.slow
-def test_few_muscles_are_found_again(
-    simulation: sim.Simulation, head: Head, generator: np.random.Generator
-) -> None:
+def test_few_muscles_are_found_again(simulation, head, generator):
     """Skin moved by one to three muscles by chance is held nearly there, by as few."""
     muscles = [c[0] for c in candidates(simulation) if c[0].endswith("_left")]
     muscles = [name for name in muscles if not name.startswith(("levator_palp", "lips"))]

@@ -14,7 +14,7 @@ def cheek(simulation: sim.Simulation) -> npt.NDArray[np.int64]:
     return np.flatnonzero(np.linalg.norm(rest - middle, axis=1) < 12.0)
 
 
-def test_skin_follows_a_finger_and_swings_back(simulation: sim.Simulation) -> None:
+def test_skin_follows_a_finger_and_swings_back(simulation):
     """Pulled by 20 mm it comes most of the way and takes skin around along; let go, it rests."""
     grabbed = cheek(simulation)
     target = simulation.rest_positions[grabbed] + (20.0, 0.0, 0.0)
@@ -31,7 +31,7 @@ def test_skin_follows_a_finger_and_swings_back(simulation: sim.Simulation) -> No
     assert np.abs(simulation.positions - simulation.rest_positions).max() < 0.01
 
 
-def test_a_finger_knows_where_a_turned_head_is(simulation: sim.Simulation) -> None:
+def test_a_finger_knows_where_a_turned_head_is(simulation):
     """With the head turned aside the skin still goes where the finger goes."""
     simulation.controls.set("head_yaw", 1.0)
     for _ in range(90):
@@ -47,9 +47,7 @@ def test_a_finger_knows_where_a_turned_head_is(simulation: sim.Simulation) -> No
     assert np.linalg.norm(moved) > 0.6 * np.linalg.norm(offset)
 
 
-def test_a_mad_finger_breaks_nothing(
-    simulation: sim.Simulation, generator: np.random.Generator
-) -> None:
+def test_a_mad_finger_breaks_nothing(simulation, generator):
     """Jumps of 100 mm in every frame stay bounded, at the longest step."""
     grabbed = cheek(simulation)
     for _ in range(40):

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from risorius import sim
-from risorius.assets.model import Head
 from risorius.sim.landmarks import LandmarkPoint, Side
 from risorius.sim.rig import LinearMuscle, RingMuscle, Tissue, read_rig
 from tests.sim.poses import both_sides, moved_landmarks, settled_displacement, without
@@ -36,7 +35,7 @@ def _document() -> dict[str, Any]:
     }
 
 
-def test_small_rig_is_read() -> None:
+def test_small_rig_is_read():
     """Values arrive where they belong, the rest takes its documented default."""
     rig = read_rig(_document())
     assert rig.tissue == Tissue(tangential=0.5)
@@ -48,7 +47,7 @@ def test_small_rig_is_read() -> None:
     assert lifter.name == "lifter"
 
 
-def test_empty_rig_is_plain_tissue() -> None:
+def test_empty_rig_is_plain_tissue():
     """No rig file means no muscles, not an error."""
     assert read_rig({}).muscles == ()
 
@@ -126,7 +125,7 @@ PULLER = ("muscle", "puller")
         (_set("muscle", "puller_left", value=RING), r"'puller_left': the side is added by itself"),
     ],
 )  # fmt: skip
-def test_each_mistake_is_named(change: Callable[[dict[str, Any]], None], message: str) -> None:
+def test_each_mistake_is_named(change, message):
     """Errors name the place, the value and the allowed values."""
     document = copy.deepcopy(_document())
     change(document)
@@ -134,7 +133,7 @@ def test_each_mistake_is_named(change: Callable[[dict[str, Any]], None], message
         read_rig(document)
 
 
-def test_built_in_rig_is_complete(head: Head) -> None:
+def test_built_in_rig_is_complete(head):
     """The face has the muscles of the textbooks; every real one says by which unit it is known."""
     rig = read_rig(head.rig)
     assert sum(muscle.tone for muscle in rig.muscles) >= 27
@@ -142,7 +141,7 @@ def test_built_in_rig_is_complete(head: Head) -> None:
         assert "AU" in muscle.action or not muscle.tone, muscle.name
 
 
-def test_points_are_mirrored() -> None:
+def test_points_are_mirrored():
     """On the right a point uses the mirrored landmark and the mirrored offset."""
     landmarks = np.zeros((68, 3))
     landmarks[54] = (30.0, -60.0, 5.0)
@@ -152,7 +151,7 @@ def test_points_are_mirrored() -> None:
     assert np.array_equal(point.on(landmarks, Side.RIGHT), [-32.0, -57.0, 9.0])
 
 
-def test_rig_moves_with_the_head(head: Head) -> None:
+def test_rig_moves_with_the_head(head):
     """Turned, moved and ten times smaller (with a guessed jaw), a smile is the same smile."""
     angle = np.radians(30.0)
     turn = np.array(

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from risorius import sim
-from risorius.assets.model import Head
 from risorius.sim.substep import SEAL_AXES
 from tests.sim.poses import FRAME, both_sides, settled_displacement
 
 
-def test_rest_stays_at_rest(simulation: sim.Simulation) -> None:
+def test_rest_stays_at_rest(simulation):
     """Two seconds without input move nothing by a millionth of a millimetre."""
     for _ in range(120):
         simulation.step(FRAME)
@@ -20,9 +19,7 @@ def test_rest_stays_at_rest(simulation: sim.Simulation) -> None:
 
 
 @pytest.mark.parametrize("speed", [50.0, 500.0])
-def test_energy_only_falls_without_input(
-    simulation: sim.Simulation, generator: np.random.Generator, speed: float
-) -> None:
+def test_energy_only_falls_without_input(simulation, generator, speed):
     """After a blow the energy falls in every frame and is gone after a second and a half."""
     simulation.touch.kick(generator.normal(scale=speed, size=simulation.positions.shape))
     energies = [_energy(simulation)]
@@ -33,7 +30,7 @@ def test_energy_only_falls_without_input(
     assert energies[-1] < 1e-6 * energies[0]
 
 
-def test_clones_do_not_disturb_each_other(simulation: sim.Simulation) -> None:
+def test_clones_do_not_disturb_each_other(simulation):
     """In two threads at once each moves, to the bit, as it does alone."""
 
     def film(name: str) -> list[np.ndarray]:
@@ -52,9 +49,7 @@ def test_clones_do_not_disturb_each_other(simulation: sim.Simulation) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("frames_per_second", [240.0, 60.0, 47.3, 20.0])
-def test_random_jumps_stay_bounded_and_come_back(
-    simulation: sim.Simulation, generator: np.random.Generator, frames_per_second: float
-) -> None:
+def test_random_jumps_stay_bounded_and_come_back(simulation, generator, frames_per_second):
     """Every control jumps in every frame; the face stays in bounds and is at rest after 2 s."""
     controls = simulation.controls
     limits = [controls.limits[name] for name in controls.lowest]
@@ -71,7 +66,7 @@ def test_random_jumps_stay_bounded_and_come_back(
     assert np.abs(_moved(simulation)).max() < 0.01
 
 
-def test_everything_at_once_on_and_off(simulation: sim.Simulation) -> None:
+def test_everything_at_once_on_and_off(simulation):
     """All muscles at full strength, switched on and off every tenth of a second."""
     for beat in range(20):
         level = float(beat % 2)
@@ -81,7 +76,7 @@ def test_everything_at_once_on_and_off(simulation: sim.Simulation) -> None:
         assert np.abs(_moved(simulation)).max() < 90.0
 
 
-def test_two_runs_are_bit_identical(simulation: sim.Simulation, head: Head) -> None:
+def test_two_runs_are_bit_identical(simulation, head):
     """The same inputs give the same bits, also in a simulation built anew."""
     other = sim.create(head)
     values = dict.fromkeys(simulation.controls.lowest, 0.5)
@@ -92,7 +87,7 @@ def test_two_runs_are_bit_identical(simulation: sim.Simulation, head: Head) -> N
     assert simulation.positions.tobytes() == other.positions.tobytes()
 
 
-def test_reset_forgets_everything(simulation: sim.Simulation) -> None:
+def test_reset_forgets_everything(simulation):
     """After a reset a run repeats itself bit by bit."""
     values = both_sides(simulation, {"zygomaticus_major": 0.7, "jaw_open": 0.5})
     first = settled_displacement(simulation, values, frames=7)
@@ -100,7 +95,7 @@ def test_reset_forgets_everything(simulation: sim.Simulation) -> None:
     assert first.tobytes() == second.tobytes()
 
 
-def test_frame_length_hardly_matters(simulation: sim.Simulation) -> None:
+def test_frame_length_hardly_matters(simulation):
     """A smile after a quarter of a second is the same at 20, 60 and 240 frames per second."""
     values = both_sides(simulation, {"zygomaticus_major": 1.0})
     poses = []
@@ -114,7 +109,7 @@ def test_frame_length_hardly_matters(simulation: sim.Simulation) -> None:
     assert np.percentile(apart, 99) < 0.06 and np.max(apart) < 0.45  # where a lip slides over teeth
 
 
-def test_broken_state_is_reported(simulation: sim.Simulation) -> None:
+def test_broken_state_is_reported(simulation):
     """A state that is not finite raises, and a reset repairs it."""
     simulation._state.x[10] = np.nan
     with pytest.raises(sim.SimulationUnstable, match=r"vertices are not finite.*reset"):

@@ -59,7 +59,7 @@ def with_middles(vertices: Array, faces: npt.NDArray[np.int32]) -> Array:
     return np.vstack([vertices, vertices[faces].mean(axis=1)])
 
 
-def test_a_resting_tongue_is_the_part(simulation: sim.Simulation, head: Head) -> None:
+def test_a_resting_tongue_is_the_part(simulation, head):
     """Without the controls nothing moves it, in any pose of the jaw."""
     settled_displacement(simulation, {"jaw_open": 0.6, "AU12": 1.0})
     bent = simulation.anatomy.tongue()
@@ -68,9 +68,7 @@ def test_a_resting_tongue_is_the_part(simulation: sim.Simulation, head: Head) ->
 
 
 @pytest.mark.parametrize("jaw", [0.25, 0.35, 0.6])
-def test_the_tongue_comes_out_over_the_lip(
-    simulation: sim.Simulation, head: Head, jaw: float
-) -> None:
+def test_the_tongue_comes_out_over_the_lip(simulation, head, jaw):
     """Farther and farther; at the end it hangs in front of the lower lip."""
     tip = part(head, "tongue").vertices[:, 2].argmax()
     reach = []
@@ -84,7 +82,7 @@ def test_the_tongue_comes_out_over_the_lip(
     assert tongue_now(simulation)[tip, 1] < lip[1] - hangs
 
 
-def test_the_tongue_stays_in_a_shut_mouth(simulation: sim.Simulation, head: Head) -> None:
+def test_the_tongue_stays_in_a_shut_mouth(simulation, head):
     """Lips that are kept together keep it in, even over an open jaw."""
     for pose in ({"tongue_out": 1.0}, {"tongue_out": 1.0, "jawOpen": 0.5, "mouthClose": 0.5}):
         settled_displacement(simulation, pose)
@@ -92,7 +90,7 @@ def test_the_tongue_stays_in_a_shut_mouth(simulation: sim.Simulation, head: Head
         assert tongue_now(simulation)[:, 2].max() < lips.min() - 5.0
 
 
-def test_the_tip_rises_behind_the_upper_teeth(simulation: sim.Simulation, head: Head) -> None:
+def test_the_tip_rises_behind_the_upper_teeth(simulation, head):
     """As in t, d, n and l: near the incisors, above their edges, not in front of them."""
     teeth = part(head, "teeth_upper").vertices
     incisors = teeth[np.abs(teeth[:, 0]) < 5.0]
@@ -109,9 +107,7 @@ def test_the_tip_rises_behind_the_upper_teeth(simulation: sim.Simulation, head: 
     [pytest.param(pose, marks=() if pose in QUICK else pytest.mark.slow) for pose in POSES],
     ids=str,
 )
-def test_the_tongue_pierces_nothing(
-    simulation: sim.Simulation, head: Head, pose: dict[str, float]
-) -> None:
+def test_the_tongue_pierces_nothing(simulation, head, pose):
     """No skin in front of the teeth and no front tooth is in the tongue."""
     settled_displacement(simulation, pose)
     tongue = tongue_now(simulation)
@@ -128,7 +124,7 @@ def test_the_tongue_pierces_nothing(
         assert not is_within(points[front], tongue, faces).any(), name
 
 
-def test_the_measure_sees_what_is_pierced(head: Head) -> None:
+def test_the_measure_sees_what_is_pierced(head):
     """The middle of the tongue is in it, a point above is not."""
     tongue = part(head, "tongue")
     points = np.array([[0.0, -77.0, 65.0], [0.0, -50.0, 65.0], [12.0, -77.0, 60.0]])
@@ -136,7 +132,7 @@ def test_the_measure_sees_what_is_pierced(head: Head) -> None:
     assert found.tolist() == [True, False, True]
 
 
-def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
+def test_the_tongue_follows_in_time(simulation):
     """It needs some frames, even as the lips burst open, and is back half a second later."""
     simulation.controls.pose({"jaw_open": 0.4, "tongue_out": 1.0})
     before = tongue_now(simulation)
@@ -152,7 +148,7 @@ def test_the_tongue_follows_in_time(simulation: sim.Simulation) -> None:
     assert steps[-1] < 0.1
 
 
-def test_a_head_without_a_tongue_has_the_controls_all_the_same(head: Head) -> None:
+def test_a_head_without_a_tongue_has_the_controls_all_the_same(head):
     """Tables speak of it, and nothing is drawn."""
     bare = sim.create(without(head))
     bare.controls.pose({"tongue_out": 1.0})

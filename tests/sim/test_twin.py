@@ -7,7 +7,6 @@ import numpy.typing as npt
 import pytest
 
 from risorius import sim
-from risorius.assets.model import Head
 from risorius.sim.contact import Grip, watch_eyeballs
 from risorius.sim.face_model import Tick
 from risorius.sim.fibres import FIBRE_POINTS, LEAST_ARC, SAMPLES, contract
@@ -28,7 +27,7 @@ def stirred(simulation: sim.Simulation, generator: np.random.Generator) -> sim.S
     return simulation
 
 
-def test_edge_forces(stirred: sim.Simulation) -> None:
+def test_edge_forces(stirred):
     """Biphasic tension along each edge plus shear on the difference of the ends' offsets."""
     edges = stirred._model.skin.edges
     state = stirred._state
@@ -52,7 +51,7 @@ def test_edge_forces(stirred: sim.Simulation) -> None:
     assert np.abs(state.force.sum(axis=0)).max() < 1e-6 * np.abs(state.force).sum()
 
 
-def test_tissue_forces(stirred: sim.Simulation) -> None:
+def test_tissue_forces(stirred):
     """Anchors are soft along the skin and stiff across it; muscles add hold and pull."""
     springs = stirred._model.skin.tissue
     state = stirred._state
@@ -65,9 +64,7 @@ def test_tissue_forces(stirred: sim.Simulation) -> None:
     assert np.allclose(state.force, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
-def test_seal_is_an_implicit_spring(
-    stirred: sim.Simulation, generator: np.random.Generator
-) -> None:
+def test_seal_is_an_implicit_spring(stirred, generator):
     """A pair on its own ends a substep at the speed that the spring's force at its end explains."""
     skin = stirred._model.skin
     h = 0.002
@@ -126,7 +123,7 @@ def _sealed_speeds(face: sim.Simulation, h: float) -> Array:
     return speeds
 
 
-def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
+def test_fibres_contract_along_their_own_arc(stirred):
     """The point at arc length t goes to f + (t - f)(1 - c a) on the fibre moved by the jaw."""
     muscles = stirred._model.muscles
     mandible = stirred.bones.mandible
@@ -148,7 +145,7 @@ def test_fibres_contract_along_their_own_arc(stirred: sim.Simulation) -> None:
             assert np.allclose(table[b, :, k], to - at, atol=1e-9)
 
 
-def test_muscle_pull(stirred: sim.Simulation) -> None:
+def test_muscle_pull(stirred):
     """Attachment and pull of all muscles, summed muscle by muscle and line by line."""
     anatomy = stirred._model
     mandible = stirred.bones.mandible
@@ -202,7 +199,7 @@ def testbones_carry_anchors(stirred: sim.Simulation) -> None:
     assert np.allclose(np.linalg.norm(state.normals, axis=1), 1.0, atol=1e-6)
 
 
-def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
+def test_lids_turn_about_the_eyeball(simulation):
     """Lids keep their distance to the eyeball's centre but for how far they sink; margins meet."""
     anatomy = simulation._model
     state = simulation._state
@@ -233,7 +230,7 @@ def test_lids_turn_about_the_eyeball(simulation: sim.Simulation) -> None:
     assert (lids.sink != 0.0).any()
 
 
-def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
+def test_an_open_lid_takes_its_fold_along(simulation):
     """Raised and looking up, the fold is held and goes up; at rest nothing holds it."""
     anatomy = simulation._model
     state = simulation._state
@@ -253,7 +250,7 @@ def test_an_open_lid_takes_its_fold_along(simulation: sim.Simulation) -> None:
     assert (state.carried - rest)[fold, 1].max() > 1.0
 
 
-def test_a_step_is_its_substeps(head: Head) -> None:
+def test_a_step_is_its_substeps(head):
     """A frame without contact, done again with plain Euler, lands on the same positions."""
     anatomy = sim.create(head)._model
     lips = anatomy.skin.lips

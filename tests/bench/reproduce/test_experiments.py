@@ -4,7 +4,6 @@ import math
 import re
 import sys
 from importlib import import_module
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -22,7 +21,7 @@ from risorius.bench.reproduce.table1 import Row
 from tests.app.command_line import risorius
 
 
-def test_pairs_are_compared_round_by_round() -> None:
+def test_pairs_are_compared_round_by_round():
     """A machine that becomes ten times slower on the way does not change c_rt."""
     times = np.array([[1.0, 3.0]] * 5 + [[10.0, 30.0]] * 6)
     row = Row.of("", 100, 200, times)
@@ -39,13 +38,13 @@ def test_pairs_are_compared_round_by_round() -> None:
         (math.nan, False, "MISSED"),
     ],
 )
-def test_verdicts(value: float, differs: bool, verdict: str) -> None:
+def test_verdicts(value, differs, verdict):
     """Both bounds count, and NaN is missed."""
     claim = Claim("x", "", "", low=1.0, high=3.0, differs=differs)
     assert claim.verdict(value) == verdict
 
 
-def test_every_claim_can_fail() -> None:
+def test_every_claim_can_fail():
     """Each has a bound and a name of its own within its experiment."""
     for experiment in EXPERIMENTS:
         names = [each.value for each in experiment.claims]
@@ -78,7 +77,7 @@ def planted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(commands, "EXPERIMENTS", PLANTED)
 
 
-def test_a_missed_tolerance_is_reported_after_all_is_written(planted: None, tmp_path: Path) -> None:
+def test_a_missed_tolerance_is_reported_after_all_is_written(planted, tmp_path):
     """Exit code 1, a line for each that is missed, and every file is there."""
     result = risorius("reproduce", "all", "-o", tmp_path / "new")
     assert result.exit_code == 1
@@ -88,7 +87,7 @@ def test_a_missed_tolerance_is_reported_after_all_is_written(planted: None, tmp_
     assert names == {"index.html", "good.png"}
 
 
-def test_the_page_stands_alone(planted: None, tmp_path: Path) -> None:
+def test_the_page_stands_alone(planted, tmp_path):
     """It loads nothing but pictures beside it, escapes its text, and shows every verdict."""
     risorius("reproduce", "all", "-o", tmp_path)
     text = (tmp_path / "index.html").read_text(encoding="utf-8")
@@ -104,7 +103,7 @@ def test_the_page_stands_alone(planted: None, tmp_path: Path) -> None:
     assert text.index("section 1") < text.index("section 2")
 
 
-def test_every_experiment_can_be_named() -> None:
+def test_every_experiment_can_be_named():
     """The command knows it, and its entry names a function that is there."""
     help_text = risorius("reproduce", "--help").output
     for experiment in EXPERIMENTS:

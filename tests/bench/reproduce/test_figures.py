@@ -8,7 +8,7 @@ import pytest
 from risorius.assets.sheets import make_grid
 from risorius.bench.canvas import Canvas
 from risorius.bench.reproduce import figure_8
-from risorius.bench.reproduce.experiments import EXPERIMENTS, Experiment
+from risorius.bench.reproduce.experiments import EXPERIMENTS
 from risorius.bench.reproduce.figure_9 import Waving, levels_apart, outline_apart
 
 DRAWN = [each for each in EXPERIMENTS if each.picture]
@@ -16,7 +16,7 @@ DRAWN = [each for each in EXPERIMENTS if each.picture]
 
 @pytest.mark.slow
 @pytest.mark.parametrize("experiment", DRAWN, ids=lambda each: each.name)
-def test_figures_are_as_the_paper_says(experiment: Experiment) -> None:
+def test_figures_are_as_the_paper_says(experiment):
     """Every claim is met, or differs as we know; and there is a picture with ink on it."""
     result = experiment.run()
     assert result.findings
@@ -34,7 +34,7 @@ def rolled(cells: int, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarra
     return vertices, faces, np.stack([x, vertices[:, 1], z], axis=1)
 
 
-def test_a_rolled_sheet_folds_along_its_axis() -> None:
+def test_a_rolled_sheet_folds_along_its_axis():
     """A flat sheet has no fold; rolled to a cylinder it is all fold; a ball bends both ways."""
     vertices, faces, cylinder = rolled(12, 25.0)
     assert not figure_8.find_folds(faces, vertices)[1].any()
@@ -54,7 +54,7 @@ def plane() -> Iterator[Waving]:
         yield Waving(canvas)
 
 
-def test_nothing_is_off_from_itself(plane: Waving) -> None:
+def test_nothing_is_off_from_itself(plane):
     """The measures are 0 for the truth, and see a shade and an outline that differ."""
     truth = plane.true_image(0.0)
     assert levels_apart(truth, truth) == outline_apart(truth, truth) == 0.0

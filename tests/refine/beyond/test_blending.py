@@ -57,7 +57,7 @@ def jumps(
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_nothing_pops(scheme: str) -> None:
+def test_nothing_pops(scheme):
     """With blending every point of the surface moves at most in proportion to the input."""
     most, turn = jumps(scheme, True, "normal")
     assert most < BOUND
@@ -68,7 +68,7 @@ def test_nothing_pops(scheme: str) -> None:
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES)
 @pytest.mark.parametrize("name", ["seam", "valence 20"])
-def test_nothing_pops_at_seams_and_tips(name: str, scheme: str) -> None:
+def test_nothing_pops_at_seams_and_tips(name, scheme):
     """Nor on a small tube with a seam, nor at a tip, where normals turn faster than elsewhere."""
     mesh = meshes.tube(6, 3) if name == "seam" else meshes.double_cone(20)
     blended = jumps(scheme, True, "normal", mesh)[0]
@@ -78,14 +78,14 @@ def test_nothing_pops_at_seams_and_tips(name: str, scheme: str) -> None:
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[::2])
 @pytest.mark.parametrize("criterion", ["displacement", "normal+rest"])
-def test_nothing_pops_by_other_criteria(criterion: object, scheme: str) -> None:
+def test_nothing_pops_by_other_criteria(criterion, scheme):
     """The same for the other criteria and their maximum."""
     assert jumps(scheme, True, criterion)[0] < BOUND
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
 @pytest.mark.parametrize("name", ["icosahedron", "box", "cone"])
-def test_outlines_do_not_pop(name: str, scheme: str) -> None:
+def test_outlines_do_not_pop(name, scheme):
     """A body whose edges all turn by 40 degrees and more rolls before the eye, and nothing jumps.
 
     Without blending points go 53 to 104 times as far in these steps, with it 1.7 to 3.5 times.
@@ -125,7 +125,7 @@ def test_outlines_do_not_pop(name: str, scheme: str) -> None:
 
 
 @pytest.mark.parametrize("scheme", QUICK_SCHEMES[:2])
-def test_any_change_of_needs_is_followed(scheme: str) -> None:
+def test_any_change_of_needs_is_followed(scheme):
     """Whatever three edges metric, and which of them appears: no jump in the triangle between them.
 
     Largest seen: 0.8 of the change of the metrics. A diagonal that turns would be 0.1 at once.
@@ -158,7 +158,7 @@ def test_any_change_of_needs_is_followed(scheme: str) -> None:
         assert np.abs(surface(metrics + change) - surface(metrics)).max() < 2.0 * step
 
 
-def test_folds_have_no_scales() -> None:
+def test_folds_have_no_scales():
     """Around a cylinder no piece of a triangle with two grown edges is tilted along the axis.
 
     Lines from the centroid to the corners would tilt them by up to 5.5 degrees.
@@ -184,13 +184,13 @@ def _across(grid: meshes.Mesh) -> npt.NDArray[np.float64]:
     return np.where(is_along, -1.0, 0.9)
 
 
-def test_without_blending_it_pops() -> None:
+def test_without_blending_it_pops():
     """The measure is able to see a pop: the paper's rules have some."""
     assert jumps("loop", False, "normal")[0] > 2 * BOUND
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_begins_at_the_unrefined_surface(scheme: str) -> None:
+def test_begins_at_the_unrefined_surface(scheme):
     """Edges with metrics near 0 give the surface of the mesh itself; grown ones the full scheme."""
     mesh = meshes.irregular(7, 5, 4, 0)
     deformed = meshes.wrinkled(mesh, 8)
@@ -213,7 +213,7 @@ def test_begins_at_the_unrefined_surface(scheme: str) -> None:
     assert abs(surface(0.5) - surface(-1.0)).max() > 0.01
 
 
-def test_needs_a_measure() -> None:
+def test_needs_a_measure():
     """A criterion that only counts splits cannot be blended."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match="blend=True needs a criterion that measures, but Forced"):

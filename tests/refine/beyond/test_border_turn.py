@@ -43,7 +43,7 @@ def metrics_of(mesh: meshes.Mesh, *poses: np.ndarray) -> list[np.ndarray]:
 
 @settings(max_examples=60, deadline=None)
 @given(seeds, st.floats(-1e3, 1e3), st.booleans())
-def test_nothing_at_rest(seed: int, away: float, has_holes: bool) -> None:
+def test_nothing_at_rest(seed, away, has_holes):
     """Neither rest nor a rigid motion splits anything."""
     mesh = meshes.irregular(seed % 50) if has_holes else SLIT
     moved = mesh.vertices @ meshes.rotation(seed).T + away
@@ -53,7 +53,7 @@ def test_nothing_at_rest(seed: int, away: float, has_holes: bool) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(soups())
-def test_any_triangles(soup: tuple[np.ndarray, np.ndarray]) -> None:
+def test_any_triangles(soup):
     """Fins, flips and debris split nothing at rest, and crack nowhere when they move."""
     positions, faces = soup
     mesh = meshes.Mesh(positions, faces)
@@ -61,7 +61,7 @@ def test_any_triangles(soup: tuple[np.ndarray, np.ndarray]) -> None:
     splits_of(mesh, positions[::-1].copy())
 
 
-def test_a_slit_that_opens_in_its_plane() -> None:
+def test_a_slit_that_opens_in_its_plane():
     """It is split along all of its sides, and beside them; normals and rest see nothing."""
     deformed = meshes.opened(SLIT, 0.8)
     assert not splits_of(SLIT, deformed, "normal+rest").any()
@@ -80,7 +80,7 @@ def test_a_slit_that_opens_in_its_plane() -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(heights, heights)
-def test_symmetric_in_symmetric_out(height: float, lower: float) -> None:
+def test_symmetric_in_symmetric_out(height, lower):
     """What is mirrored left and right is split alike there; and above and below, if opened so."""
     for axis, sides in ((0, (height, lower)), (1, (height, height))):
         deformed = meshes.opened(SLIT, sides[0])
@@ -97,7 +97,7 @@ def test_symmetric_in_symmetric_out(height: float, lower: float) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(seeds, st.floats(0.0, 0.5))
-def test_needs_are_continuous(seed: int, amplitude: float) -> None:
+def test_needs_are_continuous(seed, amplitude):
     """They change no more than 200 times as much as the mesh moves [edges]: thresholds are small.
 
     Also through the moment in which a side folds back.
@@ -161,7 +161,7 @@ def plain_metric(mesh: meshes.Mesh, normals: np.ndarray, pose: np.ndarray,
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_equals_plain_twin(seed: int) -> None:
+def test_equals_plain_twin(seed):
     """Needs are those worked out plainly."""
     mesh = meshes.irregular(seed, columns=16, rows=16)
     pose = meshes.wrinkled(mesh, seed)
@@ -192,7 +192,7 @@ def outline(
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
-def test_round_outline_of_a_slit(scheme: str) -> None:
+def test_round_outline_of_a_slit(scheme):
     """Between its corners an opened slit turns less than half as much; by loop not beside them."""
     deformed = meshes.opened(SLIT, 1.2)
     refiner = kahler(SLIT, criterion="border", scheme=scheme, blend=False)

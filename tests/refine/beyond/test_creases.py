@@ -56,7 +56,7 @@ def volume(points: Points, faces: Any) -> float:
 
 
 @pytest.mark.parametrize("options", [LOOK, {**LOOK, "blend": False}])
-def test_a_cylinder_keeps_its_rims(options: dict[str, Any]) -> None:
+def test_a_cylinder_keeps_its_rims(options):
     """Its sides become round, and its volume that of a cylinder; without creases it swells."""
     points, faces = prism(16)
     own = volume(points, faces)
@@ -74,7 +74,7 @@ def test_a_cylinder_keeps_its_rims(options: dict[str, Any]) -> None:
     assert (abs(heights[lids]) == 1.0).all()
 
 
-def test_a_cube_stays_one() -> None:
+def test_a_cube_stays_one():
     """Flat sides need no splits, and where they are split nothing moves by more than rounding."""
     points, faces = cube()
     refined = refine.create("kahler", faces, points, crease_angle=80.0, **LOOK).refine(points)
@@ -89,7 +89,7 @@ def test_a_cube_stays_one() -> None:
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
-def test_new_points_of_creases_lie_on_them(scheme: str) -> None:
+def test_new_points_of_creases_lie_on_them(scheme):
     """As on a border: of the two straight ridges of a roof none leaves its line."""
     x, y = np.meshgrid(np.arange(5.0), np.arange(7.0))
     flat = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
@@ -116,7 +116,7 @@ def test_new_points_of_creases_lie_on_them(scheme: str) -> None:
 
 
 @pytest.mark.parametrize("levels", [1, 2, 3])
-def test_uniform_subdivision_keeps_them(levels: int) -> None:
+def test_uniform_subdivision_keeps_them(levels):
     """Halves of creases are creases: a cube's corners stay, and its sides stay flat."""
     points, faces = cube()
     refiner = refine.create("loop", faces, points, levels=levels, crease_angle=60.0)
@@ -134,9 +134,7 @@ def test_uniform_subdivision_keeps_them(levels: int) -> None:
     options=st.sampled_from(RULES),
     seed=st.integers(0, 999),
 )
-def test_no_crack_whatever_is_sharp(
-    soup: tuple[Points, Any], angle: float, options: dict[str, Any], seed: int
-) -> None:
+def test_no_crack_whatever_is_sharp(soup, angle, options, seed):
     """Soups, whose edges are of one triangle or three, turned, doubled: `check` holds."""
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle, **options)
@@ -146,7 +144,7 @@ def test_no_crack_whatever_is_sharp(
 
 @settings(max_examples=60)
 @given(soup=soups(), angle=st.sampled_from([0.0, 20.0, 90.0]))
-def test_sectors_are_what_creases_leave_together(soup: tuple[Points, Any], angle: float) -> None:
+def test_sectors_are_what_creases_leave_together(soup, angle):
     """Corners at a vertex that other edges join have one sector; those of both sides have two."""
     points, faces = soup
     refiner = refine.create("kahler", faces, points, crease_angle=angle)
@@ -168,7 +166,7 @@ def test_sectors_are_what_creases_leave_together(soup: tuple[Points, Any], angle
             assert len(found[0]) == len(found[1]) == 1
 
 
-def test_angles_by_hand() -> None:
+def test_angles_by_hand():
     """A cube's edges turn by 90 degrees, its diagonals, borders and slivers by none."""
     points, faces = cube()
     mesh = refine.connect(faces, 8)
@@ -181,7 +179,7 @@ def test_angles_by_hand() -> None:
     assert (dihedral_angles(sliver, flat) == 0.0).all()
 
 
-def test_off_by_default_and_refused_in_words() -> None:
+def test_off_by_default_and_refused_in_words():
     """None and 180 degrees change no bit; what is no angle is named."""
     mesh = meshes.irregular(3)
     bent = meshes.wrinkled(mesh, 4)
@@ -198,7 +196,7 @@ def test_off_by_default_and_refused_in_words() -> None:
 
 
 @pytest.mark.parametrize("rules", [{}, LOOK])
-def test_on_the_card(rules: dict[str, Any]) -> None:
+def test_on_the_card(rules):
     """The paper's rule has creases there; cubic edges are left to the processor."""
     points, faces = prism(12)
     moved = points * [1.0, 0.6, 1.3]

@@ -20,7 +20,7 @@ def splits_of(
     return refiner.splits.copy(), refiner.edges
 
 
-def test_rest_by_hand() -> None:
+def test_rest_by_hand():
     """Where a tube is curved, by height and length; the same edges however it is bent and seen."""
     tube = meshes.tube(24, 4)
     around = 2 * np.sin(np.pi / 24)
@@ -42,7 +42,7 @@ def test_rest_by_hand() -> None:
             assert not refiner.splits[along].any()
 
 
-def test_rest_is_grown_at_once() -> None:
+def test_rest_is_grown_at_once():
     """Blended points that are there at rest stand where they stand without blending."""
     sphere = meshes.ball(1)
     points = []
@@ -54,7 +54,7 @@ def test_rest_is_grown_at_once() -> None:
     assert points[0] < points[1]  # and the points in the middle of triangles
 
 
-def test_view_is_needed() -> None:
+def test_view_is_needed():
     """A criterion that depends on the eye says so."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh, criterion="silhouette")
@@ -65,7 +65,7 @@ def test_view_is_needed() -> None:
             refiner.refine(mesh.vertices, view=view)
 
 
-def test_maximum() -> None:
+def test_maximum():
     """A list splits each edge as often as the criterion that asks for most."""
     mesh = meshes.irregular(1)
     deformed = meshes.wrinkled(mesh, 2)
@@ -80,7 +80,7 @@ def test_maximum() -> None:
     assert (joined == together).all()
 
 
-def test_blended_splits_are_the_same() -> None:
+def test_blended_splits_are_the_same():
     """Blending does not change how often an edge is split."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
@@ -94,7 +94,7 @@ def test_blended_splits_are_the_same() -> None:
 
 
 @pytest.mark.parametrize("blend", [False, True])
-def test_one_level_only(blend: bool) -> None:
+def test_one_level_only(blend):
     """An infinite second threshold switches the second level off, blended or not."""
     mesh = meshes.irregular(2)
     refiner = kahler(mesh, threshold_twice=np.inf, blend=blend)
@@ -134,7 +134,7 @@ def plain_measure(
         (refine.Silhouette, 0.005, 0.03),
     ],
 )
-def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> None:
+def test_needs_by_hand(kind, once, twice, level):
     """Needs are measures over the distance of the thresholds; without a second one, over itself."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
@@ -166,7 +166,7 @@ def test_needs_by_hand(kind: type, once: float, twice: float, level: str) -> Non
 
 
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])
-def test_displacement(scheme: str) -> None:
+def test_displacement(scheme):
     """An edge is split where its full middle lies farther than the threshold from the straight."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3)
@@ -191,7 +191,7 @@ def test_displacement(scheme: str) -> None:
     assert set(refiner.splits.tolist()) == {0, 1, 2}
 
 
-def test_displacement_needs_measures() -> None:
+def test_displacement_needs_measures():
     """The paper's scheme does not measure how far it moves edges; its refined normals do."""
     mesh = meshes.octahedron()
     with pytest.raises(ValueError, match='LoopScheme tells with normals="refined" only'):
@@ -201,7 +201,7 @@ def test_displacement_needs_measures() -> None:
     assert (refiner.splits > 0).all()
 
 
-def test_a_rule_of_ones_own_is_asked() -> None:
+def test_a_rule_of_ones_own_is_asked():
     """A subclass that marks otherwise is not passed over."""
     mesh = meshes.irregular(4)
 
@@ -222,7 +222,7 @@ def test_a_rule_of_ones_own_is_asked() -> None:
         ({"scheme": refine.Scheme()}, "Scheme must have a method place"),
     ],
 )
-def test_a_rule_that_says_nothing(options: dict[str, Any], text: str) -> None:
+def test_a_rule_that_says_nothing(options, text):
     """A criterion or scheme without its one method says which that is, when a frame asks it."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh, **options)
@@ -256,7 +256,7 @@ class Warmth(Heat):
 @pytest.mark.parametrize("blend", [False, True])
 @pytest.mark.parametrize("name", ["kahler", "kahler-gl"])
 @pytest.mark.parametrize("is_part", [False, True])
-def test_no_number_is_reported(blend: bool, name: str, is_part: bool) -> None:
+def test_no_number_is_reported(blend, name, is_part):
     """By the frame in which it is measured, with the criterion's name, alone or beside others."""
     mesh = meshes.irregular(3)
     for first in (0, 2):
@@ -273,7 +273,7 @@ def test_no_number_is_reported(blend: bool, name: str, is_part: bool) -> None:
             refiner.refine(mesh.vertices)
 
 
-def test_check_reports_what_would_be_no_number() -> None:
+def test_check_reports_what_would_be_no_number():
     """Of a criterion that decides by itself, `check` asks what it measures."""
     mesh = meshes.irregular(3)
     refiner = refine.create("kahler", mesh.faces, mesh.vertices, criterion=Warmth(7))

@@ -53,7 +53,7 @@ def refined(scheme: str, positions: np.ndarray, **options: object) -> refine.Ref
 
 
 @pytest.mark.parametrize("blend", [False, True])
-def test_lies_on_the_finer_mesh(blend: bool) -> None:
+def test_lies_on_the_finer_mesh(blend):
     """At rest, with all edges split, the detail scheme is much closer to the finer mesh."""
     errors = {}
     for scheme in ("cubic", "detail"):
@@ -64,7 +64,7 @@ def test_lies_on_the_finer_mesh(blend: bool) -> None:
     assert errors["detail"] < 0.5 * errors["cubic"]
 
 
-def test_normals_of_the_surface_are_the_finer_ones() -> None:
+def test_normals_of_the_surface_are_the_finer_ones():
     """What the surface of all splits shows is far nearer to the finer normals than a mean is."""
     fine_normals = vertex_normals(FINE.vertices, FINE.faces)
     off = {}
@@ -77,7 +77,7 @@ def test_normals_of_the_surface_are_the_finer_ones() -> None:
     assert off["refined"] < 0.4 * off["linear"]
 
 
-def test_no_stars_in_folds() -> None:
+def test_no_stars_in_folds():
     """A finer mesh that adds nothing leaves the normals of a folded grid as smooth as the cubic.
 
     Between a vertex and the quarter points around it they turn by a part of the fold; with one
@@ -107,7 +107,7 @@ def test_no_stars_in_folds() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_turns_with_the_mesh(seed: int) -> None:
+def test_turns_with_the_mesh(seed):
     """A rigid motion of the mesh moves everything along: points, middles and normals."""
     turn = meshes.rotation(seed)
     still = refined("detail", COARSE.vertices)
@@ -127,7 +127,7 @@ def test_turns_with_the_mesh(seed: int) -> None:
     normals=st.sampled_from(["linear", "refined"]),
     blend=st.booleans(),
 )
-def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bool) -> None:
+def test_equals_plain_twin(mesh, seed, normals, blend):
     """What is seen at rest moves as the plain twin says, for any splits and geomorph weights."""
     generator = np.random.default_rng(seed)
     lift = 0.05 * generator.standard_normal(mesh.vertices.shape)
@@ -177,7 +177,7 @@ def test_equals_plain_twin(mesh: meshes.Mesh, seed: int, normals: str, blend: bo
 
 
 @pytest.mark.slow
-def test_many_vertices_in_one_place() -> None:
+def test_many_vertices_in_one_place():
     """Thousands of vertices in one place are searched in bounded time, and give finite detail."""
     random = np.random.default_rng(3)
     positions = np.zeros((3000, 3))

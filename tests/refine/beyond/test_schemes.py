@@ -58,7 +58,7 @@ def random_metrics(mesh: meshes.Mesh, seed: int) -> np.ndarray:
 @pytest.mark.parametrize("blend", [False, True])
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("normals", NORMALS)
-def test_equals_plain_twin(normals: str, scheme: str, blend: bool, name: str) -> None:
+def test_equals_plain_twin(normals, scheme, blend, name):
     """Points, normals and triangles are those of the plain twin, on meshes of every kind."""
     mesh = MESHES[name]()
     for seed in range(2):
@@ -83,13 +83,7 @@ def test_equals_plain_twin(normals: str, scheme: str, blend: bool, name: str) ->
     normals=st.sampled_from(NORMALS),
     blend=st.booleans(),
 )
-def test_soups_equal_twin(
-    soup: tuple[np.ndarray, np.ndarray],
-    data: st.DataObject,
-    scheme: str,
-    normals: str,
-    blend: bool,
-) -> None:
+def test_soups_equal_twin(soup, data, scheme, normals, blend):
     """Any triangles with any metrics: the fast kernels do what the plain twin does."""
     positions, faces = soup
     edge_count = len(refine.connect(faces, len(positions)).edges)
@@ -112,7 +106,7 @@ def _has_normals(refined: refine.RefinedMesh) -> bool:
 
 @pytest.mark.parametrize("blend", [False, True])
 @pytest.mark.parametrize("scheme", ["cubic", "detail"])
-def test_vertices_stay(scheme: str, blend: bool) -> None:
+def test_vertices_stay(scheme, blend):
     """Schemes that interpolate leave every original vertex where it is, to the last bit."""
     mesh = meshes.irregular(5)
     deformed = meshes.wrinkled(mesh, 6)
@@ -122,7 +116,7 @@ def test_vertices_stay(scheme: str, blend: bool) -> None:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_flat_stays_flat(scheme: str) -> None:
+def test_flat_stays_flat(scheme):
     """A plane refines into itself: all weights add up to one."""
     mesh = meshes.irregular(2)
     flat = mesh.vertices * [1.0, 1.0, 0.0]

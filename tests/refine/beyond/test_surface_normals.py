@@ -50,7 +50,7 @@ def turns(some: npt.NDArray[np.floating], others: npt.NDArray[np.floating]) -> P
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_does_not_depend_on_what_is_split(scheme: str) -> None:
+def test_does_not_depend_on_what_is_split(scheme):
     """A vertex has the same normal to the last bit, and so has a middle as soon as it has grown."""
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4, 0.2)
@@ -88,7 +88,7 @@ def smooth_wave(mesh: meshes.Mesh, height: float) -> Points:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_normals_do_not_pop(scheme: str) -> None:
+def test_normals_do_not_pop(scheme):
     """In a smooth motion the shading turns in proportion to the motion, all thresholds crossed.
 
     Largest seen: 1.7 times the turn of the surface's own normals; without blending 54 to 62, and
@@ -126,7 +126,7 @@ def test_normals_do_not_pop(scheme: str) -> None:
     edge=st.integers(0, 1000),
     at=st.sampled_from([0.0, 0.25, 1.0, 1.25]),
 )
-def test_geomorph_has_no_steps(seed: int, scheme: str, edge: int, at: float) -> None:
+def test_geomorph_has_no_steps(seed, scheme, edge, at):
     """Whatever is split around it, an edge that passes a threshold turns no shading at once.
 
     What is left is that normals between more points are interpolated otherwise: 3 degrees where
@@ -172,7 +172,7 @@ def exact(name: str, points: Points) -> Points:
 
 @pytest.mark.parametrize("metric", [0.9, 2.0])
 @pytest.mark.parametrize("name", ["ellipsoid", "torus"])
-def test_nearer_to_the_exact_normals(name: str, metric: float) -> None:
+def test_nearer_to_the_exact_normals(name, metric):
     """On bodies whose normals are known, refined ones are nearer to them than linear ones."""
     ball = meshes.ball(2)
     ellipsoid = meshes.Mesh(ball.vertices * [1.0, 0.6, 1.5], ball.faces)
@@ -187,7 +187,7 @@ def test_nearer_to_the_exact_normals(name: str, metric: float) -> None:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_points_stay(scheme: str) -> None:
+def test_points_stay(scheme):
     """Normals are all that `normals` changes: positions and triangles are the same bits."""
     mesh = meshes.irregular(5)
     deformed = meshes.wrinkled(mesh, 6)
@@ -200,7 +200,7 @@ def test_points_stay(scheme: str) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
-def test_symmetric_stays_symmetric(scheme: str) -> None:
+def test_symmetric_stays_symmetric(scheme):
     """An opened slit that is symmetric in x and y has normals that are symmetric, too."""
     mesh = meshes.slit()
     positions = meshes.opened(mesh, 0.8)
@@ -218,7 +218,7 @@ def test_symmetric_stays_symmetric(scheme: str) -> None:
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 @pytest.mark.parametrize("blend", [False, True])
-def test_planar_is_exact(scheme: str, blend: bool) -> None:
+def test_planar_is_exact(scheme, blend):
     """No normal of a plane leans to the least, with borders and holes."""
     mesh = meshes.irregular(2)
     flat = mesh.vertices * [1.0, 1.0, 0.0]
@@ -232,7 +232,7 @@ def test_planar_is_exact(scheme: str, blend: bool) -> None:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_moves_with_the_mesh(scheme: str) -> None:
+def test_moves_with_the_mesh(scheme):
     """A rigid motion turns all normals along; a hundred thousand edges away they are the same."""
     mesh = meshes.irregular(8)
     deformed = meshes.wrinkled(mesh, 9, 0.2)

@@ -19,7 +19,7 @@ REFINERS = [
 
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
-def test_attributes_are_linear(name: str, options: dict[str, object]) -> None:
+def test_attributes_are_linear(name, options):
     """Every attribute has the value of its place in its triangle, on both sides of seams."""
     tube = meshes.tube(10, 6)
     assert tube.uv is not None
@@ -53,7 +53,7 @@ def test_attributes_are_linear(name: str, options: dict[str, object]) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
-def test_any_type_and_order(scheme: str) -> None:
+def test_any_type_and_order(scheme):
     """float32 or float64, C or Fortran order, strides, int32 or int64: one and the same frame."""
     mesh = meshes.irregular(6)
     rest = mesh.vertices.astype(np.float32)
@@ -82,7 +82,7 @@ def room(mesh: refine.RefinedMesh) -> int:
 
 
 @pytest.mark.parametrize("blend", [False, True])
-def test_own_stream_grows(blend: bool) -> None:
+def test_own_stream_grows(blend):
     """A refiner's own stream has room for its frames, not for the worst case, and only grows."""
     mesh = meshes.irregular(8, 30, 30)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
@@ -105,7 +105,7 @@ def test_own_stream_grows(blend: bool) -> None:
 
 
 @pytest.mark.parametrize("name", ["none", "loop", "kahler"])
-def test_values_of_corners_where_there_is_no_triangle(name: str) -> None:
+def test_values_of_corners_where_there_is_no_triangle(name):
     """A mesh of vertices alone has no corners that could give them values: they get zeros."""
     nothing = np.zeros((0, 3), int)
     refiner = refine.create(name, nothing, np.eye(3), uv=np.ones((4, 2)), face_uv=nothing)

@@ -68,7 +68,7 @@ class Middles(refine.BaseRefiner):
 
 
 @pytest.mark.parametrize("name", meshes.NAMED)
-def test_named_meshes(name: str) -> None:
+def test_named_meshes(name):
     """Whatever the mesh, the few lines of a subclass make a proper refinement of it."""
     mesh = meshes.NAMED[name]()
     deformed = meshes.wrinkled(mesh, 3)
@@ -78,7 +78,7 @@ def test_named_meshes(name: str) -> None:
     assert not refiner.splits.any()
 
 
-def test_seams_and_attributes() -> None:
+def test_seams_and_attributes():
     """Both sides of a seam and all attributes ride along, in a stream that somebody lends."""
     tube = meshes.tube(8, 5)
     colours = np.random.default_rng(1).random((len(tube.vertices), 3))
@@ -98,7 +98,7 @@ def test_seams_and_attributes() -> None:
     np.testing.assert_allclose(middles, tube.uv[tube.face_uv].mean(axis=1), atol=1e-6)
 
 
-def test_base_refiner_fills_nothing() -> None:
+def test_base_refiner_fills_nothing():
     """Alone it is abstract, and says what a subclass needs."""
     mesh = meshes.octahedron()
     with pytest.raises(TypeError, match=r"abstract methods '?fill'?, '?triangle"):

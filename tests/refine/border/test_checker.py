@@ -123,16 +123,14 @@ def lost_normals(mesh: refine.RefinedMesh) -> refine.RefinedMesh:
         (lost_normals, "one row of normals"),
     ],
 )
-def test_broken_output(
-    frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray], mutation: Mutation, relation: str
-) -> None:
+def test_broken_output(frame, mutation, relation):
     """Each mutation of the output is reported with the relation that it breaks."""
     refiner, refined, deformed = frame
     with pytest.raises(refine.BrokenMeshError, match=relation):
         refine.check(refiner, mutation(refined), deformed)
 
 
-def test_t_junction(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+def test_t_junction(frame):
     """A triangle left whole beside a split edge covers its area, and is still found."""
     refiner, refined, deformed = frame
     counts = np.bincount(refined.source)
@@ -148,7 +146,7 @@ def test_t_junction(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> No
         refine.check(refiner, whole, deformed)
 
 
-def test_crack_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+def test_crack_inside(frame):
     """Two subtriangles cut along the other diagonal of only one of them do not fit."""
     refiner, refined, deformed = frame
     origins = refiner.origins()
@@ -168,7 +166,7 @@ def test_crack_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> 
         refine.check(refiner, moved, deformed)
 
 
-def test_edge_flip_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+def test_edge_flip_inside(frame):
     """Subtriangles that overlap and miss the same area are found by their inner sub-edges."""
     mesh = meshes.triangle()
     refiner = Wrapped(kahler(mesh))
@@ -191,9 +189,7 @@ def test_edge_flip_inside(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray])
 
 
 @pytest.mark.parametrize(("has", "says"), [(2, 1), (1, 2), (0, 1), (1, 0)])
-def test_wrong_split_count(
-    frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray], has: int, says: int
-) -> None:
+def test_wrong_split_count(frame, has, says):
     """Splits that do not fit the sub-edges are noticed, be they too many or too few."""
     refiner, refined, deformed = frame
     e = int(np.flatnonzero(refiner.splits == has)[0])
@@ -202,7 +198,7 @@ def test_wrong_split_count(
         refine.check(refiner, refined, deformed)
 
 
-def test_moved_vertex(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> None:
+def test_moved_vertex(frame):
     """The smallest change of a vertex away from splits is noticed."""
     refiner, refined, deformed = frame
     touched = np.unique(refiner.edges[refiner.splits > 0])  # type: ignore[attr-defined]
@@ -212,7 +208,7 @@ def test_moved_vertex(frame: tuple[Wrapped, refine.RefinedMesh, np.ndarray]) -> 
         refine.check(refiner, refined, deformed)
 
 
-def test_lost_degenerate_triangle() -> None:
+def test_lost_degenerate_triangle():
     """A triangle that names a vertex twice may not come out twice."""
     mesh = meshes.with_debris()
     refiner = refine.create("none", mesh.faces, mesh.vertices)
@@ -271,20 +267,20 @@ INSIDE = [(1 / 3, 1 / 3, 1 / 3), (0.25, 0.5, 0.25), (1 / 13, 5 / 13, 7 / 13), (0
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("inside", INSIDE)
-def test_points_anywhere(place: float, inside: tuple[float, float, float]) -> None:
+def test_points_anywhere(place, inside):
     """Edges may be cut where a refiner likes, and triangles have points inside."""
     refine.check(*cut_at((place, place), inside))
 
 
 @pytest.mark.parametrize("place", [1 / 2, 1 / 3, 3 / 8, 5 / 512, 3 / 7, 2 / 9])
-def test_single_precision_is_forgiven(place: float) -> None:
+def test_single_precision_is_forgiven(place):
     """What the weights of whole parts lose on their way makes no other place of them."""
     assert (place * PARTS) % 1.0 == pytest.approx(0.0, abs=1e-9)
     refine.check(*cut_at((place, place + 2e-7), INSIDE[0]))
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_places_apart_are_cracks(place: float) -> None:
+def test_places_apart_are_cracks(place):
     """An edge that is cut in two places, though but a little apart, is a crack."""
     refiner, refined, rest = cut_at((place, place + 2.0 / PARTS), INSIDE[0])
     with pytest.raises(refine.BrokenMeshError, match="no crack, no T-junction"):
@@ -292,13 +288,13 @@ def test_places_apart_are_cracks(place: float) -> None:
 
 
 @pytest.mark.parametrize("weights", [(1.2, -0.1, -0.1), (0.5, 0.5, 0.001)])
-def test_weights_of_no_place(weights: tuple[float, float, float]) -> None:
+def test_weights_of_no_place(weights):
     """Points outside a triangle, and weights that add up to something else, are refused."""
     with pytest.raises(refine.BrokenMeshError, match=r"weights (below zero|that add up to one)"):
         refine.check(*cut_at((0.5, 0.5), weights))
 
 
-def test_thin_subtriangle_on_an_edge() -> None:
+def test_thin_subtriangle_on_an_edge():
     """Three points on one edge are a sliver, wherever on it they are."""
     refiner, refined, rest = cut_at((1 / 11, 1 / 11), INSIDE[0])
     refined.triangles[2] = [2, 4, 0]
@@ -306,7 +302,7 @@ def test_thin_subtriangle_on_an_edge() -> None:
         refine.check(refiner, refined, rest)  # type: ignore[arg-type]
 
 
-def test_three_levels() -> None:
+def test_three_levels():
     """Edges of eight parts pass; checked as edges of four, they fail."""
     mesh = meshes.irregular(3)
     refiner = Wrapped(refine.create("loop", mesh.faces, mesh.vertices, levels=3))

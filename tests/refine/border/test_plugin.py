@@ -61,7 +61,7 @@ def clean_registry(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("clean_registry")
-def test_registered_refiner() -> None:
+def test_registered_refiner():
     """A registered refiner is created by name with its options, and passes the checker."""
     refine.refiners.register("outside", Outside)
     assert "outside" in refine.refiners.available()
@@ -84,13 +84,13 @@ def test_registered_refiner() -> None:
         ("broken", 7, "must be callable, got 7"),
     ],
 )
-def test_bad_registration(name: object, factory: object, text: str) -> None:
+def test_bad_registration(name, factory, text):
     """Names cannot be taken twice, and factories have to be callable."""
     with pytest.raises(ValueError, match=text):
         refine.refiners.register(name, factory)  # type: ignore[arg-type]
 
 
-def test_unknown_name() -> None:
+def test_unknown_name():
     """The error lists the names there are."""
     with pytest.raises(ValueError, match=r"refiner 'khaler' is unknown; there are .*'kahler'"):
         refine.create("khaler", FINE.faces, FINE.vertices)
@@ -108,7 +108,7 @@ def test_unknown_name() -> None:
         ("none", r"it takes \['attributes', 'crease_angle'\]"),
     ],
 )
-def test_unknown_option(name: str, text: str) -> None:
+def test_unknown_option(name, text):
     """The error lists the options there are."""
     with pytest.raises(ValueError, match=f"unknown option 'treshold' for refiner '{name}'; {text}"):
         refine.create(name, FINE.faces, FINE.vertices, treshold=0.1)
@@ -158,7 +158,7 @@ NO_FACES = np.zeros((0, 3), int)
     ],
 )
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
-def test_bad_binding(name: str, changes: dict[str, object], text: str) -> None:
+def test_bad_binding(name, changes, text):
     """Arrays that do not fit together are refused with what, where, and what is allowed."""
     arguments: dict[str, object] = {"faces": FINE.faces, "rest_positions": FINE.vertices}
     arguments |= changes
@@ -167,7 +167,7 @@ def test_bad_binding(name: str, changes: dict[str, object], text: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
-def test_binding_copies(name: str) -> None:
+def test_binding_copies(name):
     """Changing the bound arrays afterwards changes nothing, and they are not changed."""
     faces = FINE.faces.copy()
     rest = FINE.vertices.copy()
@@ -181,7 +181,7 @@ def test_binding_copies(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
-def test_splits_cannot_be_written(name: str) -> None:
+def test_splits_cannot_be_written(name):
     """The splits of the last frame are for reading."""
     refiner = refine.create(name, FINE.faces, FINE.vertices)
     assert refiner.splits.dtype == np.uint8
@@ -192,7 +192,7 @@ def test_splits_cannot_be_written(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
 @pytest.mark.parametrize("faces", [[], (), np.zeros((0, 3), dtype=int)])
-def test_no_triangles_in_none_out(name: str, faces: object) -> None:
+def test_no_triangles_in_none_out(name, faces):
     """Also of an empty list, which has no second dimension."""
     refiner = refine.create(name, faces, FINE.vertices)
     assert len(refiner.refine(FINE.vertices).triangles) == 0
@@ -200,7 +200,7 @@ def test_no_triangles_in_none_out(name: str, faces: object) -> None:
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic"])
 @pytest.mark.parametrize("unit", [1e-6, 5e7])
-def test_units_of_length(unit: float, scheme: str) -> None:
+def test_units_of_length(unit, scheme):
     """Whatever the unit, between the limits that binding sets, the same triangles come out."""
     grid = meshes.irregular(3)
     deformed = meshes.wrinkled(grid, 4)
@@ -216,7 +216,7 @@ def test_units_of_length(unit: float, scheme: str) -> None:
     np.testing.assert_allclose(there.normals, here.normals, atol=1e-3)
 
 
-def test_frames_can_be_kept() -> None:
+def test_frames_can_be_kept():
     """Deep copies and pickles of a frame have arrays of their own, which no later frame touches."""
     refiner = kahler(FINE, attributes={"rest": FINE.vertices}, threshold_once=0.0)
     refined = refiner.refine(FINE.vertices * [1.0, 1.0, 4.0])
@@ -259,14 +259,14 @@ def test_frames_can_be_kept() -> None:
         ({"blend": True, "coherent": True}, "ask for one of the two"),
     ],
 )
-def test_bad_options(options: dict[str, object], text: str) -> None:
+def test_bad_options(options, text):
     """What is of another kind, does not exist or does not fit together is refused with what is."""
     with pytest.raises(ValueError, match=text):
         kahler(FINE, **options)
 
 
 @pytest.mark.parametrize("name", ["criterion", "scheme"])
-def test_an_object_knows_one_mesh(name: str) -> None:
+def test_an_object_knows_one_mesh(name):
     """A criterion or scheme that serves a refiner is refused to another, alone or in a list."""
     thing = refine.Displacement() if name == "criterion" else LoopScheme()
     create = partial(refine.create, "kahler", FINE.faces, FINE.vertices, normals="refined")

@@ -4,7 +4,6 @@ import copy
 import gc
 import pickle
 import tracemalloc
-from collections.abc import Callable
 from types import SimpleNamespace
 
 import numpy as np
@@ -31,7 +30,7 @@ def stream_for(refiner: refine.Refiner, spare: int = 0) -> SimpleNamespace:
 @pytest.mark.parametrize("spare", [0, 10])
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
-def test_lent_stream(name: str, options: dict[str, int], textured: bool, spare: int) -> None:
+def test_lent_stream(name, options, textured, spare):
     """A lent stream gets what the own stream would get, and the mesh views it."""
     tube = meshes.tube(10, 6)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
@@ -69,7 +68,7 @@ def test_lent_stream(name: str, options: dict[str, int], textured: bool, spare: 
         ({"source": np.zeros((9999, 1), np.int32)}, "stream.source"),
     ],
 )
-def test_bad_stream(change: dict[str, object], text: str) -> None:
+def test_bad_stream(change, text):
     """A stream that cannot take the worst case is refused before anything is written."""
     grid = meshes.open_grid(10, 6)
     refiner = kahler(grid)
@@ -82,7 +81,7 @@ def test_bad_stream(change: dict[str, object], text: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["vertices", "triangles", "source"])
-def test_stream_that_becomes_read_only(name: str) -> None:
+def test_stream_that_becomes_read_only(name):
     """Arrays that are closed between two frames are not written any more."""
     mesh = meshes.irregular(2)
     refiner = kahler(mesh)
@@ -96,7 +95,7 @@ def test_stream_that_becomes_read_only(name: str) -> None:
     assert array.tobytes() == before
 
 
-def test_any_row_of_streams() -> None:
+def test_any_row_of_streams():
     """Whoever was written to before, a frame goes where it should, and nowhere else."""
     mesh = meshes.irregular(3)
     refiner = kahler(mesh)
@@ -122,7 +121,7 @@ def test_any_row_of_streams() -> None:
             kept[id(stream)] = [stream.vertices.tobytes(), stream.triangles.tobytes()]
 
 
-def test_stream_may_be_the_input() -> None:
+def test_stream_may_be_the_input():
     """Positions that live in the lent stream are read before they are overwritten."""
     mesh = meshes.irregular(2)
     deformed = meshes.wrinkled(mesh, 3).astype(np.float32)
@@ -136,7 +135,7 @@ def test_stream_may_be_the_input() -> None:
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("textured", [False, True])
-def test_nothing_is_allocated(name: str, options: dict[str, int], textured: bool) -> None:
+def test_nothing_is_allocated(name, options, textured):
     """After the first frames, frames take no memory but that of views, and of passes begun anew."""
     tube = meshes.tube(40, 30)
     texture = {"uv": tube.uv, "face_uv": tube.face_uv} if textured else {}
@@ -162,7 +161,7 @@ def test_nothing_is_allocated(name: str, options: dict[str, int], textured: bool
 @pytest.mark.parametrize(
     "positions", [np.zeros((5, 3)), np.zeros((6, 2)), np.zeros(18), np.zeros((6, 3), dtype=int)]
 )
-def test_bad_positions(positions: np.ndarray) -> None:
+def test_bad_positions(positions):
     """Positions of another mesh, or integers, are refused with what was expected."""
     mesh = meshes.octahedron()
     refiner = refine.create("none", mesh.faces, mesh.vertices)
@@ -170,7 +169,7 @@ def test_bad_positions(positions: np.ndarray) -> None:
         refiner.refine(positions)
 
 
-def test_masked_positions() -> None:
+def test_masked_positions():
     """What is masked is not known, and is not taken from under the mask."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh)
@@ -185,7 +184,7 @@ def test_masked_positions() -> None:
 
 
 @pytest.mark.parametrize("copied", [pickle.dumps, copy.deepcopy])
-def test_refiners_stay_where_they_are(copied: Callable[[refine.Refiner], object]) -> None:
+def test_refiners_stay_where_they_are(copied):
     """A copy would share buffers with the original, or point to nowhere in another process."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh)
@@ -195,7 +194,7 @@ def test_refiners_stay_where_they_are(copied: Callable[[refine.Refiner], object]
 
 @pytest.mark.parametrize("number", [np.nan, np.inf, -1e15, 1e39])
 @pytest.mark.parametrize("name", ["none", "kahler", "loop"])
-def test_positions_that_are_no_numbers(name: str, number: float) -> None:
+def test_positions_that_are_no_numbers(name, number):
     """What would overflow in single precision is refused; the refiner goes on as if never asked."""
     mesh = meshes.octahedron()
     refiner = refine.create(name, mesh.faces, mesh.vertices)
@@ -209,7 +208,7 @@ def test_positions_that_are_no_numbers(name: str, number: float) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["loop", "cubic", "detail"])
-def test_anything_below_the_limit_is_finite(scheme: str) -> None:
+def test_anything_below_the_limit_is_finite(scheme):
     """A mesh that has blown up comes out as finite numbers, so nothing downstream sees a NaN."""
     mesh = meshes.double_cone(60)
     detail = {"detail": (mesh.vertices, mesh.faces)} if scheme == "detail" else {}

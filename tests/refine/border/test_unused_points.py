@@ -41,7 +41,7 @@ def with_strays(
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
 @pytest.mark.parametrize("stray", STRAYS)
-def test_triangles_are_the_same(name: str, options: dict[str, Any], stray: str) -> None:
+def test_triangles_are_the_same(name, options, stray):
     """To the last bit, at rest and in frames; what comes out is finite everywhere."""
     mesh = meshes.irregular(4)
     bent = meshes.wrinkled(mesh, 5)
@@ -64,7 +64,7 @@ def test_triangles_are_the_same(name: str, options: dict[str, Any], stray: str) 
 
 
 @pytest.mark.parametrize("stray", STRAYS)
-def test_welded_and_measured(stray: str) -> None:
+def test_welded_and_measured(stray):
     """Neither welding, nor detail, nor strain looks at them."""
     mesh = meshes.irregular(4)
     faces = mesh.faces.astype(np.int64)
@@ -77,7 +77,7 @@ def test_welded_and_measured(stray: str) -> None:
     assert np.isfinite(refine.Shortening(renamed, rest, along).measure(rest)).all()
 
 
-def test_points_of_triangles_are_still_looked_at() -> None:
+def test_points_of_triangles_are_still_looked_at():
     """One that a triangle uses must be a number; the error names it alone."""
     mesh = meshes.irregular(4)
     rest, renamed = with_strays(mesh.vertices, mesh.faces.astype(np.int64), STRAYS["not a number"])
@@ -90,7 +90,7 @@ def test_points_of_triangles_are_still_looked_at() -> None:
         refine.create("kahler", renamed, broken)
 
 
-def test_a_stray_twin_moves_nothing() -> None:
+def test_a_stray_twin_moves_nothing():
     """A point that lies where a vertex does, but is in no triangle, is not welded with it."""
     mesh = meshes.irregular(4)
     faces = mesh.faces.astype(np.int64)

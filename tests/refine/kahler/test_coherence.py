@@ -26,7 +26,7 @@ def inner_lines(state: int) -> set[tuple[int, int]]:
     return {(a, b) for a, b in sides if a < b and (b, a) in sides}
 
 
-def test_271_sequences() -> None:
+def test_271_sequences():
     """There are 271 sequences (section 4.4), counted in another way: by multinomials."""
     factorial = np.array([1, 1, 2, 6, 24, 120, 720])
     expected = sum(
@@ -38,7 +38,7 @@ def test_271_sequences() -> None:
 
 
 @pytest.mark.parametrize("length", range(7))
-def test_entries(length: int) -> None:
+def test_entries(length):
     """Every entry is a valid tessellation with as many subtriangles as the 27-entry table has."""
     for state in states_of(length):
         splits = coherence._splits_of(TABLES.sequences[state])
@@ -52,7 +52,7 @@ def test_entries(length: int) -> None:
 
 
 @pytest.mark.parametrize("length", range(7))
-def test_splitting_turns_no_line(length: int) -> None:
+def test_splitting_turns_no_line(length):
     """Whatever is split further, every line inside the triangle stays; nothing is out of order."""
     for state in states_of(length):
         has = coherence._splits_of(TABLES.sequences[state])
@@ -67,7 +67,7 @@ def test_splitting_turns_no_line(length: int) -> None:
 
 
 @pytest.mark.parametrize("length", range(7))
-def test_taking_back_in_reverse(length: int) -> None:
+def test_taking_back_in_reverse(length):
     """Splits taken back from the end lead to the sequence before them, with nothing counted."""
     for state in states_of(length):
         sequence = TABLES.sequences[state]
@@ -91,12 +91,7 @@ def test_taking_back_in_reverse(length: int) -> None:
         ((0, 1, 2), (0, 1, 2), (1, 2, 2), 1),
     ],
 )
-def test_transitions_by_hand(
-    sequence: coherence.Sequence,
-    splits: tuple[int, int, int],
-    following: coherence.Sequence,
-    removed: int,
-) -> None:
+def test_transitions_by_hand(sequence, splits, following, removed):
     """Removals in and out of order, and both at once with new splits."""
     state = NUMBER[sequence]
     configuration = configuration_of(splits)
@@ -115,7 +110,7 @@ def length_of_lines(state: int) -> float:
 
 
 @pytest.mark.parametrize("length", range(4))
-def test_new_splits_make_the_shortest_lines(length: int) -> None:
+def test_new_splits_make_the_shortest_lines(length):
     """Of all orders in which splits of one frame can be put, none has shorter lines."""
     lengths = [length_of_lines(state) for state in range(len(TABLES.sequences))]
     for state in states_of(length):
@@ -130,7 +125,7 @@ def test_new_splits_make_the_shortest_lines(length: int) -> None:
             assert lengths[taken] == pytest.approx(shortest, abs=1e-9)
 
 
-def test_states_follow_the_tables() -> None:
+def test_states_follow_the_tables():
     """The kernel moves all triangles as the tables say, counts, keeps its array, and forgets."""
     generator = np.random.default_rng(1)
     face_count = 500

@@ -95,7 +95,7 @@ def played(mesh: meshes.Mesh, criterion: Forced, chances: Frames) -> Iterator[Po
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_geomorph_turns_no_line(seed: int) -> None:
+def test_geomorph_turns_no_line(seed):
     """While splits are only added no line turns; looked up by splits alone, many do."""
     mesh = meshes.irregular(seed)
     counts = {}
@@ -111,7 +111,7 @@ def test_geomorph_turns_no_line(seed: int) -> None:
 
 @settings(max_examples=25)
 @given(seed=st.integers(0, 1000), history=st.lists(st.integers(0, 2**16), min_size=1, max_size=6))
-def test_any_history_is_crack_free(seed: int, history: list[int]) -> None:
+def test_any_history_is_crack_free(seed, history):
     """Whatever was split and taken back, in any order, the mesh passes the checker."""
     mesh = meshes.irregular(seed % 20, 4, 4, 1)
     edge_count = len(refine.connect(mesh.faces, len(mesh.vertices)).edges)
@@ -127,7 +127,7 @@ def test_any_history_is_crack_free(seed: int, history: list[int]) -> None:
     assert history_of(refiner).states.max() == 0
 
 
-def test_states_are_all_the_memory() -> None:
+def test_states_are_all_the_memory():
     """One number per triangle, carried over to a new refiner, is all that the past was."""
     mesh = meshes.irregular(3)
     frames = [*growing(mesh, 8), *growing(mesh, 9)[::-1]]
@@ -141,7 +141,7 @@ def test_states_are_all_the_memory() -> None:
             assert ours.tobytes() == theirs.tobytes()
 
 
-def test_states_of_another_mesh_are_refused() -> None:
+def test_states_of_another_mesh_are_refused():
     """Compiled code reads tables by them: they must be numbers of sequences, one a triangle."""
     history = history_of(kahler(meshes.irregular(3), coherent=True))
     count = len(history.states)

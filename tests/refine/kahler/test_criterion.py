@@ -11,7 +11,7 @@ from tests.refine.plain_twin import edge_dots, edge_name
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_undeformed_equals_pass_through(seed: int) -> None:
+def test_undeformed_equals_pass_through(seed):
     """At threshold 0 the undeformed mesh comes out as from `none`, to the last bit."""
     mesh = meshes.irregular(seed)
     refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.0)
@@ -26,7 +26,7 @@ def test_undeformed_equals_pass_through(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("distance", [0.0, 30.0, 1e5])
-def test_rigid_motion(seed: int, distance: float) -> None:
+def test_rigid_motion(seed, distance):
     """Turning and moving the undeformed mesh splits nothing, even at threshold 0 and far away."""
     mesh = meshes.irregular(seed)
     refiner = kahler(mesh, threshold_once=0.0, threshold_twice=0.0)
@@ -35,7 +35,7 @@ def test_rigid_motion(seed: int, distance: float) -> None:
     assert not refiner.splits.any()
 
 
-def test_rigid_motion_of_slivers() -> None:
+def test_rigid_motion_of_slivers():
     """Triangles with collinear corners have no direction to lose, and never split."""
     line = np.array([[0, 0, 0], [1, 1, 1], [2, 2, 2], [3, 3, 3.0]]) / 3.0
     faces = np.array([[0, 1, 2], [1, 3, 2]])
@@ -46,7 +46,7 @@ def test_rigid_motion_of_slivers() -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_splits_follow_drops(seed: int) -> None:
+def test_splits_follow_drops(seed):
     """Each edge splits by the drop that plain arithmetic finds."""
     mesh = meshes.irregular(seed)
     deformed = meshes.wrinkled(mesh, seed + 100, amplitude=0.5)
@@ -64,7 +64,7 @@ def test_splits_follow_drops(seed: int) -> None:
     assert seen == {0, 1, 2}
 
 
-def test_only_bending_counts() -> None:
+def test_only_bending_counts():
     """Unbending never splits: a flattened cylinder has larger dot products than at rest."""
     tube = meshes.tube()
     refiner = refine.create("kahler", tube.faces, tube.vertices, threshold_once=0.0)
@@ -72,7 +72,7 @@ def test_only_bending_counts() -> None:
     assert not refiner.splits.any()
 
 
-def test_rounding_guard() -> None:
+def test_rounding_guard():
     """A drop of the size of rounding does not count at threshold 0, a larger one does."""
     mesh = meshes.half_shut_book()
     flat = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [-1, 0.5, 0.0]])
@@ -85,7 +85,7 @@ def test_rounding_guard() -> None:
         assert refiner.splits.sum() == expected
 
 
-def test_thresholds_between_frames() -> None:
+def test_thresholds_between_frames():
     """Thresholds that are set, or replaced as a whole, count from the next frame on."""
     mesh = meshes.irregular(3)
     deformed = meshes.wrinkled(mesh, 4)
@@ -101,7 +101,7 @@ def test_thresholds_between_frames() -> None:
     assert not refiner.splits.any()
 
 
-def test_criterion_from_outside() -> None:
+def test_criterion_from_outside():
     """Another criterion decides in place of the thresholds, but not on more than two splits."""
     mesh = meshes.octahedron()
     refiner = kahler(mesh, criterion=Forced([1] * 12))

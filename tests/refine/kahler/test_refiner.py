@@ -42,7 +42,7 @@ def assert_is_twin(
 
 @pytest.mark.parametrize("name", meshes.NAMED)
 @pytest.mark.parametrize("amplitude", [0.2, 0.8])
-def test_named_meshes(name: str, amplitude: float) -> None:
+def test_named_meshes(name, amplitude):
     """Every named mesh, deformed: proper, and the twin's."""
     mesh = meshes.NAMED[name]()
     for seed in range(6):
@@ -53,7 +53,7 @@ def test_named_meshes(name: str, amplitude: float) -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(soup=soups(), data=st.data())
-def test_soups(soup: tuple[np.ndarray, np.ndarray], data: st.DataObject) -> None:
+def test_soups(soup, data):
     """Any triangles with any splits: proper, and the twin's; whatever meets at an edge agrees."""
     positions, faces = soup
     mesh = meshes.Mesh(positions, faces)
@@ -63,7 +63,7 @@ def test_soups(soup: tuple[np.ndarray, np.ndarray], data: st.DataObject) -> None
     assert_is_twin(mesh, positions, refiner, refined, normals_cancel=True)
 
 
-def test_capacity_is_reached() -> None:
+def test_capacity_is_reached():
     """With every edge split twice the output fills its capacities: ten for each triangle."""
     mesh = meshes.octahedron()
     refiner, refined = refine_and_check(mesh, mesh.vertices, criterion=Forced(np.full(12, 2)))
@@ -71,7 +71,7 @@ def test_capacity_is_reached() -> None:
     assert len(refined.positions) == refiner.vertex_capacity == 6 + 36
 
 
-def test_mirror_image() -> None:
+def test_mirror_image():
     """A mirrored mesh in a mirrored deformation has mirrored points and normals."""
     mesh = meshes.irregular(8)
     deformed = meshes.wrinkled(mesh, 9)
@@ -90,7 +90,7 @@ def test_mirror_image() -> None:
     np.testing.assert_allclose(ordered[0], ordered[1], rtol=0, atol=2e-4)
 
 
-def test_order_of_triangles_does_not_matter() -> None:
+def test_order_of_triangles_does_not_matter():
     """Another order of triangles and corners gives the same subtriangles."""
     mesh = meshes.irregular(4)
     deformed = meshes.wrinkled(mesh, 5)
@@ -104,7 +104,7 @@ def test_order_of_triangles_does_not_matter() -> None:
     np.testing.assert_allclose(corner_sets[0], corner_sets[1], rtol=0, atol=2e-4)
 
 
-def test_frames_are_independent() -> None:
+def test_frames_are_independent():
     """A frame does not depend on the frames before it (section 3: no history)."""
     mesh = meshes.irregular(5)
     frames = [meshes.wrinkled(mesh, seed) for seed in range(4)]

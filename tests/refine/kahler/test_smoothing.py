@@ -8,12 +8,12 @@ from tests import meshes
 from tests.refine.cases import Forced, kahler
 
 
-def test_warren_weights() -> None:
+def test_warren_weights():
     """Valence three is special; six is Loop's regular case with 1/16."""
     assert warren_weight(np.array([3, 4, 6])).tolist() == [3 / 16, 3 / 32, 1 / 16]
 
 
-def test_first_level_by_hand() -> None:
+def test_first_level_by_hand():
     """One inner edge split once: 3/8, 3/8, 1/8, 1/8, and its ends follow the border rule."""
     mesh = meshes.two_triangles()
     connectivity = refine.connect(mesh.faces, 4)
@@ -26,7 +26,7 @@ def test_first_level_by_hand() -> None:
     assert refined.positions[3].tolist() == [1, 1, 32]
 
 
-def test_second_level_by_hand() -> None:
+def test_second_level_by_hand():
     """The same edge split twice: quarter points lean on midpoints of edges that are not split."""
     mesh = meshes.two_triangles()
     connectivity = refine.connect(mesh.faces, 4)

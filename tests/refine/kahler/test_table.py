@@ -14,7 +14,7 @@ ALL_SPLITS = list(itertools.product(range(3), repeat=3))
 
 
 @pytest.mark.parametrize("splits", ALL_SPLITS)
-def test_rotation(splits: tuple[int, int, int]) -> None:
+def test_rotation(splits):
     """Renaming the corners renames the subtriangles, and changes nothing else."""
     turned_splits = (splits[1], splits[2], splits[0])
     renamed = [
@@ -29,7 +29,7 @@ def _as_set(triangles: list[tuple[int, ...]]) -> set[tuple[int, ...]]:
 
 
 @pytest.mark.parametrize("splits", ALL_SPLITS)
-def test_one_triangle(splits: tuple[int, int, int]) -> None:
+def test_one_triangle(splits):
     """A single triangle comes out as the pattern drawn by hand, through the whole refiner."""
     mesh = meshes.triangle()
     refiner = kahler(mesh, criterion=Forced(splits))
@@ -41,7 +41,7 @@ def test_one_triangle(splits: tuple[int, int, int]) -> None:
     assert_equals_twin(refiner, refined, twin)
 
 
-def test_verification_can_fail() -> None:
+def test_verification_can_fail():
     """The check at import notices a missing, a flipped and a wrong subtriangle."""
     good = table.subdivide((1, 1, 0))
     flipped = [(good[0][1], good[0][0], good[0][2]), *good[1:]]

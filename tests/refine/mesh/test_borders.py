@@ -14,7 +14,7 @@ from tests.refine.plain_twin import Surroundings
 
 @settings(max_examples=150, deadline=None)
 @given(soups())
-def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
+def test_soups(soup):
     """For any triangles, borders run on where they do with plain dictionaries."""
     positions, faces = soup
     found = border_neighbours(refine.connect(faces, len(positions)), positions)
@@ -27,7 +27,7 @@ def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
 
 
 @pytest.mark.parametrize(("sides", "is_round"), [(4, False), (5, False), (6, True), (7, True)])
-def test_corners(sides: int, is_round: bool) -> None:
+def test_corners(sides, is_round):
     """A hexagon is round, a square has corners; so do shut lips where they meet."""
     fan = meshes.fan(sides)
     found = border_neighbours(refine.connect(fan.faces, sides + 1), fan.vertices)

@@ -12,7 +12,7 @@ from tests.refine.plain_twin import Surroundings, edge_name
 
 @settings(max_examples=150, deadline=None)
 @given(soups())
-def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
+def test_soups(soup):
     """For any triangles, edges and neighbourhoods are those found with plain dictionaries."""
     positions, faces = soup
     connectivity = refine.connect(faces, len(positions))
@@ -37,7 +37,7 @@ def test_soups(soup: tuple[np.ndarray, np.ndarray]) -> None:
         assert [names[e] for e in edges] == expected
 
 
-def test_wedges_of_tube() -> None:
+def test_wedges_of_tube():
     """A seam of five vertices and four edges has a copy of each, and no other has."""
     tube = meshes.tube(segments=8, rings=4)
     connectivity = refine.connect(tube.faces, len(tube.vertices), tube.face_uv)
@@ -48,7 +48,7 @@ def test_wedges_of_tube() -> None:
     assert (connectivity.wedge_uv[connectivity.corners] == tube.face_uv).all()
 
 
-def test_weld() -> None:
+def test_weld():
     """A mesh doubled along its seam becomes closed, and its texture coordinates stay apart."""
     tube = meshes.tube(segments=6, rings=2)
     assert tube.uv is not None
@@ -77,7 +77,7 @@ def test_weld() -> None:
         (([[0, 1, 2]], 4, [[0, -1, 2]]), r"into the texture coordinates, but triangle 0 is"),
     ],
 )
-def test_bad_triangles(arguments: tuple[object, ...], text: str) -> None:
+def test_bad_triangles(arguments, text):
     """Indices that point outside are refused before compiled code follows them."""
     with pytest.raises(ValueError, match=text):
         refine.connect(*arguments)  # type: ignore[arg-type]
@@ -92,7 +92,7 @@ def test_bad_triangles(arguments: tuple[object, ...], text: str) -> None:
         (np.eye(3), [[0, 1, -1]], "triangle 0 is"),
     ],
 )
-def test_bad_welds(positions: np.ndarray, faces: list[list[int]], text: str) -> None:
+def test_bad_welds(positions, faces, text):
     """What cannot be welded is refused: an index of -1 is not the last vertex."""
     with pytest.raises(ValueError, match=text):
         refine.weld(positions, faces)

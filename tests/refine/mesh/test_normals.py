@@ -28,7 +28,7 @@ def lengths(normals: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("name", OPTIONS)
-def test_unit_or_zero(name: str) -> None:
+def test_unit_or_zero(name):
     """Tiny, huge, pressed flat: no normal is half long, and nothing is infinite."""
     mesh = meshes.irregular(3)
     options = dict(OPTIONS[name])
@@ -46,7 +46,7 @@ def test_unit_or_zero(name: str) -> None:
 
 
 @pytest.mark.parametrize("edge", [3e-10, 1e-6, 1.0, 5e9, 1e14])
-def test_small_and_large_triangles_have_normals(edge: float) -> None:
+def test_small_and_large_triangles_have_normals(edge):
     """A square faces the way it does, however long its edges are."""
     square = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
     refiner = refine.create("kahler", [[0, 1, 2], [2, 1, 3]], square)

@@ -19,7 +19,7 @@ def bent_tube() -> tuple[meshes.Mesh, np.ndarray]:
 
 
 @pytest.mark.parametrize(("name", "options"), REFINERS)
-def test_same_geometry_as_without(name: str, options: dict[str, int]) -> None:
+def test_same_geometry_as_without(name, options):
     """Texture coordinates change no position: the same soup of triangles comes out."""
     tube, deformed = bent_tube()
     with_uv = refine.create(
@@ -33,7 +33,7 @@ def test_same_geometry_as_without(name: str, options: dict[str, int]) -> None:
     assert len(with_uv.positions) > len(without.positions)
 
 
-def test_every_corner_its_own_coordinate() -> None:
+def test_every_corner_its_own_coordinate():
     """The extreme case: all edges are seams, all vertices are doubled, nothing cracks."""
     mesh = meshes.irregular(13)
     deformed = meshes.wrinkled(mesh, 14)
@@ -48,7 +48,7 @@ def test_every_corner_its_own_coordinate() -> None:
     assert (owners[refined.triangles] == refined.source[:, None]).all()
 
 
-def test_unused_vertices_have_zero_coordinates() -> None:
+def test_unused_vertices_have_zero_coordinates():
     """Vertices without triangles come out with defined, zero coordinates."""
     mesh = meshes.with_debris()
     uv = np.ones((1, 2))

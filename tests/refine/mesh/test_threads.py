@@ -33,9 +33,7 @@ def force_threads(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
 
 @pytest.mark.parametrize("name", OPTIONS)
 @pytest.mark.parametrize("mesh", [meshes.irregular(4), meshes.tube(24, 12), meshes.with_debris()])
-def test_bits_do_not_depend_on_threads(
-    mesh: meshes.Mesh, name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_bits_do_not_depend_on_threads(mesh, name, monkeypatch):
     """One, two and three threads make the same frames, which are sound; seams and debris too."""
     refiner = "none" if name == "none" else "kahler"
     bound = [
@@ -56,7 +54,7 @@ def test_bits_do_not_depend_on_threads(
         assert refiner == "none" or made.triangle_count > 1.2 * len(mesh.faces)
 
 
-def test_every_item_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_item_once(monkeypatch):
     """Parts make up the whole, whoever takes them; what fails in one fails for the caller."""
     force_threads(monkeypatch, 3)
     for count in (0, 1, 31, 32, 1000):
@@ -76,7 +74,7 @@ def test_every_item_once(monkeypatch: pytest.MonkeyPatch) -> None:
         threads.share(fail, 1000)
 
 
-def test_small_meshes_start_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_small_meshes_start_no_thread(monkeypatch):
     """A face is refined where it is, and so is every mesh where numba has one thread."""
 
     def refuse() -> None:
@@ -112,7 +110,7 @@ assert same and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
-def test_forked_processes_have_threads_of_their_own() -> None:
+def test_forked_processes_have_threads_of_their_own():
     """A child that was forked refines as its parent does, and waits for no thread that is not."""
     code = FORKED.replace("{LOOK}", repr(LOOK))
     done = subprocess.run(
