@@ -12,7 +12,7 @@ whole mesh for comparison. `refine(positions, out=stream)` writes straight into 
 `Shortening` measures how far the skin is. `check` is for tests: it names the relation that a
 refined mesh breaks.
 
-`kahler` does what the paper says unless it is told otherwise: `scheme` says where points go,
+`kahler` follows the paper by default. Its options: `scheme` says where points go,
 `criterion` which edges are split, `blend` that nothing pops, `coherent` that no triangulation
 turns, `attributes` what rides along, `crease_angle` what stays sharp. Schemes, criteria and
 refiners of somebody else join by name: `schemes.register`, `criteria.register`,
@@ -21,15 +21,15 @@ refiners of somebody else join by name: `schemes.register`, `criteria.register`,
 One room for each subject; each may import from those above it, and from jit.py, which compiles it
 all, and geometry/, which lie beside this folder:
 
-    mesh/       what a refiner is bound to: connectivity, seams, normals
-    border/     what goes in and out: plugin.py says what a refiner is
+    mesh/       the bound mesh: connectivity, seams, normals
+    border/     input and output of every refiner; the protocol is plugin.py
     kahler/     the paper: refiner.py is a frame, then sections 4.1 to 4.4, one file each
     beyond/     its options (options.py), other criteria and schemes, blending
     others.py   refiners to compare with
     strain.py   how far the skin is stretched
     hosts.py    meshes as other programs keep them
 
-Read border/plugin.py first, then kahler/. docs/refinement.md tells it all with pictures.
+Read border/plugin.py first, then kahler/. docs/refinement.md shows it with pictures.
 """
 
 from .beyond.blending import Blended

@@ -13,7 +13,7 @@ from .mesh.seams import weld as weld_vertices
 from .mesh.validation import checked_mesh
 
 SMOOTH = {"scheme": "cubic", "criterion": "displacement+rest"}
-"""Rounds what is coarse at rest, and what bends: the look of the application's window."""
+"""Rounds places that are coarse at rest or bend: the look of the application's window."""
 
 
 class WeldedRefiner:
@@ -24,8 +24,8 @@ class WeldedRefiner:
         heat = refiner.carry(heat)        # from points of the input to those of the frame
 
     Such a mesh has a vertex twice where two sides of it look different. These are welded for
-    refinement, so that no crack opens between them, and part again in what comes out. Unless told
-    otherwise it refines as the window does, `scheme="cubic", criterion="displacement+rest"`, so
+    refinement, so that no crack opens between them, and part again in the refined mesh. By
+    default it refines as the window does, `scheme="cubic", criterion="displacement+rest"`, so
     that a mesh that did not move gets smoother, too.
     """
 
@@ -51,13 +51,15 @@ class WeldedRefiner:
         rest, given = checked_mesh(points, triangles, ("points", "triangles"))
         self.triangles = read_only(given)
         self.point_count = len(rest)
-        self._faces, self._kept = self.triangles, np.arange(len(rest))
+        self._faces = self.triangles
+        self._kept = np.arange(len(rest))
         if weld:
             kept, faces = weld_vertices(points, self.triangles, tolerance=weld_tolerance)
-            self._kept, self._faces = kept.astype(np.int64), faces.astype(np.int64)
+            self._kept = kept.astype(np.int64)
+            self._faces = faces.astype(np.int64)
         self._is_proper = (self._faces != np.roll(self._faces, 1, axis=1)).all(axis=1)
         self._parts = seams and len(self._kept) < len(rest)
-        # The number of a doubled vertex stands for what it looks like.
+        # The number of a doubled vertex stands for its texture coordinate.
         numbers = {"uv": np.zeros((len(rest), 2)), "face_uv": self.triangles}
         self._refiner = create(
             "kahler",
@@ -88,8 +90,8 @@ class WeldedRefiner:
     def carry(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
         """Values of the input's points, shape (V, ...), at those of the last frame, (N, ...).
 
-        They are linear along edges, and each side of a seam has its own. Types stay: what is no
-        float is rounded to the nearest, and what is no number comes from the nearest point.
+        They are linear along edges, and each side of a seam has its own. Types stay: integers
+        are rounded to the nearest, and values of other kinds come from the nearest point.
         """
         table = np.asarray(values)
         if len(table) != self.point_count:
@@ -112,7 +114,8 @@ class WeldedRefiner:
         rows = self._kept[vertices]
         if self._parts:  # of the doubled vertices the one that the triangle at this point has
             triangle = np.zeros(len(rows), dtype=np.int64)
-            triangles, source = self._mesh.triangles, self._mesh.source
+            triangles = self._mesh.triangles
+            source = self._mesh.source
             triangle[triangles] = source[:, None]
             proper = self._is_proper[source]  # where others name a vertex twice, these count
             triangle[triangles[proper]] = source[proper, None]
@@ -136,7 +139,7 @@ def _mixed(table: npt.NDArray[Any], rows: Wide, weights: Doubles) -> npt.NDArray
     parts = np.zeros(corners.shape, dtype=np.result_type(table.dtype, np.float64))
     np.multiply(corners, shares, where=has_part, out=parts)  # infinity has no part that is zero
     mixed = parts.sum(axis=1)
-    if table.dtype.kind == "f":  # what is equal at all corners stays so to the last bit
+    if table.dtype.kind == "f":  # values equal at all corners stay so to the last bit
         first = np.where(has_part, corners, np.inf).min(axis=1)
         last = np.where(has_part, corners, -np.inf).max(axis=1)
         mixed = np.minimum(np.maximum(mixed, first), last)
@@ -152,8 +155,10 @@ def _mixed_wide(
     Doubles hold how far they lie above the least of them. Halves are rounded to the even number, as
     `numpy.rint` does.
     """
-    least = np.where(has_part, corners, np.iinfo(corners.dtype).max).min(axis=1).astype(np.uint64)
-    above = np.where(has_part, corners.astype(np.uint64) - least[:, None], np.uint64(0))
+    largest = np.iinfo(corners.dtype).max
+    least = np.where(has_part, corners, largest).min(axis=1).astype(np.uint64)
+    differences = corners.astype(np.uint64) - least[:, None]
+    above = np.where(has_part, differences, np.uint64(0))
     most = above.max(axis=1)
     mean = (above.astype(np.float64) * shares).sum(axis=1)
     is_below = mean < most.astype(np.float64)

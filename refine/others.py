@@ -6,7 +6,7 @@ Kähler, Haber, Seidel 2003, compare with the static mesh in every figure and in
 normals and texture coordinates are those that `kahler` hands out where no edge is split, to the
 last bit, so that switching between the two shows nothing but refinement.
 
-*Loop* subdivides the whole mesh, level by level: what the adaptive refiner is compared with.
+*Loop* subdivides the whole mesh, level by level: the adaptive refiner is compared with it.
 
 Loop 1987 with Warren's vertex weights (Warren 2001), the scheme that Kähler, Haber, Seidel 2003,
 section 4.2, borrow their rules from. Every edge is split, every vertex is smoothed, borders follow
@@ -38,7 +38,7 @@ from .mesh.connectivity import Connectivity, connect
 from .mesh.creases import sharpened
 from .mesh.rings import vertex_rings
 
-CHILDREN = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+CHILD_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Of a triangle with corners 0 1 2 and middles 3 4 5 of its edges: the triangles it becomes."""
 MOST_LEVELS = 4
 """Chosen: it makes 256 triangles of each, half a million of a face."""
@@ -62,9 +62,13 @@ class Level:
 
     def subdivide(self, rows: Floats) -> None:
         """Write the moved vertices, then one point per edge, into the first V + E `rows`."""
-        points, normals, frame = self.points, self.normals, self._frame
+        points = self.points
+        normals = self.normals
+        frame = self._frame
         place_vertices(points, normals, *self._rings, self._all_move, rows)
-        edges, splits, first_points = frame.split_edges, frame.splits, frame.first_points
+        edges = frame.split_edges
+        splits = frame.splits
+        first_points = frame.first_points
         of_edges = edges, splits, first_points, frame.geomorph_once
         place_middles(points, normals, self._mesh.around.points, *of_edges, self._middles, rows)
 
@@ -111,7 +115,8 @@ class Loop(BaseRefiner):
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Write the finest level."""
-        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertex_count = self.vertex_capacity
+        triangle_count = self.triangle_capacity
         vertices, triangles, source = self.reserve(stream, vertex_count, triangle_count)
         self.find_normals()
         for level, finer in pairwise(self._levels):
@@ -174,7 +179,8 @@ class _Refined:
         children = _children(mesh.faces[split].astype(np.int64), vertex_middles)
         faces = np.concatenate([children, mesh.faces[whole]])[order]
 
-        corner_rows, values = None, self.values
+        corner_rows = None
+        values = self.values
         if values is not None:
             rows = mesh.wedge_uv[mesh.corners].astype(np.int64)
             middles = len(values) + (mesh.triangle_attribute_edges[split] >> 1).astype(np.int64)
@@ -208,7 +214,7 @@ def _children(corners: npt.NDArray[Any], middles: npt.NDArray[Any]) -> npt.NDArr
     `corners`: of any kind, shape (F, 3, ..); `middles`: of the edges. Shape (4 F, 3, ..).
     """
     points = np.concatenate([corners, middles], axis=1)
-    return points[:, CHILDREN].reshape(-1, *corners.shape[1:])
+    return points[:, CHILD_TRIANGLES].reshape(-1, *corners.shape[1:])
 
 
 class PassThrough(BaseRefiner):
@@ -233,11 +239,13 @@ class PassThrough(BaseRefiner):
 
     def fill(self, stream: Stream, view: View | None) -> tuple[int, int]:
         """Write the mesh as it is."""
-        vertex_count, triangle_count = self.vertex_capacity, self.triangle_capacity
+        vertex_count = self.vertex_capacity
+        triangle_count = self.triangle_capacity
         vertices, triangles, source = self.reserve(stream, vertex_count, triangle_count)
         self.find_normals()
         rows = vertices[: len(self.points)]
-        rows[:, 0:3], rows[:, 3:GEOMETRY_COLUMNS] = self.points, self.normals
+        rows[:, 0:3] = self.points
+        rows[:, 3:GEOMETRY_COLUMNS] = self.normals
         self.write_wedges(vertices)
         triangles[:triangle_count] = self.connectivity.corners
         source[:triangle_count] = self._source

@@ -25,7 +25,7 @@ from .mesh.arrays import Doubles, Floats, Unsigned, Wide
 from .mesh.validation import checked_mesh, take_positions, used_vertices
 from .mesh.vectors import difference, dot
 
-THINNEST = 1e-6
+LEAST_FLATNESS = 1e-6
 """Height over length below which a triangle at rest has no plane to measure strain in."""
 
 
@@ -44,11 +44,12 @@ class Shortening:
         `directions`: k for each vertex, of any length, shape (V, k, 3); what of one stands on the
         skin is left away, and one that is zero measures nothing. Triangles without area and
         vertices without triangles are fine and have no strain. Raises ValueError for arrays of
-        other shapes, indices out of range, and what is not finite.
+        other shapes, indices out of range, and numbers that are not finite.
         """
         rest, triangles = checked_mesh(rest_positions, faces)
         self._is_used = used_vertices(triangles, len(rest))
-        self._positions, self._points = rest.copy(), rest.astype(np.float32)
+        self._positions = rest.copy()
+        self._points = rest.astype(np.float32)
         wanted = np.asarray(directions, dtype=np.float64)
         if wanted.ndim != 3 or wanted.shape[::2] != (len(rest), 3) or not np.isfinite(wanted).all():
             raise ValueError(
@@ -65,7 +66,7 @@ class Shortening:
     def measure(self, positions: npt.NDArray[np.floating]) -> Floats:
         """Loss of length of each vertex along its directions, up to 1, shape (V, k).
 
-        0 = none, below 0 what it has gained. `positions`: shape (V, 3), any float type. The result
+        0 = none, below 0 a gain. `positions`: shape (V, 3), any float type. The result
         is overwritten by the next call.
         Raises ValueError for another shape and for positions that are not finite.
         """
@@ -85,8 +86,9 @@ def _weights(rest: Doubles, faces: Wide, directions: Doubles) -> Floats:
     a, b, c = (rest[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     area = np.linalg.norm(normal, axis=1)
-    longest = np.max([np.linalg.norm(each, axis=1) for each in (b - a, c - b, a - c)], axis=0)
-    is_proper = area > THINNEST * longest**2
+    sides = np.stack([b - a, c - b, a - c], axis=1)
+    longest = np.linalg.norm(sides, axis=2).max(axis=1)
+    is_proper = area > LEAST_FLATNESS * longest**2
     squared = np.where(is_proper, area, 1.0) ** 2
     # Gradients of the barycentric coordinates: coordinate i grows away from the edge opposite.
     gradients = np.cross(normal[:, None], np.stack([c - b, a - c, b - a], axis=1))

@@ -20,9 +20,9 @@ from risorius.refine import (
     RestCurvature,
     View,
 )
-from risorius.refine.beyond.blending import FANS, RAMP
-from risorius.refine.beyond.cubic import STEEPER, follow_borders, weigh_corners
-from risorius.refine.beyond.displacement import HASTE
+from risorius.refine.beyond.blending import FANS, RAMP_WIDTH
+from risorius.refine.beyond.cubic import STEEPENING_SHARE, follow_borders, weigh_corners
+from risorius.refine.beyond.displacement import GROWTH_SHARE
 from risorius.refine.beyond.measuring import mean_length
 from risorius.refine.kahler.coherence import sequence_tables
 from risorius.refine.kahler.criterion import Thresholds, find_undefined_normals
@@ -129,9 +129,13 @@ class Rules:
         limits |= _limits("size", None if by is None else by.thresholds, unit)
         soon = np.float32(0.0)
         if by is not None:
-            soon = np.float32(HASTE) * by.thresholds.once / by.thresholds.width
-        haste = RAMP / soon if soon > 0.0 else np.float32(0.0)
-        limits |= {"size_soon": float(soon), "size_ramp": float(RAMP), "size_haste": float(haste)}
+            soon = np.float32(GROWTH_SHARE) * by.thresholds.once / by.thresholds.width
+        haste = RAMP_WIDTH / soon if soon > 0.0 else np.float32(0.0)
+        limits |= {
+            "size_soon": float(soon),
+            "size_ramp": float(RAMP_WIDTH),
+            "size_haste": float(haste),
+        }
         return limits | {"turning": 0.0 if by is None else float(np.float32(by.turning))}
 
     def arrays(self) -> Arrays:
@@ -210,7 +214,7 @@ class Rules:
             "beyond": follow_borders(mesh, self._rest),
             "neighbour_starts": np.concatenate([[0], np.cumsum(valences)]),
             "neighbours": mesh.edges[:, ::-1].ravel()[order],
-            "neighbour_share": (STEEPER / np.maximum(valences, 1)).astype(np.float32),
+            "neighbour_share": (STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
         }
 
 

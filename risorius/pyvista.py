@@ -250,11 +250,11 @@ class RisoriusAccessor:
             the output.
         weld_tolerance : float, optional
             How far apart points may lie that are one, in sizes of the mesh (longest side of its
-            bounds): 1e-9 unless told otherwise, or the last bits of the points' type where that is
+            bounds): 1e-9 by default, or the last bits of the points' type where that is
             more. 0 welds what is equal to the last bit.
         **options
             What `risorius.refine.create_kahler` takes, but for texture coordinates and attributes:
-            all data go along by themselves. Unless told otherwise, `scheme="cubic"` and
+            all data go along by themselves. By default, `scheme="cubic"` and
             `criterion="displacement+rest"`, which round what is coarse at rest and what bends;
             `scheme="loop", criterion="normal"` is the paper's rule. All edges are rounded, sharp
             ones too, unless `crease_angle` [degrees] is given, which is VTK's feature angle: edges

@@ -1,1 +1,1 @@
-"""Beyond the paper: its future work (section 6) and what it leaves to others."""
+"""Beyond the paper: its future work (section 6), and methods of others."""

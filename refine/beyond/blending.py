@@ -7,8 +7,8 @@ goes on to rise. Two things have to be continuous for that:
 *Points.* A criterion measures the refinement metric of an edge: above 0 it is split once, above 1
 twice.
 
-    weight once    metric / RAMP,        from 0 to 1        where m is between the straight edge and
-    weight twice   (metric - 1) / RAMP,  from 0 to 1       its full place; the same for the quarters
+    weight once    metric / RAMP_WIDTH        from 0 to 1: m is between the straight edge
+    weight twice   (metric - 1) / RAMP_WIDTH  and its full place; the same for the quarters
 
 *Triangles.* Where two edges of a triangle are split, a quadrangle is left that has two diagonals.
 If one of its splits goes away the diagonal from the other one must stand, whichever it is, so it
@@ -34,7 +34,7 @@ It costs one more point and two more subtriangles for triangles with two or more
 So while blending, another table takes the place of the paper's: a triangle with more than one split
 is a fan around that point, because then a new split cuts one triangle of the fan and never turns a
 diagonal. The paper's patterns have to turn one somewhere: between 110 and 010, for one, the
-diagonal from corner 2 becomes the one from corner 0, and what they span is not flat.
+diagonal from corner 2 becomes the one from corner 0, and their quadrangle is not flat.
 
 Differs from the paper: "We don't generate any new vertices in the interior" (section 3).
 """
@@ -79,10 +79,11 @@ from ..mesh.vectors import (
     write_row,
 )
 
-RAMP = np.float32(0.25)
+RAMP_WIDTH = np.float32(0.25)
 """Metric over which a point grows, in what lies between the two thresholds. Chosen: points that are
 only half grown cost as much as whole ones."""
-TWO_THIRDS, FOUR_NINTHS = np.float32(2 / 3), np.float32(4 / 9)
+TWO_THIRDS = np.float32(2 / 3)
+FOUR_NINTHS = np.float32(4 / 9)
 
 
 def fan(splits: tuple[int, int, int]) -> list[Triangle]:
@@ -160,8 +161,8 @@ def weigh_geomorphs(
     undefined = 0
     for e in range(metric.shape[0]):
         splits[e] = np.uint8(metric[e] > ZERO) + np.uint8(metric[e] > ONE)
-        geomorph_once[e] = min(max(metric[e] / RAMP, ZERO), ONE)
-        geomorph_twice[e] = min(max((metric[e] - ONE) / RAMP, ZERO), ONE)
+        geomorph_once[e] = min(max(metric[e] / RAMP_WIDTH, ZERO), ONE)
+        geomorph_twice[e] = min(max((metric[e] - ONE) / RAMP_WIDTH, ZERO), ONE)
         undefined += metric[e] != metric[e]
     return undefined
 
@@ -184,7 +185,8 @@ def number_centres(
         centre_triangles[centre_count] = t
         centre_count += subtriangles[row, 0, 0] == CENTRE
         triangle_count += int(subtriangle_counts[row])
-    counts[TRIANGLES], counts[CENTRES] = triangle_count, centre_count
+    counts[TRIANGLES] = triangle_count
+    counts[CENTRES] = centre_count
 
 
 @njit
@@ -200,7 +202,8 @@ def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, 
 
     x, y, z: geomorph weights of the edges, which say how much of each rule above counts.
     """
-    all_three, none = min(x, y, z), ONE - max(x, y, z)
+    all_three = min(x, y, z)
+    none = ONE - max(x, y, z)
     one_x, pair_x = beyond(x, y, z)
     one_y, pair_y = beyond(y, z, x)
     one_z, pair_z = beyond(z, x, y)
@@ -221,7 +224,8 @@ def centre_shares(x: np.float32, y: np.float32, z: np.float32) -> tuple[Vector, 
 @njit
 def mixed_corners(rows: Floats, corners: Unsigned, shares: Vector, first: int) -> Vector:
     """Shares of three rows, from column `first` on."""
-    a, b = row_of(rows, corners[0], first), row_of(rows, corners[1], first)
+    a = row_of(rows, corners[0], first)
+    b = row_of(rows, corners[1], first)
     c = row_of(rows, corners[2], first)
     return plus(plus(times(shares[0], a), times(shares[1], b)), times(shares[2], c))
 
@@ -231,8 +235,10 @@ def place_centres(first: int, last: int, mesh: Connectivity, frame: FrameBuffers
     """Write the rows of the points in the middle of triangles, attributes too."""
     rows = frame.rows
     for k in range(first, last):
-        t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
-        corners, edges = mesh.faces[t], mesh.triangle_edges[t]
+        t = frame.centre_triangles[k]
+        row = np.uint32(frame.counts[ROWS] + k)
+        corners = mesh.faces[t]
+        edges = mesh.triangle_edges[t]
         of_corners, of_edges = centre_shares(
             geomorph_of_split(frame.splits, frame.geomorph_once, edges[0]),
             geomorph_of_split(frame.splits, frame.geomorph_once, edges[1]),
@@ -242,7 +248,9 @@ def place_centres(first: int, last: int, mesh: Connectivity, frame: FrameBuffers
         for column in (0, 3):  # position, normal
             centre = mixed_corners(rows, corners, of_corners, column)
             for i in range(3):
-                e, a, b = edges[i], corners[i], corners[(i + 1) % 3]
+                e = edges[i]
+                a = corners[i]
+                b = corners[(i + 1) % 3]
                 if frame.splits[e] > 0:
                     middle = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
                     straight = plus(row_of(rows, a, column), row_of(rows, b, column))
@@ -250,7 +258,9 @@ def place_centres(first: int, last: int, mesh: Connectivity, frame: FrameBuffers
                     centre = plus(centre, times(of_edges[i], out))
             write_row(rows, row, centre, column)
         write_row(rows, row, unit(row_of(rows, row, 3)), 3)
-        a, b, c = mesh.corners[t, 0], mesh.corners[t, 1], mesh.corners[t, 2]
+        a = mesh.corners[t, 0]
+        b = mesh.corners[t, 1]
+        c = mesh.corners[t, 2]
         of_a, of_b, of_c = of_corners
         for i in range(GEOMETRY_COLUMNS, rows.shape[1]):
             rows[row, i] = of_a * rows[a, i] + of_b * rows[b, i] + of_c * rows[c, i]

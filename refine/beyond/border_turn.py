@@ -1,7 +1,7 @@
 r"""The criterion `border`: how far the border of the mesh turns otherwise than at rest.
 
 A mouth that is shut is a slit with two straight sides. It may open in the surface that it lies in:
-nothing bends, no normal turns, and no other criterion sees it; but what was straight is an arc now.
+nothing bends, no normal turns, no other criterion sees it; but a straight line becomes an arc.
 Kähler, Haber, Seidel 2003, section 5, on Fig. 10: "improving the silhouette of the opened mouth".
 
            v          The turn at a vertex a of a border p, a, q (mesh/borders.py), with u and v the
@@ -15,11 +15,11 @@ Kähler, Haber, Seidel 2003, section 5, on Fig. 10: "improving the silhouette of
 
     measure of a border edge = mean of the turns at its ends: the angle between the tangents there
 
-The border itself is seldom what is seen: it may lie inside the lips, and what is seen is a line
-that runs beside it. So vertices around take over the mean turn of their neighbours that are nearer
-to the border, less with every ring, until REACH. And an edge there counts as far as it runs along
+The border itself is seldom seen: it may lie inside the lips, and the eye sees a line that runs
+beside it. So vertices around take over the mean turn of their neighbours that are nearer to the
+border, less with every ring, until REACH_RINGS. And an edge there counts as far as it runs along
 the border, by the squared cosine between both: across it nothing turns, and long, thin triangles
-along the lips are what is wanted (section 5, Fig. 8).
+along the lips are wanted (section 5, Fig. 8).
 
 A corner stays one, so the border has no turn there.
 """
@@ -48,7 +48,7 @@ from ..mesh.vectors import (
 )
 from .measuring import Measuring
 
-REACH = 5
+REACH_RINGS = 5
 """Rings of edges around the border, the first in which a turn no longer counts. Chosen by the
 outlines of five opened mouths of the built-in head, whose border lies three rings inside the lips:
 two more took 12 % more triangles for 3 % of the error."""
@@ -117,10 +117,13 @@ def find_nearby(mesh: Connectivity, rest_positions: Doubles) -> Nearby:
     for (end, start), means in zip(spread, spread_shares, strict=True):
         np.add.at(squares, end, means[:, None, None] * squares[start])
 
-    is_near = (ring[mesh.edges] < REACH).any(axis=1)
+    is_near = (ring[mesh.edges] < REACH_RINGS).any(axis=1)
     near = squares[mesh.edges[is_near]].mean(axis=1)
     cosines = np.einsum("ei,eij,ej->e", directions[is_near], near, directions[is_near])
-    faded = [means * (REACH - k) / (REACH - k + 1) for k, means in enumerate(spread_shares, 1)]
+    faded = [
+        means * (REACH_RINGS - k) / (REACH_RINGS - k + 1)
+        for k, means in enumerate(spread_shares, 1)
+    ]
     return Nearby(
         curves=curves.astype(np.uint32),
         rest_turns=np.zeros((len(curves), 3), dtype=np.float32),
@@ -132,10 +135,10 @@ def find_nearby(mesh: Connectivity, rest_positions: Doubles) -> Nearby:
 
 
 def rings_from_border(mesh: Connectivity) -> Wide:
-    """How many edges each vertex is away from the border, REACH at most, shape (V,)."""
-    ring = np.full(mesh.vertex_count, REACH)
+    """How many edges each vertex is away from the border, REACH_RINGS at most, shape (V,)."""
+    ring = np.full(mesh.vertex_count, REACH_RINGS)
     ring[mesh.edges[~mesh.around.is_interior]] = 0
-    for k in range(1, REACH):
+    for k in range(1, REACH_RINGS):
         is_beside = (ring[mesh.edges] == k - 1).any(axis=1)
         beside = mesh.edges[is_beside]
         ring[beside] = np.minimum(ring[beside], k)
@@ -148,10 +151,11 @@ def ways_inward(mesh: Connectivity, ring: Wide) -> tuple[list[Indices], list[Dou
     Returns their ends and starts, shape (2, S), and the share of each in the mean of all ways that
     end there, shape (S,).
     """
-    ways, shares = [], []
+    ways = []
+    shares = []
     both_ways = np.concatenate([mesh.edges, mesh.edges[:, ::-1]])
     start_ring, end_ring = ring[both_ways].T
-    for k in range(1, REACH):
+    for k in range(1, REACH_RINGS):
         start, end = both_ways[(start_ring == k - 1) & (end_ring == k)].T
         ways.append(np.stack([end, start]))
         shares.append(1.0 / np.bincount(end, minlength=mesh.vertex_count)[end])
@@ -161,7 +165,8 @@ def ways_inward(mesh: Connectivity, ring: Wide) -> tuple[list[Indices], list[Dou
 @njit
 def turn_at(positions: Doubles, normal: Vector, p: np.uint32, a: np.uint32, q: np.uint32) -> Vector:
     """Along, aside and up of the turn of a border p, a, q."""
-    u, v = unit(between(positions, p, a)), unit(between(positions, a, q))
+    u = unit(between(positions, p, a))
+    v = unit(between(positions, a, q))
     return dot(u, v), dot(normal, cross(u, v)), dot(normal, less(v, ONE, u))
 
 
@@ -169,7 +174,9 @@ def turn_at(positions: Doubles, normal: Vector, p: np.uint32, a: np.uint32, q: n
 def write_turns(positions: Doubles, normals: Floats, curves: Unsigned, turns: Floats) -> None:
     """Write along, aside and up of every turn, shape (T, 3)."""
     for k in range(curves.shape[0]):
-        p, a, q = curves[k, 0], curves[k, 1], curves[k, 2]
+        p = curves[k, 0]
+        a = curves[k, 1]
+        q = curves[k, 2]
         write_row(turns, k, turn_at(positions, row_of(normals, a), p, a, q))
 
 
@@ -188,7 +195,9 @@ def measure_turns(
     """
     turns[:] = ZERO
     for k in range(nearby.curves.shape[0]):
-        p, a, q = nearby.curves[k, 0], nearby.curves[k, 1], nearby.curves[k, 2]
+        p = nearby.curves[k, 0]
+        a = nearby.curves[k, 1]
+        q = nearby.curves[k, 2]
         now = turn_at(positions, row_of(normals, a), p, a, q)
         change = less(now, ONE, row_of(nearby.rest_turns, k))
         turns[a] = np.sqrt(dot(change, change))
@@ -197,4 +206,5 @@ def measure_turns(
     measures[:] = ZERO
     for k in range(nearby.edges.shape[0]):
         e = nearby.edges[k]
-        measures[e] = nearby.edge_shares[k] * (turns[edges[e, 0]] + turns[edges[e, 1]])
+        both_ends = turns[edges[e, 0]] + turns[edges[e, 1]]
+        measures[e] = nearby.edge_shares[k] * both_ends

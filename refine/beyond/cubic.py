@@ -62,26 +62,29 @@ from ..mesh.vectors import (
     write_row,
 )
 
-NEAR_START, MIDDLE, NEAR_END = 0, 1, 2
+NEAR_START = 0
+MIDDLE = 1
+NEAR_END = 2
 """Points of an edge in an array of displacements, shape (E, 3, 3): edge, point, x y z."""
 FULLNESS = np.float32(1.2)
 """How much more than the cubic inner edges are displaced. Triangles between curves are flat, so the
 best fit stands out a little; measured on ellipsoids, a torus, heads, flat between 1.1 and 1.25."""
-STEEPER = np.float32(0.15)
+STEEPENING_SHARE = np.float32(0.15)
 """Share of the mean normal around that is taken off a normal. A first step of undoing the mean that
 vertex normals are; a second, or more of it, finds the noise of decimated meshes. Measured on two
 faces and their decimations: half a point of 35 % better on scans, level on smooth heads, and half a
 point worse on the roughest and on a torus."""
 EIGHTH = np.float32(1 / 8)
 """Share of the end tangents in the middle of a cubic."""
-NEAR, FAR = np.float32(9 / 64), np.float32(3 / 64)
+NEAR_WEIGHT = np.float32(9 / 64)
+FAR_WEIGHT = np.float32(3 / 64)
 """Share of the nearer and of the farther tangent at a quarter of a cubic."""
-SLIVER = 1e-9
+SLIVER_SINE = 1e-9
 """Sine of an angle below which a triangle has no direction."""
 
 
 class Tangents(NamedTuple):
-    """What the ends of cubic edges go by; compiled code takes it as it is."""
+    """Data of the tangents at the ends of cubic edges; compiled code takes it as it is."""
 
     normals: Floats
     """Unit normals, each corner weighted as at rest, of the S sectors of vertices: shape (S, 3)."""
@@ -118,7 +121,7 @@ class CubicScheme(Scheme):
         self._tangents = Tangents(
             normals=sector_normals,
             steeper=np.zeros_like(sector_normals),
-            off=(STEEPER / np.maximum(valences, 1)).astype(np.float32),
+            off=(STEEPENING_SHARE / np.maximum(valences, 1)).astype(np.float32),
             ends=sectors.edges[: len(mesh.edges)],
             beyond=follow_borders(mesh, rest_positions),
         )
@@ -154,7 +157,9 @@ class CubicScheme(Scheme):
         turns[:] = ZERO
 
     def _displace(self, positions: Doubles) -> None:
-        fans, tangents, crosses = self._fans, self._tangents, self._crosses
+        fans = self._fans
+        tangents = self._tangents
+        crosses = self._crosses
         share(cross_products, len(crosses), positions, self._mesh.faces, crosses)
         corners = fans.corner_starts, fans.corners
         count = len(tangents.off)
@@ -175,18 +180,22 @@ def weigh_corners(positions: Doubles, faces: Unsigned, weights: Floats) -> None:
     """Write sqrt(angle / |cross product|) of every corner, shape (F, 3); 0 without an area."""
     for t in range(faces.shape[0]):
         for i in range(3):
-            a, b, c = faces[t, i], faces[t, (i + 1) % 3], faces[t, (i + 2) % 3]
-            u, v = difference(positions, a, b), difference(positions, a, c)
-            normal, size = cross(u, v), np.sqrt(dot(u, u) * dot(v, v))
+            a = faces[t, i]
+            b = faces[t, (i + 1) % 3]
+            c = faces[t, (i + 2) % 3]
+            u = difference(positions, a, b)
+            v = difference(positions, a, c)
+            normal = cross(u, v)
+            size = np.sqrt(dot(u, u) * dot(v, v))
             area = np.sqrt(dot(normal, normal))
             angle = np.arctan2(area, dot(u, v))
-            weights[t, i] = np.sqrt(angle / area) if area > SLIVER * size else 0.0
+            weights[t, i] = np.sqrt(angle / area) if area > SLIVER_SINE * size else 0.0
 
 
 def follow_borders(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
     """Find the vertices before and after every border edge, shape (E, 2); its own ends at a corner.
 
-    What it says of other edges has no meaning.
+    Rows of other edges have no meaning.
     """
     neighbours = border_neighbours(mesh, rest_positions)[mesh.edges]
     others = mesh.edges[:, ::-1].view(np.uint32)
@@ -219,7 +228,8 @@ def weighted_normals(
     for v in range(first, last):
         total = ZERO, ZERO, ZERO
         for k in range(starts[v], starts[v + 1]):
-            t, i = corners[k] >> SIDE_BITS, corners[k] & SIDE_MASK
+            t = corners[k] >> SIDE_BITS
+            i = corners[k] & SIDE_MASK
             total = plus(total, times(weights[t, i], row_of(crosses, t)))
         write_row(normals, v, unit(total))
 
@@ -256,9 +266,9 @@ def write_cubic(
 
     `turn_a`, `turn_b`: how much the tangents at both ends turn away from the straight edge.
     """
-    displacements[e, NEAR_START, i] = NEAR * turn_a - FAR * turn_b
+    displacements[e, NEAR_START, i] = NEAR_WEIGHT * turn_a - FAR_WEIGHT * turn_b
     displacements[e, MIDDLE, i] = EIGHTH * (turn_a - turn_b)
-    displacements[e, NEAR_END, i] = FAR * turn_a - NEAR * turn_b
+    displacements[e, NEAR_END, i] = FAR_WEIGHT * turn_a - NEAR_WEIGHT * turn_b
 
 
 @njit
@@ -276,16 +286,19 @@ def displace_cubic(
     """
     steeper = tangents.steeper
     for e in range(first, last):
-        a, b = around.points[e, 0], around.points[e, 1]
+        a = around.points[e, 0]
+        b = around.points[e, 1]
         d = between(positions, a, b)
         if around.is_interior[e]:
             at_a = row_of(steeper, tangents.ends[e, 0])
             at_b = row_of(steeper, tangents.ends[e, 1])
-            height_a, height_b = -FULLNESS * dot(d, at_a), -FULLNESS * dot(d, at_b)
+            height_a = -FULLNESS * dot(d, at_a)
+            height_b = -FULLNESS * dot(d, at_b)
             for i in range(3):
                 write_cubic(displacements, e, i, height_a * at_a[i], height_b * at_b[i])
             continue
-        p, q = tangents.beyond[e, 0], tangents.beyond[e, 1]
+        p = tangents.beyond[e, 0]
+        q = tangents.beyond[e, 1]
         length = length_of(d)
         share_a = length / max(length + length_of(between(positions, p, a)), TINY)
         share_b = length / max(length + length_of(between(positions, b, q)), TINY)
@@ -313,14 +326,16 @@ def place_on_curves(
     The loop is over vertices, and then over split edges. `ends`: of edges, in the first two columns
     of (E, 4); `displacements`: three rows for each edge, shape (3 E, 3).
     """
-    points, rows = frame.points, frame.rows
+    points = frame.points
+    rows = frame.rows
     vertex_count = points.shape[0]
     for v in range(first, min(last, vertex_count)):
         write_row(rows, v, row_of(points, v))
     for k in range(max(first - vertex_count, 0), last - vertex_count):
         e = frame.split_once[k]
         row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
-        at_a, at_b = row_of(points, ends[e, 0]), row_of(points, ends[e, 1])
+        at_a = row_of(points, ends[e, 0])
+        at_b = row_of(points, ends[e, 1])
         out = times(frame.geomorph_once[e], row_of(displacements, np.uint32(3 * e + MIDDLE)))
         middle = plus(times(HALF, plus(at_a, at_b)), out)
         write_row(rows, row, middle)
@@ -341,13 +356,15 @@ def place_mean_normals(
     first: int, last: int, ends: Unsigned, frame: FrameBuffers, normals: Floats
 ) -> None:
     """Write normals: of vertices, shape (V, 3), and between them; loop and `ends` as above."""
-    rows, vertex_count = frame.rows, frame.points.shape[0]
+    rows = frame.rows
+    vertex_count = frame.points.shape[0]
     for v in range(first, min(last, vertex_count)):
         write_row(rows, v, row_of(normals, v), 3)
     for k in range(max(first - vertex_count, 0), last - vertex_count):
         e = frame.split_once[k]
         row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
-        at_a, at_b = row_of(normals, ends[e, 0]), row_of(normals, ends[e, 1])
+        at_a = row_of(normals, ends[e, 0])
+        at_b = row_of(normals, ends[e, 1])
         normal = unit(plus(at_a, at_b))
         write_row(rows, row, normal, 3)
         if frame.splits[e] == 2:

@@ -1,7 +1,7 @@
-"""The criterion `rest`: what is curved at rest, for meshes that are too coarse for their own form.
+"""The criterion `rest`: edges curved at rest, for meshes that are too coarse for their own form.
 
-The paper's criterion counts what has been bent since rest, so an outline that is a polygon at rest
-stays one. This one sees it.
+The paper's criterion counts bending since rest, so an outline that is a polygon at rest stays one.
+This one sees it.
 
     measure = height of the arc x cube root of (length / usual length)
 
@@ -19,11 +19,11 @@ from ...geometry.normals import cross_products
 from ..mesh.arrays import Doubles, Floats, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.creases import Sectors, sectors_of
-from .blending import RAMP
+from .blending import RAMP_WIDTH
 from .measuring import Measuring
 
-USUAL = 1.0 / 40.0
-"""Length of the edge whose measure is its height, in sizes of the mesh: about what a face has."""
+USUAL_LENGTH = 1.0 / 40.0
+"""Length of the edge whose measure is its height, in sizes of the mesh: about that of a face."""
 
 
 class RestCurvature(Measuring):
@@ -59,13 +59,13 @@ class RestCurvature(Measuring):
         along = np.diff(rest_positions[edges[edge_of]], axis=1)[:, 0]
         along /= _diagonal(rest_positions[edges])
         heights = 0.125 * np.abs(np.einsum("ij,ij->i", turns, along))
-        measures = heights * np.cbrt(np.linalg.norm(along, axis=1) / USUAL)
+        measures = heights * np.cbrt(np.linalg.norm(along, axis=1) / USUAL_LENGTH)
         limits = self.thresholds
         asked = (measures > limits.once).astype(np.uint8) + (measures > limits.twice)
         splits = np.zeros(len(edges), dtype=np.uint8)
         np.maximum.at(splits, edge_of, asked)
         # Metrics at which a blended point has grown: there is nothing that it could grow with.
-        self._decided = np.array([-np.inf, RAMP, 1.0 + RAMP], np.float32)[splits]
+        self._decided = np.array([-np.inf, RAMP_WIDTH, 1.0 + RAMP_WIDTH], np.float32)[splits]
 
     def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
@@ -88,5 +88,6 @@ def _diagonal(positions: Doubles) -> float:
 
     Points that no triangle uses do not count: where they lie says nothing of the mesh.
     """
-    size = float(np.linalg.norm(np.ptp(positions, axis=(0, 1)))) if len(positions) else 0.0
+    sides = np.ptp(positions, axis=(0, 1)) if len(positions) else np.zeros(3)
+    size = float(np.linalg.norm(sides))
     return size if size > 0.0 else 1.0

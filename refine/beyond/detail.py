@@ -7,7 +7,7 @@ generated split vertices on the surface, as has been exercised in multiresolutio
 At binding, the points that all edges would get from the scheme `cubic` are compared with the
 closest points of the finer mesh that look the same way, both at rest. Points stand out of the
 straight edge FULLNESS times as far as these, because triangles between them are flat, as those of
-the cubic do. What is missing is stored along three directions that move with the surface:
+the cubic do. The rest is stored along three directions that move with the surface:
 
           n                                     stored:  how the finer surface lies beside the
           |                                              point, along n, t and n x t
@@ -40,13 +40,13 @@ from .measuring import mean_length
 FinerMesh = tuple[npt.ArrayLike, npt.ArrayLike]
 """Positions at rest, shape (V, 3), and triangles, shape (F, 3)."""
 
-WRONG_SIDE = 10.0
+WRONG_SIDE_DISTANCE = 10.0
 """How much farther away, in edge lengths, a surface seems that looks the other way: lips that touch
 at rest do not take each other's points."""
 
 
 class DetailScheme(CubicScheme):
-    """Cubic edges with what a finer mesh at rest has in addition."""
+    """Cubic edges with the additional form of a finer mesh at rest."""
 
     def __init__(self, finer: FinerMesh) -> None:
         """`finer`: positions at rest, in the place of the coarse mesh, and triangles."""
@@ -80,7 +80,7 @@ class DetailScheme(CubicScheme):
         straight += share * rest_positions[end][:, None]
         points = straight + self._displacements
         ways = (1.0 - share) * normals[start][:, None] + share * normals[end][:, None]
-        away = WRONG_SIDE * float(mean_length(connectivity, rest_positions))
+        away = WRONG_SIDE_DISTANCE * float(mean_length(connectivity, rest_positions))
         found = closest_points(points.reshape(-1, 3), *self._finer, ways.reshape(-1, 3), away)
         places = found.interpolate(self._finer[0]).reshape(points.shape)
         missing = straight + float(FULLNESS) * (places - straight) - points
@@ -140,8 +140,10 @@ def middle_axes(around: Surroundings, positions: Doubles, normals: Floats, axes:
     vertices, shape (V, 3); `axes`: shape (E, 3, 3, 3), edge, point, direction.
     """
     for e in range(axes.shape[0]):
-        a, b = around.points[e, 0], around.points[e, 1]
-        along, mean = between(positions, a, b), plus(row_of(normals, a), row_of(normals, b))
+        a = around.points[e, 0]
+        b = around.points[e, 1]
+        along = between(positions, a, b)
+        mean = plus(row_of(normals, a), row_of(normals, b))
         up = unit(less(mean, dot(along, mean) / max(dot(along, along), TINY), along))
         write_axes(up, along, axes[e, MIDDLE])
 
@@ -156,7 +158,9 @@ def quarter_axes(
     not with the edge.
     """
     for e in edges:
-        a, b = around.points[e, 0], around.points[e, 1]
-        up, along = row_of(axes[e, MIDDLE], 0), between(positions, a, b)
+        a = around.points[e, 0]
+        b = around.points[e, 1]
+        up = row_of(axes[e, MIDDLE], 0)
+        along = between(positions, a, b)
         write_axes(plus(up, row_of(normals, a)), along, axes[e, NEAR_START])
         write_axes(plus(up, row_of(normals, b)), along, axes[e, NEAR_END])

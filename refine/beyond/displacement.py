@@ -2,7 +2,7 @@
 
 Where the straight edge is far from where the scheme would have it, the unsplit mesh is wrong; and
 where the normal in its middle is not between those at its ends, so is its shading. For schemes that
-tell both (`Scheme.measure`): those with curved edges, and all with `normals="refined"`.
+measure both (`Scheme.measure`): those with curved edges, and all with `normals="refined"`.
 
     size of an edge     hypot(displacement, turning x angle x length)      a distance
 """
@@ -13,10 +13,10 @@ from ...jit import njit
 from ..kahler.smoothing import Scheme
 from ..mesh.arrays import Doubles, Floats
 from ..mesh.connectivity import Connectivity
-from .blending import RAMP
+from .blending import RAMP_WIDTH
 from .measuring import Measuring, mean_length
 
-HASTE = 0.6
+GROWTH_SHARE = 0.6
 """Share of the first threshold in which a blended point grows. Chosen: a point that is half grown
 costs as much as a whole one; with less than this surfaces jump farther than their input moves."""
 
@@ -24,7 +24,7 @@ costs as much as a whole one; with less than this surfaces jump farther than the
 class Displacement(Measuring):
     """How far a split would move the middle of an edge and turn the normal there.
 
-    What is coarse at rest counts as well, unlike in the paper.
+    Places that are coarse at rest count as well, unlike in the paper.
     """
 
     uses_normals = False
@@ -32,7 +32,7 @@ class Displacement(Measuring):
     def __init__(self, once: float = 0.08, twice: float = 0.4, *, turning: float = 0.35) -> None:
         """`once`, `twice`: distances in mean edge lengths of the mesh at rest.
 
-        `turning`: what a turn of the normal by a radian counts, in lengths of the edge; 0 looks at
+        `turning`: weight of a turn of the normal by a radian, in lengths of the edge; 0 looks at
         distances only.
         """
         super().__init__(once, twice, "distances in mean edge lengths")
@@ -42,8 +42,8 @@ class Displacement(Measuring):
         """Take the scheme of the refiner; raises ValueError for one that does not measure."""
         if not scheme.measures:
             raise ValueError(
-                'criterion "displacement" asks the scheme how far it moves edges, which '
-                f'{type(scheme).__name__} tells with normals="refined" only'
+                'criterion "displacement" needs a scheme that measures how far it moves edges; '
+                f'{type(scheme).__name__} does so with normals="refined" only'
             )
         self._scheme = scheme
 
@@ -62,7 +62,7 @@ class Displacement(Measuring):
         if self.turning > 0.0:
             count_turns(metric, self._turns, np.float32(self.turning))
         limits.scale(metric, self._unit)
-        advance_metric(metric, np.float32(HASTE) * limits.once / limits.width, RAMP)
+        advance_metric(metric, np.float32(GROWTH_SHARE) * limits.once / limits.width, RAMP_WIDTH)
 
 
 @njit

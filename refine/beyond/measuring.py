@@ -8,8 +8,8 @@ Each has two thresholds, above which an edge is split once and twice, and says h
 needs a split, so that all of them can be blended (blending.py) and any of them combined.
 `silhouette` is here, how far the surface turns along an edge that is seen edge-on:
 
-    (1 - n_a . n_b) x facing      facing is 1 where the line of sight grazes the edge, 0 a BAND
-                                  away; the turn counts up to where points have grown
+    (1 - n_a . n_b) x facing      facing is 1 where the line of sight grazes the edge, 0 at
+                                  SILHOUETTE_BAND; the turn counts up to where points have grown
 """
 
 import reprlib
@@ -24,9 +24,9 @@ from ..kahler.smoothing import Scheme
 from ..mesh.arrays import Doubles, Floats, Small, Unsigned
 from ..mesh.connectivity import Connectivity
 from ..mesh.vectors import ONE
-from .blending import RAMP
+from .blending import RAMP_WIDTH
 
-BAND = 0.3
+SILHOUETTE_BAND = 0.3
 """Cosine between normal and line of sight at which an edge is no silhouette: 17 degrees away."""
 
 
@@ -119,7 +119,7 @@ class Silhouette(Measuring):
     def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
         """Write the refinement metric of every edge, shape (E,)."""
         limits = self.thresholds
-        most = limits.once + (ONE + RAMP) * limits.width
+        most = limits.once + (ONE + RAMP_WIDTH) * limits.width
         turns_at_silhouette(positions, normals, self._edges, self._eye, most, metric)
         limits.scale(metric)
 
@@ -135,13 +135,15 @@ def turns_at_silhouette(
 ) -> None:
     """Write 1 - the cosine of the normals of every edge, faded out away from the silhouette.
 
-    What is above `most` counts as `most`.
+    Values above `most` count as `most`.
     """
     for e in range(edges.shape[0]):
-        a, b = edges[e, 0], edges[e, 1]
+        a = edges[e, 0]
+        b = edges[e, 1]
         cosine = seen_a = seen_b = length_a = length_b = 0.0
         for i in range(3):
-            to_a, to_b = eye[i] - positions[a, i], eye[i] - positions[b, i]
+            to_a = eye[i] - positions[a, i]
+            to_b = eye[i] - positions[b, i]
             cosine += normals[a, i] * normals[b, i]
             seen_a += to_a * normals[a, i]
             seen_b += to_b * normals[b, i]
@@ -151,10 +153,11 @@ def turns_at_silhouette(
         seen_b /= np.sqrt(max(length_b, 1e-30))
         away = 0.0 if seen_a * seen_b <= 0.0 else min(abs(seen_a), abs(seen_b))
         turn = min(np.float32(1.0 - cosine), most)
-        turns[e] = turn * max(0.0, 1.0 - away / BAND)
+        turns[e] = turn * max(0.0, 1.0 - away / SILHOUETTE_BAND)
 
 
 def mean_length(connectivity: Connectivity, positions: Doubles) -> np.float32:
     """Mean length of the edges; 1 if there are none."""
-    lengths = np.linalg.norm(np.diff(positions[connectivity.edges], axis=1)[:, 0], axis=1)
+    ends = positions[connectivity.edges]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     return np.float32(lengths.mean() if len(lengths) else 1.0)

@@ -1,4 +1,4 @@
-"""The refiner named `kahler`: its options in words, and what they stand for.
+"""The refiner named `kahler`: its options in words, and their objects.
 
 By default it is the paper's to the letter (`refine.Kahler`). Options put other criteria and schemes
 in place, by name or as objects, and blend new points in (`Blended`).
@@ -33,7 +33,7 @@ def create_kahler(
     coherent: bool = False,
     **values: Unpack[Values],
 ) -> Kahler:
-    """Bind the paper's refiner, or what the options make of it, to a mesh (`registry.create`).
+    """Bind the paper's refiner, as the options change it, to a mesh (`registry.create`).
 
     - `threshold_once`, `threshold_twice`: drop of the normals' dot product above which an edge is
       split once or twice, for the paper's criterion, "normal".

@@ -1,8 +1,8 @@
 r"""Normals of the refined surface itself: `normals="refined"`.
 
 Kähler, Haber, Seidel 2003, interpolate the normal of a new point from those at the ends of its edge
-(section 4.4). Then smooth shading cannot show what a split found out: only outlines and highlights
-change. Here the surface that all splits together would make is looked at, wherever it is split:
+(section 4.4). Then smooth shading cannot show the form that a split found: only outlines and
+highlights change. This scheme takes the surface that all splits together would make, everywhere:
 
               c                m    middles of all edges, where the scheme puts them
              / \               C    middle of a triangle: its corners' mean, and 0.511 of how far
@@ -15,7 +15,7 @@ change. Here the surface that all splits together would make is looked at, where
               d
 
 Both are sums of the cross products of the small triangles around the point, put together. They do
-not depend on what is split in this frame, so no normal jumps when something is. A new point begins
+not depend on the splits of this frame, so no normal jumps when an edge is split. A new point begins
 with the mean of the normals at the ends of its edge, and turns to its own while it goes the first
 third of its way (blending.py). At a quarter it is the mean of its neighbours'.
 
@@ -50,13 +50,13 @@ from ..mesh.vectors import (
     write_row,
 )
 
-FULL_CENTRE = np.float32(0.511)
+CENTRE_SHARE = np.float32(0.511)
 """How far the middle of a triangle follows the displacements of its edges: 4/9 (blending.py), and
 15 % more: curves between these points stand out farther. So normals are nearer to a dense head."""
-SOON = np.float32(3.0)
+NORMAL_HASTE = np.float32(3.0)
 """How much sooner than the place of a new point its normal has gone all the way. Chosen: a turn of
 shading is seen less than a jump of the surface, and half of it is half a triangle wasted."""
-STEADY = np.float32(0.02)
+MEAN_NORMAL_SHARE = np.float32(0.02)
 """Share of the mean of the ends' normals, in squared lengths of the edge, that is added to a normal
 in the middle. Chosen: where an edge is folded until nothing is left across it, this decides. More
 looks softer in deep folds and is farther from dense faces: 0.3 costs five points of thirty."""
@@ -67,10 +67,13 @@ class WholeSurface:
 
     def __init__(self, mesh: Connectivity, rest_positions: Doubles) -> None:
         """Make room; `rest_positions`: shape (V, 3)."""
-        self._mesh, self._fans = mesh, fans_of(mesh)
+        self._mesh = mesh
+        self._fans = fans_of(mesh)
         self._origin = mesh.first_vertex
-        vertex_count, edge_count = mesh.vertex_count, len(mesh.edges)
-        near, points = np.zeros_like(rest_positions), rest_positions.astype(np.float32)
+        vertex_count = mesh.vertex_count
+        edge_count = len(mesh.edges)
+        near = np.zeros_like(rest_positions)
+        points = rest_positions.astype(np.float32)
         frame = buffers_for(mesh, near, points, np.zeros_like(points))
         rows = np.zeros((vertex_count + edge_count, 6), dtype=np.float32)
         self._frame = split_everywhere(frame, vertex_count)._replace(rows=rows)
@@ -85,13 +88,18 @@ class WholeSurface:
         """The mesh of `frame`, as seen from its first vertex, every edge split once; unplaced."""
         if frame.normals is not self._frame.normals:
             self._frame = self._frame._replace(normals=frame.normals)
-        positions, (near, points) = frame.positions, self._frame[:2]
+        positions = frame.positions
+        near = self._frame.positions
+        points = self._frame.points
         share(see_from, len(positions), positions, self._origin, near, points)
         return self._frame
 
     def find_normals(self) -> None:
         """Work the normals out, when the rows have been placed."""
-        mesh, rows, centres, normals = self._mesh, self.rows, self._centres, self.normals
+        mesh = self._mesh
+        rows = self.rows
+        centres = self._centres
+        normals = self.normals
         triangles = mesh.faces, mesh.triangle_edges
         share(place_surface_centres, len(centres), mesh.vertex_count, *triangles, rows, centres)
         fans = self._fans.corner_starts, self._fans.corners, mesh.triangle_edges
@@ -152,8 +160,8 @@ class RefinedNormals(Scheme):
     def measure(self, displacements: Floats, turns: Floats) -> None:
         """Write how far middles would stand out, and turn the normal, of every edge, (E,) each.
 
-        The normal of a vertex on a crease is between those of its sides, so edges that end there
-        turn by what a split would not mend.
+        The normal of a vertex on a crease is between those of its sides, and a
+        split would not mend the turn of edges that end there.
         """
         self._surface.measure(displacements, turns)
         turns[self._at_creases] = ZERO
@@ -198,7 +206,7 @@ def place_surface_centres(
             if e >= 0:
                 middles = plus(middles, row_of(rows, np.uint32(vertex_count + e)))
         # The sum of displacements is the sum of the middles less that of the corners.
-        out = times(FULL_CENTRE, less(middles, ONE, corners))
+        out = times(CENTRE_SHARE, less(middles, ONE, corners))
         write_row(centres, t, plus(times(THIRD, corners), out))
 
 
@@ -219,9 +227,11 @@ def surface_normals_of_vertices(
     """
     vertex_count = starts.shape[0] - 1
     for v in range(first, last):
-        here, total = row_of(rows, v), (ZERO, ZERO, ZERO)
+        here = row_of(rows, v)
+        total = (ZERO, ZERO, ZERO)
         for k in range(starts[v], starts[v + 1]):
-            t, i = corners[k] >> SIDE_BITS, corners[k] & SIDE_MASK
+            t = corners[k] >> SIDE_BITS
+            i = corners[k] & SIDE_MASK
             if triangle_edges[t, 0] < 0:
                 continue
             after = np.uint32(vertex_count + triangle_edges[t, i])
@@ -246,19 +256,22 @@ def surface_normals_of_edges(
 
     `points`: of edges, shape (E, 4). The vertices have theirs.
     """
-    vertex_count, face_count = normals.shape[0] - points.shape[0], centres.shape[0]
+    vertex_count = normals.shape[0] - points.shape[0]
+    face_count = centres.shape[0]
     for e in range(first, last):
-        a, b = points[e, 0], points[e, 1]
+        a = points[e, 0]
+        b = points[e, 1]
         row = np.uint32(vertex_count + e)
         mean = times(HALF, plus(row_of(normals, a), row_of(normals, b)))
-        side, beyond = edge_sides[e, 0] >> SIDE_BITS, edge_sides[e, 1] >> SIDE_BITS
+        side = edge_sides[e, 0] >> SIDE_BITS
+        beyond = edge_sides[e, 1] >> SIDE_BITS
         if not is_interior[e] and beyond < face_count:
             write_row(normals, row, unit(mean))  # sheets that meet have no normal in common
             continue
         along = between_rows(rows, a, b)
         far = row_of(centres, beyond) if beyond < face_count else row_of(rows, row)
         across = less(row_of(centres, side), ONE, far)
-        steady = times(STEADY * dot(along, along), mean)
+        steady = times(MEAN_NORMAL_SHARE * dot(along, along), mean)
         write_row(normals, row, unit(plus(cross(along, across), steady)))
 
 
@@ -271,21 +284,24 @@ def turn_normals(
     The loop is over vertices, and then over split edges. `points`: of edges, shape (E, 4);
     `normals`: of vertices and middles, shape (V + E, 3).
     """
-    vertices, vertex_count = frame.rows, frame.points.shape[0]
+    vertices = frame.rows
+    vertex_count = frame.points.shape[0]
     for v in range(first, min(last, vertex_count)):
         write_row(vertices, v, row_of(normals, v), 3)
     for k in range(max(first - vertex_count, 0), last - vertex_count):
         e = frame.split_once[k]
-        a, b = points[e, 0], points[e, 1]
+        a = points[e, 0]
+        b = points[e, 1]
         row = np.uint32(frame.first_points[e] + (frame.splits[e] >> 1))
-        geomorph = min(ONE, SOON * frame.geomorph_once[e])
+        geomorph = min(ONE, NORMAL_HASTE * frame.geomorph_once[e])
         normal = row_of(normals, np.uint32(vertex_count + e))
         if geomorph < ONE:
             mean = unit(plus(row_of(normals, a), row_of(normals, b)))
             normal = unit(mix(mean, normal, geomorph))
         write_row(vertices, row, normal, 3)
         if frame.splits[e] == 2:
-            near_a, near_b = np.uint32(row - 1), np.uint32(row + 1)
+            near_a = np.uint32(row - 1)
+            near_b = np.uint32(row + 1)
             write_row(vertices, near_a, unit(plus(row_of(normals, a), normal)), 3)
             write_row(vertices, near_b, unit(plus(row_of(normals, b), normal)), 3)
 
@@ -303,20 +319,24 @@ def turn_centres(
 
     To the normal of the hexagon around, whose corners are in `rows`, shape (V + E, 6).
     """
-    vertices, vertex_count = frame.rows, frame.points.shape[0]
+    vertices = frame.rows
+    vertex_count = frame.points.shape[0]
     for k in range(first, last):
-        t, row = frame.centre_triangles[k], np.uint32(frame.counts[ROWS] + k)
-        geomorph, hexagon = ONE, (ZERO, ZERO, ZERO)
+        t = frame.centre_triangles[k]
+        row = np.uint32(frame.counts[ROWS] + k)
+        geomorph = ONE
+        hexagon = (ZERO, ZERO, ZERO)
         origin = row_of(rows, faces[t, 0])
         for i in range(3):
-            e, previous = triangle_edges[t, i], triangle_edges[t, i - 1]
+            e = triangle_edges[t, i]
+            previous = triangle_edges[t, i - 1]
             geomorph = min(geomorph, frame.geomorph_once[e] if frame.splits[e] > 0 else ZERO)
             a = less(row_of(rows, faces[t, i]), ONE, origin)
             after = np.uint32(vertex_count + e)
             before = np.uint32(vertex_count + previous)
             hexagon = plus(hexagon, cross(a, between_rows(rows, before, after)))
         if geomorph > ZERO:
-            geomorph = min(ONE, SOON * geomorph)
+            geomorph = min(ONE, NORMAL_HASTE * geomorph)
             mean = row_of(vertices, row, 3)
             write_row(vertices, row, unit(mix(mean, unit(hexagon), geomorph)), 3)
 
@@ -337,7 +357,8 @@ def measure_edges(
     """
     vertex_count = rows.shape[0] - points.shape[0]
     for e in range(first, last):
-        a, b = points[e, 0], points[e, 1]
+        a = points[e, 0]
+        b = points[e, 1]
         row = np.uint32(vertex_count + e)
         ends = plus(row_of(rows, a), row_of(rows, b))
         out = less(row_of(rows, row), HALF, ends)

@@ -1,1 +1,1 @@
-"""The border: what goes in and out of a refiner, whichever it is; plugin.py says what that is."""
+"""The border: input and output of every refiner; plugin.py holds the protocol."""

@@ -1,4 +1,4 @@
-"""What all built-in refiners share: what is bound, lent and handed in, checked once per kind.
+"""The base of all built-in refiners: the mesh, lent arrays and positions, checked at one place.
 
 A refiner derives from `BaseRefiner`, says how large its output can get, and writes one method,
 `fill`. One of somebody else may do so, too, or follow the protocol (plugin.py) by itself.
@@ -28,7 +28,7 @@ from .stream import OwnStream, StreamArrays, check_lent
 
 
 class BaseRefiner(Refiner):
-    """A refiner to derive from: binds a mesh, checks what goes in, and fills what was lent.
+    """A refiner to derive from: binds a mesh, checks its input, and fills lent arrays.
 
     A subclass has `vertex_capacity`, `triangle_capacity` and `fill`, and extends `origins` by the
     points that it makes. `fill` is called once in every frame, when the positions have been
@@ -105,9 +105,9 @@ class BaseRefiner(Refiner):
         vertex_normals(self.positions, self._mesh.faces, self.normals)
 
     def write_wedges(self, rows: Floats) -> None:
-        """Write what follows vertices, when the first V rows have positions and normals.
+        """Write copies of vertices along texture seams, and all texture coordinates and attributes.
 
-        These are their copies along texture seams, and all texture coordinates and attributes.
+        The first V rows have positions and normals already.
         """
         if self._values is not None:
             write_wedges(self.connectivity, self._wedge_values, rows)
@@ -164,7 +164,8 @@ class BaseRefiner(Refiner):
         vertex_count, triangle_count = self.fill(stream, view)
         vertices, triangles, source = self._accepted
         shown, normals = self._geometry
-        uv, attributes = None, _NO_ATTRIBUTES
+        uv = None
+        attributes = _NO_ATTRIBUTES
         if self._values is not None:
             uv, attributes = self.values_in(vertices[:vertex_count])
         return RefinedMesh(
@@ -177,7 +178,7 @@ class BaseRefiner(Refiner):
         )
 
     def take(self, positions: npt.NDArray[np.floating], view: View | None) -> None:
-        """Check what a frame is given, and copy it into `positions` and `points`.
+        """Check the positions of a frame, and copy them into `positions` and `points`.
 
         Raises ValueError for a wrong shape or type, and for positions that are not finite.
         """
@@ -205,7 +206,9 @@ class BaseRefiner(Refiner):
     def _accept(self, stream: Stream, vertex_count: int, triangle_count: int) -> None:
         """Raise ValueError unless the arrays can take this much; seen ones are hardly looked at."""
         try:
-            vertices, triangles, source = stream.vertices, stream.triangles, stream.source
+            vertices = stream.vertices
+            triangles = stream.triangles
+            source = stream.source
         except AttributeError as error:
             raise ValueError(
                 "a stream must have the arrays vertices, triangles and source "
@@ -239,6 +242,8 @@ _owners: "WeakValueDictionary[int, BaseRefiner]" = WeakValueDictionary()
 
 
 _NO_ROWS = StreamArrays(
-    np.zeros((0, GEOMETRY_COLUMNS), np.float32), np.zeros((0, 3), np.uint32), np.zeros(0, np.int32)
+    vertices=np.zeros((0, GEOMETRY_COLUMNS), np.float32),
+    triangles=np.zeros((0, 3), np.uint32),
+    source=np.zeros(0, np.int32),
 )
 _NO_ATTRIBUTES: Mapping[str, Floats] = MappingProxyType({})

@@ -24,14 +24,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..mesh.arrays import Flags, Indices, Wide
-from ..mesh.validation import LARGEST
+from ..mesh.validation import LARGEST_COORDINATE
 from .plugin import Origins, RefinedMesh, Refiner
 
 PARTS = 2**9 * 3**2 * 5 * 7
 """Places are rounded to a lattice of so many parts along an edge, so that equal ones are equal.
 
 Nine levels of halving are whole parts, and so are thirds, fifths, sevenths and ninths of most of
-them: these may come with what weights in single precision lose. Other places are told apart where
+them: these may come with what weights in single precision lose. Other places are kept apart where
 they are a part or more away from each other, and have to come with the same weights from all sides.
 """
 
@@ -69,7 +69,8 @@ def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floatin
     proper = faces[:, 0] >= 0
     _check_sources(mesh, proper)
     rows = np.flatnonzero(proper[mesh.source])
-    triangles, source = mesh.triangles[rows].astype(np.int64), mesh.source[rows]
+    triangles = mesh.triangles[rows].astype(np.int64)
+    source = mesh.source[rows]
     corners = _places_in_source(places, triangles, faces[source])
     _check_cover(corners, source, np.flatnonzero(proper), rows)
     _check_sub_edges(points[triangles], corners, source, refiner)
@@ -77,7 +78,8 @@ def check(refiner: Refiner, mesh: RefinedMesh, positions: npt.NDArray[np.floatin
 
 
 def _check_arrays(mesh: RefinedMesh, origins: Origins, vertex_count: int, face_count: int) -> None:
-    rows, triangle_rows = len(mesh.positions), len(mesh.triangles)
+    rows = len(mesh.positions)
+    triangle_rows = len(mesh.triangles)
     _require(
         mesh.positions.dtype == mesh.normals.dtype == np.float32
         and mesh.triangles.dtype == np.uint32
@@ -114,7 +116,8 @@ def _input_faces(refiner: Refiner) -> Wide:
     faces = np.full(refiner.triangle_edges.shape, -1, dtype=np.int64)
     proper = refiner.triangle_edges[:, 0] >= 0
     ends = refiner.edges[refiner.triangle_edges[proper]]
-    is_shared = (ends[..., 0, None] == np.roll(ends, 1, axis=1)).any(axis=2)
+    before = np.roll(ends, 1, axis=1)
+    is_shared = (ends[..., 0, None] == before).any(axis=2)
     faces[proper] = np.where(is_shared, ends[..., 0], ends[..., 1])
     return faces
 
@@ -178,7 +181,8 @@ def _places_in_source(places: _Places, triangles: Wide, source_faces: Wide) -> W
 
 
 def _check_cover(corners: Wide, source: Indices, proper: Wide, rows: Wide) -> None:
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    u = corners[:, 1] - corners[:, 0]
+    v = corners[:, 2] - corners[:, 0]
     areas = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # in squares of parts; PARTS^2 of the whole
     _require_all(
         areas > 0,
@@ -195,17 +199,19 @@ def _check_cover(corners: Wide, source: Indices, proper: Wide, rows: Wide) -> No
 
 
 def _check_sub_edges(triangles: Wide, corners: Wide, source: Indices, refiner: Refiner) -> None:
-    starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    starts = triangles.ravel()
+    ends = np.roll(triangles, -1, axis=1).ravel()
     # A sub-edge lies on edge i of its source where coordinate i + 2 is zero at both ends.
     is_zero = (corners == 0) & (np.roll(corners, -1, axis=1) == 0)
     on_edge = np.roll(is_zero, 1, axis=2).reshape(-1, 3)
     is_inside = ~on_edge.any(axis=1)
     half_edge_source = np.repeat(source, 3)
     edge = refiner.triangle_edges[half_edge_source, on_edge.argmax(axis=1)].astype(np.int64)
-    # Sub-edges on an input edge are told apart by the edge, those inside by the triangle.
+    # Sub-edges on an input edge are identified by the edge, those inside by the triangle.
     owner = np.where(is_inside, len(refiner.edges) + half_edge_source, edge)
 
-    low, high = np.minimum(starts, ends), np.maximum(starts, ends)
+    low = np.minimum(starts, ends)
+    high = np.maximum(starts, ends)
     keys = np.stack([owner, low, high], axis=1)
     found, first, inverse, sides = np.unique(
         keys, axis=0, return_index=True, return_inverse=True, return_counts=True
@@ -254,7 +260,9 @@ def _check_unmoved(
     rows, slots = np.nonzero(places.parts == PARTS)
     vertex = places.vertices[rows, slots]
     given = positions[vertex].astype(np.float64)
-    is_number = np.asarray((abs(given) < LARGEST).all(axis=1))  # what nothing uses need not be
+    is_number = np.asarray(
+        (abs(given) < LARGEST_COORDINATE).all(axis=1)
+    )  # what nothing uses need not be
     wanted = np.where(is_number[:, None], given, 0.0).astype(np.float32)
     same = (mesh.positions[rows] == wanted).all(axis=1)
     _require_all(

@@ -66,7 +66,8 @@ def checked_corner_values(
         values, corners = _checked_values("uv", uv, "face_uv", face_uv, faces, vertex_count)
         if values.shape[1] != 2:
             raise ValueError(f"uv must be numbers of shape (U, 2), got shape {values.shape}")
-        tables, indices = [values], [corners]
+        tables = [values]
+        indices = [corners]
     if attributes is not None and not isinstance(attributes, Mapping):
         raise ValueError(
             "attributes must be arrays by name, as in {'colour': array of shape (V, 3)}, "

@@ -1,4 +1,4 @@
-"""The border of the plug-in: what a refiner is, what it reads, and what it hands out.
+"""The border of the plug-in: the protocol of refiners, their input and their output.
 
 Kähler, Haber, Seidel 2003, Fig. 1 and section 3: refinement sits between the deformed mesh and the
 rendering engine, reads the one and feeds the other, and keeps nothing of its own between frames.
@@ -24,7 +24,7 @@ class RefinedMesh(NamedTuple):
     """Triangles of one frame: views of buffers that the next frame overwrites.
 
     Where the output lies elsewhere, in buffers of a GPU for one, a refiner hands out an object of
-    its own with these members, counts included, which fetches arrays when they are asked for.
+    its own with these members, counts included, which fetches arrays when they are read.
     """
 
     positions: npt.NDArray[np.float32]
@@ -42,7 +42,7 @@ class RefinedMesh(NamedTuple):
 
     @property
     def vertex_count(self) -> int:
-        """N, for whoever needs no arrays to draw."""
+        """N, for renderers that need no arrays."""
         return len(self.positions)
 
     @property
@@ -191,4 +191,4 @@ class GpuRefiner(Refiner):
     def refine_on_card(
         self, positions: npt.NDArray[np.floating], out: GpuStream, view: View | None = None
     ) -> RefinedMesh:
-        """`refine` into a stream, whose context is current; what is read of the mesh is fetched."""
+        """`refine` into a stream, whose context is current; arrays are fetched when read."""

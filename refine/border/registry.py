@@ -1,8 +1,8 @@
-"""Things that are found by name: refiners here, schemes and criteria of `kahler` in the same way.
+"""Registries of names: refiners here, schemes and criteria of `kahler` in the same way.
 
-Whoever makes a new one registers it; what the package brings itself goes no other way. What
-installed packages bring is found by entry points, in a group for each kind. Those are looked for
-when a name is not registered or names are listed, and imported when they are asked for by name.
+The package registers its own in the same way as others do. Installed packages announce theirs by
+entry points, in a group for each kind. An entry point is looked up when a name is not registered
+or when names are listed; it is imported when its name is used.
 """
 
 import functools
@@ -24,7 +24,7 @@ class Registry(Generic[Product]):
     """Factories of things of one kind, by name."""
 
     def __init__(self, kind: str, group: str) -> None:
-        """`kind`: what the factories make, for errors; `group`: of entry points."""
+        """`kind`: the product of the factories, for errors; `group`: of entry points."""
         self._kind = kind
         self._group = group
         self._factories: dict[str, Callable[..., Product]] = {}
@@ -64,7 +64,7 @@ class Registry(Generic[Product]):
             raise ValueError(f"{self._kind} {name!r} is unknown; there are {self.available()}")
         try:
             factory: Callable[..., Product] = point.load()
-        except Exception as error:  # whatever the module of somebody else does when it is imported
+        except Exception as error:  # a foreign module may raise anything when it is imported
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise ValueError(
                 f"{self._kind} {name!r} of {point.value!r} cannot be loaded: {reason}"
@@ -99,7 +99,7 @@ def create(
     `rest_positions`: undeformed vertex positions [any unit], shape (V, 3), any float type.
     `uv`: texture coordinates, shape (U, 2); `face_uv`: the one of each corner, shape (F, 3), or
     None if vertex v has coordinate v (then U = V).
-    `options`: what the method takes; see `create_kahler` and `Loop`. The built-in ones all
+    `options`: those of the method; see `create_kahler` and `Loop`. The built-in ones all
     take `attributes`: by name, values of each vertex, shape (V, k), or a pair of values, shape
     (A, k), and the row of each corner, shape (F, 3), for values that part along seams. They take
     `crease_angle` [degrees], too: edges at which two triangles turn by more at rest stay sharp.

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..mesh.arrays import Floats, Indices, Unsigned
 
-SPARE = 1.25
+GROWTH_FACTOR = 1.25
 """How much more than it needs a stream of one's own takes when it has to grow."""
 
 
@@ -22,7 +22,7 @@ class StreamArrays(NamedTuple):
 
 
 class OwnStream:
-    """The stream a refiner uses when none is lent: it grows to what the frames metric."""
+    """The stream a refiner uses when none is lent: it grows to the size of its frames."""
 
     def __init__(self, columns: int, vertex_capacity: int, triangle_capacity: int) -> None:
         self._most = vertex_capacity, triangle_capacity
@@ -31,12 +31,12 @@ class OwnStream:
         self.source = np.zeros(0, dtype=np.int32)
 
     def reserve(self, vertex_count: int, triangle_count: int) -> None:
-        """Make room for a frame of this size; what was written is lost."""
+        """Make room for a frame of this size; the frame before is lost."""
         if len(self.vertices) < vertex_count:
-            rows = min(int(SPARE * vertex_count), self._most[0])
+            rows = min(int(GROWTH_FACTOR * vertex_count), self._most[0])
             self.vertices = np.zeros((rows, self.vertices.shape[1]), dtype=np.float32)
         if len(self.triangles) < triangle_count:
-            rows = min(int(SPARE * triangle_count), self._most[1])
+            rows = min(int(GROWTH_FACTOR * triangle_count), self._most[1])
             self.triangles = np.zeros((rows, 3), dtype=np.uint32)
             self.source = np.zeros(rows, dtype=np.int32)
 

@@ -13,14 +13,14 @@ shaded triangle flickers. Here a triangle is split in the order in which its edg
     sequence ()             (0,)                (0, 1)
 
 A split only ever cuts subtriangles in two. So the triangulation of a sequence holds every inner
-line of the triangulation of each sequence that it continues: what is there stays there.
+line of the triangulation of each sequence that it continues: no line ever turns.
 
 Each edge can be split up to twice: 271 sequences from () to those of length six, and the number of
 its sequence is all that a triangle keeps from one frame to the next. `transitions` lead from
 sequence and wanted splits to the next sequence:
 
   - Splits taken back leave the sequence from its end. One that is taken back while a later one
-    stays is removed out of order: the rest is what it would be had it never been, and lines may
+    stays is removed out of order: the rest is as if it had never been, and lines may
     turn. That cannot be avoided (the paper says so); it is counted.
   - Splits that come in one frame have no order among them. They are put in the order that gives the
     shortest inner lines in an equilateral triangle, and of equals the one that comes first by edge
@@ -106,8 +106,11 @@ def split_in_order(sequence: Sequence) -> list[Triangle]:
     """
     triangles: list[Triangle] = [(0, 1, 2)]
     for position, edge in enumerate(sequence):
-        start, end = edge, (edge + 1) % 3
-        middle, near_start, near_end = 3 + 3 * edge, 4 + 3 * edge, 5 + 3 * edge
+        start = edge
+        end = (edge + 1) % 3
+        middle = 3 + 3 * edge
+        near_start = 4 + 3 * edge
+        near_end = 5 + 3 * edge
         earlier = sequence[:position].count(edge)
         if earlier == 0:
             triangles = _halved(triangles, start, end, middle)
@@ -127,7 +130,9 @@ def _halved(triangles: list[Triangle], start: int, end: int, point: int) -> list
     for triangle in triangles:
         if start in triangle and end in triangle:
             turn = triangle.index(start)
-            a, b, c = triangle[turn], triangle[turn - 2], triangle[turn - 1]
+            a = triangle[turn]
+            b = triangle[turn - 2]
+            c = triangle[turn - 1]
             result += [(a, point, c), (point, b, c)]
         else:
             result.append(triangle)
@@ -151,7 +156,7 @@ def _splits_of(sequence: Sequence) -> tuple[int, int, int]:
 def _taken_back(sequence: Sequence, wanted: tuple[int, int, int]) -> tuple[Sequence, int]:
     """Leave out the last splits of edges that have too many.
 
-    Returns what is left, and how many were followed by one that stays.
+    Returns the sequence left, and how many splits were followed by one that stays.
     """
     surplus = [max(0, has - want) for has, want in zip(_splits_of(sequence), wanted, strict=True)]
     left: list[int] = []
@@ -242,7 +247,7 @@ def follow_splits(
     """
     removed = 0
     for t in range(states.shape[0]):
-        if configurations[t] == 0:  # most triangles: nothing is left of what they remember
+        if configurations[t] == 0:  # most triangles: they forget their sequence
             states[t] = 0
             continue
         removed += int(removals[states[t], configurations[t]])

@@ -9,7 +9,7 @@ its triangles were made for.
 
 Rounding. Rest and current values come from the same kernel, so an undeformed mesh drops by exactly
 0. Edge vectors are taken in double precision (normals.py), so a mesh far from the origin loses
-nothing. What a rigid motion leaves is rounding, and drops up to `ROUNDING` never
+nothing. A rigid motion leaves rounding only, and drops up to `DROP_ROUNDING` never
 split an edge. Measured on two heads of 2030 triangles in millimetres: 8e-7 for float64 positions
 wherever they are; float32 positions lose bits before they arrive here, 8e-6 around the origin, 9e-5
 one metre away, still far below the default thresholds.
@@ -36,12 +36,12 @@ open jaw; sneer with smile and lowered brows) on a face of 2029 triangles gave 1
 """
 THRESHOLD_TWICE = 0.08
 """Default drop above which an edge is split twice: a flat place bent by 23 degrees."""
-ROUNDING = 1e-5
+DROP_ROUNDING = 1e-5
 """Drops up to this size are rounding (measured, see above)."""
-NARROWEST = 1e-6
+LEAST_WIDTH = 1e-6
 """Least distance of two thresholds; where they are equal there is nothing to blend over."""
 LARGEST_LIMIT = 1e30
-"""Largest threshold but infinity: single precision holds what is measured."""
+"""Largest threshold but infinity: single precision holds all measures."""
 UNDEFINED_NORMAL = 1e-6
 """A normal shorter than this fraction of the lengths that made it is rounding, not a direction."""
 
@@ -93,7 +93,7 @@ class Criterion:
         raise NotImplementedError(f"{type(self).__name__} must have a method mark or measure")
 
     def complaint(self, metric: Floats) -> str:
-        """Say where it has measured what is no number; `metric`: of every edge, shape (E,)."""
+        """Describe the edges whose metric is NaN; `metric`: of every edge, shape (E,)."""
         bad = np.flatnonzero(np.isnan(metric))
         return (
             f"the criterion {type(self).__name__} measures NaN for {len(bad)} of {len(metric)} "
@@ -121,7 +121,7 @@ class Thresholds:
     """Two values of a measure: above the first an edge is split once, above the second twice."""
 
     def __init__(self, once: float, twice: float, meaning: str, *, least: float = 0.0) -> None:
-        """`meaning`: what is measured, for the error; `least`: values up to this never count.
+        """`meaning`: the quantity measured, for the error; `least`: values up to this never count.
 
         Raises ValueError if the two are out of order.
         """
@@ -143,7 +143,7 @@ class Thresholds:
         """What lies between the two: the unit of the metric."""
         if np.isinf(self.twice):
             return self.once if 0.0 < self.once < np.inf else ONE
-        return np.float32(max(float(self.twice - self.once), NARROWEST))
+        return np.float32(max(float(self.twice - self.once), LEAST_WIDTH))
 
     @property
     def most(self) -> np.float32:
@@ -162,7 +162,7 @@ class NormalDrop(Criterion):
         self, threshold_once: float = THRESHOLD_ONCE, threshold_twice: float = THRESHOLD_TWICE
     ) -> None:
         self.thresholds = Thresholds(
-            threshold_once, threshold_twice, "drops of a dot product", least=ROUNDING
+            threshold_once, threshold_twice, "drops of a dot product", least=DROP_ROUNDING
         )
         """Drops above which an edge is split once and twice; may be replaced at any time."""
 
@@ -182,7 +182,8 @@ class NormalDrop(Criterion):
 
     def mark(self, positions: Doubles, normals: Floats, splits: Small) -> None:
         """Write the number of splits of every edge into `splits`, shape (E,)."""
-        once, twice = self.thresholds.once, self.thresholds.twice
+        once = self.thresholds.once
+        twice = self.thresholds.twice
         mark_drops(normals, self._edges, self._rest_dots, once, twice, self._dots, splits)
 
     def measure(self, positions: Doubles, normals: Floats, metric: Floats) -> None:
@@ -197,7 +198,9 @@ def edge_dots(normals: Floats, edges: Unsigned, dots: Floats) -> None:
     """Write the dot product of the normals at both ends of every edge into `dots`, shape (E,)."""
     assert normals.shape[1] == WIDTH and edges.shape[1] == 2
     for e in range(edges.shape[0]):
-        dots[e] = dot(row_of(normals, edges[e, 0]), row_of(normals, edges[e, 1]))
+        start = row_of(normals, edges[e, 0])
+        end = row_of(normals, edges[e, 1])
+        dots[e] = dot(start, end)
 
 
 @njit
@@ -213,7 +216,7 @@ def mark_drops(
     """Write 0, 1 or 2 into `splits`, shape (E,), by the drop of the dot product (as above).
 
     `edges`: end points, shape (E, 2); `once`, `twice`: the thresholds; `dots`: scratch, shape (E,).
-    What is compared lies in a row, so that many edges are compared at once.
+    The numbers to compare lie in a row, so that many edges are compared at once.
     """
     edge_dots(normals, edges, dots)
     for e in range(edges.shape[0]):
@@ -243,9 +246,13 @@ def find_undefined_normals(faces: Unsigned, positions: Doubles, undefined: Flags
     """Flag the vertices, shape (V,), whose normal is nothing but rounding."""
     sums = np.zeros((positions.shape[0], 4))
     for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-        u, v = difference(positions, a, b), difference(positions, a, c)
-        size, normal = np.sqrt(dot(u, u) * dot(v, v)), cross(u, v)
+        a = faces[t, 0]
+        b = faces[t, 1]
+        c = faces[t, 2]
+        u = difference(positions, a, b)
+        v = difference(positions, a, c)
+        size = np.sqrt(dot(u, u) * dot(v, v))
+        normal = cross(u, v)
         for i in range(3):
             add_to_row(sums, faces[t, i], normal)
             sums[faces[t, i], 3] += size

@@ -1,9 +1,9 @@
-"""What the passes of a frame hand on to each other, as plain arrays.
+"""The arrays that the passes of a frame hand on to each other.
 
 Kähler, Haber, Seidel 2003, section 4. A frame has two halves: first it is decided which edges are
 split (`splits`, and how far their points have grown), then points are placed and triangles written
-into `rows`. The arrays stay the same from frame to frame, but for `rows`, which belongs to whoever
-draws.
+into `rows`. The arrays stay the same from frame to frame, but for `rows`, which the caller may
+lend.
 
 Compiled code takes the `FrameBuffers` as they are, or the arrays that it reads: an array alone
 costs a twentieth of a microsecond, in a named tuple twice as much. So passes of the paper's frame,
@@ -82,7 +82,8 @@ def buffers_for(
     mesh: Connectivity, positions: Doubles, points: Floats, normals: Floats
 ) -> FrameBuffers:
     """Make the buffers of a mesh, but for `rows`, of which there are none yet."""
-    edge_count, face_count = len(mesh.edges), len(mesh.faces)
+    edge_count = len(mesh.edges)
+    face_count = len(mesh.faces)
     attribute_edge_count = len(mesh.attribute_edges)
     return FrameBuffers(
         positions=positions,
@@ -110,5 +111,6 @@ def split_everywhere(frame: FrameBuffers, vertex_count: int) -> FrameBuffers:
     frame.splits[:edge_count] = 1
     frame.split_once[:edge_count] = every_edge
     frame.first_points[:edge_count] = vertex_count + every_edge
-    frame.counts[ROWS], frame.counts[ONCE] = vertex_count + edge_count, edge_count
+    frame.counts[ROWS] = vertex_count + edge_count
+    frame.counts[ONCE] = edge_count
     return frame

@@ -21,7 +21,8 @@ from ..mesh.vectors import HALF, QUARTER, THREE_QUARTERS, WIDTH, row_of, write_r
 from .frame import ONCE, ROWS, TRIANGLES, TWICE, FrameBuffers
 from .table import CENTRE
 
-SIDE_BITS, SIDE_MASK = np.uint32(2), np.uint32(3)
+SIDE_BITS = np.uint32(2)
+SIDE_MASK = np.uint32(3)
 """A side of an edge is 4 x triangle + the number of the edge in it (connectivity.py)."""
 PLACE_VALUES = np.array([1, 3, 9], dtype=np.uint16)
 """Of the splits of a triangle's three edges in the number of its configuration."""
@@ -53,14 +54,16 @@ def number_points(
     no meaning. `counts` gets all but centres. Returns the numbers of output rows and triangles, and
     the most splits of an edge.
     """
-    edge_count, face_count = edge_sides.shape[0], configurations.shape[0] - 1
+    edge_count = edge_sides.shape[0]
+    face_count = configurations.shape[0] - 1
     once_count = twice_count = most = 0
     for e in range(edge_count):
         # Written always and counted when split: no branch that a processor could guess wrong.
         split_once[once_count] = e
         once_count += splits[e] > 0
     configurations[:] = 0
-    row, triangle_count = wedge_count, face_count
+    row = wedge_count
+    triangle_count = face_count
     for k in range(once_count):
         e = split_once[k]
         split = splits[e]
@@ -71,19 +74,23 @@ def number_points(
         first_points[e] = row
         row += points
         for i in range(2):
-            t, place = edge_sides[e, i] >> SIDE_BITS, edge_sides[e, i] & SIDE_MASK
+            t = edge_sides[e, i] >> SIDE_BITS
+            place = edge_sides[e, i] & SIDE_MASK
             configurations[t] += split * PLACE_VALUES[place]
             triangle_count += points * (t < face_count)
     for k in range(more_sides.shape[0]):
-        split, side = splits[more_sides[k, 0]], more_sides[k, 1]
+        split = splits[more_sides[k, 0]]
+        side = more_sides[k, 1]
         configurations[side >> SIDE_BITS] += split * PLACE_VALUES[side & SIDE_MASK]
         triangle_count += points_on(split)
     for r in range(edge_count, attribute_edges.shape[0]):
         splits[r] = splits[attribute_edges[r]]
         first_points[r] = row
         row += points_on(splits[r])
-    counts[ROWS], counts[TRIANGLES] = row, triangle_count
-    counts[ONCE], counts[TWICE] = once_count, twice_count
+    counts[ROWS] = row
+    counts[TRIANGLES] = triangle_count
+    counts[ONCE] = once_count
+    counts[TWICE] = twice_count
     return row, triangle_count, int(most)
 
 
@@ -103,12 +110,16 @@ def place_attributes(attribute_edge_uv: Indices, frame: FrameBuffers, values: Fl
     """Write attributes of new points, linearly along attribute edges; `values`: shape (A, k)."""
     vertices = frame.rows
     for r in range(attribute_edge_uv.shape[0]):
-        split, row = frame.splits[r], frame.first_points[r]
+        split = frame.splits[r]
+        row = frame.first_points[r]
         if split == 0:
             continue
-        a, b = attribute_edge_uv[r, 0], attribute_edge_uv[r, 1]
+        a = attribute_edge_uv[r, 0]
+        b = attribute_edge_uv[r, 1]
         for i in range(values.shape[1]):
-            at_a, at_b, column = values[a, i], values[b, i], GEOMETRY_COLUMNS + i
+            at_a = values[a, i]
+            at_b = values[b, i]
+            column = GEOMETRY_COLUMNS + i
             vertices[row + (split >> 1), column] = HALF * (at_a + at_b)
             if split == 2:
                 vertices[row, column] = THREE_QUARTERS * at_a + QUARTER * at_b
@@ -140,7 +151,8 @@ def look_up_triangles(
     assert triangles.shape[1] == subtriangles.shape[2] == WIDTH
     points = np.zeros(CENTRE + 1, np.uint32)
     points[CENTRE] = first_centre
-    one, two = np.uint32(1), np.uint32(2)
+    one = np.uint32(1)
+    two = np.uint32(2)
     count = np.uint32(0)
     for t in range(np.uint32(corners.shape[0])):
         row = table_rows[t]
@@ -152,7 +164,8 @@ def look_up_triangles(
         # The 12 numbered points; those of edges that are not split are never looked up.
         for i in range(3):
             side = triangle_attribute_edges[t, i]
-            edge, against = side >> one, side & one
+            edge = side >> one
+            against = side & one
             first = first_points[edge]
             points[i] = corners[t, i]
             points[3 + 3 * i] = first + (splits[edge] >> 1)  # the only point, or the second

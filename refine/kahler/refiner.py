@@ -163,7 +163,7 @@ class Kahler(BaseRefiner):
         look_up_triangles(*self._of_look_up, self._first_centre, out.triangles, out.source)
 
     def complaint(self) -> str | None:
-        """Say which criterion has measured what is no number in the last frame; None if none has.
+        """Name the criterion that has measured NaN in the last frame; None if none has.
 
         It measures again, for `refine.check`.
         """

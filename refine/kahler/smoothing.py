@@ -50,7 +50,7 @@ from ...jit import njit
 from ..border.registry import Registry
 from ..mesh.arrays import Doubles, Floats, Small, Unsigned, Wide
 from ..mesh.connectivity import Connectivity
-from ..mesh.rings import NEAR, vertex_rings
+from ..mesh.rings import NEAR_COUNT, vertex_rings
 from ..mesh.vectors import (
     HALF,
     ONE,
@@ -66,19 +66,19 @@ from ..mesh.vectors import (
 )
 from .frame import ONCE, TWICE, FrameBuffers
 
-EDGE_END = np.float32(3 / 8)
+EDGE_END_WEIGHT = np.float32(3 / 8)
 """First and second level, interior: end points of the edge or half-edge (Fig. 3, Fig. 4 left)."""
-EDGE_WING = np.float32(1 / 8)
+EDGE_WING_WEIGHT = np.float32(1 / 8)
 """First and second level, interior: the two points beside it (Fig. 3, Fig. 4 left)."""
-BORDER_EDGE_END = np.float32(1 / 2)
+BORDER_END_WEIGHT = np.float32(1 / 2)
 """Border edge: end points (Fig. 3, bottom left)."""
-BORDER_MIDDLE_OWN = np.float32(3 / 4)
+BORDER_OWN_WEIGHT = np.float32(3 / 4)
 """Middle point of a border edge split twice: the rule of a vertex on a border (Fig. 3)."""
-BORDER_MIDDLE_RING = np.float32(1 / 8)
+BORDER_RING_WEIGHT = np.float32(1 / 8)
 """The moved ends of this edge."""
-MIDDLE_OWN = np.float32(5 / 8)
+MIDDLE_OWN_WEIGHT = np.float32(5 / 8)
 """Middle point of an interior edge split twice: valence six, 1 - 6/16 (Fig. 4 right)."""
-MIDDLE_RING = np.float32(1 / 16)
+MIDDLE_RING_WEIGHT = np.float32(1 / 16)
 """Its six neighbours, 3/(8 x 6) (Fig. 4 right)."""
 
 
@@ -104,7 +104,7 @@ class Scheme:
     def prepare(self, frame: FrameBuffers) -> None:
         """Look at the deformed mesh, before the criterion decides.
 
-        What is kept should be differences of positions: refined normals ask `place` twice, first
+        Keep differences of positions only: refined normals call `place` twice, first
         for the mesh as seen from its first vertex with every edge split once.
         """
 
@@ -113,7 +113,7 @@ class Scheme:
         raise NotImplementedError(f"{type(self).__name__} must have a method place")
 
     def place_positions(self, frame: FrameBuffers) -> None:
-        """Do the same for whoever writes the normals; as `place` does it, unless it is written."""
+        """Write positions only; calls `place` unless a subclass writes it."""
         self.place(frame)
 
     def place_centres(self, frame: FrameBuffers) -> None:
@@ -125,10 +125,10 @@ class Scheme:
         return type(self).measure is not Scheme.measure
 
     def measure(self, displacements: Floats, turns: Floats) -> None:
-        """Tell the criterion `displacement` what a split of each edge changes, shape (E,) each.
+        """Write how far a split would move the middle of each edge and turn its normal, (E,) each.
 
-        How far it would move the middle, and by what angle [rad], times the length of the edge, it
-        would turn the normal there.
+        The turn is an angle [rad] times the length of the edge. The criterion `displacement` reads
+        both.
         """
         raise NotImplementedError(f"{type(self).__name__} has no method measure")
 
@@ -177,7 +177,8 @@ class LoopScheme(Scheme):
 @njit
 def write_mean_normal(rows: Floats, p: np.uint32, q: np.uint32, row: np.uint32) -> None:
     """Write the unit mean of the normals of two rows."""
-    write_row(rows, row, unit(plus(row_of(rows, p, 3), row_of(rows, q, 3))), 3)
+    total = plus(row_of(rows, p, 3), row_of(rows, q, 3))
+    write_row(rows, row, unit(total), 3)
 
 
 @njit
@@ -191,7 +192,8 @@ def geomorph_vertices(
     """
     vertex_geomorph[:] = ZERO
     for e in edges:
-        a, b = ends[e, 0], ends[e, 1]
+        a = ends[e, 0]
+        b = ends[e, 1]
         vertex_geomorph[a] = max(vertex_geomorph[a], geomorph[e])
         vertex_geomorph[b] = max(vertex_geomorph[b], geomorph[e])
 
@@ -212,12 +214,12 @@ def place_vertices(
 
     `own` to `others`: the arrays of `Rings`; `geomorph`: of each vertex, shape (V,).
     """
-    assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR
+    assert points.shape[1] == normals.shape[1] == WIDTH and near.shape[1] == NEAR_COUNT
     for v in range(points.shape[0]):
         point = row_of(points, v)
         if geomorph[v] > ZERO:
             total = row_of(points, near[v, 0])
-            for k in range(1, NEAR):
+            for k in range(1, NEAR_COUNT):
                 total = plus(total, row_of(points, near[v, k]))
             for k in range(starts[v], starts[v + 1]):
                 total = plus(total, row_of(points, others[k]))
@@ -245,19 +247,23 @@ def place_middles(
     `middles`: points as they are when fully grown, shape (E, 3).
     """
     for e in edges:
-        a, b, c, d = around[e, 0], around[e, 1], around[e, 2], around[e, 3]
+        a = around[e, 0]
+        b = around[e, 1]
+        c = around[e, 2]
+        d = around[e, 3]
         row = first_points[e] + (splits[e] >> 1)
         ends = plus(row_of(points, a), row_of(points, b))
-        middle = times(BORDER_EDGE_END, ends)
+        middle = times(BORDER_END_WEIGHT, ends)
         if c != a:  # an edge inside the mesh
             wings = plus(row_of(points, c), row_of(points, d))
-            middle = plus(times(EDGE_END, ends), times(EDGE_WING, wings))
+            middle = plus(times(EDGE_END_WEIGHT, ends), times(EDGE_WING_WEIGHT, wings))
         write_row(middles, e, middle)
         if geomorph[e] < ONE:
             straight = times(HALF, plus(row_of(vertices, a), row_of(vertices, b)))
             middle = mix(straight, middle, geomorph[e])
         write_row(vertices, row, middle)
-        write_row(vertices, row, unit(plus(row_of(normals, a), row_of(normals, b))), 3)
+        normal = unit(plus(row_of(normals, a), row_of(normals, b)))
+        write_row(vertices, row, normal, 3)
 
 
 @njit
@@ -265,7 +271,9 @@ def wing(
     points: Floats, middles: Floats, ends: tuple[int, int], e: np.uint32, geomorph: np.float32
 ) -> Vector:
     """The first-level point of a neighbour edge, as far as it has grown out of its midpoint."""
-    straight = times(HALF, plus(row_of(points, ends[0]), row_of(points, ends[1])))
+    start = row_of(points, ends[0])
+    end = row_of(points, ends[1])
+    straight = times(HALF, plus(start, end))
     return mix(straight, row_of(middles, e), geomorph)
 
 
@@ -295,24 +303,37 @@ def place_quarters(
     """
     for e in edges:
         near_a = first_points[e]
-        centre, near_b = np.uint32(near_a + 1), np.uint32(near_a + 2)
-        a, b, c, d = around[e, 0], around[e, 1], around[e, 2], around[e, 3]
-        m, moved_a, moved_b = row_of(middles, e), row_of(vertices, a), row_of(vertices, b)
-        ends_a, ends_b, moved = plus(moved_a, m), plus(moved_b, m), plus(moved_a, moved_b)
+        centre = np.uint32(near_a + 1)
+        near_b = np.uint32(near_a + 2)
+        a = around[e, 0]
+        b = around[e, 1]
+        c = around[e, 2]
+        d = around[e, 3]
+        m = row_of(middles, e)
+        moved_a = row_of(vertices, a)
+        moved_b = row_of(vertices, b)
+        ends_a = plus(moved_a, m)
+        ends_b = plus(moved_b, m)
+        moved = plus(moved_a, moved_b)
         if c != a:  # an edge inside the mesh
-            ac, bc, ad, bd = wings[e, 0], wings[e, 1], wings[e, 2], wings[e, 3]
+            ac = wings[e, 0]
+            bc = wings[e, 1]
+            ad = wings[e, 2]
+            bd = wings[e, 3]
             p = wing(points, middles, (a, c), ac, geomorph_of_split(splits, once, ac))
             q = wing(points, middles, (b, c), bc, geomorph_of_split(splits, once, bc))
             r = wing(points, middles, (a, d), ad, geomorph_of_split(splits, once, ad))
             s = wing(points, middles, (b, d), bd, geomorph_of_split(splits, once, bd))
-            wings_a, wings_b = plus(p, r), plus(q, s)
+            wings_a = plus(p, r)
+            wings_b = plus(q, s)
             ring = plus(moved, plus(wings_a, wings_b))
-            beside_a = plus(times(EDGE_END, ends_a), times(EDGE_WING, wings_a))
-            beside_b = plus(times(EDGE_END, ends_b), times(EDGE_WING, wings_b))
-            middle = plus(times(MIDDLE_OWN, m), times(MIDDLE_RING, ring))
+            beside_a = plus(times(EDGE_END_WEIGHT, ends_a), times(EDGE_WING_WEIGHT, wings_a))
+            beside_b = plus(times(EDGE_END_WEIGHT, ends_b), times(EDGE_WING_WEIGHT, wings_b))
+            middle = plus(times(MIDDLE_OWN_WEIGHT, m), times(MIDDLE_RING_WEIGHT, ring))
         else:
-            beside_a, beside_b = times(BORDER_EDGE_END, ends_a), times(BORDER_EDGE_END, ends_b)
-            middle = plus(times(BORDER_MIDDLE_OWN, m), times(BORDER_MIDDLE_RING, moved))
+            beside_a = times(BORDER_END_WEIGHT, ends_a)
+            beside_b = times(BORDER_END_WEIGHT, ends_b)
+            middle = plus(times(BORDER_OWN_WEIGHT, m), times(BORDER_RING_WEIGHT, moved))
         geomorph = twice[e]
         write_row(vertices, near_a, mix(times(HALF, ends_a), beside_a, geomorph))
         write_row(vertices, centre, mix(m, middle, geomorph))
@@ -322,7 +343,7 @@ def place_quarters(
 
 
 @njit
-def place_by_loop(  # noqa: PLR0913 - all of it at once: four calls take longer than what they do
+def place_by_loop(  # noqa: PLR0913 - all of it at once: four calls take longer than their work
     points: Floats,
     normals: Floats,
     around: Unsigned,

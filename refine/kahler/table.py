@@ -83,8 +83,11 @@ def _point_coordinates() -> Wide:
     corners = 4 * np.eye(3, dtype=np.int64)
     points = list(corners)
     for edge in range(3):
-        start, end = corners[edge], corners[(edge + 1) % 3]
-        points += [(start + end) // 2, (3 * start + end) // 4, (start + 3 * end) // 4]
+        start = corners[edge]
+        end = corners[(edge + 1) % 3]
+        points.append((start + end) // 2)
+        points.append((3 * start + end) // 4)
+        points.append((start + 3 * end) // 4)
     return np.array(points)
 
 
@@ -101,7 +104,9 @@ def outline(splits: tuple[int, int, int]) -> list[int]:
     """Return the points on the border of a triangle in order, beginning with corner 0."""
     points: list[int] = []
     for edge in range(3):
-        middle, near_start, near_end = 3 + 3 * edge, 4 + 3 * edge, 5 + 3 * edge
+        middle = 3 + 3 * edge
+        near_start = 4 + 3 * edge
+        near_end = 5 + 3 * edge
         points.append(edge)
         points += ([], [middle], [near_start, middle, near_end])[splits[edge]]
     return points

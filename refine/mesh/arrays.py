@@ -1,4 +1,4 @@
-"""Array types by what they hold: kernels are compiled for these and no others."""
+"""Array types by their content: kernels are compiled for these and no others."""
 
 import numpy as np
 import numpy.typing as npt

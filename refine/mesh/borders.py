@@ -10,12 +10,12 @@ import numpy as np
 from .arrays import Doubles, Unsigned
 from .connectivity import Connectivity
 
-CORNER = 0.5
+CORNER_COSINE = 0.5
 """Cosine of 60 degrees: where a border turns by more it has a corner. Chosen: the holes of eyes and
 mouth of the built-in head turn by up to 38 degrees along their sides, and by 62 and more at their
 corners; a hexagonal hole may still be round."""
-ROUNDING = 1e-9
-"""What a turn of 60 degrees may miss them by and be none."""
+TURN_ROUNDING = 1e-9
+"""A turn that misses 60 degrees by less than this is none."""
 
 
 def border_neighbours(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
@@ -23,16 +23,22 @@ def border_neighbours(mesh: Connectivity, rest_positions: Doubles) -> Unsigned:
 
     A vertex where no border runs on is its own neighbour, twice. `rest_positions`: shape (V, 3).
     """
-    neighbours = np.repeat(np.arange(mesh.vertex_count, dtype=np.uint32)[:, None], 2, axis=1)
+    every_vertex = np.arange(mesh.vertex_count, dtype=np.uint32)
+    neighbours = np.stack([every_vertex, every_vertex], axis=1)
     ends = mesh.edges[~mesh.around.is_interior].astype(np.uint32)
-    here, there = ends.ravel(), ends[:, ::-1].ravel()
+    here = ends.ravel()
+    there = ends[:, ::-1].ravel()
     runs_on = np.bincount(here, minlength=mesh.vertex_count)[here] == 2
-    here, there = here[runs_on], there[runs_on]
+    here = here[runs_on]
+    there = there[runs_on]
     order = np.argsort(here, kind="stable")
-    vertices, pairs = here[order][::2], there[order].reshape(-1, 2)
+    vertices = here[order][::2]
+    pairs = there[order].reshape(-1, 2)
     arriving = rest_positions[vertices] - rest_positions[pairs[:, 0]]
     leaving = rest_positions[pairs[:, 1]] - rest_positions[vertices]
     lengths = np.linalg.norm(arriving, axis=1) * np.linalg.norm(leaving, axis=1)
-    is_straight = np.einsum("vi,vi->v", arriving, leaving) >= (CORNER - ROUNDING) * lengths
+    is_straight = (
+        np.einsum("vi,vi->v", arriving, leaving) >= (CORNER_COSINE - TURN_ROUNDING) * lengths
+    )
     neighbours[vertices[is_straight]] = pairs[is_straight]
     return neighbours

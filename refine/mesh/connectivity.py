@@ -19,7 +19,7 @@ boundary rules, which read the end points only, and so from all sides in the sam
 
 A *crease* is an edge inside the mesh that is kept sharp: it is a border, too (creases.py).
 
-Wedges and attribute edges, by which texture seams part, are told in seams.py.
+seams.py describes wedges and attribute edges, by which texture seams part.
 
 A triangle that names a vertex twice has no area and no edges: it is handed through as it is.
 """
@@ -109,7 +109,7 @@ def connect(
     """Build the connectivity of triangles `faces`, shape (F, 3), with indices below `vertex_count`.
 
     `face_uv`: texture coordinate index of each corner, shape (F, 3); None when each vertex has one.
-    What it returns is read only.
+    The result is read only.
     Raises ValueError for other shapes or types and for indices out of range.
     """
     return connect_writable(faces, vertex_count, face_uv).read_only()
@@ -168,11 +168,14 @@ def find_edges(faces: Unsigned, vertex_count: int) -> tuple[Indices, Indices, Un
     following = np.empty(half_edge_count, np.int32)
     count = 0
     for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        a = faces[t, 0]
+        b = faces[t, 1]
+        c = faces[t, 2]
         if a == b or b == c or c == a:
             continue
         for i in range(3):
-            start, end = np.int32(faces[t, i]), np.int32(faces[t, (i + 1) % 3])
+            start = np.int32(faces[t, i])
+            end = np.int32(faces[t, (i + 1) % 3])
             edge = heads[start + end]
             while edge >= 0:
                 if edges[edge, 0] == start and edges[edge, 1] == end:
@@ -183,7 +186,8 @@ def find_edges(faces: Unsigned, vertex_count: int) -> tuple[Indices, Indices, Un
             if edge < 0:
                 edge = np.int32(count)
                 count += 1
-                edges[edge, 0], edges[edge, 1] = start, end
+                edges[edge, 0] = start
+                edges[edge, 1] = end
                 following[edge] = heads[start + end]
                 heads[start + end] = edge
             edge_of[3 * t + i] = edge
@@ -202,13 +206,19 @@ def find_surroundings(
     wings = np.empty((edges.shape[0], 4), np.uint32)
     is_interior = np.zeros(edges.shape[0], np.bool_)
     for e in range(edges.shape[0]):
-        a, b = np.uint32(edges[e, 0]), np.uint32(edges[e, 1])
-        points[e, 0], points[e, 1], points[e, 2], points[e, 3] = a, b, a, a
+        a = np.uint32(edges[e, 0])
+        b = np.uint32(edges[e, 1])
+        points[e, 0] = a
+        points[e, 1] = b
+        points[e, 2] = a
+        points[e, 3] = a
         wings[e, :] = np.uint32(e)
-        t, i = sides[e, 0] >> 2, sides[e, 0] & 3
+        t = sides[e, 0] >> 2
+        i = sides[e, 0] & 3
         if side_counts[e] != 2:
             continue
-        u, j = sides[e, 1] >> 2, sides[e, 1] & 3
+        u = sides[e, 1] >> 2
+        j = sides[e, 1] & 3
         if faces[u, j] != b:
             continue
         is_interior[e] = True
@@ -225,6 +235,7 @@ def _more_sides(edge_of: Indices, sides: Unsigned, side_counts: Indices) -> Unsi
     """Sides of edges of more than two triangles that `edge_sides` has no room for."""
     proper = np.flatnonzero(edge_of >= 0)
     crowded = proper[side_counts[edge_of[proper]] > 2]
-    edges, side = edge_of[crowded], crowded // 3 * 4 + crowded % 3
+    edges = edge_of[crowded]
+    side = crowded // 3 * 4 + crowded % 3
     is_more = (sides[edges] != side[:, None]).all(axis=1)
     return np.stack([edges[is_more], side[is_more]], axis=1).astype(np.uint32)

@@ -26,7 +26,7 @@ from .connectivity import Connectivity
 
 
 class Sectors(NamedTuple):
-    """A mesh with its vertices told apart by sectors; without creases they are the vertices."""
+    """A mesh whose vertices are parted by sectors; without creases a sector is a vertex."""
 
     corners: Unsigned
     """Sector of each corner, shape (F, 3). Vertex v has sector v, and others after all V."""
@@ -75,7 +75,9 @@ def dihedral_angles(mesh: Connectivity, positions: Doubles) -> Doubles:
     0 for all other edges, and beside triangles without an area.
     """
     corners = positions[mesh.faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    first_sides = corners[:, 1] - corners[:, 0]
+    last_sides = corners[:, 2] - corners[:, 0]
+    normals = np.cross(first_sides, last_sides)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     np.divide(normals, lengths, out=normals, where=lengths > 0.0)
     angles = np.zeros(len(mesh.edges))
@@ -131,7 +133,9 @@ def _ends_on_side(
     start = corners[triangles, places]
     end = corners[triangles, (places + 1) % 3]
     runs_along = mesh.faces[triangles, places] == mesh.edges[edges, 0]
-    return np.stack([np.where(runs_along, start, end), np.where(runs_along, end, start)], axis=1)
+    first = np.where(runs_along, start, end)
+    last = np.where(runs_along, end, start)
+    return np.stack([first, last], axis=1)
 
 
 @njit
@@ -145,7 +149,7 @@ def _joined_corners(
 ) -> Indices:
     """A corner that stands for all of the same sector, for every corner, shape (3 F,).
 
-    Corners at a vertex without creases are one sector, whatever edges join them.
+    Corners at a vertex without creases are one sector, also where no edge joins them.
     """
     corner_count = faces.size
     above = np.empty(corner_count, np.int32)
@@ -161,14 +165,16 @@ def _joined_corners(
         is_more = k >= edges.shape[0]
         e = more_sides[k - edges.shape[0], 0] if is_more else np.uint32(k)
         other = more_sides[k - edges.shape[0], 1] if is_more else edge_sides[e, 1]
-        t, u = edge_sides[e, 0] >> 2, other >> 2
+        t = edge_sides[e, 0] >> 2
+        u = other >> 2
         if is_sharp[e] or u >= faces.shape[0]:
             continue
         for i in range(2):
             v = np.uint32(edges[e, i])
             if not on_crease[v]:
                 continue
-            here, there = 0, 0
+            here = 0
+            there = 0
             for j in range(3):
                 if faces[t, j] == v:
                     here = 3 * int(t) + j

@@ -1,8 +1,8 @@
 """What lies around each vertex, sorted once, for loops that threads share (threads.py).
 
 A loop over triangles that adds to their corners cannot be shared: two of them meet at a vertex. One
-over vertices can, and where each takes what is around it in the order in which the loop over
-triangles, or over edges, would have come to it, its sums have the same bits.
+over vertices can. Each vertex adds its triangles in the order in which the loop over triangles
+would have come to them, and its edges likewise, so its sums have the same bits.
 """
 
 from typing import NamedTuple

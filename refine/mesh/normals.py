@@ -38,8 +38,8 @@ def cross_product(positions: Doubles, a: np.uint32, b: np.uint32, c: np.uint32) 
 def normalise(vectors: Floats) -> None:
     """Bring vectors, shape (V, 3), to length one; those that are zero stay zero.
 
-    Without a branch the loop takes several at a time. What it leaves as it is, because single
-    precision does not hold its square, comes after it, one by one.
+    Without a branch the loop takes several at a time. Vectors whose square single precision
+    does not hold are left to a second loop, which takes them one by one.
     """
     assert vectors.shape[1] == WIDTH
     left_count = 0
@@ -65,7 +65,9 @@ def vertex_normals(positions: Doubles, faces: Unsigned, normals: Floats) -> None
     assert positions.shape[1] == faces.shape[1] == normals.shape[1] == WIDTH
     normals[:] = ZERO
     for t in range(faces.shape[0]):
-        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        a = faces[t, 0]
+        b = faces[t, 1]
+        c = faces[t, 2]
         normal = cross_product(positions, a, b, c)
         add_to_row(normals, a, normal)
         add_to_row(normals, b, normal)

@@ -20,11 +20,11 @@ import numpy.typing as npt
 from .arrays import Doubles, Floats, Unsigned
 from .connectivity import Connectivity
 
-BORDER_OWN = 3 / 4
+BORDER_OWN_WEIGHT = 3 / 4
 """Vertex on a border curve (Fig. 3, bottom right)."""
-NEAR = 8
+NEAR_COUNT = 8
 """Vertices of a ring that stand in a table."""
-BORDER_RING = 1 / 8
+BORDER_RING_WEIGHT = 1 / 8
 """Its two neighbours on the curve (Fig. 3, bottom right)."""
 
 
@@ -38,7 +38,7 @@ class Rings(NamedTuple):
     """
 
     own: Floats
-    """Weight of the vertex itself, less what it gets in its ring, shape (V,)."""
+    """Weight of the vertex itself, less its weight in its own ring, shape (V,)."""
     ring: Floats
     """Weight of every vertex in the ring, shape (V,); 0 where the vertex never moves."""
     near: Unsigned
@@ -64,25 +64,30 @@ def vertex_rings(connectivity: Connectivity) -> Rings:
     inside_valence = valence[is_inside]
     ring[is_inside] = warren_weight(inside_valence)
     own[is_inside] = 1.0 - inside_valence * ring[is_inside]
-    ring[is_on_curve] = BORDER_RING
-    own[is_on_curve] = BORDER_OWN
+    ring[is_on_curve] = BORDER_RING_WEIGHT
+    own[is_on_curve] = BORDER_OWN_WEIGHT
 
-    centres, neighbours = ends.ravel(), ends[:, ::-1].ravel()
+    centres = ends.ravel()
+    neighbours = ends[:, ::-1].ravel()
     is_in_ring = is_inside[centres] | (is_on_curve[centres] & np.repeat(is_border, 2))
-    centres, neighbours = centres[is_in_ring], neighbours[is_in_ring]
+    centres = centres[is_in_ring]
+    neighbours = neighbours[is_in_ring]
     order = np.argsort(centres, kind="stable")
-    centres, neighbours = centres[order], neighbours[order]
+    centres = centres[order]
+    neighbours = neighbours[order]
     sizes = np.bincount(centres, minlength=vertex_count)
     place = np.arange(len(centres)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-    is_near = place < NEAR
-    near = np.repeat(np.arange(vertex_count, dtype=np.uint32)[:, None], NEAR, axis=1)
+    is_near = place < NEAR_COUNT
+    near = np.repeat(np.arange(vertex_count, dtype=np.uint32)[:, None], NEAR_COUNT, axis=1)
     near[centres[is_near], place[is_near]] = neighbours[is_near]
-    own -= ring * np.maximum(NEAR - sizes, 0)
+    own -= ring * np.maximum(NEAR_COUNT - sizes, 0)
     return Rings(
         own=own.astype(np.float32),
         ring=ring.astype(np.float32),
         near=near,
-        starts=np.concatenate([[0], np.cumsum(np.maximum(sizes - NEAR, 0))]).astype(np.uint32),
+        starts=np.concatenate([[0], np.cumsum(np.maximum(sizes - NEAR_COUNT, 0))]).astype(
+            np.uint32
+        ),
         others=neighbours[~is_near].astype(np.uint32),
     )
 

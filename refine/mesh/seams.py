@@ -1,7 +1,7 @@
-r"""Texture seams: where corners of one vertex look different, and equal vertices told apart.
+r"""Texture seams: where corners of one vertex look different; and doubled vertices, joined.
 
-`faces` say where a corner is, `face_uv` what it looks like. Geometry is worked out per vertex and
-edge; the output needs one row per
+`faces` give the vertex of a corner, `face_uv` its texture coordinate. Geometry is worked out
+per vertex and edge; the output needs one row per
 
   *wedge*: a pair (vertex, texture coordinate). Wedges 0..V-1 are the vertices, seam copies follow;
   *attribute edge*: an edge with the texture coordinates of one side; 0..E-1 are the edges, then
@@ -21,8 +21,8 @@ from .arrays import Doubles, Flags, Indices, Unsigned, Wide
 from .validation import checked_mesh, size_of, used_vertices
 
 SAME_PLACE = 1e-9
-"""Vertices no farther apart than this, in sizes of the mesh, are doubled ones: what is computed
-twice, as sin(0) and sin(2 pi), differs by its last bits."""
+"""Vertices no farther apart than this, in sizes of the mesh, are doubled ones. A place computed
+twice, as by sin(0) and sin(2 pi), differs in its last bits."""
 LAST_BITS = 2.0
 """Steps of the type of the positions by which doubled vertices may differ."""
 
@@ -148,7 +148,8 @@ def _near_pairs(places: Doubles, distance: float) -> Wide:
     lowest = places.min(axis=0)
     side = max(4.0 * distance, 1e-6 * size_of(places))  # so that a number of 64 bits names a cube
     cubes = [np.floor((places - lowest + away) / side) + 1 for away in (-distance, distance)]
-    keys, members = [], []
+    keys = []
+    members = []
     for corner in itertools.product((0, 1), repeat=3):
         cube = np.stack([cubes[end][:, axis] for axis, end in enumerate(corner)], axis=1)
         is_other = (np.array(corner) == 0) | (cubes[0] != cubes[1])

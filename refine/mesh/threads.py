@@ -2,11 +2,11 @@
 
 A kernel is called as kernel(first, last, ...). It writes what belongs to the items from first to
 last, and reads nothing that the loop writes elsewhere: so a frame has the same bits, however many
-threads there are, and whoever did what.
+threads there are and in which order they run.
 
 Parts of a loop are taken as threads come to them. Where a core is busy with other things the rest
 is done on the others, and nobody waits for a thread that has not begun. There are as many threads
-as numba would take: one for each core, or what the environment says by NUMBA_NUM_THREADS.
+as numba would take: one for each core, or as many as NUMBA_NUM_THREADS says.
 """
 
 import os
@@ -14,12 +14,12 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
-PART = 1 << 15
+ITEMS_OF_PART = 1 << 15
 """Items whose loop is worth waking a thread, which takes a tenth of a millisecond."""
-PARTS = 4
+PARTS_OF_THREAD = 4
 """Into how many parts the share of a thread is cut, so that a slow one holds nobody up for long."""
 
-MOST = int(os.environ.get("NUMBA_NUM_THREADS") or 0) or (
+THREAD_COUNT = int(os.environ.get("NUMBA_NUM_THREADS") or 0) or (
     len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 )
 """Threads that share a loop, the one that calls among them."""
@@ -33,7 +33,7 @@ def share(kernel: Callable[..., object], count: int, *arguments: object) -> None
     if threads == 1:
         kernel(0, count, *arguments)
         return
-    cuts = [count * k // (threads * PARTS) for k in range(threads * PARTS + 1)]
+    cuts = [count * k // (threads * PARTS_OF_THREAD) for k in range(threads * PARTS_OF_THREAD + 1)]
     parts = iter(list(pairwise(cuts)))
 
     def work() -> None:
@@ -59,9 +59,9 @@ def beside(task: Callable[[], object], count: int) -> Callable[[], object]:
 
 def threads_for(count: int) -> int:
     """How many threads, this one among them, a loop over `count` items is worth."""
-    if count < 2 * PART:  # of small meshes, whose frame this is a part of
+    if count < 2 * ITEMS_OF_PART:  # of small meshes, whose frame this is a part of
         return 1
-    return max(min(count // PART, MOST), 1)
+    return max(min(count // ITEMS_OF_PART, THREAD_COUNT), 1)
 
 
 def _threads() -> ThreadPoolExecutor:

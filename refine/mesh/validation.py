@@ -1,7 +1,7 @@
-"""Checks of positions and triangles that are handed in, with errors that say what to do.
+"""Checks of positions and triangles that are handed in, with errors that say how to mend them.
 
-All raise ValueError with: which argument, what it was, what is allowed. What passes is copied, so
-that later changes to the caller's arrays cannot reach a frame.
+All raise ValueError and name the argument, its value and the values allowed. Arrays that pass are
+copied, so that later changes to the caller's arrays cannot reach a frame.
 """
 
 from typing import Any
@@ -12,11 +12,11 @@ import numpy.typing as npt
 from ...jit import njit
 from .arrays import Doubles, Flags, Floats, Wide
 
-LARGEST = 1e15
+LARGEST_COORDINATE = 1e15
 """No coordinate may be larger: cross products of edges have to stay finite in single precision."""
-SIZES = 1e-6, 1e9
-"""Sizes of a mesh, longest side of its box, in which single precision tells normals from rounding.
-Measured: grids with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
+MESH_SIZES = 1e-6, 1e9
+"""Sizes of a mesh, longest side of its box, in which normals are more than rounding. Measured:
+ grids with edges of a fortieth of that are refined as ever from 1e-7 to 1e9."""
 
 _DOUBLE = np.dtype(np.float64)
 
@@ -41,18 +41,19 @@ def checked_mesh(
     is_used = used_vertices(triangles, len(given))
     with np.errstate(over="ignore"):
         checked = np.array(given, dtype=np.float64, order="C")
-    is_good = (np.abs(checked) < LARGEST).all(axis=1)
+    is_good = (np.abs(checked) < LARGEST_COORDINATE).all(axis=1)
     bad = np.flatnonzero(is_used & ~is_good)
     if len(bad) > 0:
         raise ValueError(
-            f"{name} must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
+            f"{name} must be finite and below {LARGEST_COORDINATE:g}, but vertex {bad[0]} is "
             f"{given[bad[0]]} ({len(bad)} such vertices in all); repair the mesh before "
             "binding it"
         )
     size = size_of(checked[is_used])
-    if size != 0.0 and not SIZES[0] <= size <= SIZES[1]:
+    least, most = MESH_SIZES
+    if size != 0.0 and not least <= size <= most:
         raise ValueError(
-            f"{name} must extend over {SIZES[0]:g} to {SIZES[1]:g} (or lie all at one place), but "
+            f"{name} must extend over {least:g} to {most:g} (or lie all at one place), but "
             f"extend over {size:g}; take another unit of length, at binding and in all frames"
         )
     checked[~is_good] = checked[is_used.argmax()] if is_used.any() else 0.0
@@ -72,9 +73,9 @@ def size_of(positions: Doubles) -> float:
 
 
 def as_array(name: str, given: npt.ArrayLike, wanted: str) -> npt.NDArray[Any]:
-    """Return what was given as an array; raises ValueError if it is ragged or has masked entries.
+    """Return the argument as an array; raises ValueError if it is ragged or has masked entries.
 
-    `wanted`: what it should be, for the error.
+    `wanted`: the kind of array that is allowed, for the error.
     """
     try:
         array = np.asarray(given)
@@ -116,10 +117,9 @@ def take_positions(
 ) -> None:
     """Copy the positions of a frame, shape (V, 3), in double and in single precision.
 
-    Raises ValueError unless all that are used are finite and below LARGEST; `is_used`: which those
-    are, shape (V,). Others that are not come out where the first point lies that is used. An array
-    that is no plain one of doubles is copied first, so that compiled code has one kind of array to
-    take.
+    Raises ValueError unless all used positions are finite and below LARGEST_COORDINATE; `is_used`:
+    flags of these, shape (V,). Bad unused positions move to the first used one. An array that is no
+    plain one of doubles is copied first, so that compiled code has one kind of array to take.
     """
     source: npt.NDArray[Any] = given
     if given.dtype is not _DOUBLE or not given.flags.carray:
@@ -127,11 +127,11 @@ def take_positions(
         source = positions
     if copy_finite(source, positions, points) == 0:
         return
-    is_bad = ~(np.abs(positions) < LARGEST).all(axis=1)
+    is_bad = ~(np.abs(positions) < LARGEST_COORDINATE).all(axis=1)
     bad = np.flatnonzero(is_bad & is_used)
     if len(bad) > 0:
         raise ValueError(
-            f"positions must be finite and below {LARGEST:g}, but vertex {bad[0]} is "
+            f"positions must be finite and below {LARGEST_COORDINATE:g}, but vertex {bad[0]} is "
             f"{given[bad[0]]} ({len(bad)} such vertices in all); what moves the mesh has blown up"
         )
     first = is_used.argmax()
@@ -143,12 +143,14 @@ def take_positions(
 def copy_finite(given: Doubles, positions: Doubles, points: Floats) -> int:
     """Copy positions, shape (V, 3), in double and single precision; count numbers too large.
 
-    That is NaN, or not below LARGEST: 0 unless what moves the mesh has blown up.
+    That is NaN, or not below LARGEST_COORDINATE: 0 unless what moves the mesh has blown up.
     """
-    numbers, copied, rounded = given.reshape(-1), positions.reshape(-1), points.reshape(-1)
+    numbers = given.reshape(-1)
+    copied = positions.reshape(-1)
+    rounded = points.reshape(-1)
     finite = 0  # counted, not left early: so the loop takes several at a time
     for k in range(numbers.size):
         copied[k] = numbers[k]
         rounded[k] = numbers[k]
-        finite += abs(numbers[k]) < LARGEST
+        finite += abs(numbers[k]) < LARGEST_COORDINATE
     return int(numbers.size - finite)

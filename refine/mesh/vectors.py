@@ -15,11 +15,16 @@ Vector = tuple[Any, Any, Any]
 WIDTH = 3
 """Columns of a row. A kernel that asserts it is faster: the compiler need not multiply by it."""
 
-ZERO, HALF, ONE = np.float32(0.0), np.float32(0.5), np.float32(1.0)
-THIRD, QUARTER, THREE_QUARTERS = np.float32(1 / 3), np.float32(0.25), np.float32(0.75)
+ZERO = np.float32(0.0)
+HALF = np.float32(0.5)
+ONE = np.float32(1.0)
+THIRD = np.float32(1 / 3)
+QUARTER = np.float32(0.25)
+THREE_QUARTERS = np.float32(0.75)
 TINY = np.finfo(np.float32).tiny
-SHORT, LONG = np.float32(1e-30), np.float32(1e37)
-"""Squares of lengths between which single precision tells a length to the last bit."""
+SHORT_SQUARE = np.float32(1e-30)
+LONG_SQUARE = np.float32(1e37)
+"""Squares of lengths between which single precision holds a length to the last bit."""
 
 
 @njit
@@ -42,7 +47,7 @@ def plus(u: Vector, v: Vector) -> Vector:
 
 @njit
 def less(u: Vector, share: Any, v: Vector) -> Vector:
-    """What is left of u without a share of v."""
+    """Vector u less a share of v."""
     return u[0] - share * v[0], u[1] - share * v[1], u[2] - share * v[2]
 
 
@@ -55,7 +60,7 @@ def times(share: Any, v: Vector) -> Vector:
 @njit
 def mix(start: Vector, end: Vector, share: Any) -> Vector:
     """A share of the way from one vector to another; to the last bit one of them at 0 and at 1."""
-    if share == ONE:  # what is not blended has gone all the way
+    if share == ONE:  # points of frames that are not blended have gone all the way
         return end
     return plus(times(ONE - share, start), times(share, end))
 
@@ -72,7 +77,7 @@ def unit(v: Vector) -> Vector:
 @njit
 def is_held(squared: Any) -> Any:
     """Whether single precision holds the square of a length; asked without a branch."""
-    return (SHORT < squared) & (squared < LONG)
+    return (SHORT_SQUARE < squared) & (squared < LONG_SQUARE)
 
 
 @njit

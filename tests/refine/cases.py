@@ -7,7 +7,7 @@ import numpy.typing as npt
 from hypothesis import strategies as st
 
 from risorius import refine
-from risorius.refine.beyond.blending import RAMP
+from risorius.refine.beyond.blending import RAMP_WIDTH
 from tests import meshes
 from tests.refine import plain_twin
 
@@ -36,8 +36,8 @@ class GivenMetric(refine.Criterion):
 
     def geomorph(self, edges: npt.NDArray[np.int32]) -> plain_twin.GeomorphWeights:
         """What blending makes of the metrics, for the plain twin."""
-        once = np.clip(self.metric / RAMP, 0, 1)
-        twice = np.clip((self.metric - 1) / RAMP, 0, 1)
+        once = np.clip(self.metric / RAMP_WIDTH, 0, 1)
+        twice = np.clip((self.metric - 1) / RAMP_WIDTH, 0, 1)
         names = [plain_twin.edge_name(int(a), int(b)) for a, b in edges]
         return {n: (float(p), float(q)) for n, p, q in zip(names, once, twice, strict=True)}
 

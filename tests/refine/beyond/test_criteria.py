@@ -194,7 +194,7 @@ def test_displacement(scheme):
 def test_displacement_needs_measures():
     """The paper's scheme does not measure how far it moves edges; its refined normals do."""
     mesh = meshes.octahedron()
-    with pytest.raises(ValueError, match='LoopScheme tells with normals="refined" only'):
+    with pytest.raises(ValueError, match='LoopScheme does so with normals="refined" only'):
         kahler(mesh, criterion="displacement")
     refiner = kahler(mesh, criterion=refine.Displacement(0.05, 0.5), normals="refined")
     refiner.refine(mesh.vertices)

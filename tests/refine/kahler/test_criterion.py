@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from risorius import refine
-from risorius.refine.kahler.criterion import ROUNDING
+from risorius.refine.kahler.criterion import DROP_ROUNDING
 from tests import meshes
 from tests.refine.cases import Forced, kahler
 from tests.refine.plain_twin import edge_dots, edge_name
@@ -77,7 +77,7 @@ def test_rounding_guard():
     mesh = meshes.half_shut_book()
     flat = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [-1, 0.5, 0.0]])
     refiner = refine.create("kahler", mesh.faces, flat, threshold_once=0.0, threshold_twice=1.0)
-    for drop, expected in ((0.1 * ROUNDING, 0), (10 * ROUNDING, 4)):
+    for drop, expected in ((0.1 * DROP_ROUNDING, 0), (10 * DROP_ROUNDING, 4)):
         # Normals of the outer vertices are perpendicular to the slope, the inner ones upright.
         bent = flat.copy()
         bent[2:, 2] = np.tan(np.arccos(1.0 - drop))

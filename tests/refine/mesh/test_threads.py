@@ -27,8 +27,8 @@ OPTIONS: dict[str, dict[str, Any]] = {
 
 def force_threads(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
     """Let loops over small meshes be shared by so many threads, in many small parts."""
-    monkeypatch.setattr(threads, "PART", 16)
-    monkeypatch.setattr(threads, "MOST", count)
+    monkeypatch.setattr(threads, "ITEMS_OF_PART", 16)
+    monkeypatch.setattr(threads, "THREAD_COUNT", count)
 
 
 @pytest.mark.parametrize("name", OPTIONS)
@@ -84,9 +84,9 @@ def test_small_meshes_start_no_thread(monkeypatch):
     head = assets.load("head")
     refiner = refine.create("kahler", head.faces, head.vertices, **LOOK)
     assert refiner.refine(1.01 * head.vertices).triangle_count > len(head.faces)
-    monkeypatch.setattr(threads, "MOST", 1)
+    monkeypatch.setattr(threads, "THREAD_COUNT", 1)
     threads.share(lambda first, last: None, 1_000_000)
-    monkeypatch.setattr(threads, "MOST", 2)
+    monkeypatch.setattr(threads, "THREAD_COUNT", 2)
     with pytest.raises(AssertionError, match="a thread was started"):
         threads.share(lambda first, last: None, 1_000_000)
 
@@ -96,7 +96,7 @@ import os
 from risorius import refine
 from risorius.refine.mesh import threads
 from tests import meshes
-threads.PART, threads.MOST = 16, 2
+threads.ITEMS_OF_PART, threads.THREAD_COUNT = 16, 2
 mesh = meshes.irregular(4)
 frame = meshes.wrinkled(mesh, 1)
 refiner = refine.create("kahler", mesh.faces, mesh.vertices, **{LOOK})
