@@ -128,7 +128,7 @@ def title_of(name: str, action: str = "") -> tuple[str, str]:
         return name.removeprefix(VISEME), first
     if name != name.lower():  # as ARKit spells it
         return name, ""
-    return "", readable(name).capitalize()
+    return "", readable(stem).capitalize()
 
 
 def is_found(words: str, text: str, names: Collection[str]) -> bool:

@@ -174,6 +174,36 @@ def keyed(script: Script, time: float, values: ControlValues) -> Script:
     return _reaching(_with_track_keys(with_pose, time, keys), time)
 
 
+def keyed_alone(script: Script, time: float, values: ControlValues, names: Iterable[str]) -> Script:
+    """The script with keys of these controls alone, which show their values at `time` [s].
+
+    A pose at this time takes the controls that no track moves. The others get a key in a track,
+    which is added to the poses. A new track is 0 at the poses before and after, so that what the
+    poses beyond them show stays as it is.
+    """
+    time = rounded(time)
+    posed = script.posed(time)
+    present = pose_at(script, time)
+    changed = dict(present.values) if present else {}
+    keys = {}
+    for name in sorted(names):
+        if present and name not in script.tracks:
+            changed[name] = values[name]
+        else:
+            keys[name] = values[name] - posed.get(name, 0.0)
+    if present:
+        nonzero = {name: value for name, value in changed.items() if value}
+        pose = replace(present, values=nonzero)
+        poses = tuple(pose if each is present else each for each in script.poses)
+        script = replace(script, poses=poses)
+    new = {name: 0.0 for name in keys if name not in script.tracks}
+    earlier = [pose.time for pose in script.poses if pose.time < time - SAME]
+    later = [pose.time for pose in script.poses if pose.time > time + SAME]
+    for end in (*earlier[-1:], *later[:1]):
+        script = _with_track_keys(script, end, new)
+    return _reaching(_with_track_keys(script, time, keys), time)
+
+
 def _with_track_keys(script: Script, time: float, values: Values) -> Script:
     """The script with a key in each of these tracks, which are made where they are not there."""
     changed = {}

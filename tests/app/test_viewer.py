@@ -51,7 +51,7 @@ def test_a_slider_moves_the_skin_and_undo_moves_it_back(viewer):
 
 
 def test_a_number_can_be_typed(viewer):
-    """A double click turns a slider into a line to type in; a right click sets it back to 0."""
+    """A double click turns a slider into a line to type in; its menu sets it back to 0."""
     show_controls(viewer, "jaw open")
     click(viewer, "jaw_open", times=2)
     xdotool(viewer, "key", "ctrl+a")
@@ -60,6 +60,7 @@ def test_a_number_can_be_typed(viewer):
     assert viewer.session.values["jaw_open"] == pytest.approx(0.37)
     xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"))
     xdotool(viewer, "click", 3)
+    click(viewer, "control menu: Reset to 0")
     assert viewer.session.values["jaw_open"] == 0.0
     clear_search(viewer)
 

@@ -151,7 +151,7 @@ def test_saving_goes_to_the_known_file(viewer, tmp_path):
     put(viewer, script)
     assert title_of(viewer) == "Risorius: smile.toml"
     viewer.session.seek(1.0)
-    xdotool(viewer, "key", "k")
+    xdotool(viewer, "key", "shift+k")
     assert title_of(viewer) == "Risorius: smile.toml *"
     xdotool(viewer, "key", "ctrl+s")
     assert not viewer.files.is_waiting
@@ -173,7 +173,7 @@ def test_saving_asks_where_it_did_not_open(viewer, tmp_path):
     """New scripts and the program's own ask for a name; a file changed elsewhere is not lost."""
     taken = tmp_path / "script.toml"
     taken.write_text("precious")
-    xdotool(viewer, "key", "ctrl+n", "k", "ctrl+s")
+    xdotool(viewer, "key", "ctrl+n", "shift+k", "ctrl+s")
     assert viewer.files.is_waiting
     xdotool(viewer, "key", "Return")
     assert viewer.files.is_waiting
@@ -187,7 +187,7 @@ def test_saving_asks_where_it_did_not_open(viewer, tmp_path):
     script.write_text(SCRIPT)
     put(viewer, script)
     script.write_text(SCRIPT.replace("joy", "anger"))
-    xdotool(viewer, "key", "k", "ctrl+s")
+    xdotool(viewer, "key", "shift+k", "ctrl+s")
     assert viewer.files.is_waiting
     assert "another program" in viewer.messages.text
     assert "anger" in script.read_text()

@@ -6,12 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.app.control_names.limits import Limits
+from risorius.app.errors import UserError
 from risorius.app.performances import script_for
 from risorius.app.script import Script, keyframes
 from risorius.app.script.keyframes import POSES
 from risorius.app.script.places import KeyPlace, Places
 from risorius.app.script.script_file import load_script, parse_script
 from risorius.app.viewer.session.session import Session
+from risorius.app.viewer.timeline.keys import KeySelection
 
 from .driving import HELLO
 
@@ -59,6 +61,72 @@ def test_a_key_in_a_recording(scene):
     assert len(held.tracks["jaw_open"].keys) == 2
     for time in np.linspace(0.0, 2.0, 9):
         assert held.at(time) == pytest.approx(script.at(time))
+
+
+def test_one_control_is_keyed_over_poses(hello, scene):
+    """A new track is 0 at the poses around the key; other controls and poses stay as they were."""
+    wanted = scene.limits.pose({"jaw_open": 0.4})
+    script = keyframes.keyed_alone(hello, 2.0, wanted, ["jaw_open"])
+    assert script.poses == hello.poses
+    assert script.at(2.0)["jaw_open"] == pytest.approx(0.4)
+    assert script.tracks["blink"] == hello.tracks["blink"]
+    start = max(pose.time for pose in hello.poses if pose.time < 2.0)
+    end = min(pose.time for pose in hello.poses if pose.time > 2.0)
+    for time in np.linspace(0.0, hello.duration, 41):
+        now = script.at(time)
+        for name, value in hello.at(time).items():
+            if name != "jaw_open" or not start < time < end:
+                assert now[name] == pytest.approx(value, abs=1e-9), (name, time)
+    script.check(scene.limits)
+
+
+def test_a_key_at_a_pose_changes_that_pose(hello, scene):
+    """A control without a track goes into the pose; one with a track gets a key there."""
+    wanted = scene.limits.pose({"joy": 0.5, "blink": 0.75})
+    script = keyframes.keyed_alone(hello, 1.0, wanted, ["joy", "blink"])
+    assert [pose.time for pose in script.poses] == [pose.time for pose in hello.poses]
+    assert script.poses[1].name == "joy" and script.at(1.0)["joy"] == 0.5
+    assert script.at(1.0)["blink"] == pytest.approx(0.75)
+    assert "joy" not in script.tracks
+    others = set(hello.poses[1].values) - {"joy", "blink"}
+    assert all(script.poses[1].values[name] == hello.poses[1].values[name] for name in others)
+
+
+def test_a_blink_is_keyed_over_poses(session):
+    """Three keys of one control: the eye shuts and opens, and no other curve gets a key."""
+    selection = KeySelection(session)
+    before = session.script
+    for time, value in ((2.0, 0.0), (2.2, 1.0), (2.4, 0.0)):
+        session.seek(time)
+        session.set("AU43", value)
+        selection.set_key()
+    script = session.script
+    assert script.poses == before.poses
+    assert set(script.tracks) == {*before.tracks, "AU43"}
+    assert script.at(2.2)["AU43"] == pytest.approx(1.0)
+    assert all(script.at(time)["AU43"] == pytest.approx(0.0) for time in (1.0, 2.0, 2.4, 3.0))
+    session.seek(2.2)
+    selection.delete_keys_of(["AU43"])
+    assert session.values["AU43"] == pytest.approx(0.0)
+    selection.clear_tracks_of(["AU43"])
+    assert session.script.tracks == before.tracks
+    session.undo()
+    assert "AU43" in session.script.tracks
+
+
+def test_a_key_of_one_control_keeps_the_others_in_hand(session):
+    """*Key this* takes one control; another one that was moved stays as it is, not keyed."""
+    selection = KeySelection(session)
+    session.seek(2.0)
+    session.set("jaw_open", 0.4)
+    session.set("AU4_left", 0.3)
+    selection.key_controls(["jaw_open"])
+    assert session.values["AU4_left"] == 0.3 and session.differing == {"AU4_left"}
+    assert session.touched == {"AU4_left"}
+    selection.set_key()
+    assert not session.differing and session.script.at(2.0)["AU4_left"] == pytest.approx(0.3)
+    with pytest.raises(UserError, match="no control was moved"):
+        selection.set_key()
 
 
 def test_the_face_follows_an_edit_if_it_followed_the_script(session):

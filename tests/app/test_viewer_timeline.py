@@ -119,11 +119,11 @@ def test_delete_and_paste(viewer):
 
 
 def test_the_face_becomes_a_key(viewer):
-    """Go to a time, move a slider, press K: a pose is there that shows just this face."""
+    """Go to a time, move a slider, press Shift+K: a pose is there that shows just this face."""
     viewer.session.seek(2.0)
     open_jaw(viewer)
     wanted = dict(viewer.session.values)
-    xdotool(viewer, "key", "k")
+    xdotool(viewer, "key", "shift+k")
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(wanted["jaw_open"])
     assert viewer.selection.places == {KeyPlace(POSES, 2.0)}
@@ -132,7 +132,28 @@ def test_the_face_becomes_a_key(viewer):
     press(viewer, key_at(viewer, KeyPlace(POSES, 2.0)))
     assert viewer.session.values == pytest.approx(wanted)
     click(viewer, "set key")
+    assert viewer.messages.is_error and "No control was moved" in viewer.messages.text
     assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+
+
+def test_the_menu_of_a_bar_keys_one_control(viewer):
+    """A right click on a bar keys that control over the poses, deletes the key, clears it."""
+    viewer.session.seek(2.0)
+    show_controls(viewer, "jaw open")
+    drag_and_release(viewer, middle(viewer, "jaw_open"), (40, 0))
+    xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"), "click", 3)
+    click(viewer, "control menu: Key this")
+    session = viewer.session
+    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    assert session.script.tracks["jaw_open"].times.tolist() == [1.0, 2.0, 3.0]
+    assert "Jaw open keyed" in viewer.messages.text
+    xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"), "click", 3)
+    click(viewer, "control menu: Delete key")
+    assert session.script.tracks["jaw_open"].times.tolist() == [1.0, 3.0]
+    xdotool(viewer, "mousemove", *middle(viewer, "jaw_open"), "click", 3)
+    click(viewer, "control menu: Clear track")
+    assert "jaw_open" not in session.script.tracks
+    clear_search(viewer)
 
 
 def test_the_ruler_scrubs_and_the_wheel_zooms(viewer):
@@ -216,19 +237,19 @@ def scrub(viewer: Viewer, time: float) -> None:
 
 
 def test_auto_key(viewer):
-    """Switched on by its button, a slider that is let go is a key; switched off, it is none."""
+    """Switched on by its button, a slider let go is a key of its control; off, it is none."""
     scrub(viewer, 2.0)
     click(viewer, "auto-key")
     value = open_jaw(viewer)
-    assert pose_times(viewer) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert "jaw_open" in viewer.session.script.tracks
     assert viewer.session.script.at(2.0)["jaw_open"] == pytest.approx(value)
     scrub(viewer, 3.5)
     assert not viewer.messages.text
     xdotool(viewer, "key", "ctrl+z")
-    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    assert "jaw_open" not in viewer.session.script.tracks
     click(viewer, "auto-key")
     open_jaw(viewer)
-    assert pose_times(viewer) == [0.0, 1.0, 3.0, 4.0]
+    assert "jaw_open" not in viewer.session.script.tracks
 
 
 @pytest.fixture

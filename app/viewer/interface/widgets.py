@@ -23,6 +23,7 @@ class SliderState(NamedTuple):
     is_changed: bool
     is_done: bool  # let go, or typed: a change is complete
     is_hovered: bool
+    is_right_clicked: bool = False  # where the slider leaves that to its caller
 
 
 def slider(
@@ -35,10 +36,11 @@ def slider(
     neutral: float = 0.0,
     digits: int = 2,
     mark: str = "",
+    has_menu: bool = False,
 ) -> SliderState:
     """Draw the slider `name`; a double or Ctrl click types a number, a right click resets.
 
-    mark: the text at its beginning.
+    mark: the text at its beginning. has_menu: a right click is reported, and changes nothing.
     """
     io = imgui.get_io()
     label = f"##{name}"
@@ -60,9 +62,11 @@ def slider(
     is_hovered = imgui.is_item_hovered()
     if not is_typed:
         _draw_bar(gui, now, limits, mark, digits)
-    if is_hovered and imgui.is_mouse_clicked(RIGHT):
+    is_right_clicked = is_hovered and imgui.is_mouse_clicked(RIGHT)
+    if is_right_clicked and not has_menu:
         return SliderState(neutral, neutral != value, True, True)
-    return SliderState(now, is_changed, is_done, is_hovered or imgui.is_item_active())
+    is_pointed = is_hovered or imgui.is_item_active()
+    return SliderState(now, is_changed, is_done, is_pointed, is_right_clicked)
 
 
 def _draw_bar(gui: Gui, value: float, limits: tuple[float, float], mark: str, digits: int) -> None:

@@ -17,6 +17,8 @@ from ...control_names import OPPOSITE, is_found, parted, readable, title_of, twi
 from ..context import ApplicationContext
 from ..interface.gui import em, ink_of
 from ..interface.widgets import button, button_width, heading, hint, muted, slider, stay_in_line
+from ..messages import Task
+from ..timeline.keys import KeySelection, listed, movers_of
 
 
 @dataclass(frozen=True)
@@ -97,11 +99,15 @@ def _text_of(row: Row, group: str, actions: Mapping[str, str]) -> str:
 class ControlRows:
     """Draws rows of controls, and sets controls as the user moves their bars."""
 
-    def __init__(self, app: ApplicationContext) -> None:
+    def __init__(self, app: ApplicationContext, selection: KeySelection) -> None:
+        """selection: of keys, which the menu of a bar changes."""
         self._gui = app.gui
         self._session = app.session
         self._settings = app.settings
+        self._messages = app.messages
         self._view = app.view
+        self._selection = selection
+        self._asked: tuple[str, ...] = ()  # the controls whose menu is open
         self._rows: dict[tuple[str, ...], list[Row]] = {}
 
     def of(self, names: tuple[str, ...]) -> list[Row]:
@@ -139,16 +145,55 @@ class ControlRows:
             side = parted(name)[1].strip("_")[:1].upper()
             is_of_both = not side and len(row.sides) > 0
             mark = "" if is_of_both or len(names) == 1 else side or "L"
-            slid = slider(self._gui, name, current[name], limits, width=width, mark=mark)
+            slid = slider(
+                self._gui, name, current[name], limits, width=width, mark=mark, has_menu=True
+            )
             pointed = (name,) if slid.is_hovered else pointed
             if slid.is_changed:
                 session.set(name, slid.value, linked=row.is_linked and name in row.sides)
             if slid.is_done:
                 session.note()
+            if slid.is_right_clicked:
+                is_linked = row.is_linked and name in row.sides
+                self._asked = row.sides if is_linked else (name,)
+                imgui.open_popup("control menu")
+        self._draw_menu(row)
         if pointed:
             meant = (*pointed, *(row.sides if row.is_linked else ()))
             shares = (Counter(session.scene.moved_by(each)) for each in meant)
             self._view.pointed = reduce(or_, shares)  # the largest share of each muscle
+
+    def _draw_menu(self, row: Row) -> None:
+        """Draw the menu of a bar, if it was opened in this row."""
+        names = self._asked
+        if not set(names) <= {*row.names, *row.sides} or not imgui.begin_popup("control menu"):
+            return
+        session = self._session
+        selection = self._selection
+        muted(self._gui, listed(names))
+        if movers := movers_of(session.script, names[0]):
+            muted(self._gui, f"moved by {movers}")
+        has_track = any(name in session.script.tracks for name in names)
+        has_key = bool(selection.keys_of(names))
+        can_edit = selection.can_edit
+        items: tuple[tuple[str, bool, Task], ...] = (
+            ("Key this", can_edit, lambda: selection.key_controls(names)),
+            ("Delete key", can_edit and has_key, lambda: selection.delete_keys_of(names)),
+            ("Clear track", can_edit and has_track, lambda: selection.clear_tracks_of(names)),
+            ("Reset to 0", True, lambda: self._reset(names)),
+        )
+        for label, is_possible, task in items:
+            if imgui.menu_item(label, "", False, is_possible)[0]:
+                self._messages.carry_out(task)
+            self._gui.remember(f"control menu: {label}")
+        if imgui.is_key_pressed(imgui.Key.escape):
+            imgui.close_current_popup()
+        imgui.end_popup()
+
+    def _reset(self, names: Iterable[str]) -> None:
+        for name in names:
+            self._session.set(name, 0.0)
+        self._session.note()
 
     def _draw_label(self, row: Row, room: float, number: int, *, is_lit: bool) -> bool:
         """Code and name; whether the mouse is on it."""
@@ -186,11 +231,12 @@ class ControlRows:
 class FacePanel:
     """Buttons, search, and groups of rows."""
 
-    def __init__(self, app: ApplicationContext) -> None:
+    def __init__(self, app: ApplicationContext, selection: KeySelection) -> None:
+        """selection: of keys, which the menus of bars change."""
         self._gui = app.gui
         self._session = app.session
         self._settings = app.settings
-        self.rows = ControlRows(app)
+        self.rows = ControlRows(app, selection)
         self.search = ""
         self._selected: str | None = None  # to be scrolled to
         self._flash = 0

@@ -5,7 +5,7 @@ This module knows the scene, which adds up all of `values`, and nothing of windo
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from ...control_names import copied, mirrored, readable, twin_of
@@ -36,6 +36,7 @@ class Session:
         self.pose_is_unsaved = False  # made by hand; an expression's button brings itself back
         self.is_following = any(self.values.numbers)  # the script; a neutral face need not yet
         self._is_touched = False  # by hand, since something was noted
+        self._moved = set[str]()  # controls, by hand, since the face followed the script
         self.recorder: Recorder | None = None  # of the present recording
         self.live_override = LiveOverride(scene.limits)  # is no part of states that can be undone
         self.history = History(self._document())
@@ -62,6 +63,7 @@ class Session:
         if not self.is_recording:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = self._is_touched = True
+            self._moved |= names
 
     def toggle_alone(self, name: str) -> None:
         """Show this control alone at its most, or neutral if it is shown already."""
@@ -89,6 +91,7 @@ class Session:
             self.is_playing = self.is_following = False
             self.pose_is_unsaved = is_unsaved
             self._is_touched = True
+            self._moved |= {name for name, value in pose.items() if value != self.values[name]}
         self.values = pose
         self.note()
 
@@ -102,7 +105,15 @@ class Session:
         """The controls that hands moved away from the script; it takes a look into every track."""
         if self.is_following or self.is_recording:
             return frozenset()
-        return frozenset(keyframes.differing(self.script, self.time, self.values))
+        return frozenset(self._away(self.values))
+
+    @property
+    def touched(self) -> frozenset[str]:
+        """The controls that hands or a live face moved since the last key."""
+        return frozenset(self._moved.union(self._away(self.current)))
+
+    def _away(self, values: ControlValues) -> list[str]:
+        return keyframes.differing(self.script, self.time, values)
 
     # Undo
 
@@ -116,7 +127,7 @@ class Session:
             return  # that is one change, when it ends
         is_touched, self._is_touched = self._is_touched, False
         if is_touched and self.is_keying and self.differing:
-            self._key(self.values)
+            self._key(self.values, self._moved.union(self._away(self.values)))
         self.history.note(self._document())
 
     @property
@@ -137,6 +148,7 @@ class Session:
         self._refuse_while_recording()
         document = self.history.go(place)
         self.is_playing = self._is_touched = False
+        self._moved.clear()
         self.script = document.script
         self.file = document.file
         if document.values is None:
@@ -216,18 +228,32 @@ class Session:
         if self.is_recording:
             raise UserError("stop the recording first ([Record]): it goes into the script as it is")
 
-    def set_key(self) -> float:
-        """Make the present face a key; returns its time [s]."""
+    def set_key(self, names: Iterable[str] | None = None) -> float:
+        """Make the present face a key; returns its time [s].
+
+        names: of the controls that are keyed, None for a whole pose. Others stay as hands left
+        them.
+        """
         self._refuse_while_recording()
-        time = self._key(self.current)
+        time = self._key(self.current, names)
         self.note()
         return time
 
-    def _key(self, values: ControlValues) -> float:
+    def _key(self, values: ControlValues, names: Iterable[str] | None) -> float:
         time = keyframes.key_time(self.script, self.time)
-        self.script = keyframes.keyed(self.script, time, values)
+        left = set[str]()
+        if names is None:
+            self.script = keyframes.keyed(self.script, time, values)
+        else:
+            names = set(names)
+            left = self.differing - names
+            self.script = keyframes.keyed_alone(self.script, time, values, names)
+            self._moved -= names
         self.is_playing = False
-        self._go_to(time)
+        if left:
+            self.time = time
+        else:
+            self._go_to(time)
         return time
 
     def advance(self, seconds: float, beneath: Mapping[str, float] | None = None) -> None:
@@ -249,6 +275,7 @@ class Session:
 
     def _follow_script(self) -> None:
         self.is_following = True
+        self._moved.clear()
         held = self.recorder.held if self.recorder is not None else {}
         limits = self.scene.limits
         self.values = limits.pose(held, self.script.values(self.time, limits))

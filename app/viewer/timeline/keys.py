@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 
-from ...control_names import readable
-from ...errors import counted
+from ...control_names import called
+from ...errors import UserError, counted
 from ...script import Channel, Script, keyframes
 from ...script.keyframes import POSES, places_of
 from ...script.places import NOWHERE, Places
@@ -54,7 +54,7 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
         for name in script.posed_names:
             channel = script.posed_channel(name)
             above = (WHOLE_POSES_ROW,)
-            row = Track(f"pose {name}", readable(name), poses, channel, name, POSES, above)
+            row = Track(f"pose {name}", called(name), poses, channel, name, POSES, above)
             rows.append(row)
     if script.tracks:
         rows.append(Track(TRACKS_ROW, TRACKS_ROW, Places(times), is_sum=True))
@@ -69,8 +69,21 @@ def all_tracks(script: Script, groups: Mapping[str, Sequence[str]]) -> tuple[Tra
         for name in inside:
             alone = Places({name: times[name]})
             channel = script.tracks[name]
-            rows.append(Track(f"track {name}", readable(name), alone, channel, name, name, parents))
+            sign = "+ " if name in script.posed_names else ""  # it is added to the poses
+            label = f"{sign}{called(name)}"
+            rows.append(Track(f"track {name}", label, alone, channel, name, name, parents))
     return tuple(replace(row, number=number) for number, row in enumerate(rows))
+
+
+def movers_of(script: Script, name: str) -> str:
+    """The parts of a script that move a control, in words; "" for none."""
+    parts = {"the poses": name in script.posed_names, "a track": name in script.tracks}
+    return " and ".join(part for part, is_there in parts.items() if is_there)
+
+
+def listed(names: Collection[str]) -> str:
+    """One control by its name in words, or the number of several."""
+    return called(min(names)) if len(names) == 1 else counted(len(names), "control")
 
 
 class KeySelection:
@@ -92,12 +105,50 @@ class KeySelection:
         return bool(self.places) and self.can_edit
 
     def set_key(self) -> Message:
-        """Make the present face a key at the time shown."""
+        """Key the controls that were moved since the last key, at the time shown."""
+        return self.key_controls(self._session.touched)
+
+    def key_controls(self, names: Collection[str]) -> Message:
+        """Key these controls alone, at the time shown."""
+        if not names:
+            raise UserError("no control was moved since the last key; [Key whole pose] keys all")
+        time = self._session.set_key(names)
+        there = keyframes.places_of(self._session.script).near(time, keyframes.SAME).times
+        tracks = {name: times for name, times in there.items() if name in names}
+        is_posed = len(tracks) < len(names)
+        poses = {POSES: there[POSES]} if is_posed and POSES in there else {}
+        self.places = Places(poses | tracks)
+        controls = listed(names)
+        return f"{controls} keyed at {time:.2f} s"
+
+    def key_whole_pose(self) -> Message:
+        """Make the present face a key of all controls at the time shown."""
         time = self._session.set_key()
         script = self._session.script
         there = keyframes.places_of(script).near(time, keyframes.SAME)
         self.places = Places({POSES: there.times[POSES]}) if POSES in there.times else there
-        return f"Key set at {time:.2f} s"
+        return f"Whole pose keyed at {time:.2f} s"
+
+    def keys_of(self, names: Iterable[str]) -> Places:
+        """The keys that the tracks of these controls have at the time shown."""
+        session = self._session
+        reach = 0.5 * keyframes.FRAME
+        there = keyframes.places_of(session.script).near(session.time, reach).times
+        return Places({name: there[name] for name in names if name in there})
+
+    def delete_keys_of(self, names: Collection[str]) -> Message:
+        """Delete the keys that the tracks of these controls have at the time shown."""
+        session = self._session
+        session.edit(keyframes.without(session.script, self.keys_of(names)))
+        return f"{listed(names)}: key deleted; [Undo] brings back"
+
+    def clear_tracks_of(self, names: Collection[str]) -> Message:
+        """Delete all keys of the tracks of these controls."""
+        session = self._session
+        tracks = session.script.tracks
+        places = Places({name: tracks[name].times for name in names if name in tracks})
+        session.edit(keyframes.without(session.script, places))
+        return f"{listed(names)}: track cleared; [Undo] brings back"
 
     def delete(self) -> Message:
         """Take the selected keys away."""

@@ -22,7 +22,11 @@ BUTTON_TEXTS = {
     "Record": ("Stop", "record the controls that you move, from here on ([Record])"),
     "Loop": ("Loop", "begin again at the end ([Loop])"),
     "Curves": ("Curves", "keys in rows, or their values as curves ([Curves])"),
-    "Set key": ("Set key", "the face as it is becomes a key at the time shown ([Set key])"),
+    "Set key": (
+        "Set key",
+        "key the controls moved since the last key ([Set key]), or the whole "
+        "pose ([Key whole pose])",
+    ),
     "Let go": ("Let go", "controls changed by hand go back to where the script has them"),
     "Auto-key": ("Auto-key", "each change by hand becomes a key at once"),
 }

@@ -130,7 +130,7 @@ class Application(ApplicationContext):
         waveform = Waveform(self.gui, self.soundtrack, self.time_axis)
         dope_sheet = DopeSheet(self, self.selection, self.time_axis, bar, waveform)
         self.timeline = Timeline(self, self.commands, dope_sheet)
-        self.face_panel = FacePanel(self)
+        self.face_panel = FacePanel(self, self.selection)
         mechanism = MechanismPanel(self, self.file_drop)
         live = LivePanel(self, {each.label: each for each in self.commands})
         first = "Face" if session.scene.name == "face" else f"{readable(session.scene.name)}###Face"

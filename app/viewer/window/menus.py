@@ -127,6 +127,7 @@ def keys_menu(session: Session, selection: KeySelection) -> Menu:
     is_eased = selection.is_eased
     return (
         edit("Set key", "K", selection.set_key),
+        edit("Key whole pose", "Shift+K", selection.key_whole_pose),
         command("Let go", "", session.let_go, can_run=lambda: bool(session.differing)),
         switch_of(lambda: session, "Keys", "Auto-key", "", "is_keying"),
         change("Copy", "Ctrl+C", selection.copy),
@@ -200,7 +201,7 @@ HELP = tuple(  # actions of the mouse, to be read
         ("middle, or Shift", "pan"),
         ("wheel", "zoom to where the mouse is"),
         ("double click a slider", "type a number"),
-        ("right click a slider", "back to 0"),
+        ("right click a bar", "key it, delete its key, clear its track, reset it"),
         ("drag a key", "move all selected keys; Ctrl: anywhere"),
         ("drag over nothing", "select keys in a box"),
         ("right click a key", "a menu of changes to it"),
