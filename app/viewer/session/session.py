@@ -245,10 +245,10 @@ class Session:
         if names is None:
             self.script = keyframes.keyed(self.script, time, values)
         else:
-            names = set(names)
-            left = self.differing - names
-            self.script = keyframes.keyed_alone(self.script, time, values, names)
-            self._moved -= names
+            chosen = set(names)
+            left = set(self.differing - chosen)
+            self.script = keyframes.keyed_alone(self.script, time, values, chosen)
+            self._moved -= chosen
         self.is_playing = False
         if left:
             self.time = time
