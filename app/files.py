@@ -16,17 +16,9 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
-import PIL.Image
-
-from risorius.assets.staging import StagingFolder, is_staging_folder
-
 from .errors import UserError, as_text
+from .staging import StagingFolder, is_staging_folder
 from .stopping import cleaned_up_if_stopped, done_whole
-
-Image = npt.NDArray[np.uint8]  # (H, W, 3), top row first
-QUICK = 3  # of zlib's levels: in 2/5 of the time of Pillow's own, files are a tenth larger
 
 
 class NoSuchFileError(UserError):
@@ -195,25 +187,11 @@ def check_file(target: Path) -> None:
             (folder / target.name).touch()
 
 
-def check_png(target: Path) -> None:
-    """Raise UserError, before any work is done, where no picture can be written."""
-    if target.suffix.lower() != ".png":
-        raise UserError(f"{target}: pictures are written as .png; choose a name that ends so")
-    check_file(target)
-
-
 def save_text(target: Path, text: str) -> None:
     """Write a text file, UTF-8; UserError where it cannot be written."""
     check_file(target)
     with written_atomically(target) as part:
         part.write_text(text, encoding="utf-8")
-
-
-def save_png(target: Path, image: Image) -> None:
-    """Write one picture; UserError for another suffix, and where it cannot be written."""
-    check_png(target)
-    with written_atomically(target) as part:
-        PIL.Image.fromarray(image).save(part, format="PNG", compress_level=QUICK)
 
 
 def check_apart(outputs: Sequence[Path | None], inputs: Sequence[Path | None]) -> None:

@@ -8,15 +8,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .control_names.limits import Limits
 from .errors import UserError
-from .recordings import read_take
-from .recordings.conversion import Playback, script_of
-from .recordings.report import Report
-from .scenes import SCENES
+from .recordings.playback import Playback
+from .scenes import SCENES, controls_of
 from .script import POSE_SECONDS, Pose, Script
 from .script.script_file import load_script
+
+if TYPE_CHECKING:
+    from .recordings.report import Report
 
 
 def script_for(
@@ -63,6 +65,9 @@ def read_performance(
     """
     playback = playback or Playback()
     if path.suffix.lower() != ".toml":
+        from .recordings.conversion import script_of
+        from .recordings.reading import read_take
+
         take = read_take(path, face=playback.face, rate=playback.rate)
         return script_of(take, playback, limits or limits_of("face"))
     script = load_script(path)
@@ -83,7 +88,7 @@ def options_in(playback: Playback) -> str:
 @functools.cache
 def limits_of(scene: str) -> Limits:
     """The lowest and highest value of each control of the scene of this name."""
-    return SCENES[scene]().limits
+    return controls_of(scene).limits
 
 
 def held_pose(settings: Sequence[str]) -> Script:

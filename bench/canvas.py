@@ -13,7 +13,7 @@ from PIL import ImageDraw
 
 from risorius import refine, render
 from risorius.app.capture.captions import INK, SHADE, font
-from risorius.app.files import Image
+from risorius.app.pictures import Image
 from risorius.app.pipeline import DrawnMesh, Pipeline, Viewport
 from risorius.app.scenes import Scene
 

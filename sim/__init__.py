@@ -12,17 +12,18 @@ from typing import Any
 
 from .face import Simulation, SimulationUnstable
 from .face_model import build_face_model
+from .foundation import controls_of
 from .pulling import Pull
 from .rig import Rig, read_rig
 
 __all__ = ["Pull", "Rig", "Simulation", "SimulationUnstable"]
-__all__ += ["create", "read_rig"]
+__all__ += ["controls_of", "create", "read_rig"]
 
 
 def create(head: Any) -> Simulation:
     """Build the simulation of a head: any object with `vertices` (V, 3) and `faces` (F, 3).
 
     Optional attributes (landmarks, rig, mandible_weight, jaw_axis, eyes) add muscles, jaw and gaze,
-    see face_model.py. Raises ValueError naming the fault of the head or its rig.
+    see foundation.py. Raises ValueError naming the fault of the head or its rig.
     """
     return Simulation(build_face_model(head))

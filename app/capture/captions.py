@@ -12,7 +12,7 @@ from PIL import ImageDraw, ImageFont
 
 from risorius import render
 
-from ..files import Image
+from ..pictures import Image
 
 INK = (245, 245, 245)
 FAINT = (200, 203, 208)

@@ -13,10 +13,10 @@ from risorius.assets.fitting import FittedHead
 
 from ..anatomy import SKIN_ALONE, AnatomyView
 from ..errors import UserError
-from ..files import Image
 from ..motion import play
 from ..passes.labels import Labelled, labelled
 from ..passes.passes import Passes
+from ..pictures import Image
 from ..pipeline import Pipeline, side_by_side
 from ..refining.presets import Refinement
 from ..scenes import Scene

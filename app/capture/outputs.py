@@ -28,14 +28,13 @@ import PIL.Image
 
 from ..errors import UserError
 from ..files import (
-    QUICK,
-    Image,
     cannot_be_written,
     check_file,
     folder_atomically,
     written_atomically,
 )
 from ..passes.labels import ENDS, Labelled
+from ..pictures import QUICK_LEVEL, Image
 from ..sound.decoding import ffmpeg, sound_form, sound_input
 from ..stopping import cleaned_up_if_stopped
 from ..workers import share_of_cores
@@ -234,7 +233,7 @@ def folder(target: Path, *, overwrite: bool) -> Iterator[FrameSink]:
     def write(picture: Path, image: Image, beside: Labelled | None) -> None:
         """Write one frame, in a thread."""
         with cannot_be_written(target):
-            PIL.Image.fromarray(image).save(picture, compress_level=QUICK)
+            PIL.Image.fromarray(image).save(picture, compress_level=QUICK_LEVEL)
             if beside is not None:
                 beside.save(picture)
 

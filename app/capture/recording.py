@@ -7,11 +7,12 @@ from collections.abc import Callable, Generator
 from pathlib import Path
 
 from ..errors import UserError
-from ..files import Image, check_file, check_png, save_png
+from ..files import check_file
 from ..motion import scene_of
 from ..passes.labels import beside, check_wanted, save_labelled
+from ..pictures import Image, check_png, save_png
 from ..script import Script
-from ..sound import load_sound
+from ..sound.decoding import load_sound
 from . import outputs, processes
 from .captions import contact_sheet
 from .drawing import Capture, CaptureOptions, Frame, check_camera

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-from tqdm import tqdm
 
 from ..batch.listing import Job, clashes, lines_of, words_of
 from ..errors import UserError, counted, in_one_line
@@ -56,6 +55,8 @@ def batch(
     capture, export and convert; those that begin with # hold nothing. Relative paths begin
     where you stand. All lines are checked before the first is begun.
     """
+    from tqdm import tqdm
+
     from ..batch.running import FAILED, in_words, run_lines, save_summary
     from ..workers import share_of_cores
 

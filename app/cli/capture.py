@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import UserError, in_one_line
-from ..recordings.conversion import Playback
+from ..recordings.playback import Playback
 from ..refining.presets import STATIC, Refinement
 from .options import (
     PATH,

@@ -15,8 +15,8 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError, counted, in_one_line
-from ..live import LOOPBACK, PROTOCOLS, Listening
-from ..recordings.conversion import Playback
+from ..live.protocols import LOOPBACK, PROTOCOLS, Listening
+from ..recordings.playback import Playback
 from .batch import batch
 from .capture import capture, demo
 from .dataset import dataset
@@ -251,14 +251,14 @@ def controls(scene: str) -> None:
 
     These are muscles, action units, expressions, visemes and ARKit's shapes.
     """
-    from ..scenes import SCENES
+    from ..scenes import controls_of
 
-    built = SCENES[scene]()
-    for title, names in built.groups.items():
+    listed = controls_of(scene)
+    for title, names in listed.groups.items():
         click.echo(title)
         for name in names:
-            low, high = built.limits[name]
-            action = built.actions.get(name, "")
+            low, high = listed.limits[name]
+            action = listed.actions.get(name, "")
             click.echo(f"  {name}  {low:g}..{high:g}  {action}".rstrip())
 
 

@@ -10,7 +10,7 @@ import click
 from ..errors import in_one_line
 from ..export.formats import FORMATS, Request, check_request, format_for
 from ..export.formats import export as write
-from ..recordings.conversion import Playback
+from ..recordings.playback import Playback
 from .options import (
     PATH,
     SCENE,

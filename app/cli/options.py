@@ -15,7 +15,7 @@ import click
 from click.core import ParameterSource
 
 from ..errors import UserError
-from ..recordings.conversion import LEAD, Playback
+from ..recordings.playback import LEAD, Playback
 from ..refining.presets import FIRST_PRESET, PRESETS, Refinement
 
 if TYPE_CHECKING:
@@ -379,7 +379,7 @@ def played(
 ) -> Script:
     """The script to play, with its sound; a recording's report is printed unless `quiet`."""
     from ..performances import script_for
-    from ..sound import with_sound
+    from ..sound.decoding import with_sound
 
     on_report = None if quiet else _print_report
     performance = script_for(script, scene, settings, playback=playback, on_report=on_report)

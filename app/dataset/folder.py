@@ -18,10 +18,9 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from risorius.assets.staging import is_staging_folder, locked
-
 from ..errors import UserError
 from ..files import cannot_be_written, check_links, save_text
+from ..staging import is_staging_folder, locked
 
 BEGUN = "dataset.json"  # how the set was begun
 UNFINISHED = ".unfinished"

@@ -24,11 +24,11 @@ from risorius.assets.identities import (
     sample_identity,
 )
 
-from ..files import Image
 from ..motion import SETTLING
 from ..motion.life import EYE_RANGE, looking_at
 from ..passes.labels import CameraLabels, Labelled
 from ..passes.passes import Passes
+from ..pictures import Image
 from ..pipeline import Pipeline, Viewport
 from ..refining.presets import Refinement
 from ..scenes import FaceScene

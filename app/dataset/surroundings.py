@@ -19,7 +19,7 @@ import PIL.ImageOps
 from risorius.render import LIGHTS, Background, Light
 
 from ..errors import UserError, as_text
-from ..files import Image
+from ..pictures import Image
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
 

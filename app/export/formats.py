@@ -10,9 +10,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from threadpoolctl import threadpool_limits
-from tqdm import tqdm
-
 from ..errors import UserError, counted
 from ..files import (
     cannot_be_written,
@@ -52,6 +49,8 @@ class Request:
 
     def counted(self, frames: Iterable[Item], count: int) -> Iterator[Item]:
         """The frames that are being written, under a progress bar."""
+        from tqdm import tqdm
+
         hidden = not self.progress or None
         bar = tqdm(frames, "Writing", count, unit="frame", disable=hidden, leave=False)
         with cleaned_up_if_stopped(bar.close):
@@ -154,6 +153,8 @@ def write(clip: Clip, output: Path, chosen: Format, request: Request) -> str | N
     Sums of many numbers are rounded otherwise by two threads than by one. One writes the same bytes
     here, within a batch, and on a machine of more cores.
     """
+    from threadpoolctl import threadpool_limits
+
     writer = chosen.load()
     whole = (
         written_atomically(output)

@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 
 from ..motion.curves import ARKIT_SHAPES, solved
-from ..recordings.conversion import LEAD, lead_of
+from ..recordings.conversion import lead_of
 from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
+from ..recordings.playback import LEAD
 from .clip import Clip, Floats
 from .formats import Request
 

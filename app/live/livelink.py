@@ -22,7 +22,6 @@ from ..recordings.named_columns import OUTWARD
 from ..recordings.names import ARKIT
 from .frame import LiveFrame, put_angle, put_shape, readable_subject
 
-PORT = 11111
 VERSION = 6
 COUNT = 61
 LONGEST_TEXT = 1024  # [bytes] of an id or a name

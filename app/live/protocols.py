@@ -5,10 +5,15 @@ from __future__ import annotations
 import socket
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from ..errors import UserError, in_one_line, needed
-from . import livelink, vmc
-from .frame import LiveFrame
+
+if TYPE_CHECKING:
+    from .frame import LiveFrame
+
+    Parser = Callable[[bytes], LiveFrame | None]  # see frame.py
 
 LOOPBACK = "127.0.0.1"
 ANYWHERE = "0.0.0.0"
@@ -19,13 +24,13 @@ _ELSEWHERE = "192.0.2.1"  # of nobody: kept free for documents (RFC 5737)
 class Protocol:
     """How faces come in packets.
 
-    title: as people call it. port: where receivers listen unless told. parse: see frame.py.
-    library: a module that not everybody has installed, "" for none.
+    title: as people call it. port: the usual one of receivers. module: in this room, with the
+    parser. library: a module that not everybody has installed, "" for none.
     """
 
     title: str
     port: int
-    parse: Callable[[bytes], LiveFrame | None]
+    module: str
     library: str = ""
 
     def check(self) -> None:
@@ -33,10 +38,15 @@ class Protocol:
         if self.library:
             needed(self.library, self.title, "live", package="python-osc")
 
+    def parser(self) -> Parser:
+        """The function that reads a packet; its module is imported here."""
+        parse: Parser = import_module(f"{__package__}.{self.module}").parse
+        return parse
+
 
 PROTOCOLS: Mapping[str, Protocol] = {
-    "livelink": Protocol("Live Link Face", livelink.PORT, livelink.parse),
-    "vmc": Protocol("VMC", vmc.PORT, vmc.parse, library="pythonosc"),
+    "livelink": Protocol("Live Link Face", 11111, "livelink"),
+    "vmc": Protocol("VMC", 39539, "vmc", library="pythonosc"),
 }
 
 

@@ -38,7 +38,10 @@ class Receiver:
 
         Raises UserError where that cannot be.
         """
-        self.listening, self._wake, self._clock = listening, wake, clock
+        self.listening = listening
+        self._wake = wake
+        self._clock = clock
+        self._parse = listening.protocol.parser()
         self._waiting: deque[tuple[float, LiveFrame]] = deque(maxlen=MOST_WAITING)
         self.received = self.unusable = 0
         self.has_frame = False
@@ -77,7 +80,7 @@ class Receiver:
 
     def _read(self, packet: bytes, at: float) -> None:
         """Keep what a packet says, wake who waits for that, and count the packet as dealt with."""
-        frame = self.listening.protocol.parse(packet) if len(packet) <= MOST_BYTES else None
+        frame = self._parse(packet) if len(packet) <= MOST_BYTES else None
         if frame is None:
             self.unusable += 1
         else:
@@ -90,7 +93,8 @@ class Receiver:
 
 def _bound_socket(listening: Listening) -> socket.socket:
     """A socket that listens; UserError where the system refuses."""
-    address, port = resolved(listening.address), listening.chosen_port
+    address = resolved(listening.address)
+    port = listening.chosen_port
     opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         opened.bind((address, port))

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from ..errors import UserError, in_one_line
 from ..recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES
 from ..recordings.take import Take
-from .livelink import PORT, packet_of
-from .protocols import resolved
+from .livelink import packet_of
+from .protocols import PROTOCOLS, resolved
 
 CARRIED = frozenset((*ARKIT, *HEAD_ANGLES, *EYE_ANGLES))
 
@@ -20,9 +20,10 @@ class Sender:
 
     def __init__(self, address: str, port: int | None, subject: str) -> None:
         """port: None for the protocol's own. UserError for what is no address."""
-        self.port = PORT if port is None else port
-        self._subject, self._sent = subject, 0
-        self._target = resolved(address), self.port
+        self.port = PROTOCOLS["livelink"].port if port is None else port
+        self._subject = subject
+        self._sent = 0
+        self._target = (resolved(address), self.port)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
     def __enter__(self) -> Sender:

@@ -33,7 +33,6 @@ with contextlib.suppress(ImportError):  # see Protocol.check
 
 from .frame import LiveFrame, put_angle, put_shape, shape_named
 
-PORT = 39539
 VALUE, APPLY, BONE = "/VMC/Ext/Blend/Val", "/VMC/Ext/Blend/Apply", "/VMC/Ext/Bone/Pos"
 DEEPEST = 4  # bundles in one another
 BONES = ("Neck", "Head", "LeftEye", "RightEye")

@@ -26,7 +26,8 @@ import PIL.Image
 from risorius import render
 
 from ..errors import UserError, needed
-from ..files import Image, named_in_text, written_atomically
+from ..files import named_in_text, written_atomically
+from ..pictures import Image
 from ..scenes import FaceScene, Scene
 from .passes import NAMES, OF_FACES, Passes
 

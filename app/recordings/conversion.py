@@ -8,7 +8,7 @@ sound.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,31 +19,14 @@ from ..script import POSE_SECONDS, Channel, Pose, Script, rounded
 from ..script.thinning import TOLERANCE, thinned
 from .calibration import calibration_for
 from .mapping import controls_of
+from .playback import LEAD, Playback
 from .report import Report, report_of
 from .take import Array, Take
 
-LEAD = 0.047  # [s] that muscles and the skin on them follow late
 LEAST_STEP = 1e-3  # [s] between the first two keys
 CAMERA = "front"  # from where recorded faces were seen
 # How late eyes and head follow [s], where muscles and skin do by LEAD; all measured at 60 Hz.
 _LATE = {"gaze_": 0.008, "eyeLook": 0.008, "head_": 0.063}
-
-
-@dataclass(frozen=True)
-class Playback:
-    """How a recording becomes a script; what is not said is as suits the kind of file.
-
-    neutral: "first:SECONDS", "percentile" or "none". gains: "NAME=x" each. mirror: left and right
-    change places. lead: how far muscles are asked ahead of the recording [s]; eyes and head in
-    proportion. face, rate: see `read_take`.
-    """
-
-    neutral: str | None = None
-    gains: tuple[str, ...] = ()
-    mirror: bool = False
-    lead: float = LEAD
-    face: str | None = None
-    rate: float | None = None
 
 
 def script_of(take: Take, playback: Playback, limits: Limits) -> tuple[Script, Report]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -237,6 +238,23 @@ class PlaneScene(Scene):
     def reset(self) -> None:
         super().reset()
         self._positions[:] = self.rest_positions
+
+
+@dataclass(frozen=True)
+class ControlTable:
+    """The controls of a scene: under which heading, their limits, and what they do."""
+
+    groups: Mapping[str, tuple[str, ...]]
+    limits: Limits
+    actions: Mapping[str, str]
+
+
+def controls_of(scene: str) -> ControlTable:
+    """The controls of the scene of this name, which is not built: nothing is compiled."""
+    if scene == PlaneScene.name:
+        return ControlTable(PlaneScene.groups, PlaneScene.limits, PlaneScene.actions)
+    controls = sim.controls_of(assets.load("head"))
+    return ControlTable(controls.groups, Limits(controls.limits), controls.actions)
 
 
 SCENES: dict[str, Callable[[], Scene]] = {

@@ -9,13 +9,16 @@ import os
 import subprocess
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import UserError, needed
 from ..files import read_bytes
-from ..script import Script
+
+if TYPE_CHECKING:
+    from ..script import Script
 
 RATE = 48_000  # [samples/s] of sounds; devices and films have it, too
 LONGEST = 3600.0  # [s]; all of it is held in memory, 690 MB for so long in stereo

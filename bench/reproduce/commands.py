@@ -42,7 +42,8 @@ def reproduce(names: tuple[str, ...], folder: Path, rounds: int | None) -> None:
     There are figure8, figure9, figure10 and table1. index.html in the folder shows the results,
     in the paper's order. The exit code is 1 where a tolerance is missed.
     """
-    from risorius.app.files import check_file, save_png, save_text
+    from risorius.app.files import check_file, save_text
+    from risorius.app.pictures import save_png
 
     chosen = [each for each in EXPERIMENTS if each.name in names or "all" in names]
     for name in (PAGE, *(f"{each.name}.png" for each in chosen if each.picture)):

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from risorius.app.files import Image
+    from risorius.app.pictures import Image
 
 
 @dataclass(frozen=True)

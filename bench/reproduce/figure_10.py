@@ -21,7 +21,7 @@ import PIL.Image
 from risorius import assets, refine, render
 from risorius.app.capture.captions import LANCZOS
 from risorius.app.capture.drawing import camera_for
-from risorius.app.files import Image
+from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 
 from ..canvas import FLAT, GOURAUD, Canvas, Drawing, image_table

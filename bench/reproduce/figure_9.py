@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from risorius import refine, render
 from risorius.app.capture.drawing import camera_for
-from risorius.app.files import Image
+from risorius.app.pictures import Image
 from risorius.app.refining.presets import PAPERS_PRESET, PRESETS
 from risorius.app.scenes import PlaneScene
 from risorius.assets.sheets import CELL, COLUMNS, ROWS, make_grid

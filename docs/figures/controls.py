@@ -13,7 +13,7 @@ import figures
 import numpy as np
 
 from risorius.app.capture import CaptureOptions
-from risorius.app.files import Image
+from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene, Scene
 
 LAYERS = {  # by file: the layer, and how many columns leave few cells of the last row empty

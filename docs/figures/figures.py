@@ -20,7 +20,8 @@ import PIL.Image
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.capture.captions import contact_sheet
 from risorius.app.errors import UserError, report_user_errors
-from risorius.app.files import Image, check_file, written_atomically
+from risorius.app.files import check_file, written_atomically
+from risorius.app.pictures import Image
 from risorius.app.scenes import Scene
 from risorius.app.stopping import handle_signals
 

@@ -16,7 +16,7 @@ import figures
 from risorius import render
 from risorius.app.anatomy import AnatomyView
 from risorius.app.capture import CaptureOptions
-from risorius.app.files import Image
+from risorius.app.pictures import Image
 from risorius.app.refining.presets import PAPERS_PRESET, STATIC, Refinement
 from risorius.app.scenes import FaceScene
 from risorius.assets.identities import person_called

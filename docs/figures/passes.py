@@ -15,9 +15,9 @@ from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.dataset.request import request_of
 from risorius.app.dataset.studio import Shot, Studio
-from risorius.app.files import Image
 from risorius.app.passes.labels import labelled
 from risorius.app.passes.passes import NAMES, Passes
+from risorius.app.pictures import Image
 from risorius.app.scenes import FaceScene
 from risorius.assets import Segment
 

@@ -18,7 +18,7 @@ import PIL.Image
 from PIL import ImageDraw
 
 from risorius.app.capture.captions import font
-from risorius.app.files import Image
+from risorius.app.pictures import Image
 from risorius.refine.kahler.table import POINTS, splits_of, subdivide
 
 Places = npt.NDArray[np.float64]

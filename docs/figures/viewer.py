@@ -15,8 +15,8 @@ from imgui_bundle import imgui
 
 from risorius import assets
 from risorius.app.capture.drawing import camera_for
-from risorius.app.files import Image
 from risorius.app.performances import script_for
+from risorius.app.pictures import Image
 from risorius.app.script.keyframes import places_of
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.settings import Display

@@ -18,7 +18,8 @@ import PIL.Image
 from risorius import render
 from risorius.app.capture import Capture, CaptureOptions
 from risorius.app.errors import report_user_errors
-from risorius.app.files import Image, written_atomically
+from risorius.app.files import written_atomically
+from risorius.app.pictures import Image
 from risorius.app.refining.presets import STATIC, Refinement
 from risorius.app.scenes import FaceScene
 from risorius.app.script.script_file import parse_script

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from risorius.app.recordings import Take
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.take import Take
 
 Array = npt.NDArray[np.float64]
 Columns = Mapping[str, Sequence[object] | Array]

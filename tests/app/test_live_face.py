@@ -9,8 +9,16 @@ from itertools import pairwise
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.live import LOOPBACK, PROTOCOLS, Listening, LiveFace, Receiver, State
-from risorius.app.live.live_face import CALIBRATING, EASING_IN, EASING_OUT, LOST_AFTER
+from risorius.app.live.live_face import (
+    CALIBRATING,
+    EASING_IN,
+    EASING_OUT,
+    LOST_AFTER,
+    LiveFace,
+    State,
+)
+from risorius.app.live.protocols import LOOPBACK, PROTOCOLS, Listening
+from risorius.app.live.receiver import Receiver
 
 from .live_packets import live_link, osc, vmc
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.app.live import PROTOCOLS
 from risorius.app.live.frame import LiveFrame
 from risorius.app.live.livelink import packet_of
 from risorius.app.live.livelink import parse as parse_live_link
+from risorius.app.live.protocols import PROTOCOLS
 from risorius.app.live.vmc import parse as parse_vmc
 from risorius.app.recordings.calibration import ANGLES
 from risorius.app.recordings.names import ARKIT, EYE_ANGLES, HEAD_ANGLES, VISEMES
@@ -210,4 +210,4 @@ def test_hypothesis_finds_no_packet_that_does_harm(kind, data):
     end = data.draw(st.integers(begin, len(good)))
     text = st.text(alphabet="|=#-&,.0123456789enaif_LR/\0jawOpen").map(str.encode)
     middle = data.draw(st.one_of(st.binary(max_size=64), text))
-    assert is_sound(PROTOCOLS[kind].parse(good[:begin] + middle + good[end:]))
+    assert is_sound(PROTOCOLS[kind].parser()(good[:begin] + middle + good[end:]))

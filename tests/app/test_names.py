@@ -14,7 +14,8 @@ import PIL.Image
 import pytest
 
 from risorius.app.errors import UserError, as_text, in_one_line
-from risorius.app.files import check_apart, check_file, save_png, save_text
+from risorius.app.files import check_apart, check_file, save_text
+from risorius.app.pictures import save_png
 from risorius.app.script import Pose, Script
 from risorius.app.script.script_file import load_script, save_script, script_text
 

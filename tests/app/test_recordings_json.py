@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.recordings import is_recording, read_take
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.reading import is_recording, read_take
 
 from .recording_files import has_note
 

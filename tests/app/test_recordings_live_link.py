@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.recordings import is_recording, read_take
 from risorius.app.recordings.names import ARKIT
+from risorius.app.recordings.reading import is_recording, read_take
 
 from .recording_files import ANGLES, has_note, live_link, timecodes, written
 

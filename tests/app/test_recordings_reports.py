@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from risorius.app.performances import read_performance
-from risorius.app.recordings import calibration_for, read_take
+from risorius.app.recordings.calibration import calibration_for
+from risorius.app.recordings.reading import read_take
 from risorius.app.recordings.report import report_of
 from risorius.app.script import Script
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from risorius.app.recordings import is_recording, read_take
+from risorius.app.recordings.reading import is_recording, read_take
 
 from .recording_files import has_note, table
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.recordings import is_recording, read_take
+from risorius.app.recordings.reading import is_recording, read_take
 
 from .recording_files import has_note, live_link, table, written
 

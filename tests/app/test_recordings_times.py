@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from risorius.app.recordings import Take, read_take
+from risorius.app.recordings.reading import read_take
+from risorius.app.recordings.take import Take
 
 from .recording_files import has_note, written
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.recordings import read_take
+from risorius.app.recordings.reading import read_take
 
 from .recording_files import has_note, openface, pyfeat, pyfeat_2, table, written
 

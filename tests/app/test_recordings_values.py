@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from risorius.app.recordings import Take, is_recording, read_take
+from risorius.app.recordings.reading import is_recording, read_take
+from risorius.app.recordings.take import Take
 
 from .recording_files import has_note, written
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.live import LOOPBACK
 from risorius.app.live.livelink import parse
+from risorius.app.live.protocols import LOOPBACK
 from risorius.app.live.sender import Sender
-from risorius.app.recordings import Take
+from risorius.app.recordings.take import Take
 
 from .command_line import risorius
 

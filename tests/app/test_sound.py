@@ -19,7 +19,9 @@ from risorius.app.errors import UserError
 from risorius.app.scenes import PlaneScene
 from risorius.app.script import Script
 from risorius.app.script.script_file import load_script, parse_script, save_script, script_text
-from risorius.app.sound import Player, Sound, load_sound, player
+from risorius.app.sound import player
+from risorius.app.sound.decoding import Sound, load_sound
+from risorius.app.sound.player import Player
 from risorius.app.viewer.session.physics import STEP, Clock
 from risorius.app.viewer.session.session import Session
 from risorius.app.viewer.session.soundtrack import Soundtrack

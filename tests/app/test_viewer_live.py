@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.live import LOOPBACK, Listening, LiveFace, State
+from risorius.app.live.live_face import LiveFace, State
+from risorius.app.live.protocols import LOOPBACK, Listening
 from risorius.app.live.sender import Sender
 from risorius.app.viewer import Viewer
 from risorius.app.viewer.session import live_commands

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from risorius.app.errors import UserError
-from risorius.app.recordings import Take, is_recording, read_take
 from risorius.app.recordings.names import ANGLES, ARKIT, NONSENSE, VISEMES
+from risorius.app.recordings.reading import is_recording, read_take
+from risorius.app.recordings.take import Take
 from tests.app.recording_files import live_link, openface, pyfeat, table
 
 from .damage import SEED, changed

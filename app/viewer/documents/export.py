@@ -18,7 +18,8 @@ from risorius.assets.fitting import FittedHead
 
 from ...capture import CaptureOptions, capture
 from ...export.formats import Request, check_request, export, format_for
-from ...files import check_file, save_png
+from ...files import check_file
+from ...pictures import save_png
 from ...refining.presets import STATIC, Refinement
 from ...scenes import FaceScene
 from ...workers import Task

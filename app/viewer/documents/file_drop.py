@@ -14,7 +14,7 @@ from risorius.assets.identities import person_called, person_in_words
 from risorius.assets.meshes import FORMATS
 
 from ...errors import UserError
-from ...recordings import is_recording
+from ...recordings.reading import is_recording
 from ...scenes import Scene, build_scene, own_head
 from ..interface.gui import wake_up
 from ..messages import Message, Task

@@ -14,7 +14,7 @@ from ...errors import UserError, as_text
 from ...performances import read_performance
 from ...script import Script
 from ...script.script_file import is_pose
-from ...sound import with_sound
+from ...sound.decoding import with_sound
 from ..interface.gui import Gui
 from ..interface.widgets import button, dialog
 from ..messages import Message, Task

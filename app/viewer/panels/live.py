@@ -8,7 +8,8 @@ from dataclasses import replace
 from imgui_bundle import imgui
 
 from ...control_names import sentence
-from ...live import ANYWHERE, LOOPBACK, PROTOCOLS, LiveFace, State
+from ...live.live_face import LiveFace, State
+from ...live.protocols import ANYWHERE, LOOPBACK, PROTOCOLS
 from ...recordings.calibration import HIGHEST_GAIN
 from ..context import ApplicationContext
 from ..interface.commands import Command, command_button

@@ -19,7 +19,7 @@ from risorius import render
 
 from ...capture.captions import Label, captioned, labels
 from ...capture.drawing import check_camera, whole_scene
-from ...files import Image
+from ...pictures import Image
 from ...pipeline import Pipeline, Viewport
 from ...refining.plug_ins import PlugInError
 from ...refining.presets import STATIC, Refinement

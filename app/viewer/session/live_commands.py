@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...errors import UserError
-from ...live import LOST_AFTER, Listening, LiveFace, State, own_address
+from ...live.live_face import LOST_AFTER, LiveFace, State
+from ...live.protocols import Listening, own_address
 from ..messages import Message
 from .session import Session
 

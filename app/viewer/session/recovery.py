@@ -16,11 +16,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import IO, Any
 
-from risorius.assets.staging import locked
-
 from ...errors import UserError
 from ...script import Script, keyframes
 from ...script.script_file import save_script
+from ...staging import locked
 from ...stopping import cleaned_up_if_stopped
 from .session import Session
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...errors import UserError
-from ...sound import Player, Sound, load_sound
-from ...sound.player import NoDeviceError
+from ...sound.decoding import Sound, load_sound
+from ...sound.player import NoDeviceError, Player
 from .physics import MOST_STEPS, STEP
 from .session import Session
 

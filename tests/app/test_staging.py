@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from risorius.assets import staging
-from risorius.assets.staging import StagingFolder, is_staging_folder, sweep
+from risorius.app import staging
+from risorius.app.staging import StagingFolder, is_staging_folder, sweep
 
 
 def made_old(folder: Path) -> Path:

@@ -1,0 +1,260 @@
+"""The foundation of a face: the checked mesh, its size, bones, eyeballs, and names of controls.
+
+A head may be any object with `vertices` and `faces`; optional attributes add the parts of a face.
+Nothing here is compiled, so that the controls of a head are known at once.
+
+Source: Kähler et al. 2002, "Head shop": the model is fitted to a head by landmarks alone.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..schema import quoted
+from . import checked
+from .controls import GAZE_RATE, Control, Controls
+from .coordinates import FaceSpace
+from .landmarks import LANDMARK_COUNT, Array, Side
+from .layers import Layers, read_layers
+from .lip_lid_sides import lip_side
+from .muscles import sides_of
+from .rig import Rig, read_rig
+from .skull import (
+    HEAD_CONTROLS,
+    HEAD_RATE,
+    Eyeball,
+    Skull,
+    condyles_from_landmarks,
+    eyeballs_from_landmarks,
+    mandible_weight_from_landmarks,
+)
+from .surface import Surface, build_surface
+
+LEAST_MANDIBLE = 1e-4  # share of the jaw's motion that is none
+LARGEST_COORDINATE = 1e9  # [head units] of a coordinate; squares and cubes of lengths stay finite
+
+Faces = npt.NDArray[np.int32]
+
+
+class Given(NamedTuple):
+    """The optional attributes of a head; None where the head has no such attribute."""
+
+    landmarks: Any  # give size, lips and lids; without them the face is a plain spring mesh
+    rig: Any  # gives muscles, where there are landmarks
+    layers: Any  # give action units, expressions, ... above the muscles (layers.py)
+    jaw_axis: Any  # gives a jaw; guessed from landmarks if it is None
+    mandible_weight: Any  # of each vertex; guessed from landmarks if it is None
+    eyes: Any  # give gaze and contact; guessed from landmarks if they are None
+    parts: Any  # teeth (named "teeth_..."), on which lips and cheeks rest, and a "tongue"
+
+
+class Foundation(NamedTuple):
+    """A head before it has muscles and springs; lengths are of the standard face [mm]."""
+
+    vertices: Array  # (V, 3) as given [head units]
+    space: FaceSpace
+    rig: Rig
+    surface: Surface
+    landmarks: Array  # (68, 3); zeros without
+    lip_side: Array  # (V,) of lip_lid_sides.lip_side; zeros without landmarks
+    skull: Skull
+    controls: tuple[Control, ...]
+    layers: Layers
+    landmark_numbers: npt.NDArray[np.int64] | None  # (68,) vertices; None: a plain mesh
+    parts: Any  # as given
+
+
+def controls_of(head: Any) -> Controls:
+    """The controls that the simulation of a head has, at rest.
+
+    No muscle is placed, so this takes a moment. Raises ValueError as `create` does.
+    """
+    foundation = foundation_of(head)
+    return Controls(foundation.controls, foundation.layers)
+
+
+def foundation_of(head: Any) -> Foundation:
+    """Check a head, and place its bones; ValueError names the attribute that is wrong."""
+    vertices, faces = mesh_of("head", head)
+    given = Given(*(getattr(head, name, None) for name in Given._fields))
+    numbers = _landmark_numbers(given.landmarks, len(vertices))
+    rig = read_rig(given.rig or {})
+    if numbers is None:
+        return _plain_foundation(vertices, faces, given, rig)
+    return _face_foundation(vertices, faces, given, rig, numbers)
+
+
+def _plain_foundation(vertices: Array, faces: Faces, given: Given, rig: Rig) -> Foundation:
+    """Of a mesh without landmarks: the jaw and the eyes that it brings, and no muscles."""
+    rig = Rig(rig.tissue, rig.jaw, rig.eyes)
+    space = FaceSpace.from_bounds(vertices)
+    surface = build_surface(space.to_standard(vertices), faces)
+    axis = _optional("jaw_axis", given.jaw_axis, (2, 3))
+    weight = _optional("mandible_weight", given.mandible_weight, (len(vertices),))
+    condyles = None if axis is None else space.to_standard(axis)
+    balls = () if given.eyes is None else _eyeballs(given.eyes, space)
+    skull = _skull(condyles, weight, balls, rig, surface)
+    controls = (*_jaw_controls(skull), *_gaze_controls(skull))
+    return Foundation(
+        vertices=vertices,
+        space=space,
+        rig=rig,
+        surface=surface,
+        landmarks=np.zeros((LANDMARK_COUNT, 3)),
+        lip_side=np.zeros(len(vertices)),
+        skull=skull,
+        controls=controls,
+        layers=_read_layers((), controls),  # its tables could speak of nothing
+        landmark_numbers=None,
+        parts=given.parts,
+    )
+
+
+def _face_foundation(
+    vertices: Array, faces: Faces, given: Given, rig: Rig, numbers: npt.NDArray[np.int64]
+) -> Foundation:
+    """Of a face: bones and eyes that it does not bring are guessed from its landmarks."""
+    space = FaceSpace.from_landmarks(vertices[numbers])
+    surface = build_surface(space.to_standard(vertices), faces)
+    landmarks = space.to_standard(vertices[numbers])
+    side = lip_side(surface, landmarks)
+    axis = _optional("jaw_axis", given.jaw_axis, (2, 3))
+    weight = _optional("mandible_weight", given.mandible_weight, (len(vertices),))
+    if axis is None:
+        condyles = condyles_from_landmarks(landmarks, rig.jaw)
+    else:
+        condyles = space.to_standard(axis)
+    if weight is None and rig.jaw.seeds:
+        weight = mandible_weight_from_landmarks(surface, landmarks, rig.jaw, side)
+    if given.eyes is None:
+        balls = eyeballs_from_landmarks(landmarks)
+    else:
+        balls = _eyeballs(given.eyes, space)
+    skull = _skull(condyles, weight, balls, rig, surface)
+    controls = _face_controls(rig, skull)
+    tables = given.layers if rig.muscles and given.layers is not None else ()
+    return Foundation(
+        vertices=vertices,
+        space=space,
+        rig=rig,
+        surface=surface,
+        landmarks=landmarks,
+        lip_side=side,
+        skull=skull,
+        controls=controls,
+        layers=_read_layers(tables, controls),
+        landmark_numbers=numbers,
+        parts=given.parts,
+    )
+
+
+def _read_layers(tables: Any, controls: tuple[Control, ...]) -> Layers:
+    """The layers above these controls."""
+    return read_layers(tables, [control.name for control in controls])
+
+
+def mesh_of(what: str, given: Any) -> tuple[Array, npt.NDArray[np.int32]]:
+    """Checked copies of the vertices and faces of a head; `what`: its name in errors."""
+    for name in ("vertices", "faces"):
+        if not hasattr(given, name):
+            raise ValueError(
+                f"{what}: {type(given).__name__} has no attribute '{name}'; give any object with "
+                "vertices (V, 3) and faces (F, 3), such as assets.load('head') or a trimesh.Trimesh"
+            )
+    wanted = "(V, 3) with V > 0"
+    vertices = checked.numbers(f"{what}.vertices", given.vertices, (None, 3), wanted)
+    if (np.abs(vertices) > LARGEST_COORDINATE).any():
+        raise ValueError(
+            f"{what}.vertices: some are beyond {LARGEST_COORDINATE:g}; take another unit of length"
+        )
+    if len(vertices) == 0:
+        raise ValueError(f"{what}.vertices: shape was {vertices.shape}, must be {wanted}")
+    wanted = "integers (F, 3)"
+    faces = checked.vertex_numbers(f"{what}.faces", given.faces, (None, 3), len(vertices), wanted)
+    return vertices, faces.astype(np.int32)
+
+
+def _landmark_numbers(given: Any, vertex_count: int) -> npt.NDArray[np.int64] | None:
+    """Checked vertex numbers of the 68 landmarks, None if the head has none."""
+    if given is None:
+        return None
+    wanted = f"{LANDMARK_COUNT} vertex numbers"
+    shape = (LANDMARK_COUNT,)
+    return checked.vertex_numbers("head.landmarks", given, shape, vertex_count, wanted)
+
+
+def _optional(name: str, given: Any, shape: tuple[int, ...]) -> Array | None:
+    """A checked optional array of the head."""
+    return None if given is None else checked.numbers(f"head.{name}", given, shape)
+
+
+def _skull(
+    condyles: Array | None,
+    weight: Array | None,
+    balls: tuple[Eyeball, ...],
+    rig: Rig,
+    surface: Surface,
+) -> Skull:
+    """The bones; without condyles (2, 3) [mm] or the mandible's weight (V,) there is no jaw."""
+    if condyles is None or weight is None:
+        weight = np.zeros(surface.vertex_count)
+        condyles = np.array([[-1.0, 0, 0], [1.0, 0, 0]])
+    # Lips clamped to one bone open like a letter box; skin between the bones rounds the mouth.
+    weight = np.clip(surface.smoothed(weight, rig.jaw.softness), 0.0, 1.0)
+    weight[weight < LEAST_MANDIBLE] = 0.0
+    return Skull(condyles, weight, balls, rig.jaw, rig.eyes, rig.head)
+
+
+def _eyeballs(given: Any, space: FaceSpace) -> tuple[Eyeball, ...]:
+    """The eyes that a head brings."""
+    balls = []
+    for eye in checked.several("head.eyes", given, ("name", "centre", "radius")):
+        if eye.name not in ("right", "left"):
+            name = quoted(eye.name)
+            raise ValueError(f"head.eyes: name was {name}, allowed are 'right' and 'left'")
+        centre = space.to_standard(checked.numbers("head.eyes: centre", eye.centre, (3,)))
+        radius = checked.number("head.eyes: radius", eye.radius)
+        if radius <= 0.0:
+            raise ValueError(f"head.eyes: radius was {radius:g}, must be above 0")
+        balls.append(Eyeball(Side(eye.name), centre, radius / space.scale))
+    return tuple(balls)
+
+
+def _face_controls(rig: Rig, skull: Skull) -> tuple[Control, ...]:
+    """All controls of a face: its muscles in rig order, the lips, the jaw, the gaze, the head."""
+    controls = []
+    for muscle in rig.muscles:
+        both = [muscle.name] if muscle.halves else []
+        names = [*both, *(name for name, _ in sides_of(muscle))]
+        controls += [Control(name, muscle.group, action=muscle.action) for name in names]
+    if skull.mandible_weight.any():  # lips that are apart at rest stay so far apart
+        controls.append(Control("lips_closed", "Lips"))
+    controls += _jaw_controls(skull)
+    controls += _gaze_controls(skull)
+    controls += [Control(name, "Head", -1.0, 1.0, HEAD_RATE) for name in HEAD_CONTROLS]
+    return tuple(controls)
+
+
+def _jaw_controls(skull: Skull) -> list[Control]:
+    """Of jaw and tongue, where there is a jaw."""
+    if not skull.mandible_weight.any():
+        return []
+    return [
+        Control("jaw_open", "Jaw"),
+        Control("jaw_forward", "Jaw", -1.0),
+        Control("jaw_sideways", "Jaw", -1.0),
+        Control("tongue_out", "Jaw", action="tongue out over the lower lip"),
+        Control("tongue_up", "Jaw", action="tip of the tongue to the upper teeth"),
+    ]
+
+
+def _gaze_controls(skull: Skull) -> list[Control]:
+    """Of each eyeball."""
+    return [
+        Control(f"gaze_{way}_{ball.side.value}", "Gaze", -1.0, 1.0, GAZE_RATE)
+        for way in ("horizontal", "vertical")
+        for ball in skull.eyeballs
+    ]

@@ -1,0 +1,49 @@
+"""What commands import: no more than their work needs, so that they start at once."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+PROGRAM = """
+import contextlib, sys
+from risorius.__main__ import command
+with contextlib.suppress(SystemExit):
+    command()(sys.argv[1:])
+print("loaded:", *sys.modules)
+"""
+
+
+def loaded_by(*words: str, cache: Path) -> set[str]:
+    """The packages that a command loads, ours as two words; `cache`: of compiled code."""
+    result = subprocess.run(
+        [sys.executable, "-c", PROGRAM, *words],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(cache)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    modules = result.stdout.rpartition("loaded: ")[2].split()
+    names = [module.split(".") for module in modules]
+    return {".".join(name[:2]) if name[0] == "risorius" else name[0] for name in names}
+
+
+def test_help_loads_no_library_but_click(tmp_path: Path) -> None:
+    """Help of all commands, and of one, is printed by modules that compute nothing."""
+    slow = {"PIL", "moderngl", "numba", "numpy", "pydantic", "scipy", "threadpoolctl", "tqdm"}
+    for words in (("--help",), ("capture", "--help"), ("reproduce", "--help")):
+        assert not loaded_by(*words, cache=tmp_path) & slow, words
+
+
+def test_controls_compiles_nothing(tmp_path: Path) -> None:
+    """The list of controls needs a head and its rig: no picture, no refiner, no simulation."""
+    drawing = {"PIL", "moderngl", "glfw", "risorius.render", "risorius.refine", "trimesh"}
+    assert not loaded_by("controls", cache=tmp_path) & drawing
+    assert not list(tmp_path.rglob("*.nbc"))
+
+
+def test_doctor_simulates_nothing(tmp_path: Path) -> None:
+    """A report on the machine needs OpenGL and the names of refiners: no head, no script."""
+    loaded = loaded_by("doctor", cache=tmp_path)
+    assert not loaded & {"risorius.sim", "risorius.assets", "pydantic", "trimesh"}
+    assert not list(tmp_path.rglob("*.nbc"))
